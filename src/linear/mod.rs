@@ -1,0 +1,27 @@
+//! Linear stability of continuous sliding.
+//!
+//! Everything here works on the dimensionless [`Groups`](crate::model::Groups) and on delays in units of √(M/κ).
+//!
+//! - [`characteristic`]: D(λ) of the letter's Eq. (3) and a bound on its unstable roots
+//! - [`crossing`]: frequencies and delays at which roots cross the imaginary axis (the letter's Eqs. 4 and 5)
+//! - [`count`]: the exact number of unstable roots at a delay
+//! - [`stable_delays`]: all delay intervals on which sliding is stable
+//! - [`row`]: counts and margins at many delays of one line
+//! - [`status`]: what a cell says about itself
+//! - [`gains`]: the crossing curve with one gain given and the other solved for
+//! - [`curves`]: crossing curves in a plane of a parameter and the delay, cut at their corners
+//! - [`lobes`]: where the stable regions of pure control end
+
+pub mod characteristic;
+pub mod count;
+pub mod crossing;
+pub mod curves;
+pub mod gains;
+pub mod lobes;
+mod roots;
+pub mod row;
+pub mod stable_delays;
+pub mod status;
+
+pub use count::{Count, MarginalTolerance};
+pub use crossing::{Crossing, Crossings, Direction};

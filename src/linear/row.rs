@@ -1,0 +1,318 @@
+//! A row of cells: one line's crossings laid over many delays.
+//!
+//! Between two crossings the count is constant, so a row costs its crossings plus the time to fill memory.
+
+use super::count::MarginalTolerance;
+use super::crossing::{Crossing, Crossings};
+use super::stable_delays::MarginWalk;
+use super::status::{MARGINAL, MOST_COUNTED, SATURATED};
+
+/// Delays of a row: finite, not negative, strictly increasing, in the time unit of the crossings they are used with.
+#[derive(Debug, Clone, Copy)]
+pub struct Delays<'a> {
+    values: &'a [f64],
+    /// 1/step where the delays are equally spaced to rounding, else 0.
+    per_step: f64,
+}
+
+impl<'a> Delays<'a> {
+    /// Delays in increasing order.
+    #[must_use]
+    pub fn new(values: &'a [f64]) -> Self {
+        Self {
+            values,
+            per_step: reciprocal_step(values),
+        }
+    }
+
+    /// The delays themselves.
+    #[must_use]
+    pub fn values(&self) -> &'a [f64] {
+        self.values
+    }
+
+    /// The delays number `from` up to, not with, `to`.
+    #[must_use]
+    pub fn range(&self, from: usize, to: usize) -> Self {
+        Self {
+            values: &self.values[from..to],
+            per_step: self.per_step,
+        }
+    }
+
+    /// The index of the first delay greater than `tau`, at least `start`.
+    #[inline]
+    fn first_above(&self, tau: f64, start: usize) -> usize {
+        let values = self.values;
+        if self.per_step == 0.0 {
+            return start + values[start..].partition_point(|&v| v <= tau);
+        }
+        let guess = (tau - values[0]) * self.per_step;
+        // Off by one at most for an evenly spaced grid; the loops make it right for any.
+        let mut i = (guess.max(0.0) as usize).clamp(start, values.len());
+        while i > start && values[i - 1] > tau {
+            i -= 1;
+        }
+        while i < values.len() && values[i] <= tau {
+            i += 1;
+        }
+        i
+    }
+}
+
+fn reciprocal_step(values: &[f64]) -> f64 {
+    let [first, .., last] = values else {
+        return 0.0;
+    };
+    let step = (last - first) / (values.len() - 1) as f64;
+    let even = values
+        .iter()
+        .enumerate()
+        .all(|(i, v)| (v - (first + step * i as f64)).abs() < 0.25 * step);
+    if even { 1.0 / step } else { 0.0 }
+}
+
+/// One family of crossings on its way along a row.
+struct Cursor<'c> {
+    crossing: Option<&'c Crossing>,
+    branch: u64,
+    /// Crossings behind.
+    passed: u64,
+    /// Index of the first delay beyond the next crossing.
+    index: usize,
+}
+
+/// The parts of a row that do not change along it.
+struct Row<'a> {
+    crossings: &'a Crossings,
+    delays: Delays<'a>,
+    tolerance: MarginalTolerance,
+}
+
+impl Row<'_> {
+    fn cursor<'c>(&self, crossing: Option<&'c Crossing>, status: &mut [u8]) -> Cursor<'c> {
+        let mut cursor = Cursor {
+            crossing,
+            branch: 0,
+            passed: 0,
+            index: self.delays.values.len(),
+        };
+        if let Some(crossing) = crossing {
+            cursor.branch = crossing.branch_at(self.delays.values[0]);
+            cursor.passed = cursor.branch - crossing.first_branch;
+            if cursor.passed > 0 {
+                self.mark(crossing, crossing.delay(cursor.branch - 1), 0, status);
+            }
+            self.place(&mut cursor, crossing, 0, status);
+        }
+        cursor
+    }
+
+    #[inline]
+    fn place(&self, cursor: &mut Cursor, crossing: &Crossing, start: usize, status: &mut [u8]) {
+        let delay = crossing.delay(cursor.branch);
+        cursor.index = self.delays.first_above(delay, start);
+        self.mark(crossing, delay, cursor.index, status);
+    }
+
+    #[inline]
+    fn advance(&self, cursor: &mut Cursor, status: &mut [u8]) {
+        cursor.branch += 1;
+        cursor.passed += 1;
+        if let Some(crossing) = cursor.crossing {
+            self.place(cursor, crossing, cursor.index, status);
+        }
+    }
+
+    /// Marks the cells marginal to the crossing at `delay`, which lies just below the delay number `index`.
+    #[inline]
+    fn mark(&self, crossing: &Crossing, delay: f64, index: usize, status: &mut [u8]) {
+        let values = self.delays.values;
+        let near = |tau: f64| {
+            (tau - delay).abs()
+                <= self
+                    .crossings
+                    .marginal_distance(crossing, tau, self.tolerance)
+        };
+        let mut i = index;
+        while i > 0 && near(values[i - 1]) {
+            i -= 1;
+            status[i] |= MARGINAL;
+        }
+        let mut i = index;
+        while i < values.len() && near(values[i]) {
+            status[i] |= MARGINAL;
+            i += 1;
+        }
+    }
+
+    /// Fills between crossings: the cost is that of the crossings and of memory.
+    fn by_crossings(&self, n_unstable: &mut [u16], status: &mut [u8]) {
+        let crossings = self.crossings;
+        let len = n_unstable.len();
+        let mut upper = self.cursor(crossings.upper.as_ref(), status);
+        let mut lower = self.cursor(crossings.lower.as_ref(), status);
+        let mut from = 0;
+        loop {
+            let to = upper.index.min(lower.index);
+            let count =
+                (crossings.at_zero_delay + 2 * upper.passed).saturating_sub(2 * lower.passed);
+            if count > u64::from(MOST_COUNTED) {
+                status[from..to].iter_mut().for_each(|s| *s |= SATURATED);
+            }
+            n_unstable[from..to].fill(saturated(count));
+            if to == len {
+                break;
+            }
+            from = to;
+            if upper.index == to {
+                self.advance(&mut upper, status);
+            } else {
+                self.advance(&mut lower, status);
+            }
+        }
+        let mut touch = self.cursor(crossings.touch.as_ref(), status);
+        while touch.index < len {
+            self.advance(&mut touch, status);
+        }
+        self.undamped_cells(n_unstable, status);
+    }
+
+    /// The cells that b = 0 makes special, see [`Crossings::marginal_everywhere_or_at_zero`].
+    fn undamped_cells(&self, n_unstable: &mut [u16], status: &mut [u8]) {
+        let crossings = self.crossings;
+        if !crossings.undamped {
+            return;
+        }
+        for (tau, status) in self.delays.values.iter().zip(&mut *status) {
+            if !crossings.marginal_everywhere_or_at_zero(*tau, self.tolerance) {
+                break;
+            }
+            *status |= MARGINAL;
+        }
+        if self.delays.values[0] == 0.0 {
+            n_unstable[0] = 0;
+        }
+    }
+
+    /// Cell by cell: cheaper where crossings are denser than cells.
+    fn by_cells(&self, n_unstable: &mut [u16], status: &mut [u8]) {
+        for ((tau, n), status) in self.delays.values.iter().zip(n_unstable).zip(status) {
+            let count = self.crossings.count(*tau, self.tolerance);
+            *n = saturated(count.n_unstable);
+            if count.n_unstable > u64::from(MOST_COUNTED) {
+                *status |= SATURATED;
+            }
+            if count.marginal {
+                *status |= MARGINAL;
+            }
+        }
+    }
+}
+
+fn saturated(count: u64) -> u16 {
+    count.min(u64::from(MOST_COUNTED)) as u16
+}
+
+impl Crossings {
+    /// The count of unstable roots and the status at every delay of a row: as [`Crossings::count`] says, cell by cell.
+    ///
+    /// `n_unstable` and `status` have the length of `delays`, which is at least 1; every element is written. Counts above
+    /// [`MOST_COUNTED`] are cut and say so in the status.
+    pub fn fill_counts(
+        &self,
+        delays: Delays,
+        tolerance: MarginalTolerance,
+        n_unstable: &mut [u16],
+        status: &mut [u8],
+    ) {
+        let values = delays.values;
+        let row = Row {
+            crossings: self,
+            delays,
+            tolerance,
+        };
+        status.fill(0);
+        let length = values[values.len() - 1] - values[0];
+        let expected: f64 = self.iter().map(|c| c.omega * length).sum();
+        if expected > 4.0 * values.len() as f64 {
+            row.by_cells(n_unstable, status);
+        } else {
+            row.by_crossings(n_unstable, status);
+        }
+    }
+
+    /// The signed distance to the nearest change of stability at every delay of a row, see [`Crossings::delay_margin`].
+    pub fn fill_delay_margins(&self, delays: Delays, margins: &mut [f64]) {
+        let mut walk = MarginWalk::new(self.stable_delays());
+        for (tau, margin) in delays.values.iter().zip(margins) {
+            *margin = walk.margin_at(*tau);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::model::Groups;
+    use proptest::prelude::*;
+
+    fn check_row(crossings: &Crossings, values: &[f64]) {
+        let tolerance = MarginalTolerance::default();
+        let (mut n, mut status) = (vec![9; values.len()], vec![9; values.len()]);
+        crossings.fill_counts(Delays::new(values), tolerance, &mut n, &mut status);
+        for ((tau, n), status) in values.iter().zip(n).zip(status) {
+            let count = crossings.count(*tau, tolerance);
+            assert_eq!(n, saturated(count.n_unstable), "{crossings:?} {tau}");
+            assert_eq!(
+                status & MARGINAL != 0,
+                count.marginal,
+                "{crossings:?} {tau}"
+            );
+        }
+    }
+
+    proptest! {
+        /// A row and single cells agree exactly, for even and uneven delays, and for delays that hit crossings.
+        #[test]
+        fn rows_are_their_cells(
+            b in prop_oneof![-2.5..1.0_f64, Just(0.0), Just(-0.5)],
+            a_v in prop_oneof![-3.0..3.0_f64, Just(0.0)],
+            a_n in prop_oneof![-15.0..5.0_f64, Just(0.0), Just(-0.625)],
+            from in prop_oneof![0.0..20.0_f64, Just(0.0)],
+            length in prop_oneof![1e-3..50.0_f64, Just(5e3)],
+            points in 1_usize..300,
+        ) {
+            let crossings = Crossings::of(Groups::new(b, a_v, a_n));
+            let even: Vec<f64> = (0..points).map(|i| from + length * i as f64 / points as f64).collect();
+            check_row(&crossings, &even);
+            let squared: Vec<f64> = even.iter().map(|t| t * t).collect();
+            check_row(&crossings, &squared);
+            let mut on_crossings: Vec<f64> =
+                crossings.iter().flat_map(|c| (0..40).map(|k| c.delay(k + c.first_branch))).collect();
+            on_crossings.sort_by(f64::total_cmp);
+            on_crossings.dedup();
+            if !on_crossings.is_empty() {
+                check_row(&crossings, &on_crossings);
+            }
+        }
+    }
+
+    #[test]
+    fn counts_beyond_the_type_saturate_and_say_so() {
+        let crossings = Crossings::of(Groups::new(-0.3, 2.0, 4.0));
+        for values in [
+            vec![1.0, 1e6, 2e6],
+            (0..100_000).map(|i| 1e6 + f64::from(i)).collect(),
+        ] {
+            let (mut n, mut status) = (vec![0; values.len()], vec![0; values.len()]);
+            let tolerance = MarginalTolerance::default();
+            crossings.fill_counts(Delays::new(&values), tolerance, &mut n, &mut status);
+            let last = values.len() - 1;
+            assert_eq!(
+                (n[last], status[last] & SATURATED),
+                (MOST_COUNTED, SATURATED)
+            );
+        }
+    }
+}

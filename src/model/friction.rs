@@ -1,0 +1,168 @@
+//! Kinetic friction laws μ_K(v), each with value and slope.
+
+use super::ModelError;
+
+/// A law of kinetic friction together with the static coefficient μ_S that goes with it.
+///
+/// Every law is a function of the sliding speed |ẋ| > 0; the force points against the motion.
+/// A law with μ_K(0⁺) > μ_S is refused: release from stick would accelerate backwards.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct FrictionLaw {
+    kind: Kind,
+    mu_s: f64,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Kind {
+    Coulomb { mu0: f64 },
+    Weakening { mu0: f64, v_s: f64 },
+    Stribeck { mu0: f64, v_s: f64, mu_s: f64 },
+}
+
+impl FrictionLaw {
+    /// Coulomb's law, μ_K(v) = μ0.
+    ///
+    /// # Errors
+    /// μ0 and μ_S must be finite and positive, and μ0 ≤ μ_S.
+    pub fn coulomb(mu0: f64, mu_s: f64) -> Result<Self, ModelError> {
+        let (mu0, mu_s) = checked_coefficients(mu0, mu_s)?;
+        Ok(Self {
+            kind: Kind::Coulomb { mu0 },
+            mu_s,
+        })
+    }
+
+    /// The letter's velocity weakening, μ_K(v) = μ0 / (1 + v/v_s).
+    ///
+    /// # Errors
+    /// μ0, v_s and μ_S must be finite and positive, and μ0 = μ_K(0⁺) ≤ μ_S.
+    pub fn weakening(mu0: f64, v_s: f64, mu_s: f64) -> Result<Self, ModelError> {
+        let (mu0, mu_s) = checked_coefficients(mu0, mu_s)?;
+        let v_s = ModelError::positive("v_s", v_s)?;
+        Ok(Self {
+            kind: Kind::Weakening { mu0, v_s },
+            mu_s,
+        })
+    }
+
+    /// Stribeck's law with a Gaussian transition, μ_K(v) = μ0 + (μ_S − μ0) exp(−(v/v_s)²):
+    /// from μ_S at rest down to the Coulomb level μ0 at speeds well above v_s.
+    ///
+    /// Source: H. Olsson et al., *Friction models and friction compensation*, Eur. J. Control 4 (1998), with exponent 2
+    /// and no viscous part.
+    ///
+    /// # Errors
+    /// μ0, v_s and μ_S must be finite and positive, and μ0 ≤ μ_S.
+    pub fn stribeck(mu0: f64, v_s: f64, mu_s: f64) -> Result<Self, ModelError> {
+        let (mu0, mu_s) = checked_coefficients(mu0, mu_s)?;
+        let v_s = ModelError::positive("v_s", v_s)?;
+        Ok(Self {
+            kind: Kind::Stribeck { mu0, v_s, mu_s },
+            mu_s,
+        })
+    }
+
+    /// μ_S.
+    #[must_use]
+    pub fn mu_s(&self) -> f64 {
+        self.mu_s
+    }
+
+    /// μ_K(v), dimensionless, at the sliding speed `speed` ≥ 0 (at 0: the limit 0⁺).
+    #[must_use]
+    pub fn mu_k(&self, speed: f64) -> f64 {
+        match self.kind {
+            Kind::Coulomb { mu0 } => mu0,
+            Kind::Weakening { mu0, v_s } => mu0 / (1.0 + speed / v_s),
+            Kind::Stribeck { mu0, v_s, mu_s } => mu0 + (mu_s - mu0) * gaussian(speed / v_s),
+        }
+    }
+
+    /// μ_K′(v), time/length, at the sliding speed `speed` ≥ 0 (at 0: the limit 0⁺, the slope at rest).
+    #[must_use]
+    pub fn mu_prime(&self, speed: f64) -> f64 {
+        match self.kind {
+            Kind::Coulomb { .. } => 0.0,
+            Kind::Weakening { mu0, v_s } => {
+                let s = 1.0 + speed / v_s;
+                -mu0 / (v_s * s * s)
+            }
+            Kind::Stribeck { mu0, v_s, mu_s } => {
+                let s = speed / v_s;
+                -2.0 * (mu_s - mu0) * s / v_s * gaussian(s)
+            }
+        }
+    }
+}
+
+fn gaussian(s: f64) -> f64 {
+    (-s * s).exp()
+}
+
+fn checked_coefficients(mu0: f64, mu_s: f64) -> Result<(f64, f64), ModelError> {
+    let mu_s = ModelError::positive("mu_s", mu_s)?;
+    let mu0 = ModelError::positive("mu0", mu0)?;
+    let mu0 = ModelError::check(
+        "mu0",
+        mu0,
+        "at most mu_s, else release from stick would accelerate backwards",
+        mu0 <= mu_s,
+    )?;
+    Ok((mu0, mu_s))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn laws() -> [FrictionLaw; 3] {
+        [
+            FrictionLaw::coulomb(0.4, 1.0).unwrap(),
+            FrictionLaw::weakening(0.5, 0.7, 1.0).unwrap(),
+            FrictionLaw::stribeck(0.3, 0.2, 0.9).unwrap(),
+        ]
+    }
+
+    #[test]
+    fn slopes_are_the_derivatives_of_the_values() {
+        for law in laws() {
+            for v in [0.01, 0.1, 0.35, 1.0, 4.0] {
+                let h = 1e-5 * v;
+                let numeric = (law.mu_k(v + h) - law.mu_k(v - h)) / (2.0 * h);
+                assert!(
+                    (numeric - law.mu_prime(v)).abs() < 1e-8,
+                    "{law:?} at {v}: {numeric}"
+                );
+            }
+        }
+    }
+
+    #[test]
+    fn limits_at_rest_and_at_high_speed() {
+        let [coulomb, weakening, stribeck] = laws();
+        assert_eq!(coulomb.mu_k(0.0), 0.4);
+        assert_eq!(weakening.mu_k(0.0), 0.5);
+        assert_eq!(weakening.mu_prime(0.0), -0.5 / 0.7);
+        assert!((stribeck.mu_k(0.0) - 0.9).abs() < 1e-15);
+        assert_eq!(stribeck.mu_prime(0.0), 0.0);
+        assert!((stribeck.mu_k(10.0) - 0.3).abs() < 1e-15);
+    }
+
+    #[test]
+    fn ill_posed_laws_are_refused_by_name() {
+        let error = FrictionLaw::weakening(1.2, 0.5, 1.0).unwrap_err();
+        assert_eq!(error.parameter, "mu0");
+        assert_eq!(
+            FrictionLaw::stribeck(0.3, 0.0, 1.0).unwrap_err().parameter,
+            "v_s"
+        );
+        assert_eq!(
+            FrictionLaw::coulomb(f64::NAN, 1.0).unwrap_err().parameter,
+            "mu0"
+        );
+        assert_eq!(
+            FrictionLaw::coulomb(0.5, -1.0).unwrap_err().parameter,
+            "mu_s"
+        );
+    }
+}

@@ -1,0 +1,102 @@
+//! The dimensional oscillator, the control law, and their dimensionless groups.
+
+use super::{FrictionLaw, Groups, ModelError};
+
+/// A block of mass M on a spring κ, pressed down by the unperturbed load N0.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Oscillator {
+    mass: f64,
+    stiffness: f64,
+    normal_load: f64,
+}
+
+impl Default for Oscillator {
+    /// M = κ = N0 = 1: plain numbers are then the dimensionless groups.
+    fn default() -> Self {
+        Self {
+            mass: 1.0,
+            stiffness: 1.0,
+            normal_load: 1.0,
+        }
+    }
+}
+
+impl Oscillator {
+    /// An oscillator of mass M, spring stiffness κ and normal load N0.
+    ///
+    /// # Errors
+    /// Each of the three must be finite and greater than zero.
+    pub fn new(mass: f64, stiffness: f64, normal_load: f64) -> Result<Self, ModelError> {
+        Ok(Self {
+            mass: ModelError::positive("mass", mass)?,
+            stiffness: ModelError::positive("stiffness", stiffness)?,
+            normal_load: ModelError::positive("normal_load", normal_load)?,
+        })
+    }
+
+    /// M.
+    #[must_use]
+    pub fn mass(&self) -> f64 {
+        self.mass
+    }
+
+    /// κ.
+    #[must_use]
+    pub fn stiffness(&self) -> f64 {
+        self.stiffness
+    }
+
+    /// N0.
+    #[must_use]
+    pub fn normal_load(&self) -> f64 {
+        self.normal_load
+    }
+
+    /// The unit of time √(M/κ): the inverse of the frictionless oscillator's angular frequency.
+    #[must_use]
+    pub fn time_unit(&self) -> f64 {
+        (self.mass / self.stiffness).sqrt()
+    }
+
+    /// The dimensionless groups at a sliding point under control (physics of the letter's Eq. 3).
+    #[must_use]
+    pub fn groups(&self, sliding: SlidingPoint, control: Control) -> Groups {
+        Groups {
+            b: sliding.mu_prime * self.normal_load / (self.stiffness * self.mass).sqrt(),
+            a_v: control.alpha_v * self.time_unit(),
+            a_n: sliding.mu_k * control.alpha_n / self.stiffness,
+        }
+    }
+}
+
+/// Gains of the delayed feedback (the letter's Eq. 2); both may act at once.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Control {
+    /// α_v, 1/time: pulling velocity per elongation difference.
+    pub alpha_v: f64,
+    /// α_N, force/length: normal load per elongation difference.
+    pub alpha_n: f64,
+}
+
+/// Value and slope of the kinetic friction coefficient at the sliding velocity v0.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct SlidingPoint {
+    /// μ_K(v0), dimensionless.
+    pub mu_k: f64,
+    /// μ_K′(v0), time/length.
+    pub mu_prime: f64,
+}
+
+impl SlidingPoint {
+    /// Value and slope of `law` at the sliding velocity `v0` > 0.
+    ///
+    /// # Errors
+    /// `v0` must be finite and greater than zero: the model is linear only about steady forward sliding.
+    pub fn of_law(law: &FrictionLaw, v0: f64) -> Result<Self, ModelError> {
+        let v0 = ModelError::positive("v0", v0)?;
+        Ok(Self {
+            mu_k: law.mu_k(v0),
+            mu_prime: law.mu_prime(v0),
+        })
+    }
+}

@@ -1,0 +1,98 @@
+//! The closed-form count against reference rows and against an independent count.
+
+mod common;
+
+use common::winding;
+use proptest::prelude::*;
+use slipmap::linear::{Crossings, MarginalTolerance};
+use slipmap::model::Groups;
+
+#[test]
+fn every_reference_row_has_its_count() {
+    let table = include_str!("reference/linear_points.csv");
+    let mut rows = 0;
+    for line in table.lines().skip(1) {
+        let v: Vec<f64> = line.split(',').map(|x| x.parse().unwrap()).collect();
+        let crossings = Crossings::of(Groups::new(v[0], v[1], v[2]));
+        let count = crossings.count(v[3], MarginalTolerance::default());
+        assert_eq!(count.n_unstable as f64, v[4], "{line}");
+        assert!(!count.marginal, "{line}");
+        assert_eq!(count.stable(), v[5] < 0.0, "{line}");
+        rows += 1;
+    }
+    assert_eq!(rows, 150);
+}
+
+fn agree(b: f64, a_v: f64, a_n: f64, tau: f64) {
+    let count = Crossings::of(Groups::new(b, a_v, a_n)).count(tau, MarginalTolerance::default());
+    if count.marginal {
+        return;
+    }
+    if let Some(expected) = winding::unstable_roots(b, a_v, a_n, tau) {
+        assert_eq!(
+            count.n_unstable, expected,
+            "b {b} a_v {a_v} a_n {a_n} τ {tau}"
+        );
+    }
+}
+
+/// A gain that is sometimes exactly zero, so that pure controls come up as often as mixed ones.
+fn gain(range: std::ops::Range<f64>) -> impl Strategy<Value = f64> {
+    prop_oneof![2 => range, 1 => Just(0.0)]
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 20_000, ..ProptestConfig::default() })]
+
+    #[test]
+    fn counts_equal_winding_numbers(
+        b in -2.5..1.0_f64,
+        a_v in gain(-3.0..3.0),
+        a_n in gain(-15.0..5.0),
+        tau in 0.001..20.0_f64,
+    ) {
+        agree(b, a_v, a_n, tau);
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 4_000, ..ProptestConfig::default() })]
+
+    /// Where the closed form has its special cases: b = 0, folds, tiny gains, short delays.
+    #[test]
+    fn counts_equal_winding_numbers_in_degenerate_places(
+        b in prop_oneof![Just(0.0), -1e-6..1e-6_f64, -0.8..0.1_f64],
+        a_v in prop_oneof![Just(0.0), -1e-3..1e-3_f64, -1.0..1.0_f64],
+        kind in 0..4,
+        offset in prop_oneof![-1e-3..1e-3_f64, -1e-6..1e-6_f64],
+        tau in prop_oneof![0.0..1e-2_f64, 0.0..15.0_f64],
+    ) {
+        let fold = (b * (b - 2.0 * a_v)).max(0.0).sqrt();
+        let a_n = match kind {
+            0 => -0.5 * b * b - fold + offset,
+            1 => -0.5 * b * b + fold + offset,
+            2 => 0.5 - b * a_v + offset,
+            _ => offset,
+        };
+        agree(b, a_v, a_n, tau);
+    }
+}
+
+/// The roots at τ = 0⁺ for b = 0, where the sign of the first order decides.
+#[test]
+fn undamped_counts_equal_winding_numbers() {
+    for (a_v, a_n) in [
+        (0.0, 0.3),
+        (0.0, -0.3),
+        (0.5, 0.3),
+        (0.5, -0.3),
+        (0.4, 0.0),
+        (-0.4, 0.0),
+    ] {
+        for tau in [0.2, 1.0, 3.0, 5.0, 7.5, 11.0] {
+            let expected = winding::unstable_roots(0.0, a_v, a_n, tau).expect("off the axis");
+            let count = Crossings::of(Groups::new(0.0, a_v, a_n)).n_unstable(tau);
+            assert_eq!(count, expected, "a_v {a_v} a_n {a_n} τ {tau}");
+        }
+    }
+}
