@@ -1,2 +1,5 @@
 pub mod linear;
 pub mod model;
+pub mod report;
+pub mod store;
+pub mod sweep;

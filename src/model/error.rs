@@ -40,14 +40,4 @@ impl ModelError {
             value > 0.0,
         )
     }
-
-    /// `value` if it is finite and not negative.
-    pub(crate) fn not_negative(parameter: &'static str, value: f64) -> Result<f64, Self> {
-        Self::check(parameter, value, "a finite number, 0 or more", value >= 0.0)
-    }
-
-    /// `value` if it is finite.
-    pub(crate) fn finite(parameter: &'static str, value: f64) -> Result<f64, Self> {
-        Self::check(parameter, value, "a finite number", true)
-    }
 }

@@ -1,0 +1,89 @@
+//! How a command fails: what the user reads, and the exit code.
+
+use std::process::ExitCode;
+
+use miette::{LabeledSpan, MietteDiagnostic, NamedSource, Report};
+use slipmap::model::ModelError;
+use slipmap::store::StoreError;
+use slipmap::sweep::SpecError;
+
+/// Why a command did not do what it was asked for.
+pub enum Failure {
+    /// Exit code 1: it could not be done.
+    Failed(Report),
+    /// Exit code 2: the input does not make sense.
+    BadInput(Report),
+    /// Exit code 130 or 143: a signal.
+    Interrupted {
+        /// What was left behind.
+        message: String,
+        /// The exit code.
+        code: u8,
+    },
+}
+
+impl Failure {
+    /// Bad input, in words.
+    pub fn bad_input(message: impl Into<String>) -> Self {
+        Self::BadInput(Report::new(MietteDiagnostic::new(message)))
+    }
+
+    /// Bad input with advice.
+    pub fn bad_input_with_help(message: impl Into<String>, help: impl Into<String>) -> Self {
+        Self::BadInput(Report::new(MietteDiagnostic::new(message).with_help(help)))
+    }
+
+    /// Bad input at a place of a file.
+    pub fn in_file(error: SpecError, name: &str, text: String) -> Self {
+        let mut diagnostic = MietteDiagnostic::new(error.message);
+        if let Some(help) = error.help {
+            diagnostic = diagnostic.with_help(help);
+        }
+        let Some(span) = error.span else {
+            let message = format!("{name}: {}", diagnostic.message);
+            diagnostic.message = message;
+            return Self::BadInput(Report::new(diagnostic));
+        };
+        let diagnostic = diagnostic.with_label(LabeledSpan::at(span, "here"));
+        Self::BadInput(Report::new(diagnostic).with_source_code(NamedSource::new(name, text)))
+    }
+
+    /// Prints the failure to standard error and gives the exit code.
+    pub fn report(self) -> ExitCode {
+        let (report, code) = match self {
+            Self::Interrupted { message, code } => {
+                eprintln!("{message}");
+                return ExitCode::from(code);
+            }
+            Self::Failed(report) => (report, 1),
+            Self::BadInput(report) => (report, 2),
+        };
+        eprintln!("Error: {report:?}");
+        ExitCode::from(code)
+    }
+}
+
+impl From<StoreError> for Failure {
+    fn from(error: StoreError) -> Self {
+        let report = Report::new(MietteDiagnostic::new(error.to_string()));
+        match error {
+            StoreError::NotAMap { .. } | StoreError::Io { action: "open", .. } => {
+                Self::BadInput(report)
+            }
+            _ => Self::Failed(report),
+        }
+    }
+}
+
+impl From<ModelError> for Failure {
+    fn from(error: ModelError) -> Self {
+        Self::bad_input(error.to_string())
+    }
+}
+
+impl From<std::io::Error> for Failure {
+    fn from(error: std::io::Error) -> Self {
+        let message = format!("cannot write to standard output: {error}");
+        Self::Failed(Report::new(MietteDiagnostic::new(message)))
+    }
+}

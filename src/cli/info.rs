@@ -1,0 +1,82 @@
+//! `slipmap info`: what a map holds.
+
+use std::io::Write;
+use std::path::PathBuf;
+
+use slipmap::linear::curves::StableSide;
+use slipmap::linear::status::FLAGS;
+use slipmap::report::numbers::{bytes, grouped};
+use slipmap::store::MapFile;
+use slipmap::store::schema::root;
+
+use super::failure::Failure;
+
+#[derive(Debug, clap::Args)]
+pub struct Args {
+    /// The map
+    #[arg(value_name = "MAP.h5")]
+    map: PathBuf,
+    /// Print the sweep file that made the map, and nothing else
+    #[arg(long)]
+    sweep: bool,
+}
+
+pub fn main(args: &Args) -> Result<(), Failure> {
+    let map = MapFile::open(&args.map)?;
+    let mut out = std::io::stdout().lock();
+    if args.sweep {
+        write!(out, "{}", map.root_text(root::SWEEP).unwrap_or_default())?;
+        return Ok(());
+    }
+    let mut row = |name: &str, text: String| writeln!(out, "{name:<12} {text}");
+    for (name, attribute) in [
+        ("title", root::TITLE),
+        ("made by", root::SOURCE),
+        ("revision", root::GIT_REVISION),
+        ("history", root::HISTORY),
+        ("plan", root::PLAN_HASH),
+        ("friction", root::FRICTION_LAW),
+    ] {
+        if let Some(text) = map.root_text(attribute).filter(|t| !t.is_empty()) {
+            row(name, text)?;
+        }
+    }
+    for axis in map.axes() {
+        let (first, last) = (axis.values[0], axis.values[axis.values.len() - 1]);
+        let (name, points) = (axis.parameter.name(), grouped(axis.values.len() as u64));
+        row(
+            "axis",
+            format!("{name:<12} {points:>10} points, {first} to {last}"),
+        )?;
+    }
+    for (parameter, value) in map.scalars() {
+        row("fixed", format!("{:<12} {value}", parameter.name()))?;
+    }
+    row("cells", grouped(map.cells()))?;
+    for (name, size, on_disk) in map.sizes()? {
+        row(
+            "field",
+            format!("{name:<12} {}, {} on disk", bytes(size), bytes(on_disk)),
+        )?;
+    }
+    for ((_, name), count) in FLAGS.iter().zip(map.status_counts()?) {
+        if count > 0 {
+            row("status", format!("{name:<14} {} cells", grouped(count)))?;
+        }
+    }
+    let curves = map.curves()?;
+    if map.boundary_plane().is_some() {
+        let bounding = curves
+            .iter()
+            .filter(|c| c.piece.stable_side != StableSide::Neither)
+            .count();
+        row(
+            "boundaries",
+            format!(
+                "{} crossing curves, {bounding} of them bound a stable region",
+                curves.len()
+            ),
+        )?;
+    }
+    Ok(())
+}

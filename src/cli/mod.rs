@@ -1,0 +1,50 @@
+//! The command line: one file per subcommand, each thin.
+
+mod failure;
+mod info;
+mod parameters;
+mod plan;
+mod point;
+mod run;
+mod sweep_file;
+
+use std::process::ExitCode;
+
+use clap::{Parser, Subcommand};
+
+/// Exact stability maps of delayed-feedback control of dry friction.
+#[derive(Parser)]
+#[command(version, long_version = concat!(env!("CARGO_PKG_VERSION"), " (", env!("SLIPMAP_GIT_REVISION"), ")"))]
+#[command(
+    after_help = "Exit codes: 0 done, 1 failed, 2 bad input or usage, 130 or 143 interrupted."
+)]
+struct Cli {
+    #[command(subcommand)]
+    command: Command,
+}
+
+#[derive(Subcommand)]
+enum Command {
+    /// Compute a map: from a sweep file to HDF5 and a picture
+    Run(run::Args),
+    /// Say what a sweep would cost, without running it
+    Plan(plan::Args),
+    /// Everything about one point of parameter space
+    Point(point::Args),
+    /// Say what a map holds
+    Info(info::Args),
+}
+
+/// Runs the command line of this process.
+pub fn main() -> ExitCode {
+    let result = match Cli::parse().command {
+        Command::Run(args) => run::main(&args),
+        Command::Plan(args) => plan::main(&args),
+        Command::Point(args) => point::main(&args),
+        Command::Info(args) => info::main(&args),
+    };
+    match result {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(failure) => failure.report(),
+    }
+}

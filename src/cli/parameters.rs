@@ -1,0 +1,115 @@
+//! The flags that give a point of parameter space, the same words as in sweep files.
+
+use clap::{Args, ValueEnum};
+use slipmap::sweep::Parameter;
+use slipmap::sweep::parameter::{LawKind, Setting};
+
+use super::failure::Failure;
+
+/// Friction laws by name.
+#[derive(Debug, Clone, Copy, ValueEnum)]
+pub enum Law {
+    /// μ_K = μ0
+    Coulomb,
+    /// μ_K = μ0/(1 + v/v_s)
+    Weakening,
+    /// μ_K = μ0 + (μ_S − μ0) exp(−(v/v_s)²)
+    Stribeck,
+}
+
+impl From<Law> for LawKind {
+    fn from(law: Law) -> Self {
+        match law {
+            Law::Coulomb => Self::Coulomb,
+            Law::Weakening => Self::Weakening,
+            Law::Stribeck => Self::Stribeck,
+        }
+    }
+}
+
+/// A point of parameter space.
+#[derive(Debug, Args)]
+#[command(allow_negative_numbers = true)]
+pub struct ParameterArgs {
+    /// μ_K′(v0), slope of the friction coefficient at the sliding velocity
+    #[arg(long, value_name = "B")]
+    mu_prime: Option<f64>,
+    /// α_v, gain of velocity control [default: 0]
+    #[arg(long, value_name = "A")]
+    alpha_v: Option<f64>,
+    /// α_N, gain of load control [default: 0]
+    #[arg(long, value_name = "A")]
+    alpha_n: Option<f64>,
+    /// τ, delay of the feedback
+    #[arg(long, value_name = "T")]
+    tau: Option<f64>,
+    /// μ_K(v0), kinetic friction coefficient at the sliding velocity [default: 1]
+    #[arg(long, value_name = "M")]
+    mu_k: Option<f64>,
+    /// M, mass [default: 1]
+    #[arg(long)]
+    mass: Option<f64>,
+    /// κ, stiffness [default: 1]
+    #[arg(long)]
+    stiffness: Option<f64>,
+    /// N0, normal load [default: 1]
+    #[arg(long)]
+    normal_load: Option<f64>,
+    /// Friction law, instead of --mu-prime and --mu-k
+    #[arg(long)]
+    friction: Option<Law>,
+    /// v0, pulling velocity (with --friction)
+    #[arg(long)]
+    v0: Option<f64>,
+    /// μ0 of the friction law
+    #[arg(long)]
+    mu0: Option<f64>,
+    /// v_s of the friction law
+    #[arg(long)]
+    v_s: Option<f64>,
+    /// μ_S, static friction coefficient [default: 1]
+    #[arg(long)]
+    mu_s: Option<f64>,
+}
+
+impl ParameterArgs {
+    fn given(&self, parameter: Parameter) -> Option<f64> {
+        match parameter {
+            Parameter::MuPrime => self.mu_prime,
+            Parameter::AlphaV => self.alpha_v,
+            Parameter::AlphaN => self.alpha_n,
+            Parameter::Tau => self.tau,
+            Parameter::V0 => self.v0,
+            Parameter::MuK => self.mu_k,
+            Parameter::Mass => self.mass,
+            Parameter::Stiffness => self.stiffness,
+            Parameter::NormalLoad => self.normal_load,
+            Parameter::Mu0 => self.mu0,
+            Parameter::VS => self.v_s,
+            Parameter::MuS => self.mu_s,
+        }
+    }
+
+    /// The setting that the flags describe.
+    pub fn setting(&self) -> Result<Setting, Failure> {
+        let law = self.friction.map(LawKind::from);
+        let flag = |name: &str| format!("--{}", name.replace('_', "-"));
+        Setting::check_given(law, |p| self.given(p).is_some())
+            .map_err(|e| Failure::bad_input_with_help(e.message(law), e.help()))?;
+        let mut setting = Setting::new(law);
+        for parameter in Parameter::ALL {
+            if let Some(value) = self.given(parameter) {
+                let value = parameter.check(value).map_err(|e| {
+                    let name = flag(e.parameter);
+                    Failure::bad_input(format!(
+                        "{name} {value} is outside its range: {}",
+                        e.allowed
+                    ))
+                })?;
+                setting.set(parameter, value);
+            }
+        }
+        setting.sliding_point()?;
+        Ok(setting)
+    }
+}

@@ -1,0 +1,88 @@
+//! `slipmap plan`: what a sweep would cost.
+
+use std::io::Write;
+use std::path::PathBuf;
+use std::time::{Duration, Instant};
+
+use slipmap::report::numbers::{bytes, grouped, prefixed, seconds};
+use slipmap::store::map_writer::TileEncoder;
+use slipmap::sweep::Plan;
+use slipmap::sweep::engine::{Encode, Worker};
+
+use super::failure::Failure;
+use super::run::{default_threads, parse_threads};
+use super::sweep_file::read_plan;
+
+/// How long the timed sample takes, about.
+const SAMPLE: Duration = Duration::from_millis(300);
+
+#[derive(Debug, clap::Args)]
+pub struct Args {
+    /// The sweep file
+    #[arg(value_name = "SWEEP.toml")]
+    sweep: PathBuf,
+    /// Threads to plan for [default: as many as the machine offers]
+    #[arg(long, value_name = "N", value_parser = parse_threads)]
+    threads: Option<usize>,
+}
+
+pub fn main(args: &Args) -> Result<(), Failure> {
+    let plan = read_plan(&args.sweep)?;
+    let threads = args.threads.unwrap_or_else(default_threads);
+    let per_cell = sample(&plan);
+    let mut out = std::io::stdout().lock();
+    for axis in &plan.spec.axes {
+        let (first, last) = (axis.values[0], axis.values[axis.len() - 1]);
+        let (name, points) = (axis.parameter.name(), grouped(axis.len() as u64));
+        writeln!(
+            out,
+            "axis        {name:<12} {points:>10} points, {first} to {last}"
+        )?;
+    }
+    let fields: Vec<&str> = plan.spec.fields.iter().map(|f| f.name()).collect();
+    writeln!(out, "fields      {}, status", fields.join(", "))?;
+    writeln!(out, "cells       {}", grouped(plan.cells()))?;
+    let (cells, tiles) = (plan.tiles.tile_cells() as u64, plan.tiles.len() as u64);
+    writeln!(
+        out,
+        "tiles       {} of {} cells",
+        grouped(tiles),
+        grouped(cells)
+    )?;
+    writeln!(
+        out,
+        "boundaries  in {} planes",
+        grouped(plan.boundary_planes())
+    )?;
+    let size = plan.cells() * plan.bytes_per_cell();
+    writeln!(out, "bytes       {} before compression", bytes(size))?;
+    let in_memory = cells * plan.bytes_per_cell() * 4 * threads as u64;
+    writeln!(out, "memory      about {}", bytes(in_memory + (30 << 20)))?;
+    let total = per_cell * plan.cells() as f64 / threads as f64;
+    writeln!(
+        out,
+        "time        about {} on {threads} threads ({} cells/s a thread in a timed sample)",
+        seconds(total),
+        prefixed(1.0 / per_cell),
+    )?;
+    Ok(())
+}
+
+/// Seconds per cell on one thread, from tiles spread over the map: computed and compressed, not written.
+fn sample(plan: &Plan) -> f64 {
+    let mut worker = Worker::new(plan);
+    let mut encoder = TileEncoder::default();
+    let start = Instant::now();
+    let (mut cells, mut done) = (0, 0);
+    let tiles = plan.tiles.len();
+    while start.elapsed() < SAMPLE && done < tiles {
+        // Multiples of the golden ratio fall evenly, wherever the sample ends.
+        let part = (done as f64 * 0.618_033_988_749_895).fract();
+        let tile = plan.tiles.tile((part * tiles as f64) as usize);
+        worker.compute(&tile);
+        std::hint::black_box(encoder.encode(&worker.buffers));
+        cells += tile.cells();
+        done += 1;
+    }
+    start.elapsed().as_secs_f64() / cells as f64
+}

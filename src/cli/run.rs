@@ -1,0 +1,174 @@
+//! `slipmap run`: from a sweep file to a map and its picture.
+
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+use std::time::SystemTime;
+
+use miette::{MietteDiagnostic, Report};
+use slipmap::report::numbers::{bytes, grouped, prefixed, seconds};
+use slipmap::report::progress::Progress;
+use slipmap::store::map_writer::Provenance;
+use slipmap::store::schema::root;
+use slipmap::store::{MapFile, MapWriter, Output, StoreError};
+use slipmap::sweep::{Plan, RunError, engine};
+
+use super::failure::Failure;
+use super::sweep_file::read_plan;
+
+/// More threads than this are taken for a slip of the finger.
+const MOST_THREADS: usize = 4096;
+
+#[derive(Debug, clap::Args)]
+pub struct Args {
+    /// The sweep file
+    #[arg(value_name = "SWEEP.toml")]
+    sweep: PathBuf,
+    /// The map to write [default: the sweep file's name with .h5, in the current folder]
+    #[arg(short, long, value_name = "MAP.h5")]
+    output: Option<PathBuf>,
+    /// Threads to compute on [default: as many as the machine offers]
+    #[arg(long, value_name = "N", value_parser = parse_threads)]
+    threads: Option<usize>,
+    /// Start over, replacing a map that is already there
+    #[arg(long)]
+    fresh: bool,
+    /// Show no progress
+    #[arg(short, long)]
+    quiet: bool,
+}
+
+/// The number of threads of a `--threads` flag.
+pub fn parse_threads(text: &str) -> Result<usize, String> {
+    text.parse()
+        .ok()
+        .filter(|n| (1..=MOST_THREADS).contains(n))
+        .ok_or_else(|| format!("expected a whole number from 1 to {MOST_THREADS}"))
+}
+
+/// As many threads as the machine offers to this process.
+pub fn default_threads() -> usize {
+    std::thread::available_parallelism().map_or(1, usize::from)
+}
+
+pub fn main(args: &Args) -> Result<(), Failure> {
+    let plan = read_plan(&args.sweep)?;
+    let path = output_path(args)?;
+    if !args.fresh && already_there(&path, &plan)? {
+        println!(
+            "{} is already complete; --fresh computes it again",
+            path.display()
+        );
+        return Ok(());
+    }
+    let signals = Signals::catch()?;
+    let progress = Progress::new(args.quiet);
+    let threads = args.threads.unwrap_or_else(default_threads);
+    let output = Output::claim(&path)?;
+    let mut writer = MapWriter::create(&plan, output, &provenance(args))?;
+    if let Err(error) = engine::run(&plan, threads, &mut writer, &progress, &signals.stop) {
+        progress.clear();
+        drop(writer);
+        return Err(failure(error, &path, &signals));
+    }
+    writer.finish()?;
+    let elapsed = progress.elapsed();
+    println!(
+        "{}: {} cells in {} ({} cells/s), {}",
+        path.display(),
+        grouped(plan.cells()),
+        seconds(elapsed),
+        prefixed(plan.cells() as f64 / elapsed),
+        bytes(std::fs::metadata(&path).map_or(0, |m| m.len())),
+    );
+    Ok(())
+}
+
+fn output_path(args: &Args) -> Result<PathBuf, Failure> {
+    let path = match &args.output {
+        Some(path) => path.clone(),
+        None => {
+            let stem = args.sweep.file_stem().unwrap_or(args.sweep.as_os_str());
+            PathBuf::from(stem).with_extension("h5")
+        }
+    };
+    if path.file_name().is_none() {
+        return Err(Failure::bad_input(format!(
+            "--output {} does not name a file",
+            path.display()
+        )));
+    }
+    Ok(path)
+}
+
+/// True if the map of this plan is there; an error if something else is.
+fn already_there(path: &Path, plan: &Plan) -> Result<bool, Failure> {
+    if !path.exists() {
+        return Ok(false);
+    }
+    let refuse = |why: String| {
+        Failure::bad_input_with_help(
+            format!("{} is already there: {why}", path.display()),
+            "--fresh replaces it; -o writes elsewhere",
+        )
+    };
+    match MapFile::open(path) {
+        Ok(map) if map.root_text(root::PLAN_HASH).as_deref() == Some(&plan.hash()) => Ok(true),
+        Ok(_) => Err(refuse("the map of another sweep".into())),
+        Err(StoreError::NotAMap { why, .. }) => Err(refuse(format!("no map of slipmap ({why})"))),
+        Err(error) => Err(error.into()),
+    }
+}
+
+fn provenance(args: &Args) -> Provenance {
+    let now = humantime::format_rfc3339_seconds(SystemTime::now());
+    Provenance {
+        program_version: env!("CARGO_PKG_VERSION").into(),
+        git_revision: env!("SLIPMAP_GIT_REVISION").into(),
+        history: format!("{now} slipmap run {}", args.sweep.display()),
+    }
+}
+
+fn failure(error: RunError<StoreError>, path: &Path, signals: &Signals) -> Failure {
+    match error {
+        RunError::Interrupted => Failure::Interrupted {
+            message: format!(
+                "interrupted: {} was not written; the same command starts again",
+                path.display()
+            ),
+            code: signals.code.load(Ordering::Relaxed) as u8,
+        },
+        RunError::Sink(error) => error.into(),
+        RunError::Model(error) => error.into(),
+        RunError::Threads { .. } => {
+            Failure::Failed(Report::new(MietteDiagnostic::new(error.to_string())))
+        }
+    }
+}
+
+/// SIGINT and SIGTERM as flags: the first one stops the sweep in order, a second one at once.
+struct Signals {
+    stop: Arc<AtomicBool>,
+    code: Arc<AtomicUsize>,
+}
+
+impl Signals {
+    fn catch() -> Result<Self, Failure> {
+        use signal_hook::consts::{SIGINT, SIGTERM};
+        use signal_hook::flag;
+        let (stop, code) = (
+            Arc::new(AtomicBool::new(false)),
+            Arc::new(AtomicUsize::new(130)),
+        );
+        for (signal, exit_code) in [(SIGINT, 130), (SIGTERM, 143)] {
+            flag::register_conditional_shutdown(signal, exit_code, Arc::clone(&stop))
+                .and_then(|_| flag::register_usize(signal, Arc::clone(&code), exit_code as usize))
+                .and_then(|_| flag::register(signal, Arc::clone(&stop)))
+                .map_err(|error| {
+                    let message = format!("cannot catch signals: {error}");
+                    Failure::Failed(Report::new(MietteDiagnostic::new(message)))
+                })?;
+        }
+        Ok(Self { stop, code })
+    }
+}

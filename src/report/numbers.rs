@@ -1,0 +1,76 @@
+//! Numbers as people read them.
+
+/// A count with thin groups of three: 8 658 009.
+#[must_use]
+pub fn grouped(n: u64) -> String {
+    let digits = n.to_string();
+    let mut text = String::with_capacity(digits.len() + digits.len() / 3);
+    for (i, digit) in digits.chars().enumerate() {
+        if i > 0 && (digits.len() - i) % 3 == 0 {
+            text.push(' ');
+        }
+        text.push(digit);
+    }
+    text
+}
+
+/// A quantity with a decimal prefix and three digits: "12.3 M".
+#[must_use]
+pub fn prefixed(value: f64) -> String {
+    for (size, prefix) in [(1e12, " T"), (1e9, " G"), (1e6, " M"), (1e3, " k")] {
+        if value >= size {
+            return format!("{}{prefix}", three_digits(value / size));
+        }
+    }
+    format!("{} ", three_digits(value)).trim_end().to_owned()
+}
+
+fn three_digits(value: f64) -> String {
+    match value {
+        v if v >= 99.95 => format!("{v:.0}"),
+        v if v >= 9.995 => format!("{v:.1}"),
+        v => format!("{v:.2}"),
+    }
+}
+
+/// Bytes with a decimal prefix: "12.3 MB".
+#[must_use]
+pub fn bytes(n: u64) -> String {
+    if n < 1000 {
+        format!("{n} B")
+    } else {
+        format!("{}B", prefixed(n as f64))
+    }
+}
+
+/// Seconds as people say them: "0.12 s", "3 min 20 s", "5 h 12 min".
+#[must_use]
+pub fn seconds(s: f64) -> String {
+    let whole = s.round() as u64;
+    match whole {
+        0..60 if s < 9.995 => format!("{s:.2} s"),
+        0..60 => format!("{s:.0} s"),
+        60..3600 => format!("{} min {} s", whole / 60, whole % 60),
+        3600..360_000 => format!("{} h {} min", whole / 3600, whole % 3600 / 60),
+        _ => format!("{} days", whole / 86_400),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn people_can_read_them() {
+        assert_eq!(grouped(0), "0");
+        assert_eq!(grouped(999), "999");
+        assert_eq!(grouped(8_658_009), "8 658 009");
+        assert_eq!(prefixed(12_345_678.0), "12.3 M");
+        assert_eq!(prefixed(0.5), "0.50");
+        assert_eq!(bytes(512), "512 B");
+        assert_eq!(bytes(3_000_000_000), "3.00 GB");
+        assert_eq!(seconds(0.123), "0.12 s");
+        assert_eq!(seconds(200.0), "3 min 20 s");
+        assert_eq!(seconds(18_720.0), "5 h 12 min");
+    }
+}

@@ -1,0 +1,82 @@
+//! Attributes in the forms that every netCDF-4 reader understands.
+
+use std::ffi::CString;
+
+use hdf5::{H5Type, Location};
+use hdf5_sys::h5a::{H5Aclose, H5Acreate2, H5Awrite};
+use hdf5_sys::h5i::hid_t;
+use hdf5_sys::h5p::H5P_DEFAULT;
+use hdf5_sys::h5s::{H5S_class_t, H5Sclose, H5Screate};
+use hdf5_sys::h5t::{H5T_class_t, H5T_cset_t, H5Tclose, H5Tcreate, H5Tset_cset};
+
+/// Writes a text attribute as a null-terminated string of fixed length.
+///
+/// The binding writes null-padded strings only, which netCDF readers pass over on dimension scales without a word.
+pub(super) fn put_text(at: &Location, name: &str, text: &str) -> hdf5::Result<()> {
+    let bytes = CString::new(text.replace('\0', " ")).map_err(|e| e.to_string())?;
+    let name = CString::new(name).map_err(|e| e.to_string())?;
+    let length = bytes.as_bytes_with_nul().len();
+    hdf5::sync::sync(|| {
+        // SAFETY: `at` is an open object, both strings end in a null byte and outlive the calls, `length` counts the
+        // terminator, and every identifier is closed whatever happened; the calls run under the library's lock.
+        unsafe {
+            let kind = H5Tcreate(H5T_class_t::H5T_STRING, length);
+            H5Tset_cset(kind, H5T_cset_t::H5T_CSET_UTF8);
+            let space = H5Screate(H5S_class_t::H5S_SCALAR);
+            let attribute = H5Acreate2(
+                at.id(),
+                name.as_ptr(),
+                kind,
+                space,
+                H5P_DEFAULT,
+                H5P_DEFAULT,
+            );
+            let written = H5Awrite(attribute, kind, bytes.as_ptr().cast());
+            let error = failure(&[kind, space, attribute], written);
+            H5Aclose(attribute);
+            H5Sclose(space);
+            H5Tclose(kind);
+            error
+        }
+    })
+}
+
+fn failure(identifiers: &[hid_t], result: i32) -> hdf5::Result<()> {
+    if result < 0 || identifiers.iter().any(|&id| id < 0) {
+        Err(hdf5::Error::query()?)
+    } else {
+        Ok(())
+    }
+}
+
+/// Writes a numeric attribute of one or more values.
+pub(super) fn put_numbers<T: H5Type>(at: &Location, name: &str, values: &[T]) -> hdf5::Result<()> {
+    at.new_attr_builder().with_data(values).create(name)?;
+    Ok(())
+}
+
+/// Reads a text attribute of fixed or variable length.
+pub(super) fn text(at: &Location, name: &str) -> hdf5::Result<String> {
+    use hdf5::types::{TypeDescriptor, VarLenUnicode};
+    let attribute = at.attr(name)?;
+    match attribute.dtype()?.to_descriptor()? {
+        TypeDescriptor::FixedAscii(_) | TypeDescriptor::FixedUnicode(_) => fixed_text(&attribute),
+        _ => Ok(attribute.read_scalar::<VarLenUnicode>()?.to_string()),
+    }
+}
+
+/// Reads a string of fixed length; the binding's own fixed strings have theirs in the type.
+fn fixed_text(attribute: &hdf5::Attribute) -> hdf5::Result<String> {
+    let kind = attribute.dtype()?;
+    let mut bytes = vec![0_u8; kind.size()];
+    if attribute.size() != 1 {
+        return Err("a text attribute holds one string".into());
+    }
+    let read = hdf5::sync::sync(|| {
+        // SAFETY: the buffer holds one element of the attribute's own type.
+        unsafe { hdf5_sys::h5a::H5Aread(attribute.id(), kind.id(), bytes.as_mut_ptr().cast()) }
+    });
+    failure(&[], read)?;
+    let end = bytes.iter().position(|&b| b == 0).unwrap_or(bytes.len());
+    String::from_utf8(bytes[..end].to_vec()).map_err(|e| e.to_string().into())
+}

@@ -1,0 +1,138 @@
+//! HDF5's own shuffle and deflate filters, applied on the computing threads.
+//!
+//! The library would apply them behind its one lock; here every thread does, and whole chunks are handed to it.
+
+use std::collections::HashMap;
+use std::sync::Arc;
+
+use libdeflater::{CompressionLvl, Compressor};
+
+/// The deflate level that the files name.
+pub(super) const DEFLATE_LEVEL: u8 = 1;
+
+/// A compressed chunk; equal chunks share their bytes.
+pub(super) type Chunk = Arc<[u8]>;
+
+/// Compresses chunks of one thread.
+pub(super) struct ChunkCodec {
+    compressor: Compressor,
+    shuffled: Vec<u8>,
+    out: Vec<u8>,
+    /// Chunks of one repeated element, by its bytes and size.
+    constant: HashMap<(u64, usize), Chunk>,
+}
+
+/// Elements that a chunk can hold.
+pub(super) trait Element: Copy + PartialEq {
+    /// Size in bytes.
+    const SIZE: usize;
+    /// The bits, for telling constant chunks apart.
+    fn bits(self) -> u64;
+    /// Bytes as they lie in memory.
+    fn bytes(slice: &[Self]) -> &[u8];
+}
+
+macro_rules! element {
+    ($kind:ty, $bits:expr) => {
+        impl Element for $kind {
+            const SIZE: usize = size_of::<$kind>();
+            fn bits(self) -> u64 {
+                $bits(self)
+            }
+            fn bytes(slice: &[Self]) -> &[u8] {
+                // SAFETY: plain numbers have no padding, and any byte is a valid u8.
+                unsafe { std::slice::from_raw_parts(slice.as_ptr().cast(), size_of_val(slice)) }
+            }
+        }
+    };
+}
+element!(u8, u64::from);
+element!(u16, u64::from);
+element!(f64, f64::to_bits);
+
+impl Default for ChunkCodec {
+    fn default() -> Self {
+        let level = CompressionLvl::new(i32::from(DEFLATE_LEVEL)).unwrap_or_default();
+        Self {
+            compressor: Compressor::new(level),
+            shuffled: Vec::new(),
+            out: Vec::new(),
+            constant: HashMap::new(),
+        }
+    }
+}
+
+impl ChunkCodec {
+    /// The chunk as HDF5 stores it: bytes shuffled (for elements longer than one) and deflated.
+    pub fn encode<T: Element>(&mut self, values: &[T]) -> Chunk {
+        let Some(key) = constant_key(values) else {
+            return self.compress(values);
+        };
+        if let Some(chunk) = self.constant.get(&key) {
+            return Arc::clone(chunk);
+        }
+        let chunk = self.compress(values);
+        self.constant.insert(key, Arc::clone(&chunk));
+        chunk
+    }
+
+    fn compress<T: Element>(&mut self, values: &[T]) -> Chunk {
+        let raw = T::bytes(values);
+        let input = if T::SIZE == 1 {
+            raw
+        } else {
+            shuffle(raw, T::SIZE, &mut self.shuffled);
+            &self.shuffled
+        };
+        let bound = self.compressor.zlib_compress_bound(input.len());
+        self.out.resize(bound.max(self.out.len()), 0);
+        let length = self
+            .compressor
+            .zlib_compress(input, &mut self.out)
+            .unwrap_or_else(|_| unreachable!("the buffer has the size that the library asked for"));
+        Arc::from(&self.out[..length])
+    }
+}
+
+/// What tells a chunk of one repeated element from others; none for any other chunk.
+fn constant_key<T: Element>(values: &[T]) -> Option<(u64, usize)> {
+    let first = *values.first()?;
+    let same = values.iter().all(|v| v.bits() == first.bits());
+    same.then(|| (first.bits(), values.len() * 16 + T::SIZE))
+}
+
+/// HDF5's shuffle: first bytes of all elements, then second bytes, and so on.
+fn shuffle(raw: &[u8], size: usize, out: &mut Vec<u8>) {
+    let count = raw.len() / size;
+    out.resize(raw.len(), 0);
+    for (byte, plane) in out.chunks_exact_mut(count).enumerate() {
+        for (target, element) in plane.iter_mut().zip(raw.chunks_exact(size)) {
+            *target = element[byte];
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn shuffle_puts_planes_together() {
+        let mut out = Vec::new();
+        shuffle(&[1, 2, 3, 4, 5, 6], 2, &mut out);
+        assert_eq!(out, [1, 3, 5, 2, 4, 6]);
+    }
+
+    #[test]
+    fn constant_chunks_are_compressed_once() {
+        let mut codec = ChunkCodec::default();
+        let first = codec.encode(&[2_u16; 1000]);
+        assert!(Arc::ptr_eq(&first, &codec.encode(&[2_u16; 1000])));
+        assert!(!Arc::ptr_eq(&first, &codec.encode(&[4_u16; 1000])));
+        assert!(!Arc::ptr_eq(&first, &codec.encode(&[2_u8; 1000])));
+        let mut other = [2_u16; 1000];
+        other[999] = 3;
+        assert!(!Arc::ptr_eq(&first, &codec.encode(&other)));
+        assert_eq!(codec.encode(&[f64::NAN; 10]), codec.encode(&[f64::NAN; 10]));
+    }
+}

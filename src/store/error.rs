@@ -1,0 +1,82 @@
+//! Why a map could not be written or read, with the file's name and the cause.
+
+use std::io;
+use std::path::{Path, PathBuf};
+
+/// What went wrong with a file.
+#[derive(Debug, thiserror::Error)]
+pub enum StoreError {
+    /// The system refused an operation on a file or folder.
+    #[error("cannot {action} {}: {source}", path.display())]
+    Io {
+        /// What was tried.
+        action: &'static str,
+        /// On what.
+        path: PathBuf,
+        /// What the system said.
+        source: io::Error,
+    },
+    /// The HDF5 library refused.
+    #[error("cannot {action} {}: {cause}", path.display())]
+    Hdf5 {
+        /// What was tried.
+        action: String,
+        /// On what.
+        path: PathBuf,
+        /// What the library said, in one line.
+        cause: String,
+    },
+    /// The file is no map, or one of another format.
+    #[error("{} is not a slipmap map: {why}", path.display())]
+    NotAMap {
+        /// Which file.
+        path: PathBuf,
+        /// What is missing or different.
+        why: String,
+    },
+    /// Another run writes the same map.
+    #[error("another run is writing {}", path.display())]
+    Locked {
+        /// The map's final name.
+        path: PathBuf,
+    },
+}
+
+impl StoreError {
+    pub(super) fn io(action: &'static str, path: &Path) -> impl FnOnce(io::Error) -> Self {
+        move |source| Self::Io {
+            action,
+            path: path.to_owned(),
+            source,
+        }
+    }
+
+    pub(super) fn hdf5(action: impl Into<String>, path: &Path) -> impl FnOnce(hdf5::Error) -> Self {
+        move |error| Self::Hdf5 {
+            action: action.into(),
+            path: path.to_owned(),
+            cause: cause(&error),
+        }
+    }
+
+    pub(super) fn not_a_map(path: &Path, why: impl Into<String>) -> Self {
+        Self::NotAMap {
+            path: path.to_owned(),
+            why: why.into(),
+        }
+    }
+}
+
+/// The system's own words where the library's error stack holds them, else its innermost description.
+fn cause(error: &hdf5::Error) -> String {
+    let Some(stack) = error.stack() else {
+        return error.to_string();
+    };
+    let mut descriptions: Vec<String> = stack.iter().map(|frame| frame.desc().to_owned()).collect();
+    let said = descriptions.iter().find_map(|text| {
+        let (_, rest) = text.split_once("error message = '")?;
+        Some(rest.split_once('\'')?.0.to_owned())
+    });
+    said.or_else(|| descriptions.pop())
+        .unwrap_or_else(|| error.to_string())
+}

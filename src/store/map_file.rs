@@ -1,0 +1,403 @@
+//! Reads maps.
+
+use std::path::{Path, PathBuf};
+
+use hdf5::{Dataset, File, H5Type, Hyperslab, SliceOrIndex};
+
+use super::attributes::text;
+use super::error::StoreError;
+use super::schema::{self, BOUNDARIES, PLANE, STATUS, root};
+use crate::linear::Direction;
+use crate::linear::curves::{CurvePiece, StableSide, Vertex};
+use crate::sweep::engine::N_UNSTABLE_FILL;
+use crate::sweep::{Field, Parameter};
+
+/// An axis of a map.
+#[derive(Debug, Clone, PartialEq)]
+pub struct MapAxis {
+    /// The parameter.
+    pub parameter: Parameter,
+    /// Its values.
+    pub values: Vec<f64>,
+    /// Its unit, "1" if dimensionless.
+    pub unit: String,
+}
+
+/// A curve of a map with the values of the axes outside its plane.
+#[derive(Debug, Clone, PartialEq)]
+pub struct MapCurve {
+    /// Values of the axes outside the plane, in the order of the map's axes.
+    pub outer: Vec<f64>,
+    /// The curve.
+    pub piece: CurvePiece,
+}
+
+/// A rectangle of cells of one field, as numbers: fill values and cells beyond counting are NaN.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Plane {
+    /// Values of the row axis at the rows that were read.
+    pub rows: Vec<f64>,
+    /// Values of the column axis at the columns that were read.
+    pub columns: Vec<f64>,
+    /// Cells, row by row.
+    pub cells: Vec<f64>,
+}
+
+/// An open map.
+#[derive(Debug)]
+pub struct MapFile {
+    path: PathBuf,
+    file: File,
+    axes: Vec<MapAxis>,
+    fields: Vec<Field>,
+}
+
+impl MapFile {
+    /// Opens a map for reading.
+    ///
+    /// # Errors
+    /// When the file is missing, no HDF5 file, no map, of another format version, or damaged.
+    pub fn open(path: &Path) -> Result<Self, StoreError> {
+        std::fs::File::open(path).map_err(StoreError::io("open", path))?;
+        if path.is_dir() {
+            return Err(StoreError::not_a_map(path, "it is a folder"));
+        }
+        let file = File::open(path)
+            .map_err(|_| StoreError::not_a_map(path, "it is no HDF5 file, or a damaged one"))?;
+        let version: i32 = first_number(&file, root::FORMAT_VERSION).ok_or_else(|| {
+            StoreError::not_a_map(path, format!("it has no {}", root::FORMAT_VERSION))
+        })?;
+        if version != schema::FORMAT_VERSION {
+            return Err(StoreError::not_a_map(
+                path,
+                format!(
+                    "its format version is {version}, this program reads {}",
+                    schema::FORMAT_VERSION
+                ),
+            ));
+        }
+        let axes = read_axes(&file, path)?;
+        let fields = Field::ALL
+            .into_iter()
+            .filter(|field| file.link_exists(field.name()))
+            .collect();
+        let map = Self {
+            path: path.to_owned(),
+            file,
+            axes,
+            fields,
+        };
+        map.check_shapes()?;
+        Ok(map)
+    }
+
+    fn check_shapes(&self) -> Result<(), StoreError> {
+        let shape: Vec<usize> = self.axes.iter().map(|a| a.values.len()).collect();
+        let names = self.fields.iter().map(|f| f.name()).chain([STATUS]);
+        for name in names {
+            let found = self.dataset(name)?.shape();
+            if found != shape {
+                let why = format!("{name} has the shape {found:?}, its axes have {shape:?}");
+                return Err(StoreError::not_a_map(&self.path, why));
+            }
+        }
+        Ok(())
+    }
+
+    /// Where the map is.
+    #[must_use]
+    pub fn path(&self) -> &Path {
+        &self.path
+    }
+
+    /// The axes, in the order of the dimensions.
+    #[must_use]
+    pub fn axes(&self) -> &[MapAxis] {
+        &self.axes
+    }
+
+    /// The fields that the map holds, besides the status.
+    #[must_use]
+    pub fn fields(&self) -> &[Field] {
+        &self.fields
+    }
+
+    /// Number of cells.
+    #[must_use]
+    pub fn cells(&self) -> u64 {
+        self.axes.iter().map(|a| a.values.len() as u64).product()
+    }
+
+    /// A text attribute of the root, see [`schema::root`]; none where it is missing.
+    #[must_use]
+    pub fn root_text(&self, name: &str) -> Option<String> {
+        text(&self.file, name).ok()
+    }
+
+    /// The unit of a field.
+    #[must_use]
+    pub fn field_unit(&self, field: Field) -> String {
+        self.file
+            .dataset(field.name())
+            .and_then(|d| text(&d, "units"))
+            .unwrap_or_else(|_| "1".into())
+    }
+
+    /// Values of the parameters that are no axes.
+    #[must_use]
+    pub fn scalars(&self) -> Vec<(Parameter, f64)> {
+        let on_axis = |p: &Parameter| self.axes.iter().any(|a| a.parameter == *p);
+        Parameter::ALL
+            .into_iter()
+            .filter(|p| !on_axis(p) && self.file.link_exists(p.name()))
+            .filter_map(|p| Some((p, self.file.dataset(p.name()).ok()?.read_scalar().ok()?)))
+            .collect()
+    }
+
+    /// Bytes of each dataset of cells: (name, uncompressed, on disk).
+    ///
+    /// # Errors
+    /// When a dataset cannot be opened.
+    pub fn sizes(&self) -> Result<Vec<(&'static str, u64, u64)>, StoreError> {
+        let names = self.fields.iter().map(|f| f.name()).chain([STATUS]);
+        names
+            .map(|name| {
+                let dataset = self.dataset(name)?;
+                let element = dataset.dtype().map_or(0, |t| t.size()) as u64;
+                Ok((
+                    name,
+                    dataset.size() as u64 * element,
+                    dataset.storage_size(),
+                ))
+            })
+            .collect()
+    }
+
+    fn dataset(&self, name: &str) -> Result<Dataset, StoreError> {
+        self.file
+            .dataset(name)
+            .map_err(StoreError::hdf5(format!("read {name} of"), &self.path))
+    }
+
+    /// The plane of `field` spanned by the axes `row_axis` and `column_axis` at `index` along the others, thinned evenly to
+    /// at most `most` cells each way.
+    ///
+    /// # Errors
+    /// When the file is damaged there.
+    pub fn plane(
+        &self,
+        field: Field,
+        index: &[usize],
+        (row_axis, column_axis): (usize, usize),
+        most: usize,
+    ) -> Result<Plane, StoreError> {
+        let step = |axis: usize| self.axes[axis].values.len().div_ceil(most).max(1);
+        let slab: Vec<SliceOrIndex> = (0..self.axes.len())
+            .map(|axis| {
+                if axis != row_axis && axis != column_axis {
+                    return SliceOrIndex::Index(index[axis]);
+                }
+                let step = step(axis);
+                SliceOrIndex::SliceCount {
+                    start: 0,
+                    step,
+                    count: self.axes[axis].values.len().div_ceil(step),
+                    block: 1,
+                }
+            })
+            .collect();
+        let thinned = |axis: usize| {
+            let values = &self.axes[axis].values;
+            values
+                .iter()
+                .copied()
+                .step_by(step(axis))
+                .collect::<Vec<_>>()
+        };
+        let (rows, columns) = (thinned(row_axis), thinned(column_axis));
+        let dataset = self.dataset(field.name())?;
+        let cells: Vec<f64> = match field {
+            Field::NUnstable => self
+                .read::<u16>(&dataset, slab)?
+                .into_iter()
+                .map(|n| match n {
+                    N_UNSTABLE_FILL => f64::NAN,
+                    n => f64::from(n),
+                })
+                .collect(),
+            Field::DelayMargin => self.read::<f64>(&dataset, slab)?,
+        };
+        let cells = if row_axis < column_axis {
+            cells
+        } else {
+            transposed(&cells, columns.len(), rows.len())
+        };
+        Ok(Plane {
+            rows,
+            columns,
+            cells,
+        })
+    }
+
+    fn read<T: H5Type>(
+        &self,
+        dataset: &Dataset,
+        slab: Vec<SliceOrIndex>,
+    ) -> Result<Vec<T>, StoreError> {
+        let array = dataset
+            .read_slice_2d::<T, _>(Hyperslab::from(slab))
+            .map_err(StoreError::hdf5("read", &self.path))?;
+        Ok(array.into_raw_vec_and_offset().0)
+    }
+
+    /// Number of cells with each bit of the status, in the order of [`crate::linear::status::FLAGS`], read piece by piece.
+    ///
+    /// # Errors
+    /// When the file is damaged.
+    pub fn status_counts(&self) -> Result<[u64; 6], StoreError> {
+        let dataset = self.dataset(STATUS)?;
+        let mut counts = [0; 6];
+        let chunk = dataset.chunk().unwrap_or_else(|| dataset.shape());
+        let shape = dataset.shape();
+        for_each_chunk(&shape, &chunk, |slab| {
+            let cells = dataset
+                .read_slice::<u8, _, _>(Hyperslab::from(slab))
+                .map(|array: ndarray::ArrayD<u8>| array.into_raw_vec_and_offset().0)
+                .map_err(StoreError::hdf5("read", &self.path))?;
+            for (count, (mask, _)) in counts.iter_mut().zip(crate::linear::status::FLAGS) {
+                *count += cells.iter().filter(|&&s| s & mask != 0).count() as u64;
+            }
+            Ok(())
+        })?;
+        Ok(counts)
+    }
+
+    /// The axes of the planes in which the map holds crossing curves; none where it holds no curves.
+    #[must_use]
+    pub fn boundary_plane(&self) -> Option<(usize, usize)> {
+        let group = self.file.group(BOUNDARIES).ok()?;
+        let plane = text(&group, PLANE).ok()?;
+        let mut axes = plane
+            .split_whitespace()
+            .map(|name| self.axes.iter().position(|a| a.parameter.name() == name));
+        Some((axes.next()??, axes.next()??))
+    }
+
+    /// All curves of the map, in order. Empty where it holds none.
+    ///
+    /// # Errors
+    /// When the file is damaged.
+    pub fn curves(&self) -> Result<Vec<MapCurve>, StoreError> {
+        let Some((p, tau)) = self.boundary_plane() else {
+            return Ok(Vec::new());
+        };
+        let read = || -> hdf5::Result<Vec<MapCurve>> {
+            let group = self.file.group(BOUNDARIES)?;
+            let column = |name: &str| group.dataset(name)?.read_raw::<f64>();
+            let outer: Vec<Vec<f64>> = (0..self.axes.len())
+                .filter(|&axis| axis != p && axis != tau)
+                .map(|axis| column(self.axes[axis].parameter.name()))
+                .collect::<hdf5::Result<_>>()?;
+            let counts = group.dataset("vertex_count")?.read_raw::<i32>()?;
+            let branches = group.dataset("branch")?.read_raw::<i64>()?;
+            let directions = group.dataset("direction")?.read_raw::<i8>()?;
+            let sides = group.dataset("stable_side")?.read_raw::<i8>()?;
+            let (ps, taus) = (column(self.axes[p].parameter.name())?, column("tau")?);
+            let omegas = column("omega")?;
+            let mut vertices = ps.into_iter().zip(taus).zip(omegas);
+            let mut curves = Vec::with_capacity(counts.len());
+            for (i, &count) in counts.iter().enumerate() {
+                let of = |columns: &[i8]| columns.get(i).copied().unwrap_or(0);
+                curves.push(MapCurve {
+                    outer: outer.iter().filter_map(|c| c.get(i).copied()).collect(),
+                    piece: CurvePiece {
+                        branch: branches.get(i).map_or(0, |&b| b.max(0) as u64),
+                        direction: if of(&directions) < 0 {
+                            Direction::Left
+                        } else {
+                            Direction::Right
+                        },
+                        stable_side: match of(&sides) {
+                            ..0 => StableSide::Shorter,
+                            0 => StableSide::Neither,
+                            1.. => StableSide::Longer,
+                        },
+                        vertices: (&mut vertices)
+                            .take(count.max(0) as usize)
+                            .map(|((p, tau), omega)| Vertex { p, tau, omega })
+                            .collect(),
+                    },
+                });
+            }
+            Ok(curves)
+        };
+        read().map_err(StoreError::hdf5("read the boundaries of", &self.path))
+    }
+}
+
+fn read_axes(file: &File, path: &Path) -> Result<Vec<MapAxis>, StoreError> {
+    let names = text(file, root::AXES)
+        .map_err(|_| StoreError::not_a_map(path, "it does not name its axes"))?;
+    names
+        .split_whitespace()
+        .map(|name| {
+            let parameter = Parameter::from_name(name).ok_or_else(|| {
+                StoreError::not_a_map(path, format!("it has an unknown axis {name}"))
+            })?;
+            let read = || -> hdf5::Result<MapAxis> {
+                let dataset = file.dataset(name)?;
+                Ok(MapAxis {
+                    parameter,
+                    values: dataset.read_raw()?,
+                    unit: text(&dataset, "units")?,
+                })
+            };
+            read().map_err(|_| StoreError::not_a_map(path, format!("its axis {name} is damaged")))
+        })
+        .collect()
+}
+
+fn first_number<T: H5Type + Copy>(file: &File, name: &str) -> Option<T> {
+    file.attr(name).ok()?.read_raw::<T>().ok()?.first().copied()
+}
+
+fn transposed(cells: &[f64], rows: usize, columns: usize) -> Vec<f64> {
+    (0..columns)
+        .flat_map(|c| (0..rows).map(move |r| cells[r * columns + c]))
+        .collect()
+}
+
+/// Every chunk of a dataset as a hyperslab, cut at the dataset's edges.
+fn for_each_chunk<E>(
+    shape: &[usize],
+    chunk: &[usize],
+    mut visit: impl FnMut(Vec<SliceOrIndex>) -> Result<(), E>,
+) -> Result<(), E> {
+    let mut offset = vec![0; shape.len()];
+    loop {
+        let slab = offset
+            .iter()
+            .zip(chunk)
+            .zip(shape)
+            .map(|((&start, &length), &end)| SliceOrIndex::SliceTo {
+                start,
+                step: 1,
+                end: (start + length).min(end),
+                block: 1,
+            })
+            .collect();
+        visit(slab)?;
+        let mut axis = shape.len();
+        loop {
+            if axis == 0 {
+                return Ok(());
+            }
+            axis -= 1;
+            offset[axis] += chunk[axis];
+            if offset[axis] < shape[axis] {
+                break;
+            }
+            offset[axis] = 0;
+        }
+    }
+}

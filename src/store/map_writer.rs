@@ -1,0 +1,329 @@
+//! Writes a map as its tiles come.
+
+use std::path::Path;
+
+use hdf5::plist::file_create::{AttrCreationOrder, LinkCreationOrder};
+use hdf5::{Dataset, File, Group, H5Type};
+use hdf5_sys::h5d::H5Dwrite_chunk;
+use hdf5_sys::h5p::H5P_DEFAULT;
+
+use super::attributes::{put_numbers, put_text};
+use super::boundary_writer::BoundaryWriter;
+use super::codec::{Chunk, ChunkCodec, DEFLATE_LEVEL};
+use super::error::StoreError;
+use super::netcdf::{DimensionId, Dimensions, named};
+use super::output::Output;
+use super::schema::{self, STATUS, root};
+use crate::linear::status::FLAGS;
+use crate::sweep::boundaries::BoundaryPlane;
+use crate::sweep::engine::{Encode, N_UNSTABLE_FILL, STATUS_FILL, Sink, TileBuffers};
+use crate::sweep::tile::Tile;
+use crate::sweep::{Field, Parameter, Plan};
+
+/// Who made a map, for its root attributes.
+#[derive(Debug, Clone, Default)]
+pub struct Provenance {
+    /// Version of the program.
+    pub program_version: String,
+    /// Git revision of the program.
+    pub git_revision: String,
+    /// When and by which command; the one thing in a map that differs from run to run.
+    pub history: String,
+}
+
+/// A map on its way to disk: complete and under its final name after [`MapWriter::finish`], gone if dropped before.
+pub struct MapWriter<'p> {
+    plan: &'p Plan,
+    // Before `output`: the file is closed before its temporary name is removed.
+    file: File,
+    dimensions: Dimensions,
+    boundaries: Option<BoundaryWriter>,
+    /// The datasets in the order in which encoders give their chunks.
+    datasets: Vec<Dataset>,
+    output: Output,
+}
+
+impl<'p> MapWriter<'p> {
+    /// Creates the file under its temporary name, with everything but the cells.
+    ///
+    /// # Errors
+    /// When the system or the library refuses.
+    pub fn create(
+        plan: &'p Plan,
+        output: Output,
+        provenance: &Provenance,
+    ) -> Result<Self, StoreError> {
+        let failed = |error| StoreError::hdf5("write", output.path())(error);
+        let file = create_file(output.part()).map_err(failed)?;
+        let mut dimensions = Dimensions::default();
+        let (datasets, boundaries) =
+            fill_file(&file, plan, provenance, &mut dimensions).map_err(failed)?;
+        Ok(Self {
+            plan,
+            file,
+            dimensions,
+            boundaries,
+            datasets,
+            output,
+        })
+    }
+
+    /// Closes the file, makes it durable and gives it its final name.
+    ///
+    /// # Errors
+    /// When the system or the library refuses; nothing then stands under the final name that was not there before.
+    pub fn finish(self) -> Result<(), StoreError> {
+        let path = self.output.path().to_owned();
+        let close = || -> hdf5::Result<()> {
+            if let Some(boundaries) = &self.boundaries {
+                boundaries.finish(&self.dimensions)?;
+            }
+            self.dimensions.finish()?;
+            self.file.flush()
+        };
+        close().map_err(StoreError::hdf5("write", &path))?;
+        // All handles, so that the file is closed before it is renamed.
+        drop((self.datasets, self.boundaries, self.dimensions));
+        self.file
+            .close()
+            .map_err(StoreError::hdf5("close", &path))?;
+        self.output.commit()
+    }
+}
+
+fn create_file(path: &Path) -> hdf5::Result<File> {
+    hdf5::FileBuilder::new()
+        .with_fcpl(|fcpl| {
+            fcpl.obj_track_times(false)
+                .attr_creation_order(AttrCreationOrder::Indexed)
+                .link_creation_order(LinkCreationOrder::Indexed)
+        })
+        .create(path)
+}
+
+type Contents = (Vec<Dataset>, Option<BoundaryWriter>);
+
+fn fill_file(
+    file: &File,
+    plan: &Plan,
+    provenance: &Provenance,
+    dimensions: &mut Dimensions,
+) -> hdf5::Result<Contents> {
+    put_root(file, plan, provenance)?;
+    let axes = plan
+        .spec
+        .axes
+        .iter()
+        .map(|axis| {
+            let dataset = named(file.new_dataset_builder())
+                .with_data(&axis.values)
+                .create(axis.parameter.name())?;
+            describe_parameter(&dataset, axis.parameter, plan)?;
+            dimensions.add(dataset, None)
+        })
+        .collect::<hdf5::Result<Vec<_>>>()?;
+    let scalars = put_scalars(file, plan)?;
+    let mut variables = Variables {
+        file,
+        plan,
+        dimensions,
+        axes,
+        scalars,
+    };
+    let mut datasets = Vec::new();
+    for &field in &plan.spec.fields {
+        datasets.push(variables.field(field)?);
+    }
+    datasets.push(variables.status()?);
+    let boundaries = plan
+        .boundary_plane
+        .map(|plane| BoundaryWriter::create(file, dimensions, plan, plane))
+        .transpose()?;
+    Ok((datasets, boundaries))
+}
+
+fn put_root(file: &File, plan: &Plan, provenance: &Provenance) -> hdf5::Result<()> {
+    let names: Vec<&str> = plan.spec.axes.iter().map(|a| a.parameter.name()).collect();
+    put_text(file, "Conventions", schema::CONVENTIONS)?;
+    put_text(file, root::TITLE, &plan.spec.title)?;
+    let source = format!("slipmap {}", provenance.program_version);
+    put_text(file, root::SOURCE, &source)?;
+    put_text(file, root::HISTORY, &provenance.history)?;
+    put_text(
+        file,
+        "references",
+        "F.-J. Elmer, Controlling friction (1997)",
+    )?;
+    put_text(file, root::PROGRAM_VERSION, &provenance.program_version)?;
+    put_text(file, root::GIT_REVISION, &provenance.git_revision)?;
+    put_numbers(file, root::FORMAT_VERSION, &[schema::FORMAT_VERSION])?;
+    put_text(file, root::AXES, &names.join(" "))?;
+    put_text(file, root::PLAN_HASH, &plan.hash())?;
+    put_text(file, root::SWEEP, &plan.spec.text)?;
+    put_numbers(file, root::MARGINAL_TOLERANCE, &[plan.spec.tolerance.0])?;
+    if let Some(law) = plan.spec.fixed.law() {
+        put_text(file, root::FRICTION_LAW, law.name())?;
+    }
+    Ok(())
+}
+
+/// The parameters that are no axes, as scalar coordinates. Returns their names.
+fn put_scalars(file: &File, plan: &Plan) -> hdf5::Result<String> {
+    let on_axis = |p| plan.spec.axes.iter().any(|a| a.parameter == p);
+    let mut names = Vec::new();
+    for parameter in Parameter::ALL {
+        if !plan.spec.fixed.uses(parameter) || on_axis(parameter) {
+            continue;
+        }
+        let dataset = named(file.new_dataset_builder())
+            .empty::<f64>()
+            .create(parameter.name())?;
+        dataset.write_scalar(&plan.spec.fixed.get(parameter))?;
+        describe_parameter(&dataset, parameter, plan)?;
+        names.push(parameter.name());
+    }
+    Ok(names.join(" "))
+}
+
+fn describe_parameter(dataset: &Dataset, parameter: Parameter, plan: &Plan) -> hdf5::Result<()> {
+    put_text(dataset, "long_name", parameter.long_name())?;
+    put_text(dataset, "units", &plan.spec.units.of_parameter(parameter))
+}
+
+/// Creates the datasets of the cells.
+struct Variables<'a> {
+    file: &'a Group,
+    plan: &'a Plan,
+    dimensions: &'a mut Dimensions,
+    axes: Vec<DimensionId>,
+    scalars: String,
+}
+
+impl Variables<'_> {
+    fn field(&mut self, field: Field) -> hdf5::Result<Dataset> {
+        let dataset = match field {
+            Field::NUnstable => self.variable(field.name(), N_UNSTABLE_FILL)?,
+            Field::DelayMargin => self.variable(field.name(), f64::NAN)?,
+        };
+        put_text(&dataset, "long_name", schema::long_name(field))?;
+        put_text(
+            &dataset,
+            "units",
+            &schema::unit(field, &self.plan.spec.units),
+        )?;
+        put_text(&dataset, "ancillary_variables", STATUS)?;
+        Ok(dataset)
+    }
+
+    fn status(&mut self) -> hdf5::Result<Dataset> {
+        let dataset = self.variable(STATUS, STATUS_FILL)?;
+        put_text(&dataset, "long_name", "status of the cell")?;
+        put_text(&dataset, "units", "1")?;
+        put_numbers(&dataset, "flag_masks", &FLAGS.map(|(mask, _)| mask))?;
+        put_text(
+            &dataset,
+            "flag_meanings",
+            &FLAGS.map(|(_, name)| name).join(" "),
+        )?;
+        Ok(dataset)
+    }
+
+    fn variable<T>(&mut self, name: &str, fill: T) -> hdf5::Result<Dataset>
+    where
+        T: H5Type + Copy + Into<hdf5::types::OwnedDynValue>,
+    {
+        let mut builder = named(self.file.new_dataset_builder());
+        if size_of::<T>() > 1 {
+            builder = builder.shuffle();
+        }
+        let dataset = builder
+            .deflate(DEFLATE_LEVEL)
+            .fill_value(fill)
+            .empty::<T>()
+            .shape(self.plan.shape())
+            .chunk(self.plan.tiles.tile_shape())
+            .create(name)?;
+        put_numbers(&dataset, "_FillValue", &[fill])?;
+        if !self.scalars.is_empty() {
+            put_text(&dataset, "coordinates", &self.scalars)?;
+        }
+        self.dimensions.attach(&dataset, &self.axes)?;
+        Ok(dataset)
+    }
+}
+
+/// Compresses tiles, one per thread.
+#[derive(Default)]
+pub struct TileEncoder {
+    codec: ChunkCodec,
+}
+
+/// The compressed chunks of a tile, in the order of the writer's datasets.
+pub struct EncodedTile(Vec<Chunk>);
+
+impl Encode for TileEncoder {
+    type Encoded = EncodedTile;
+
+    fn encode(&mut self, buffers: &TileBuffers) -> EncodedTile {
+        let mut chunks = Vec::with_capacity(3);
+        if let Some(n) = &buffers.n_unstable {
+            chunks.push(self.codec.encode(n));
+        }
+        if let Some(margin) = &buffers.delay_margin {
+            chunks.push(self.codec.encode(margin));
+        }
+        chunks.push(self.codec.encode(&buffers.status));
+        EncodedTile(chunks)
+    }
+}
+
+impl Sink for MapWriter<'_> {
+    type Encoder = TileEncoder;
+    type Encoded = EncodedTile;
+    type Error = StoreError;
+
+    fn encoder(&self) -> TileEncoder {
+        TileEncoder::default()
+    }
+
+    fn write_boundaries(&mut self, planes: &[BoundaryPlane]) -> Result<(), StoreError> {
+        match &mut self.boundaries {
+            Some(writer) => writer
+                .append(self.plan, planes)
+                .map_err(StoreError::hdf5("write", self.output.path())),
+            None => Ok(()),
+        }
+    }
+
+    fn write_tile(&mut self, tile: &Tile, encoded: EncodedTile) -> Result<(), StoreError> {
+        let offset: Vec<u64> = tile.offset.iter().map(|&o| o as u64).collect();
+        for (dataset, chunk) in self.datasets.iter().zip(encoded.0) {
+            write_chunk(dataset, &offset, &chunk)
+                .map_err(StoreError::hdf5("write", self.output.path()))?;
+        }
+        Ok(())
+    }
+}
+
+/// Hands a whole compressed chunk to the library.
+fn write_chunk(dataset: &Dataset, offset: &[u64], chunk: &[u8]) -> hdf5::Result<()> {
+    let written = hdf5::sync::sync(|| {
+        // SAFETY: the dataset is open, `offset` has one entry per dimension of it and lies on a chunk's first cell, and
+        // the pointer and length are those of a live slice.
+        unsafe {
+            H5Dwrite_chunk(
+                dataset.id(),
+                H5P_DEFAULT,
+                0,
+                offset.as_ptr(),
+                chunk.len(),
+                chunk.as_ptr().cast(),
+            )
+        }
+    });
+    if written < 0 {
+        Err(hdf5::Error::query()?)
+    } else {
+        Ok(())
+    }
+}

@@ -1,0 +1,21 @@
+//! Maps on disk: HDF5 files that netCDF-4 readers open with named coordinates. The only place that knows HDF5.
+//!
+//! - [`schema`]: names, meanings and format version
+//! - [`map_writer`]: writes a map as its tiles come, under a temporary name until it is complete
+//! - [`map_file`]: reads maps
+//! - [`output`]: the temporary name, the lock, the final rename
+
+mod attributes;
+mod boundary_writer;
+mod codec;
+mod error;
+pub mod map_file;
+pub mod map_writer;
+mod netcdf;
+pub mod output;
+pub mod schema;
+
+pub use error::StoreError;
+pub use map_file::MapFile;
+pub use map_writer::MapWriter;
+pub use output::Output;

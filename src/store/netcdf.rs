@@ -1,0 +1,104 @@
+//! Dimension scales, as netCDF-4 and every reader built on it expects them.
+//!
+//! The binding has no calls for dimension scales, so their attributes are written one by one.
+
+use hdf5::plist::dataset_create::AttrCreationOrder;
+use hdf5::types::VarLenArray;
+use hdf5::{Dataset, DatasetBuilder, Group, H5Type, ObjectReference1};
+
+use super::attributes::{put_numbers, put_text};
+
+/// One entry of a scale's list of the datasets that use it.
+#[derive(Clone, Copy, H5Type)]
+#[repr(C)]
+struct ScaleUse {
+    dataset: ObjectReference1,
+    dimension: u32,
+}
+
+/// A dimension of the file: its scale, and who uses it.
+pub(super) struct Dimension {
+    scale: Dataset,
+    uses: Vec<(Dataset, u32)>,
+}
+
+/// All dimensions of a file.
+#[derive(Default)]
+pub(super) struct Dimensions {
+    list: Vec<Dimension>,
+}
+
+/// A dimension of a [`Dimensions`].
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) struct DimensionId(usize);
+
+impl Dimensions {
+    /// Makes `scale`, a one-dimensional dataset, the scale of a new dimension. `name` none: one with coordinates.
+    pub fn add(&mut self, scale: Dataset, name: Option<&str>) -> hdf5::Result<DimensionId> {
+        put_text(&scale, "CLASS", "DIMENSION_SCALE")?;
+        let path = scale.name();
+        let own = path.rsplit('/').next().unwrap_or(&path);
+        put_text(&scale, "NAME", name.unwrap_or(own))?;
+        put_numbers(&scale, "_Netcdf4Dimid", &[self.list.len() as i32])?;
+        self.list.push(Dimension {
+            scale,
+            uses: Vec::new(),
+        });
+        Ok(DimensionId(self.list.len() - 1))
+    }
+
+    /// A dimension without coordinates, extended as data come.
+    pub fn add_bare(&mut self, group: &Group, name: &str) -> hdf5::Result<DimensionId> {
+        let scale = named(group.new_dataset_builder())
+            .empty::<f32>()
+            .shape(0..)
+            .chunk(1 << 16)
+            .create(name)?;
+        self.add(
+            scale,
+            Some("This is a netCDF dimension but not a netCDF variable.         0"),
+        )
+    }
+
+    /// The scale of a dimension.
+    pub fn scale(&self, id: DimensionId) -> &Dataset {
+        &self.list[id.0].scale
+    }
+
+    /// Says that `dataset` has these dimensions, in order.
+    pub fn attach(&mut self, dataset: &Dataset, dimensions: &[DimensionId]) -> hdf5::Result<()> {
+        let mut lists = Vec::with_capacity(dimensions.len());
+        for (place, id) in dimensions.iter().enumerate() {
+            let dimension = &mut self.list[id.0];
+            let reference: ObjectReference1 = dimension.scale.reference(".")?;
+            lists.push(VarLenArray::from_slice(&[reference]));
+            dimension.uses.push((dataset.clone(), place as u32));
+        }
+        put_numbers(dataset, "DIMENSION_LIST", &lists)
+    }
+
+    /// Writes for each scale who uses it. To be called once, when all datasets are attached.
+    pub fn finish(&self) -> hdf5::Result<()> {
+        for dimension in self.list.iter().filter(|d| !d.uses.is_empty()) {
+            let uses: hdf5::Result<Vec<ScaleUse>> = dimension
+                .uses
+                .iter()
+                .map(|(dataset, dimension)| {
+                    Ok(ScaleUse {
+                        dataset: dataset.reference(".")?,
+                        dimension: *dimension,
+                    })
+                })
+                .collect();
+            put_numbers(&dimension.scale, "REFERENCE_LIST", &uses?)?;
+        }
+        Ok(())
+    }
+}
+
+/// A builder with what every dataset needs: the order of its attributes kept (netCDF asks for it), no time stamps.
+pub(super) fn named(builder: DatasetBuilder) -> DatasetBuilder {
+    builder
+        .attr_creation_order(AttrCreationOrder::Indexed)
+        .obj_track_times(false)
+}

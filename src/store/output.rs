@@ -1,0 +1,146 @@
+//! A map's way to its final name: a lock beside it, a temporary name, one rename at the end.
+
+use std::fs::{self, File, OpenOptions, TryLockError};
+use std::path::{Path, PathBuf};
+
+use super::error::StoreError;
+
+/// The place of a map that is being written. Dropped before [`Output::commit`], it leaves nothing behind.
+#[derive(Debug)]
+pub struct Output {
+    path: PathBuf,
+    part: PathBuf,
+    lock_path: PathBuf,
+    lock: Option<File>,
+}
+
+fn beside(path: &Path, suffix: &str) -> PathBuf {
+    let mut name = path.as_os_str().to_owned();
+    name.push(suffix);
+    PathBuf::from(name)
+}
+
+impl Output {
+    /// Claims the final name `path` for this process. A lock left by a run that died does not block.
+    ///
+    /// # Errors
+    /// When the folder is missing or not writable, `path` is a folder, or another run holds the claim.
+    pub fn claim(path: &Path) -> Result<Self, StoreError> {
+        if path.is_dir() {
+            let source = std::io::Error::from(std::io::ErrorKind::IsADirectory);
+            return Err(StoreError::io("write", path)(source));
+        }
+        let lock_path = beside(path, ".lock");
+        loop {
+            let lock = OpenOptions::new()
+                .create(true)
+                .truncate(false)
+                .write(true)
+                .open(&lock_path)
+                .map_err(StoreError::io("write", path))?;
+            match lock.try_lock() {
+                Ok(()) => {}
+                Err(TryLockError::WouldBlock) => {
+                    return Err(StoreError::Locked {
+                        path: path.to_owned(),
+                    });
+                }
+                Err(TryLockError::Error(source)) => {
+                    return Err(StoreError::io("lock", &lock_path)(source));
+                }
+            }
+            // Another run may have removed the file between opening and locking: then the lock is on nothing.
+            if still_there(&lock, &lock_path) {
+                return Ok(Self {
+                    path: path.to_owned(),
+                    part: beside(path, ".part"),
+                    lock_path,
+                    lock: Some(lock),
+                });
+            }
+        }
+    }
+
+    /// The final name.
+    #[must_use]
+    pub fn path(&self) -> &Path {
+        &self.path
+    }
+
+    /// The name to write to.
+    #[must_use]
+    pub fn part(&self) -> &Path {
+        &self.part
+    }
+
+    /// Makes the written file durable and gives it its final name, replacing what stood there.
+    ///
+    /// # Errors
+    /// When the system cannot sync or rename; the temporary file is then removed.
+    pub fn commit(self) -> Result<(), StoreError> {
+        let sync = |path: &Path| File::open(path).and_then(|file| file.sync_all());
+        sync(&self.part).map_err(StoreError::io("sync", &self.part))?;
+        fs::rename(&self.part, &self.path).map_err(StoreError::io("rename to", &self.path))?;
+        let folder = match self.path.parent() {
+            Some(folder) if !folder.as_os_str().is_empty() => folder,
+            _ => Path::new("."),
+        };
+        sync(folder).map_err(StoreError::io("sync", folder))
+    }
+}
+
+impl Drop for Output {
+    fn drop(&mut self) {
+        // Neither removal can fail in a way that matters here: a leftover is overwritten by the next run.
+        let _ = fs::remove_file(&self.part);
+        let _ = fs::remove_file(&self.lock_path);
+        self.lock = None;
+    }
+}
+
+#[cfg(unix)]
+fn still_there(lock: &File, path: &Path) -> bool {
+    use std::os::unix::fs::MetadataExt;
+    match (lock.metadata(), fs::metadata(path)) {
+        (Ok(held), Ok(named)) => held.ino() == named.ino() && held.dev() == named.dev(),
+        _ => false,
+    }
+}
+
+#[cfg(not(unix))]
+fn still_there(_: &File, path: &Path) -> bool {
+    path.exists()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_claim_is_exclusive_and_leaves_nothing() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("map.h5");
+        let first = Output::claim(&path).unwrap();
+        assert!(matches!(
+            Output::claim(&path),
+            Err(StoreError::Locked { .. })
+        ));
+        fs::write(first.part(), "half").unwrap();
+        drop(first);
+        assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 0);
+        let second = Output::claim(&path).unwrap();
+        fs::write(second.part(), "whole").unwrap();
+        second.commit().unwrap();
+        assert_eq!(fs::read_to_string(&path).unwrap(), "whole");
+        assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 1);
+    }
+
+    #[test]
+    fn a_dead_runs_lock_does_not_block() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("map.h5");
+        fs::write(beside(&path, ".lock"), "").unwrap();
+        fs::write(beside(&path, ".part"), "torn").unwrap();
+        assert!(Output::claim(&path).is_ok());
+    }
+}

@@ -1,0 +1,157 @@
+//! The axes of a sweep.
+
+use super::parameter::Parameter;
+
+/// More points than this on one axis are refused.
+pub const MOST_POINTS: u64 = 10_000_000;
+
+/// How the values of an axis are spaced.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Spacing {
+    /// Equal steps.
+    Linear,
+    /// Equal ratios.
+    Log,
+}
+
+/// A parameter that a sweep varies, with its values: strictly increasing or strictly decreasing.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Axis {
+    /// The parameter.
+    pub parameter: Parameter,
+    /// Its values, at least one.
+    pub values: Vec<f64>,
+}
+
+/// Values that make no axis, in words.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[error("{0}")]
+pub struct AxisError(pub String);
+
+/// `points` values from `from` to `to`, each computed from its index alone; both ends exact.
+///
+/// # Errors
+/// When the ends are reversed or equal, the number of points is out of range, a logarithmic axis reaches zero, or
+/// neighbouring values coincide in double precision.
+pub fn spaced(from: f64, to: f64, points: u64, spacing: Spacing) -> Result<Vec<f64>, AxisError> {
+    let refuse = |message: String| Err(AxisError(message));
+    if !(2..=MOST_POINTS).contains(&points) {
+        return refuse(format!(
+            "points = {points} is outside its range: 2 to {MOST_POINTS} (for one value write a list of one)"
+        ));
+    }
+    if from.partial_cmp(&to) != Some(std::cmp::Ordering::Less) {
+        return refuse(format!(
+            "the range is empty or reversed: from = {from} must be less than to = {to}"
+        ));
+    }
+    if spacing == Spacing::Log && from <= 0.0 {
+        return refuse(format!(
+            "a logarithmic axis needs from > 0, here from = {from}"
+        ));
+    }
+    let last = points - 1;
+    let value = |i: u64| {
+        let part = i as f64 / last as f64;
+        match spacing {
+            _ if i == 0 => from,
+            _ if i == last => to,
+            Spacing::Linear => from + (to - from) * part,
+            Spacing::Log => from * (to / from).powf(part),
+        }
+    };
+    let values: Vec<f64> = (0..points).map(value).collect();
+    if values.windows(2).any(|w| w[0] >= w[1]) {
+        return refuse(format!(
+            "{points} points between {from} and {to} are closer together than double precision resolves"
+        ));
+    }
+    Ok(values)
+}
+
+impl Axis {
+    /// An axis with these values.
+    ///
+    /// # Errors
+    /// When a value is outside the parameter's range, or the values are not strictly monotonic. Delays must increase.
+    pub fn new(parameter: Parameter, values: Vec<f64>) -> Result<Self, AxisError> {
+        if values.is_empty() {
+            return Err(AxisError("the list is empty".into()));
+        }
+        for &value in &values {
+            parameter
+                .check(value)
+                .map_err(|e| AxisError(e.to_string()))?;
+        }
+        let increasing = values.windows(2).all(|w| w[0] < w[1]);
+        let decreasing = values.windows(2).all(|w| w[0] > w[1]);
+        if parameter == Parameter::Tau && !increasing {
+            return Err(AxisError(
+                "values of tau must be strictly increasing".into(),
+            ));
+        }
+        if !(increasing || decreasing) {
+            return Err(AxisError(
+                "the values must be strictly increasing or strictly decreasing".into(),
+            ));
+        }
+        Ok(Self { parameter, values })
+    }
+
+    /// Number of values, at least 1.
+    #[must_use]
+    #[allow(clippy::len_without_is_empty)]
+    pub fn len(&self) -> usize {
+        self.values.len()
+    }
+
+    /// The smallest and the largest value.
+    #[must_use]
+    pub fn range(&self) -> (f64, f64) {
+        let (first, last) = (self.values[0], self.values[self.len() - 1]);
+        (first.min(last), first.max(last))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn values_come_from_their_index_and_ends_are_exact() {
+        let values = spaced(-1.6, 0.4, 801, Spacing::Linear).unwrap();
+        assert_eq!((values[0], values[800]), (-1.6, 0.4));
+        assert_eq!(values[400], -1.6 + 2.0 * 0.5);
+        let values = spaced(1e-3, 1e3, 7, Spacing::Log).unwrap();
+        assert_eq!((values[0], values[6]), (1e-3, 1e3));
+        assert!((values[3] - 1.0).abs() < 1e-14);
+    }
+
+    #[test]
+    fn impossible_ranges_are_refused() {
+        for (from, to, points, spacing, says) in [
+            (1.0, 0.0, 10, Spacing::Linear, "reversed"),
+            (1.0, 1.0, 10, Spacing::Linear, "empty"),
+            (f64::NAN, 1.0, 10, Spacing::Linear, "reversed"),
+            (0.0, 1.0, 1, Spacing::Linear, "points = 1"),
+            (0.0, 1.0, u64::MAX, Spacing::Linear, "outside its range"),
+            (0.0, 1.0, 10, Spacing::Log, "from > 0"),
+            (1.0, 1.0 + 1e-15, 1000, Spacing::Linear, "double precision"),
+        ] {
+            let error = spaced(from, to, points, spacing).unwrap_err();
+            assert!(error.0.contains(says), "{error}");
+        }
+    }
+
+    #[test]
+    fn lists_must_be_monotonic_and_in_range() {
+        assert!(Axis::new(Parameter::MuPrime, vec![-0.1, -0.2, -0.5]).is_ok());
+        assert!(Axis::new(Parameter::MuPrime, vec![-0.1, -0.2, -0.2]).is_err());
+        assert!(Axis::new(Parameter::MuPrime, vec![]).is_err());
+        assert!(Axis::new(Parameter::Tau, vec![2.0, 1.0]).is_err());
+        assert!(Axis::new(Parameter::Tau, vec![-1.0, 1.0]).is_err());
+        assert!(Axis::new(Parameter::Mass, vec![0.0]).is_err());
+        assert!(Axis::new(Parameter::AlphaV, vec![f64::INFINITY]).is_err());
+        assert!(Axis::new(Parameter::AlphaV, vec![f64::NAN]).is_err());
+    }
+}

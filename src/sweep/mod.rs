@@ -1,0 +1,28 @@
+//! From a sweep file to the cells of a map.
+//!
+//! ```text
+//! TOML text → [spec] what the user wrote → [plan] axes, lines, tiles → [engine] lines analysed over threads → a sink
+//! ```
+//!
+//! A **line** is all delays at fixed other parameters: the closed form gives all crossings of a line at once. A **tile** is
+//! a block of lines: the unit of parallel work and of storing. Nothing passes from tile to tile, so a map does not depend
+//! on the number of threads.
+
+pub mod axis;
+pub mod boundaries;
+pub mod engine;
+pub mod events;
+pub mod field;
+pub mod parameter;
+pub mod plan;
+pub mod spec;
+pub mod tile;
+mod toml_reader;
+
+pub use axis::Axis;
+pub use engine::{RunError, Sink};
+pub use events::{Event, Observer};
+pub use field::Field;
+pub use parameter::{Parameter, Setting};
+pub use plan::Plan;
+pub use spec::{SpecError, SweepSpec};

@@ -1,0 +1,439 @@
+//! Every parameter of a sweep: its one name in flags, sweep files and maps, its meaning, unit and range.
+
+use crate::model::{Control, FrictionLaw, Groups, ModelError, Oscillator, SlidingPoint};
+
+/// The largest size of any parameter, and one over the smallest of those that must be positive: far beyond any
+/// experiment, and small enough that no dimensionless group overflows.
+const LARGEST: f64 = 1e12;
+
+/// A parameter of the model, of the friction law or of the control.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum Parameter {
+    /// μ_K′(v0), the slope of the friction law at the sliding velocity.
+    MuPrime,
+    /// α_v, the gain of velocity control.
+    AlphaV,
+    /// α_N, the gain of load control.
+    AlphaN,
+    /// τ, the delay.
+    Tau,
+    /// v0, the unperturbed pulling velocity.
+    V0,
+    /// μ_K(v0), the kinetic friction coefficient at the sliding velocity.
+    MuK,
+    /// M, the mass of the block.
+    Mass,
+    /// κ, the stiffness of the spring.
+    Stiffness,
+    /// N0, the unperturbed normal load.
+    NormalLoad,
+    /// μ0 of a friction law.
+    Mu0,
+    /// v_s of a friction law.
+    VS,
+    /// μ_S, the static friction coefficient.
+    MuS,
+}
+
+/// Ranges that a parameter's values can be held to.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Range {
+    Any,
+    NotNegative,
+    Positive,
+}
+
+impl Parameter {
+    /// All parameters.
+    pub const ALL: [Self; 12] = [
+        Self::MuPrime,
+        Self::AlphaV,
+        Self::AlphaN,
+        Self::Tau,
+        Self::V0,
+        Self::MuK,
+        Self::Mass,
+        Self::Stiffness,
+        Self::NormalLoad,
+        Self::Mu0,
+        Self::VS,
+        Self::MuS,
+    ];
+
+    /// The name, the same word everywhere (flags write `-` for `_`).
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::MuPrime => "mu_prime",
+            Self::AlphaV => "alpha_v",
+            Self::AlphaN => "alpha_n",
+            Self::Tau => "tau",
+            Self::V0 => "v0",
+            Self::MuK => "mu_k",
+            Self::Mass => "mass",
+            Self::Stiffness => "stiffness",
+            Self::NormalLoad => "normal_load",
+            Self::Mu0 => "mu0",
+            Self::VS => "v_s",
+            Self::MuS => "mu_s",
+        }
+    }
+
+    /// The parameter of that name.
+    #[must_use]
+    pub fn from_name(name: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|p| p.name() == name)
+    }
+
+    /// What it is, for `long_name` in maps and labels in pictures.
+    #[must_use]
+    pub const fn long_name(self) -> &'static str {
+        match self {
+            Self::MuPrime => "slope of the kinetic friction coefficient at the sliding velocity",
+            Self::AlphaV => "gain of velocity control",
+            Self::AlphaN => "gain of load control",
+            Self::Tau => "delay of the feedback",
+            Self::V0 => "unperturbed pulling velocity",
+            Self::MuK => "kinetic friction coefficient at the sliding velocity",
+            Self::Mass => "mass of the block",
+            Self::Stiffness => "stiffness of the spring",
+            Self::NormalLoad => "unperturbed normal load",
+            Self::Mu0 => "kinetic friction coefficient mu0 of the friction law",
+            Self::VS => "velocity scale of the friction law",
+            Self::MuS => "static friction coefficient",
+        }
+    }
+
+    /// The symbol of the letter.
+    #[must_use]
+    pub const fn symbol(self) -> &'static str {
+        match self {
+            Self::MuPrime => "μ′",
+            Self::AlphaV => "α_v",
+            Self::AlphaN => "α_N",
+            Self::Tau => "τ",
+            Self::V0 => "v0",
+            Self::MuK => "μ_K",
+            Self::Mass => "M",
+            Self::Stiffness => "κ",
+            Self::NormalLoad => "N0",
+            Self::Mu0 => "μ0",
+            Self::VS => "v_s",
+            Self::MuS => "μ_S",
+        }
+    }
+
+    /// Powers of force, length and time in its unit.
+    const fn dimension(self) -> [i32; 3] {
+        match self {
+            Self::MuPrime => [0, -1, 1],
+            Self::AlphaV => [0, 0, -1],
+            Self::AlphaN | Self::Stiffness => [1, -1, 0],
+            Self::Tau => [0, 0, 1],
+            Self::V0 | Self::VS => [0, 1, -1],
+            Self::MuK | Self::Mu0 | Self::MuS => [0, 0, 0],
+            Self::Mass => [1, -1, 2],
+            Self::NormalLoad => [1, 0, 0],
+        }
+    }
+
+    /// The value where a sweep does not give one; none where it must.
+    #[must_use]
+    pub const fn default_value(self) -> Option<f64> {
+        match self {
+            Self::AlphaV | Self::AlphaN => Some(0.0),
+            Self::MuK | Self::Mass | Self::Stiffness | Self::NormalLoad | Self::MuS => Some(1.0),
+            Self::MuPrime | Self::Tau | Self::V0 | Self::Mu0 | Self::VS => None,
+        }
+    }
+
+    /// True for the parameters that only a friction law has.
+    #[must_use]
+    pub const fn of_friction_law(self) -> bool {
+        matches!(self, Self::Mu0 | Self::VS | Self::MuS)
+    }
+
+    const fn range(self) -> Range {
+        match self {
+            Self::MuPrime | Self::AlphaV | Self::AlphaN => Range::Any,
+            Self::Tau => Range::NotNegative,
+            _ => Range::Positive,
+        }
+    }
+
+    /// The range allowed, in words.
+    #[must_use]
+    pub const fn allowed(self) -> &'static str {
+        match self.range() {
+            Range::Any => "a finite number of size at most 1e12",
+            Range::NotNegative => "0 or more, at most 1e12",
+            Range::Positive => "greater than 0, between 1e-12 and 1e12",
+        }
+    }
+
+    /// `value` if it is in range.
+    ///
+    /// # Errors
+    /// Names the parameter, the value and the range allowed.
+    pub fn check(self, value: f64) -> Result<f64, ModelError> {
+        let inside = value.abs() <= LARGEST
+            && match self.range() {
+                Range::Any => true,
+                Range::NotNegative => value >= 0.0,
+                Range::Positive => value >= 1.0 / LARGEST,
+            };
+        if inside {
+            Ok(value)
+        } else {
+            Err(ModelError {
+                parameter: self.name(),
+                value,
+                allowed: self.allowed(),
+            })
+        }
+    }
+}
+
+/// The units in which a sweep is written; none given means dimensionless.
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
+pub struct Units {
+    /// Names of the units of force, length and time, as UDUNITS writes them.
+    pub force_length_time: Option<[String; 3]>,
+}
+
+impl Units {
+    /// The unit of a quantity with these powers of force, length and time; "1" where it has none.
+    #[must_use]
+    pub fn of(&self, dimension: [i32; 3]) -> String {
+        let Some(names) = &self.force_length_time else {
+            return "1".into();
+        };
+        let factors: Vec<String> = names
+            .iter()
+            .zip(dimension)
+            .filter(|&(_, power)| power != 0)
+            .map(|(name, power)| match power {
+                1 => name.clone(),
+                _ => format!("{name}{power}"),
+            })
+            .collect();
+        if factors.is_empty() {
+            "1".into()
+        } else {
+            factors.join(" ")
+        }
+    }
+
+    /// The unit of a parameter.
+    #[must_use]
+    pub fn of_parameter(&self, parameter: Parameter) -> String {
+        self.of(parameter.dimension())
+    }
+
+    /// The unit of time.
+    #[must_use]
+    pub fn time(&self) -> String {
+        self.of([0, 0, 1])
+    }
+
+    /// The unit of an angular frequency.
+    #[must_use]
+    pub fn angular_frequency(&self) -> String {
+        match &self.force_length_time {
+            Some([_, _, time]) => format!("rad {time}-1"),
+            None => "1".into(),
+        }
+    }
+}
+
+/// Which friction law a sweep uses.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum LawKind {
+    /// [`FrictionLaw::coulomb`].
+    Coulomb,
+    /// [`FrictionLaw::weakening`].
+    Weakening,
+    /// [`FrictionLaw::stribeck`].
+    Stribeck,
+}
+
+impl LawKind {
+    /// All laws.
+    pub const ALL: [Self; 3] = [Self::Coulomb, Self::Weakening, Self::Stribeck];
+
+    /// The name in flags and sweep files.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Coulomb => "coulomb",
+            Self::Weakening => "weakening",
+            Self::Stribeck => "stribeck",
+        }
+    }
+
+    /// The parameters that the law needs, besides μ_S.
+    #[must_use]
+    pub const fn needs(self) -> &'static [Parameter] {
+        match self {
+            Self::Coulomb => &[Parameter::Mu0],
+            Self::Weakening | Self::Stribeck => &[Parameter::Mu0, Parameter::VS],
+        }
+    }
+}
+
+/// Why a set of given parameters does not make a setting.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum GivenError {
+    /// This one is needed and not given.
+    Missing(Parameter),
+    /// This one is given and would have no effect.
+    Unused(Parameter),
+}
+
+impl GivenError {
+    /// What is wrong, in words, for a setting with the friction law `law`.
+    #[must_use]
+    pub fn message(self, law: Option<LawKind>) -> String {
+        match (self, law) {
+            (Self::Missing(p), _) => format!("{} is not given", p.name()),
+            (Self::Unused(p), Some(law)) => {
+                format!("{} has no meaning with the {} law", p.name(), law.name())
+            }
+            (Self::Unused(p), None) => format!("{} needs a friction law", p.name()),
+        }
+    }
+
+    /// What could be done about it.
+    #[must_use]
+    pub fn help(self) -> String {
+        match self {
+            Self::Missing(p) => format!("{}: {}, {}", p.name(), p.long_name(), p.allowed()),
+            Self::Unused(_) => {
+                "give either mu_prime (with mu_k) or a friction law with v0, not both".into()
+            }
+        }
+    }
+}
+
+/// One value for every parameter: a point of parameter space.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Setting {
+    values: [f64; Parameter::ALL.len()],
+    law: Option<LawKind>,
+}
+
+impl Setting {
+    /// The default values; those without a default are NaN until they are set. `law`: where μ_K and μ_K′ come from.
+    #[must_use]
+    pub fn new(law: Option<LawKind>) -> Self {
+        let values = Parameter::ALL.map(|p| p.default_value().unwrap_or(f64::NAN));
+        Self { values, law }
+    }
+
+    /// The value of a parameter.
+    #[inline]
+    #[must_use]
+    pub fn get(&self, parameter: Parameter) -> f64 {
+        self.values[parameter as usize]
+    }
+
+    /// Sets the value of a parameter.
+    #[inline]
+    pub fn set(&mut self, parameter: Parameter, value: f64) {
+        self.values[parameter as usize] = value;
+    }
+
+    /// The friction law that the setting uses, if any.
+    #[must_use]
+    pub fn law(&self) -> Option<LawKind> {
+        self.law
+    }
+
+    /// True for the parameters on which a cell of this setting can depend.
+    #[must_use]
+    pub fn uses(&self, parameter: Parameter) -> bool {
+        match self.law {
+            Some(law) => {
+                !matches!(parameter, Parameter::MuPrime | Parameter::MuK)
+                    && (parameter != Parameter::VS || law.needs().contains(&Parameter::VS))
+            }
+            None => !parameter.of_friction_law() && parameter != Parameter::V0,
+        }
+    }
+
+    /// Every parameter that a setting with this law needs is given, and none that would be ignored.
+    ///
+    /// # Errors
+    /// Names the first parameter that is missing or unused.
+    pub fn check_given(
+        law: Option<LawKind>,
+        given: impl Fn(Parameter) -> bool,
+    ) -> Result<(), GivenError> {
+        let setting = Self::new(law);
+        for parameter in Parameter::ALL {
+            let used = setting.uses(parameter);
+            if given(parameter) && !used {
+                return Err(GivenError::Unused(parameter));
+            }
+            if !given(parameter) && used && parameter.default_value().is_none() {
+                return Err(GivenError::Missing(parameter));
+            }
+        }
+        Ok(())
+    }
+
+    /// The friction law with its parameters.
+    ///
+    /// # Errors
+    /// When the law is ill-posed, see [`FrictionLaw`].
+    pub fn friction_law(&self) -> Result<Option<FrictionLaw>, ModelError> {
+        let [mu0, v_s, mu_s] = [Parameter::Mu0, Parameter::VS, Parameter::MuS].map(|p| self.get(p));
+        self.law
+            .map(|law| match law {
+                LawKind::Coulomb => FrictionLaw::coulomb(mu0, mu_s),
+                LawKind::Weakening => FrictionLaw::weakening(mu0, v_s, mu_s),
+                LawKind::Stribeck => FrictionLaw::stribeck(mu0, v_s, mu_s),
+            })
+            .transpose()
+    }
+
+    /// μ_K and μ_K′ at the sliding velocity: from the friction law, or as given.
+    ///
+    /// # Errors
+    /// When the law is ill-posed.
+    pub fn sliding_point(&self) -> Result<SlidingPoint, ModelError> {
+        match self.friction_law()? {
+            Some(law) => SlidingPoint::of_law(&law, self.get(Parameter::V0)),
+            None => Ok(SlidingPoint {
+                mu_k: self.get(Parameter::MuK),
+                mu_prime: self.get(Parameter::MuPrime),
+            }),
+        }
+    }
+
+    /// The oscillator.
+    ///
+    /// # Errors
+    /// When mass, stiffness or load are not positive.
+    pub fn oscillator(&self) -> Result<Oscillator, ModelError> {
+        Oscillator::new(
+            self.get(Parameter::Mass),
+            self.get(Parameter::Stiffness),
+            self.get(Parameter::NormalLoad),
+        )
+    }
+
+    /// The dimensionless groups and the unit of time √(M/κ).
+    ///
+    /// # Errors
+    /// When a parameter is outside the model's range.
+    pub fn groups(&self) -> Result<(Groups, f64), ModelError> {
+        let oscillator = self.oscillator()?;
+        let control = Control {
+            alpha_v: self.get(Parameter::AlphaV),
+            alpha_n: self.get(Parameter::AlphaN),
+        };
+        let groups = oscillator.groups(self.sliding_point()?, control);
+        Ok((groups, oscillator.time_unit()))
+    }
+}

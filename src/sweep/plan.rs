@@ -1,0 +1,193 @@
+//! The plan of a sweep: its cells, cut into tiles.
+
+use sha2::{Digest, Sha256};
+
+use super::parameter::{Parameter, Setting};
+use super::spec::{SpecError, SweepSpec};
+use super::tile::{Tile, TileGrid};
+
+/// Cells in a tile, about: small enough for a processor's cache, large enough to compress and write well.
+const CELLS_PER_TILE: usize = 1 << 18;
+/// Delays in a tile at most, so that memory stays bounded on the longest line.
+const DELAYS_PER_TILE: usize = 1 << 17;
+/// More cells than this are refused.
+const MOST_CELLS: u64 = 10_000_000_000_000;
+/// Planes up to which crossing curves are traced without being asked for.
+const PLANES_TRACED_UNASKED: u64 = 1000;
+
+/// A sweep ready to run.
+#[derive(Debug, Clone)]
+pub struct Plan {
+    /// The sweep file's content.
+    pub spec: SweepSpec,
+    /// How the cells are cut into tiles.
+    pub tiles: TileGrid,
+    /// The axis of delays, if the delay is one.
+    pub tau_axis: Option<usize>,
+    /// The axes of the planes in which crossing curves are traced: (parameter, delay).
+    pub boundary_plane: Option<(usize, usize)>,
+}
+
+impl Plan {
+    /// Plans a sweep.
+    ///
+    /// # Errors
+    /// When there are more cells than any machine could hold.
+    pub fn new(spec: SweepSpec) -> Result<Self, SpecError> {
+        let shape: Vec<usize> = spec.axes.iter().map(|axis| axis.len()).collect();
+        let cells = shape
+            .iter()
+            .try_fold(1_u64, |n, &len| n.checked_mul(len as u64))
+            .filter(|&n| n <= MOST_CELLS);
+        if cells.is_none() {
+            let sizes: Vec<String> = shape.iter().map(ToString::to_string).collect();
+            return Err(SpecError::whole(format!(
+                "the map would have {} cells; at most {MOST_CELLS} are allowed",
+                sizes.join(" × ")
+            )));
+        }
+        let tau_axis = spec
+            .axes
+            .iter()
+            .position(|axis| axis.parameter == Parameter::Tau);
+        let tile_shape = tile_shape(&shape, tau_axis);
+        let boundary_plane = boundary_plane(&spec, tau_axis);
+        Ok(Self {
+            tiles: TileGrid::new(shape, tile_shape),
+            tau_axis,
+            boundary_plane,
+            spec,
+        })
+    }
+
+    /// Length of each axis, in the order of the map's dimensions.
+    #[must_use]
+    pub fn shape(&self) -> &[usize] {
+        self.tiles.shape()
+    }
+
+    /// Number of cells.
+    #[must_use]
+    pub fn cells(&self) -> u64 {
+        self.shape().iter().map(|&n| n as u64).product()
+    }
+
+    /// Uncompressed bytes of a cell, the status included.
+    #[must_use]
+    pub fn bytes_per_cell(&self) -> u64 {
+        let fields: usize = self.spec.fields.iter().map(|f| f.bytes()).sum();
+        (fields + size_of::<u8>()) as u64
+    }
+
+    /// Number of planes in which crossing curves are traced.
+    #[must_use]
+    pub fn boundary_planes(&self) -> u64 {
+        match self.boundary_plane {
+            Some((p, tau)) => {
+                let of_plane = (self.shape()[p] * self.shape()[tau]) as u64;
+                self.cells() / of_plane
+            }
+            None => 0,
+        }
+    }
+
+    /// The parameters of the cell at `index`, one index per axis.
+    #[must_use]
+    pub fn setting(&self, index: &[usize]) -> Setting {
+        let mut setting = self.spec.fixed;
+        for (axis, &i) in self.spec.axes.iter().zip(index) {
+            setting.set(axis.parameter, axis.values[i]);
+        }
+        setting
+    }
+
+    /// The delays of the sweep, or the one fixed delay.
+    #[must_use]
+    pub fn delays(&self) -> Vec<f64> {
+        match self.tau_axis {
+            Some(axis) => self.spec.axes[axis].values.clone(),
+            None => vec![self.spec.fixed.get(Parameter::Tau)],
+        }
+    }
+
+    /// The part of the delays that `tile` covers, as indices.
+    #[must_use]
+    pub fn delay_range(&self, tile: &Tile) -> std::ops::Range<usize> {
+        match self.tau_axis {
+            Some(axis) => tile.offset[axis]..tile.offset[axis] + tile.extent[axis],
+            None => 0..1,
+        }
+    }
+
+    /// A hash of everything on which the cells depend, in hexadecimal: equal plans have equal cells.
+    #[must_use]
+    pub fn hash(&self) -> String {
+        let mut hash = Sha256::new();
+        let mut put = |text: &str, values: &[f64]| {
+            hash.update((text.len() as u64).to_le_bytes());
+            hash.update(text);
+            hash.update((values.len() as u64).to_le_bytes());
+            for value in values {
+                hash.update(value.to_bits().to_le_bytes());
+            }
+        };
+        let fixed = &self.spec.fixed;
+        put(fixed.law().map_or("no law", |law| law.name()), &[]);
+        for axis in &self.spec.axes {
+            put(axis.parameter.name(), &axis.values);
+        }
+        for parameter in Parameter::ALL.into_iter().filter(|&p| fixed.uses(p)) {
+            if !self.spec.axes.iter().any(|a| a.parameter == parameter) {
+                put(parameter.name(), &[fixed.get(parameter)]);
+            }
+        }
+        for field in &self.spec.fields {
+            put(field.name(), &[]);
+        }
+        put("marginal", &[self.spec.tolerance.0]);
+        put("boundaries", &[f64::from(self.boundary_plane.is_some())]);
+        hash.finalize().iter().map(|b| format!("{b:02x}")).collect()
+    }
+}
+
+/// Whole lines as far as they go, then as many neighbouring lines as fit.
+fn tile_shape(shape: &[usize], tau_axis: Option<usize>) -> Vec<usize> {
+    let mut tile = vec![1; shape.len()];
+    let mut left = CELLS_PER_TILE;
+    let mut fill = |axis: usize, most: usize| {
+        let parts = shape[axis].div_ceil(most.max(1));
+        tile[axis] = shape[axis].div_ceil(parts);
+        left /= tile[axis];
+        left
+    };
+    let mut room = CELLS_PER_TILE;
+    if let Some(axis) = tau_axis {
+        room = fill(axis, DELAYS_PER_TILE);
+    }
+    for axis in (0..shape.len()).rev().filter(|&a| Some(a) != tau_axis) {
+        room = fill(axis, room);
+    }
+    tile
+}
+
+/// The plane of crossing curves: the last gain axis, else the last other axis, and the delay. None where there is no such
+/// plane, or where it is not wanted.
+fn boundary_plane(spec: &SweepSpec, tau_axis: Option<usize>) -> Option<(usize, usize)> {
+    let tau = tau_axis.filter(|&t| spec.axes[t].len() > 1)?;
+    let last = |gain: bool| {
+        spec.axes.iter().rposition(|axis| {
+            let is_gain = matches!(axis.parameter, Parameter::AlphaV | Parameter::AlphaN);
+            axis.len() > 1 && axis.parameter != Parameter::Tau && (is_gain || !gain)
+        })
+    };
+    let p = last(true).or_else(|| last(false))?;
+    let planes: u64 = spec
+        .axes
+        .iter()
+        .enumerate()
+        .filter(|&(i, _)| i != p && i != tau)
+        .map(|(_, axis)| axis.len() as u64)
+        .product();
+    let wanted = spec.boundaries.unwrap_or(planes <= PLANES_TRACED_UNASKED);
+    wanted.then_some((p, tau))
+}

@@ -1,0 +1,158 @@
+//! Tiles: rectangular blocks of cells.
+
+/// How a map is cut into tiles of equal shape; those at the far edges reach beyond the map.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct TileGrid {
+    shape: Vec<usize>,
+    tile_shape: Vec<usize>,
+}
+
+/// One tile: the cells from `offset` on, `extent` of them along each axis.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Tile {
+    /// First index along each axis.
+    pub offset: Vec<usize>,
+    /// Number of cells along each axis that lie inside the map.
+    pub extent: Vec<usize>,
+}
+
+impl Tile {
+    /// Number of cells inside the map.
+    #[must_use]
+    pub fn cells(&self) -> u64 {
+        self.extent.iter().map(|&n| n as u64).product()
+    }
+}
+
+impl TileGrid {
+    pub(super) fn new(shape: Vec<usize>, tile_shape: Vec<usize>) -> Self {
+        Self { shape, tile_shape }
+    }
+
+    /// Length of each axis of the map.
+    #[must_use]
+    pub fn shape(&self) -> &[usize] {
+        &self.shape
+    }
+
+    /// Cells of a full tile along each axis.
+    #[must_use]
+    pub fn tile_shape(&self) -> &[usize] {
+        &self.tile_shape
+    }
+
+    /// Cells of a full tile.
+    #[must_use]
+    pub fn tile_cells(&self) -> usize {
+        self.tile_shape.iter().product()
+    }
+
+    /// Number of tiles.
+    #[must_use]
+    pub fn len(&self) -> usize {
+        self.tiles_along().product()
+    }
+
+    /// Never: a map has at least one cell.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+
+    fn tiles_along(&self) -> impl DoubleEndedIterator<Item = usize> {
+        self.shape
+            .iter()
+            .zip(&self.tile_shape)
+            .map(|(&n, &t)| n.div_ceil(t))
+    }
+
+    /// The tile of number `number`, row by row, last axis fastest.
+    #[must_use]
+    pub fn tile(&self, number: usize) -> Tile {
+        let mut offset = vec![0; self.shape.len()];
+        let mut rest = number;
+        for (axis, along) in self
+            .tiles_along()
+            .enumerate()
+            .collect::<Vec<_>>()
+            .into_iter()
+            .rev()
+        {
+            offset[axis] = (rest % along) * self.tile_shape[axis];
+            rest /= along;
+        }
+        let extent = offset
+            .iter()
+            .zip(&self.shape)
+            .zip(&self.tile_shape)
+            .map(|((&o, &n), &t)| t.min(n - o))
+            .collect();
+        Tile { offset, extent }
+    }
+
+    /// Cells between neighbours along each axis in a tile's memory: last axis fastest, full tile shape.
+    #[must_use]
+    pub fn strides(&self) -> Vec<usize> {
+        let mut strides = vec![1; self.tile_shape.len()];
+        for axis in (1..strides.len()).rev() {
+            strides[axis - 1] = strides[axis] * self.tile_shape[axis];
+        }
+        strides
+    }
+}
+
+/// Every index of a box, last axis fastest; `skip` names an axis that stays at 0.
+pub(super) fn for_each_index(
+    extent: &[usize],
+    skip: Option<usize>,
+    mut visit: impl FnMut(&[usize]),
+) {
+    let mut index = vec![0; extent.len()];
+    loop {
+        visit(&index);
+        let mut axis = extent.len();
+        loop {
+            if axis == 0 {
+                return;
+            }
+            axis -= 1;
+            if Some(axis) == skip {
+                continue;
+            }
+            index[axis] += 1;
+            if index[axis] < extent[axis] {
+                break;
+            }
+            index[axis] = 0;
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn tiles_cover_every_cell_once() {
+        let grid = TileGrid::new(vec![5, 7, 4], vec![2, 3, 4]);
+        let mut seen = vec![0; 5 * 7 * 4];
+        for number in 0..grid.len() {
+            let tile = grid.tile(number);
+            for_each_index(&tile.extent, None, |i| {
+                let cell = ((tile.offset[0] + i[0]) * 7 + tile.offset[1] + i[1]) * 4
+                    + tile.offset[2]
+                    + i[2];
+                seen[cell] += 1;
+            });
+        }
+        assert!(seen.iter().all(|&n| n == 1));
+        assert_eq!(grid.strides(), [12, 4, 1]);
+    }
+
+    #[test]
+    fn a_skipped_axis_stays_at_zero() {
+        let mut visited = Vec::new();
+        for_each_index(&[2, 9, 2], Some(1), |i| visited.push(i.to_vec()));
+        assert_eq!(visited, [[0, 0, 0], [0, 0, 1], [1, 0, 0], [1, 0, 1]]);
+    }
+}

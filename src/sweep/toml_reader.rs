@@ -1,0 +1,181 @@
+//! Reading TOML with the place of every key and value at hand, so that each error can point at it.
+
+use std::ops::Range;
+
+use toml::Spanned;
+use toml::de::{DeTable, DeValue};
+
+/// Why a text was refused, and where.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[error("{message}")]
+pub struct SpecError {
+    /// What is wrong, with the range allowed.
+    pub message: String,
+    /// The bytes of the text that it is about; none when the whole text is meant.
+    pub span: Option<Range<usize>>,
+    /// What could be done.
+    pub help: Option<String>,
+}
+
+impl SpecError {
+    pub(super) fn at(span: Range<usize>, message: impl Into<String>) -> Self {
+        Self {
+            message: message.into(),
+            span: Some(span),
+            help: None,
+        }
+    }
+
+    pub(super) fn whole(message: impl Into<String>) -> Self {
+        Self {
+            message: message.into(),
+            span: None,
+            help: None,
+        }
+    }
+
+    pub(super) fn help(mut self, help: impl Into<String>) -> Self {
+        self.help = Some(help.into());
+        self
+    }
+}
+
+/// A value with its key, its path in the text, and where both stand.
+pub(super) struct Entry<'t> {
+    pub key: &'t str,
+    /// Dotted path, for messages.
+    pub path: String,
+    pub key_span: Range<usize>,
+    pub span: Range<usize>,
+    value: &'t DeValue<'t>,
+}
+
+/// Parses a whole document.
+pub(super) fn parse(text: &str) -> Result<Spanned<DeTable<'_>>, SpecError> {
+    DeTable::parse(text).map_err(|error| SpecError {
+        message: error.message().to_owned(),
+        span: error.span(),
+        help: None,
+    })
+}
+
+/// The entries of a table in the order of the text.
+pub(super) fn entries<'t>(table: &'t DeTable<'t>, path: &str) -> Vec<Entry<'t>> {
+    let mut entries: Vec<Entry> = table
+        .iter()
+        .map(|(key, value)| Entry {
+            key: key.get_ref(),
+            path: if path.is_empty() {
+                key.get_ref().to_string()
+            } else {
+                format!("{path}.{}", key.get_ref())
+            },
+            key_span: key.span(),
+            span: value.span(),
+            value: value.get_ref(),
+        })
+        .collect();
+    entries.sort_by_key(|entry| entry.key_span.start);
+    entries
+}
+
+impl<'t> Entry<'t> {
+    /// An error about the value.
+    pub fn error(&self, message: impl Into<String>) -> SpecError {
+        SpecError::at(
+            self.span.clone(),
+            format!("{}: {}", self.path, message.into()),
+        )
+    }
+
+    /// An error that says the key is not known, with those that are.
+    pub fn unknown(&self, known: &[&str]) -> SpecError {
+        let error = SpecError::at(
+            self.key_span.clone(),
+            format!("unknown key `{}`", self.path),
+        );
+        error.help(format!("known here: {}", known.join(", ")))
+    }
+
+    fn expected(&self, what: &str) -> SpecError {
+        self.error(format!("expected {what}, found {}", kind(self.value)))
+    }
+
+    pub fn table(&self) -> Result<Vec<Entry<'t>>, SpecError> {
+        match self.value {
+            DeValue::Table(table) => Ok(entries(table, &self.path)),
+            _ => Err(self.expected("a table")),
+        }
+    }
+
+    pub fn is_table(&self) -> bool {
+        matches!(self.value, DeValue::Table(_))
+    }
+
+    /// The elements of an array, each with its own place.
+    pub fn array(&self) -> Result<Vec<Entry<'t>>, SpecError> {
+        let DeValue::Array(array) = self.value else {
+            return Err(self.expected("an array"));
+        };
+        let element = |(i, value): (usize, &'t Spanned<DeValue<'t>>)| Entry {
+            key: self.key,
+            path: format!("{}[{i}]", self.path),
+            key_span: self.key_span.clone(),
+            span: value.span(),
+            value: value.get_ref(),
+        };
+        Ok(array.iter().enumerate().map(element).collect())
+    }
+
+    /// A finite number.
+    pub fn number(&self) -> Result<f64, SpecError> {
+        let value: f64 = match self.value {
+            DeValue::Float(float) => float.as_str().parse().ok(),
+            DeValue::Integer(integer) => i64::from_str_radix(integer.as_str(), integer.radix())
+                .ok()
+                .map(|i| i as f64),
+            _ => return Err(self.expected("a number")),
+        }
+        .ok_or_else(|| self.error("this number is too large"))?;
+        if value.is_finite() {
+            Ok(value)
+        } else {
+            Err(self.error("expected a finite number"))
+        }
+    }
+
+    /// A whole number, not negative.
+    pub fn whole(&self) -> Result<u64, SpecError> {
+        match self.value {
+            DeValue::Integer(integer) => u64::from_str_radix(integer.as_str(), integer.radix())
+                .map_err(|_| self.error("expected a whole number between 0 and 2^64 − 1")),
+            _ => Err(self.expected("a whole number")),
+        }
+    }
+
+    pub fn boolean(&self) -> Result<bool, SpecError> {
+        match self.value {
+            DeValue::Boolean(value) => Ok(*value),
+            _ => Err(self.expected("true or false")),
+        }
+    }
+
+    pub fn string(&self) -> Result<&'t str, SpecError> {
+        match self.value {
+            DeValue::String(value) => Ok(value),
+            _ => Err(self.expected("a string")),
+        }
+    }
+}
+
+fn kind(value: &DeValue) -> &'static str {
+    match value {
+        DeValue::String(_) => "a string",
+        DeValue::Integer(_) => "a whole number",
+        DeValue::Float(_) => "a number",
+        DeValue::Boolean(_) => "true or false",
+        DeValue::Datetime(_) => "a date",
+        DeValue::Array(_) => "an array",
+        DeValue::Table(_) => "a table",
+    }
+}
