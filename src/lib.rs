@@ -1,3 +1,41 @@
+//! Exact stability maps of delayed-feedback control of dry friction.
+//!
+//! A block on a spring, pulled over dry friction, sticks and slips. Feeding the delayed spring elongation a(t) − a(t − τ)
+//! back to the pulling velocity (gain α_v) or to the normal load (gain α_N) can turn this into continuous sliding. slipmap
+//! says for which gains and delays: exactly, from the closed form of the crossing curves, over whole grids of parameters.
+//!
+//! Source of the model: F.-J. Elmer, *Controlling friction* (1997), "the letter".
+//!
+//! | module | what it holds |
+//! |---|---|
+//! | [`model`] | the oscillator, friction laws, dimensionless groups |
+//! | [`linear`] | linear stability of continuous sliding at a point, along a line, in a plane |
+//! | [`sweep`] | sweep files, plans, the engine that computes maps |
+//! | [`store`] | maps on disk |
+//! | [`report`] | progress, pictures |
+//!
+//! # Example
+//!
+//! All delays at which velocity control with α_v = −0.33 stabilises sliding on a weakening law at v0 = 0.35, which are
+//! the parameters of the letter's Fig. 3(a):
+//!
+//! ```
+//! use slipmap::linear::Crossings;
+//! use slipmap::model::{Control, FrictionLaw, Oscillator, SlidingPoint};
+//!
+//! let law = FrictionLaw::weakening(0.5, 0.5, 1.0)?;
+//! let oscillator = Oscillator::default();
+//! let control = Control { alpha_v: -0.33, alpha_n: 0.0 };
+//! let groups = oscillator.groups(SlidingPoint::of_law(&law, 0.35)?, control);
+//!
+//! let crossings = Crossings::of(groups);
+//! let stable: Vec<_> = crossings.stable_delays().collect();
+//! assert!(stable.iter().any(|s| s.from < 4.15 && 4.15 < s.to));
+//! assert_eq!(crossings.n_unstable(4.15), 0);
+//! assert_eq!(crossings.n_unstable(1.0), 2);
+//! # Ok::<(), slipmap::model::ModelError>(())
+//! ```
+
 pub mod linear;
 pub mod model;
 pub mod report;

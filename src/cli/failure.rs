@@ -58,7 +58,7 @@ impl Failure {
             Self::Failed(report) => (report, 1),
             Self::BadInput(report) => (report, 2),
         };
-        eprintln!("Error: {report:?}");
+        eprintln!("{report:?}");
         ExitCode::from(code)
     }
 }

@@ -4,6 +4,7 @@ mod failure;
 mod info;
 mod parameters;
 mod plan;
+mod plot;
 mod point;
 mod run;
 mod sweep_file;
@@ -31,6 +32,8 @@ enum Command {
     Plan(plan::Args),
     /// Everything about one point of parameter space
     Point(point::Args),
+    /// Draw a map as PNG or SVG
+    Plot(plot::Args),
     /// Say what a map holds
     Info(info::Args),
 }
@@ -41,6 +44,7 @@ pub fn main() -> ExitCode {
         Command::Run(args) => run::main(&args),
         Command::Plan(args) => plan::main(&args),
         Command::Point(args) => point::main(&args),
+        Command::Plot(args) => plot::main(&args),
         Command::Info(args) => info::main(&args),
     };
     match result {

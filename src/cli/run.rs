@@ -1,5 +1,6 @@
 //! `slipmap run`: from a sweep file to a map and its picture.
 
+use std::io::IsTerminal;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
@@ -7,6 +8,8 @@ use std::time::SystemTime;
 
 use miette::{MietteDiagnostic, Report};
 use slipmap::report::numbers::{bytes, grouped, prefixed, seconds};
+use slipmap::report::picture::{self, PictureError, PictureOptions};
+use slipmap::report::preview::preview;
 use slipmap::report::progress::Progress;
 use slipmap::store::map_writer::Provenance;
 use slipmap::store::schema::root;
@@ -14,10 +17,14 @@ use slipmap::store::{MapFile, MapWriter, Output, StoreError};
 use slipmap::sweep::{Plan, RunError, engine};
 
 use super::failure::Failure;
+use super::plot;
 use super::sweep_file::read_plan;
 
 /// More threads than this are taken for a slip of the finger.
 const MOST_THREADS: usize = 4096;
+
+/// Columns of the picture on the terminal: as many as every terminal has.
+const PREVIEW_WIDTH: usize = 78;
 
 #[derive(Debug, clap::Args)]
 pub struct Args {
@@ -59,6 +66,9 @@ pub fn main(args: &Args) -> Result<(), Failure> {
             "{} is already complete; --fresh computes it again",
             path.display()
         );
+        if !plot::beside(&path).exists() {
+            show(&path, args.quiet);
+        }
         return Ok(());
     }
     let signals = Signals::catch()?;
@@ -81,7 +91,31 @@ pub fn main(args: &Args) -> Result<(), Failure> {
         prefixed(plan.cells() as f64 / elapsed),
         bytes(std::fs::metadata(&path).map_or(0, |m| m.len())),
     );
+    show(&path, args.quiet);
     Ok(())
+}
+
+/// Draws a complete map beside it, and on the terminal. What fails here is a warning: the map is there.
+fn show(path: &Path, quiet: bool) {
+    let map = match MapFile::open(path) {
+        Ok(map) => map,
+        Err(error) => return eprintln!("warning: no picture: {error}"),
+    };
+    let picture = plot::beside(path);
+    match picture::draw(&map, &picture, &PictureOptions::default()) {
+        Ok(()) => println!("{}", picture.display()),
+        Err(PictureError::NothingToDraw) => {}
+        Err(error) => eprintln!("warning: no picture: {error}"),
+    }
+    if quiet || !std::io::stderr().is_terminal() {
+        return;
+    }
+    let no_colour = std::env::var_os("NO_COLOR").is_some_and(|value| !value.is_empty());
+    match preview(&map, PREVIEW_WIDTH, !no_colour) {
+        Ok(Some(text)) => eprint!("{text}"),
+        Ok(None) => {}
+        Err(error) => eprintln!("warning: no preview: {error}"),
+    }
 }
 
 fn output_path(args: &Args) -> Result<PathBuf, Failure> {
@@ -154,20 +188,23 @@ struct Signals {
 
 impl Signals {
     fn catch() -> Result<Self, Failure> {
-        use signal_hook::consts::{SIGINT, SIGTERM};
+        use signal_hook::consts::{SIGINT, SIGTERM, SIGXFSZ};
         use signal_hook::flag;
         let (stop, code) = (
             Arc::new(AtomicBool::new(false)),
             Arc::new(AtomicUsize::new(130)),
         );
+        let refused = |error| {
+            let message = format!("cannot catch signals: {error}");
+            Failure::Failed(Report::new(MietteDiagnostic::new(message)))
+        };
+        // Caught and not looked at: a limit on file sizes then fails the write instead of ending the process.
+        flag::register(SIGXFSZ, Arc::new(AtomicBool::new(false))).map_err(refused)?;
         for (signal, exit_code) in [(SIGINT, 130), (SIGTERM, 143)] {
             flag::register_conditional_shutdown(signal, exit_code, Arc::clone(&stop))
                 .and_then(|_| flag::register_usize(signal, Arc::clone(&code), exit_code as usize))
                 .and_then(|_| flag::register(signal, Arc::clone(&stop)))
-                .map_err(|error| {
-                    let message = format!("cannot catch signals: {error}");
-                    Failure::Failed(Report::new(MietteDiagnostic::new(message)))
-                })?;
+                .map_err(refused)?;
         }
         Ok(Self { stop, code })
     }

@@ -6,7 +6,7 @@
 
 use super::crossing::{Crossing, Crossings};
 
-/// How near to a crossing a delay counts as marginal: |τ − τ_k| ≤ tolerance · max(1, τ), τ in units of √(M/κ).
+/// How near to a crossing a delay counts as marginal: |τ − τ_k| ≤ tolerance · max(1, τ_k), τ in units of √(M/κ).
 ///
 /// Where the crossing itself is known less well than that (near a tangency, or for tiny gains), the bound on its rounding
 /// error takes the place of the tolerance.
@@ -65,10 +65,15 @@ impl Crossings {
     pub fn marginal(&self, tau: f64, tolerance: MarginalTolerance) -> bool {
         self.marginal_everywhere_or_at_zero(tau, tolerance)
             || self.iter().any(|crossing| {
-                let allowed = self.marginal_distance(crossing, tau, tolerance);
+                if crossing.period() <= self.marginal_distance(crossing, tau, tolerance) {
+                    return true;
+                }
+                let near = |delay: f64| {
+                    (tau - delay).abs() <= self.marginal_distance(crossing, delay, tolerance)
+                };
                 let next = crossing.branch_at(tau);
-                crossing.delay(next) - tau <= allowed
-                    || (next > crossing.first_branch && tau - crossing.delay(next - 1) <= allowed)
+                near(crossing.delay(next))
+                    || (next > crossing.first_branch && near(crossing.delay(next - 1)))
             })
     }
 
@@ -79,16 +84,16 @@ impl Crossings {
         self.always_marginal || (self.undamped && tau <= tolerance.0 * self.time_unit)
     }
 
-    /// The distance from `crossing` up to which the delay `tau` is marginal.
+    /// The distance from `delay`, one of those of `crossing`, up to which others are marginal.
     #[inline]
     #[must_use]
     pub fn marginal_distance(
         &self,
         crossing: &Crossing,
-        tau: f64,
+        delay: f64,
         tolerance: MarginalTolerance,
     ) -> f64 {
-        (tolerance.0 * tau.max(self.time_unit)).max(crossing.delay_error(tau))
+        (tolerance.0 * delay.max(self.time_unit)).max(crossing.delay_error(delay))
     }
 }
 

@@ -51,6 +51,10 @@ pub struct Crossing {
     pub first_branch: u64,
     /// What the pair does there.
     pub direction: Direction,
+    /// θ/ω.
+    first_delay: f64,
+    /// 2π/ω.
+    period: f64,
     /// Bound on the rounding error of θ/ω.
     phase_error: f64,
     /// Bound on the relative rounding error of ω.
@@ -58,11 +62,18 @@ pub struct Crossing {
 }
 
 impl Crossing {
-    /// The delay τ_k of branch `k`. Grows strictly with k.
+    /// The delay τ_k of branch `k`; 2π/ω from branch to branch.
     #[inline]
     #[must_use]
     pub fn delay(&self, k: u64) -> f64 {
-        (self.theta + TAU * k as f64) / self.omega
+        self.first_delay + self.period * k as f64
+    }
+
+    /// 2π/ω, the distance between neighbouring delays.
+    #[inline]
+    #[must_use]
+    pub fn period(&self) -> f64 {
+        self.period
     }
 
     /// A bound on the rounding error of a delay of this crossing near `tau`.
@@ -77,6 +88,8 @@ impl Crossing {
     fn scaled(self, time_unit: f64) -> Self {
         Self {
             omega: self.omega / time_unit,
+            first_delay: self.first_delay * time_unit,
+            period: self.period * time_unit,
             phase_error: self.phase_error * time_unit,
             ..self
         }
@@ -93,7 +106,10 @@ impl Crossing {
     #[inline]
     #[must_use]
     pub fn branch_at(&self, tau: f64) -> u64 {
-        let estimate = ((tau * self.omega - self.theta) / TAU).max(0.0);
+        if self.delay(self.first_branch) >= tau {
+            return self.first_branch;
+        }
+        let estimate = ((tau * self.omega - self.theta) * (1.0 / TAU)).max(0.0);
         if estimate >= FINEST_BRANCH {
             return estimate as u64;
         }
@@ -130,6 +146,7 @@ pub struct Crossings {
 
 impl Crossings {
     /// The crossings of a line, from the quadratic (1) of the module. Finite groups are assumed.
+    #[inline]
     #[must_use]
     pub fn of(groups: Groups) -> Self {
         let b = groups.b;
@@ -174,8 +191,12 @@ impl Crossings {
     }
 
     /// The same crossings with delays in units of time of which `time_unit` = √(M/κ) makes one dimensionless unit.
+    #[inline]
     #[must_use]
     pub fn in_physical_time(self, time_unit: f64) -> Self {
+        if time_unit == 1.0 {
+            return self;
+        }
         let scaled = |crossing: Option<Crossing>| crossing.map(|c| c.scaled(time_unit));
         Self {
             upper: scaled(self.upper),
@@ -269,7 +290,7 @@ impl YPair {
 }
 
 /// The crossing at x = 1 + y > 0, or none. `vieta` = (the other x, the product of both) serves where x is small.
-#[inline]
+#[inline(always)]
 fn crossing(
     groups: Groups,
     y: f64,
@@ -293,16 +314,21 @@ fn crossing(
     let cosine = a_norm_sqr - (a_r * b_r + a_i * b_i);
     let theta = phase(sine, cosine);
 
-    let omega_error = 0.5 * y_error / omega + 2.0 * UNIT_ROUNDOFF * omega;
-    let theta_error = (y_error + (b.abs() + 2.0 * a_v.abs()) * omega_error) / a_norm_sqr.sqrt()
+    let per_omega = 1.0 / omega;
+    let omega_error = 0.5 * y_error * per_omega + 2.0 * UNIT_ROUNDOFF * omega;
+    // |A| from below, by its larger part: a bound needs no square root.
+    let a_size = a_r.abs().max(a_i.abs());
+    let theta_error = (y_error + (b.abs() + 2.0 * a_v.abs()) * omega_error) / a_size
         + ROUNDINGS * UNIT_ROUNDOFF;
     Some(Crossing {
         omega,
         theta,
         first_branch: u64::from(b == 0.0 && y == 0.0),
         direction,
-        phase_error: theta_error / omega,
-        frequency_error: omega_error / omega + 2.0 * UNIT_ROUNDOFF,
+        first_delay: theta * per_omega,
+        period: TAU * per_omega,
+        phase_error: theta_error * per_omega,
+        frequency_error: omega_error * per_omega + 4.0 * UNIT_ROUNDOFF,
     })
 }
 

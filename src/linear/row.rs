@@ -8,52 +8,50 @@ use super::stable_delays::MarginWalk;
 use super::status::{MARGINAL, MOST_COUNTED, SATURATED};
 
 /// Delays of a row: finite, not negative, strictly increasing, in the time unit of the crossings they are used with.
-#[derive(Debug, Clone, Copy)]
-pub struct Delays<'a> {
-    values: &'a [f64],
+#[derive(Debug, Clone)]
+pub struct Delays {
+    /// −∞, the delays, ∞: no search runs off an end.
+    fenced: Vec<f64>,
     /// 1/step where the delays are equally spaced to rounding, else 0.
     per_step: f64,
 }
 
-impl<'a> Delays<'a> {
-    /// Delays in increasing order.
+impl Delays {
+    /// At least one delay, in increasing order.
     #[must_use]
-    pub fn new(values: &'a [f64]) -> Self {
+    pub fn new(values: &[f64]) -> Self {
+        let mut fenced = Vec::with_capacity(values.len() + 2);
+        fenced.push(f64::NEG_INFINITY);
+        fenced.extend_from_slice(values);
+        fenced.push(f64::INFINITY);
         Self {
-            values,
+            fenced,
             per_step: reciprocal_step(values),
         }
     }
 
     /// The delays themselves.
-    #[must_use]
-    pub fn values(&self) -> &'a [f64] {
-        self.values
-    }
-
-    /// The delays number `from` up to, not with, `to`.
-    #[must_use]
-    pub fn range(&self, from: usize, to: usize) -> Self {
-        Self {
-            values: &self.values[from..to],
-            per_step: self.per_step,
-        }
-    }
-
-    /// The index of the first delay greater than `tau`, at least `start`.
     #[inline]
-    fn first_above(&self, tau: f64, start: usize) -> usize {
-        let values = self.values;
+    #[must_use]
+    pub fn values(&self) -> &[f64] {
+        &self.fenced[1..self.fenced.len() - 1]
+    }
+
+    /// The index of the first delay greater than `tau`; their number if there is none.
+    #[inline(always)]
+    fn first_above(&self, tau: f64) -> usize {
+        let fenced = self.fenced.as_slice();
+        let most = fenced.len() - 2;
         if self.per_step == 0.0 {
-            return start + values[start..].partition_point(|&v| v <= tau);
+            return fenced[1..=most].partition_point(|&v| v <= tau);
         }
-        let guess = (tau - values[0]) * self.per_step;
-        // Off by one at most for an evenly spaced grid; the loops make it right for any.
-        let mut i = (guess.max(0.0) as usize).clamp(start, values.len());
-        while i > start && values[i - 1] > tau {
+        // Right but for rounding on an evenly spaced grid; the loops make it right for any.
+        let guess = (tau - fenced[1]) * self.per_step + 1.0;
+        let mut i = (guess as i64).clamp(0, most as i64) as usize;
+        while fenced[i] > tau {
             i -= 1;
         }
-        while i < values.len() && values[i] <= tau {
+        while fenced[i + 1] <= tau {
             i += 1;
         }
         i
@@ -75,6 +73,7 @@ fn reciprocal_step(values: &[f64]) -> f64 {
 /// One family of crossings on its way along a row.
 struct Cursor<'c> {
     crossing: Option<&'c Crossing>,
+    /// Branch of the next crossing.
     branch: u64,
     /// Crossings behind.
     passed: u64,
@@ -85,64 +84,64 @@ struct Cursor<'c> {
 /// The parts of a row that do not change along it.
 struct Row<'a> {
     crossings: &'a Crossings,
-    delays: Delays<'a>,
+    delays: &'a Delays,
     tolerance: MarginalTolerance,
 }
 
 impl Row<'_> {
+    #[inline]
     fn cursor<'c>(&self, crossing: Option<&'c Crossing>, status: &mut [u8]) -> Cursor<'c> {
         let mut cursor = Cursor {
             crossing,
             branch: 0,
             passed: 0,
-            index: self.delays.values.len(),
+            index: status.len(),
         };
         if let Some(crossing) = crossing {
-            cursor.branch = crossing.branch_at(self.delays.values[0]);
+            cursor.branch = crossing.branch_at(self.delays.fenced[1]);
             cursor.passed = cursor.branch - crossing.first_branch;
             if cursor.passed > 0 {
                 self.mark(crossing, crossing.delay(cursor.branch - 1), 0, status);
             }
-            self.place(&mut cursor, crossing, 0, status);
+            self.place(&mut cursor, crossing, status);
         }
         cursor
     }
 
-    #[inline]
-    fn place(&self, cursor: &mut Cursor, crossing: &Crossing, start: usize, status: &mut [u8]) {
+    #[inline(always)]
+    fn place(&self, cursor: &mut Cursor, crossing: &Crossing, status: &mut [u8]) {
         let delay = crossing.delay(cursor.branch);
-        cursor.index = self.delays.first_above(delay, start);
+        cursor.index = self.delays.first_above(delay);
         self.mark(crossing, delay, cursor.index, status);
     }
 
-    #[inline]
+    #[inline(always)]
     fn advance(&self, cursor: &mut Cursor, status: &mut [u8]) {
         cursor.branch += 1;
         cursor.passed += 1;
         if let Some(crossing) = cursor.crossing {
-            self.place(cursor, crossing, cursor.index, status);
+            self.place(cursor, crossing, status);
         }
     }
 
     /// Marks the cells marginal to the crossing at `delay`, which lies just below the delay number `index`.
-    #[inline]
+    #[inline(always)]
     fn mark(&self, crossing: &Crossing, delay: f64, index: usize, status: &mut [u8]) {
-        let values = self.delays.values;
-        let near = |tau: f64| {
-            (tau - delay).abs()
-                <= self
-                    .crossings
-                    .marginal_distance(crossing, tau, self.tolerance)
-        };
-        let mut i = index;
-        while i > 0 && near(values[i - 1]) {
-            i -= 1;
-            status[i] |= MARGINAL;
+        let allowed = self.crossings.marginal_distance(crossing, delay, self.tolerance);
+        let (below, above) = (self.delays.fenced[index], self.delays.fenced[index + 1]);
+        if delay - below <= allowed || above - delay <= allowed {
+            self.mark_within(delay, allowed, index, status);
         }
-        let mut i = index;
-        while i < values.len() && near(values[i]) {
-            status[i] |= MARGINAL;
-            i += 1;
+    }
+
+    #[cold]
+    fn mark_within(&self, delay: f64, allowed: f64, index: usize, status: &mut [u8]) {
+        let near = |tau: f64| (tau - delay).abs() <= allowed;
+        let (below, above) = self.delays.values().split_at(index);
+        let marked_below = below.iter().rev().take_while(|&&tau| near(tau)).count();
+        let marked_above = above.iter().take_while(|&&tau| near(tau)).count();
+        for cell in &mut status[index - marked_below..index + marked_above] {
+            *cell |= MARGINAL;
         }
     }
 
@@ -150,26 +149,26 @@ impl Row<'_> {
     fn by_crossings(&self, n_unstable: &mut [u16], status: &mut [u8]) {
         let crossings = self.crossings;
         let len = n_unstable.len();
-        let mut upper = self.cursor(crossings.upper.as_ref(), status);
-        let mut lower = self.cursor(crossings.lower.as_ref(), status);
+        let mut families = [
+            self.cursor(crossings.upper.as_ref(), status),
+            self.cursor(crossings.lower.as_ref(), status),
+        ];
         let mut from = 0;
         loop {
-            let to = upper.index.min(lower.index);
-            let count =
-                (crossings.at_zero_delay + 2 * upper.passed).saturating_sub(2 * lower.passed);
+            // Chosen by index rather than by branch: which family comes next cannot be predicted.
+            let next = usize::from(families[1].index < families[0].index);
+            let to = families[next].index;
+            let [upper, lower] = [&families[0], &families[1]].map(|family| family.passed);
+            let count = (crossings.at_zero_delay + 2 * upper).saturating_sub(2 * lower);
             if count > u64::from(MOST_COUNTED) {
                 status[from..to].iter_mut().for_each(|s| *s |= SATURATED);
             }
-            n_unstable[from..to].fill(saturated(count));
+            fill_ahead(&mut n_unstable[from..], to - from, saturated(count));
             if to == len {
                 break;
             }
             from = to;
-            if upper.index == to {
-                self.advance(&mut upper, status);
-            } else {
-                self.advance(&mut lower, status);
-            }
+            self.advance(&mut families[next], status);
         }
         let mut touch = self.cursor(crossings.touch.as_ref(), status);
         while touch.index < len {
@@ -184,20 +183,20 @@ impl Row<'_> {
         if !crossings.undamped {
             return;
         }
-        for (tau, status) in self.delays.values.iter().zip(&mut *status) {
+        for (tau, status) in self.delays.values().iter().zip(&mut *status) {
             if !crossings.marginal_everywhere_or_at_zero(*tau, self.tolerance) {
                 break;
             }
             *status |= MARGINAL;
         }
-        if self.delays.values[0] == 0.0 {
+        if self.delays.fenced[1] == 0.0 {
             n_unstable[0] = 0;
         }
     }
 
     /// Cell by cell: cheaper where crossings are denser than cells.
     fn by_cells(&self, n_unstable: &mut [u16], status: &mut [u8]) {
-        for ((tau, n), status) in self.delays.values.iter().zip(n_unstable).zip(status) {
+        for ((tau, n), status) in self.delays.values().iter().zip(n_unstable).zip(status) {
             let count = self.crossings.count(*tau, self.tolerance);
             *n = saturated(count.n_unstable);
             if count.n_unstable > u64::from(MOST_COUNTED) {
@@ -207,6 +206,20 @@ impl Row<'_> {
                 *status |= MARGINAL;
             }
         }
+    }
+}
+
+/// Fills at least the first `length` elements, in whole blocks: what is filled too much is overwritten by the next stretch.
+#[inline]
+fn fill_ahead(row: &mut [u16], length: usize, value: u16) {
+    const BLOCK: usize = 32;
+    let (blocks, rest) = row.as_chunks_mut::<BLOCK>();
+    let wanted = length.div_ceil(BLOCK);
+    for block in blocks.iter_mut().take(wanted) {
+        *block = [value; BLOCK];
+    }
+    if wanted > blocks.len() {
+        rest.fill(value);
     }
 }
 
@@ -221,12 +234,12 @@ impl Crossings {
     /// [`MOST_COUNTED`] are cut and say so in the status.
     pub fn fill_counts(
         &self,
-        delays: Delays,
+        delays: &Delays,
         tolerance: MarginalTolerance,
         n_unstable: &mut [u16],
         status: &mut [u8],
     ) {
-        let values = delays.values;
+        let values = delays.values();
         let row = Row {
             crossings: self,
             delays,
@@ -234,8 +247,8 @@ impl Crossings {
         };
         status.fill(0);
         let length = values[values.len() - 1] - values[0];
-        let expected: f64 = self.iter().map(|c| c.omega * length).sum();
-        if expected > 4.0 * values.len() as f64 {
+        let fastest = self.upper.or(self.touch).map_or(0.0, |c| c.omega);
+        if fastest * length > 4.0 * values.len() as f64 {
             row.by_cells(n_unstable, status);
         } else {
             row.by_crossings(n_unstable, status);
@@ -243,9 +256,9 @@ impl Crossings {
     }
 
     /// The signed distance to the nearest change of stability at every delay of a row, see [`Crossings::delay_margin`].
-    pub fn fill_delay_margins(&self, delays: Delays, margins: &mut [f64]) {
+    pub fn fill_delay_margins(&self, delays: &Delays, margins: &mut [f64]) {
         let mut walk = MarginWalk::new(self.stable_delays());
-        for (tau, margin) in delays.values.iter().zip(margins) {
+        for (tau, margin) in delays.values().iter().zip(margins) {
             *margin = walk.margin_at(*tau);
         }
     }
@@ -260,7 +273,7 @@ mod tests {
     fn check_row(crossings: &Crossings, values: &[f64]) {
         let tolerance = MarginalTolerance::default();
         let (mut n, mut status) = (vec![9; values.len()], vec![9; values.len()]);
-        crossings.fill_counts(Delays::new(values), tolerance, &mut n, &mut status);
+        crossings.fill_counts(&Delays::new(values), tolerance, &mut n, &mut status);
         for ((tau, n), status) in values.iter().zip(n).zip(status) {
             let count = crossings.count(*tau, tolerance);
             assert_eq!(n, saturated(count.n_unstable), "{crossings:?} {tau}");
@@ -307,7 +320,7 @@ mod tests {
         ] {
             let (mut n, mut status) = (vec![0; values.len()], vec![0; values.len()]);
             let tolerance = MarginalTolerance::default();
-            crossings.fill_counts(Delays::new(&values), tolerance, &mut n, &mut status);
+            crossings.fill_counts(&Delays::new(&values), tolerance, &mut n, &mut status);
             let last = values.len() - 1;
             assert_eq!(
                 (n[last], status[last] & SATURATED),

@@ -45,7 +45,7 @@ impl Crossings {
     }
 
     /// Signed distance in τ to the nearest change of stability: positive where stable, negative where not, infinite where
-    /// stability never changes. Same time unit as the crossings.
+    /// stability never changes, and 0 at every delay where all of them are marginal. Same time unit as the crossings.
     ///
     /// For many delays of one line walk [`StableDelays`] once instead.
     #[must_use]
@@ -98,6 +98,7 @@ impl Iterator for StableDelays {
 /// Distances to the nearest change of stability, for delays that do not decrease from call to call.
 #[derive(Debug, Clone)]
 pub struct MarginWalk {
+    always_marginal: bool,
     intervals: StableDelays,
     previous: Option<StableInterval>,
     current: Option<StableInterval>,
@@ -109,6 +110,7 @@ impl MarginWalk {
     pub fn new(mut intervals: StableDelays) -> Self {
         let current = intervals.next();
         Self {
+            always_marginal: intervals.crossings.always_marginal,
             intervals,
             previous: None,
             current,
@@ -136,6 +138,7 @@ impl MarginWalk {
                 (interval.to - tau).min(since_from)
             }
             Some(interval) => -since_previous.min(interval.from - tau),
+            None if self.always_marginal => 0.0,
             None => -since_previous,
         }
     }
@@ -208,8 +211,6 @@ mod tests {
                 assert_eq!(margin > 0.0, inside);
                 assert_eq!(margin, crossings.delay_margin(tau));
                 if margin.is_finite() {
-                    let moved = if margin.abs() < tau { -1.0 } else { 1.0 };
-                    let _ = moved;
                     let beyond = [tau - margin.abs() - 1e-9, tau + margin.abs() + 1e-9];
                     assert!(
                         beyond

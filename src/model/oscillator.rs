@@ -8,6 +8,10 @@ pub struct Oscillator {
     mass: f64,
     stiffness: f64,
     normal_load: f64,
+    /// √(M/κ).
+    time_unit: f64,
+    /// √(κM), the unit of damping.
+    damping_unit: f64,
 }
 
 impl Default for Oscillator {
@@ -17,6 +21,8 @@ impl Default for Oscillator {
             mass: 1.0,
             stiffness: 1.0,
             normal_load: 1.0,
+            time_unit: 1.0,
+            damping_unit: 1.0,
         }
     }
 }
@@ -27,10 +33,14 @@ impl Oscillator {
     /// # Errors
     /// Each of the three must be finite and greater than zero.
     pub fn new(mass: f64, stiffness: f64, normal_load: f64) -> Result<Self, ModelError> {
+        let mass = ModelError::positive("mass", mass)?;
+        let stiffness = ModelError::positive("stiffness", stiffness)?;
         Ok(Self {
-            mass: ModelError::positive("mass", mass)?,
-            stiffness: ModelError::positive("stiffness", stiffness)?,
+            mass,
+            stiffness,
             normal_load: ModelError::positive("normal_load", normal_load)?,
+            time_unit: (mass / stiffness).sqrt(),
+            damping_unit: (stiffness * mass).sqrt(),
         })
     }
 
@@ -55,15 +65,15 @@ impl Oscillator {
     /// The unit of time √(M/κ): the inverse of the frictionless oscillator's angular frequency.
     #[must_use]
     pub fn time_unit(&self) -> f64 {
-        (self.mass / self.stiffness).sqrt()
+        self.time_unit
     }
 
     /// The dimensionless groups at a sliding point under control (physics of the letter's Eq. 3).
     #[must_use]
     pub fn groups(&self, sliding: SlidingPoint, control: Control) -> Groups {
         Groups {
-            b: sliding.mu_prime * self.normal_load / (self.stiffness * self.mass).sqrt(),
-            a_v: control.alpha_v * self.time_unit(),
+            b: sliding.mu_prime * self.normal_load / self.damping_unit,
+            a_v: control.alpha_v * self.time_unit,
             a_n: sliding.mu_k * control.alpha_n / self.stiffness,
         }
     }

@@ -1,4 +1,6 @@
 //! What a person sees: progress, summaries, pictures.
 
 pub mod numbers;
+pub mod picture;
+pub mod preview;
 pub mod progress;

@@ -180,7 +180,7 @@ impl MapFile {
     }
 
     /// The plane of `field` spanned by the axes `row_axis` and `column_axis` at `index` along the others, thinned evenly to
-    /// at most `most` cells each way.
+    /// at most `most` cells each way. Where both are the same axis: the line along it, as one row.
     ///
     /// # Errors
     /// When the file is damaged there.
@@ -214,7 +214,11 @@ impl MapFile {
                 .step_by(step(axis))
                 .collect::<Vec<_>>()
         };
-        let (rows, columns) = (thinned(row_axis), thinned(column_axis));
+        let columns = thinned(column_axis);
+        let rows = match row_axis == column_axis {
+            true => self.axes[row_axis].values[..1].to_vec(),
+            false => thinned(row_axis),
+        };
         let dataset = self.dataset(field.name())?;
         let cells: Vec<f64> = match field {
             Field::NUnstable => self
@@ -227,10 +231,10 @@ impl MapFile {
                 .collect(),
             Field::DelayMargin => self.read::<f64>(&dataset, slab)?,
         };
-        let cells = if row_axis < column_axis {
-            cells
-        } else {
+        let cells = if row_axis > column_axis {
             transposed(&cells, columns.len(), rows.len())
+        } else {
+            cells
         };
         Ok(Plane {
             rows,
@@ -245,7 +249,7 @@ impl MapFile {
         slab: Vec<SliceOrIndex>,
     ) -> Result<Vec<T>, StoreError> {
         let array = dataset
-            .read_slice_2d::<T, _>(Hyperslab::from(slab))
+            .read_slice::<T, _, ndarray::IxDyn>(Hyperslab::from(slab))
             .map_err(StoreError::hdf5("read", &self.path))?;
         Ok(array.into_raw_vec_and_offset().0)
     }
@@ -312,10 +316,10 @@ impl MapFile {
                     outer: outer.iter().filter_map(|c| c.get(i).copied()).collect(),
                     piece: CurvePiece {
                         branch: branches.get(i).map_or(0, |&b| b.max(0) as u64),
-                        direction: if of(&directions) < 0 {
-                            Direction::Left
-                        } else {
-                            Direction::Right
+                        direction: match of(&directions) {
+                            ..0 => Direction::Left,
+                            0 => Direction::Touch,
+                            1.. => Direction::Right,
                         },
                         stable_side: match of(&sides) {
                             ..0 => StableSide::Shorter,

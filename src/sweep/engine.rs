@@ -1,5 +1,6 @@
 //! The sweep engine: tiles computed over threads, handed one by one to a sink.
 
+use std::ops::Range;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
 
@@ -9,12 +10,13 @@ use rayon::{ThreadPool, ThreadPoolBuilder};
 use super::boundaries::{BoundaryPlane, planes, trace_plane};
 use super::events::{Event, Observer};
 use super::field::Field;
+use super::parameter::{Parameter, Setting};
 use super::plan::Plan;
 use super::tile::{Tile, for_each_index};
 use crate::linear::Crossings;
 use crate::linear::row::Delays;
 use crate::linear::status::NOT_CONVERGED;
-use crate::model::ModelError;
+use crate::model::{ModelError, Oscillator, SlidingPoint};
 
 /// Planes of crossing curves that are held in memory at a time.
 const PLANES_AT_ONCE: usize = 256;
@@ -254,11 +256,59 @@ fn write_all<S: Sink>(
 /// Computes tiles into buffers of its own, which it reuses.
 pub struct Worker<'p> {
     plan: &'p Plan,
-    delays: Vec<f64>,
+    lines: Lines<'p>,
+    /// The delays of the tile computed last, and which of the plan's they are.
+    delays: Delays,
+    delay_range: Range<usize>,
     strides: Vec<usize>,
     /// The cells of the tile computed last.
     pub buffers: TileBuffers,
     row: RowBuffers,
+}
+
+/// The crossings of one line after the other. What does not change from line to line is not computed again.
+struct Lines<'p> {
+    plan: &'p Plan,
+    setting: Setting,
+    /// Index of the setting along each axis.
+    index: Vec<usize>,
+    /// What the gains do not change.
+    uncontrolled: Option<Result<(Oscillator, SlidingPoint), ModelError>>,
+}
+
+impl<'p> Lines<'p> {
+    fn new(plan: &'p Plan) -> Self {
+        let index = vec![0; plan.spec.axes.len()];
+        Self {
+            plan,
+            setting: plan.setting(&index),
+            index,
+            uncontrolled: None,
+        }
+    }
+
+    /// The crossings of the line at `offset` + `inside`, in physical time.
+    #[inline(always)]
+    fn crossings(&mut self, offset: &[usize], inside: &[usize]) -> Result<Crossings, ModelError> {
+        for (axis, known) in self.index.iter_mut().enumerate() {
+            let index = offset[axis] + inside[axis];
+            if *known != index {
+                *known = index;
+                let axis = &self.plan.spec.axes[axis];
+                self.setting.set(axis.parameter, axis.values[index]);
+                if !matches!(axis.parameter, Parameter::AlphaV | Parameter::AlphaN | Parameter::Tau) {
+                    self.uncontrolled = None;
+                }
+            }
+        }
+        let setting = &self.setting;
+        let uncontrolled = self
+            .uncontrolled
+            .get_or_insert_with(|| Ok((setting.oscillator()?, setting.sliding_point()?)));
+        let (oscillator, sliding) = uncontrolled.as_ref().map_err(Clone::clone)?;
+        let groups = oscillator.groups(*sliding, setting.control());
+        Ok(Crossings::of(groups).in_physical_time(oscillator.time_unit()))
+    }
 }
 
 /// One row on its way to a tile whose delays are not next to one another in memory.
@@ -272,13 +322,13 @@ impl<'p> Worker<'p> {
     /// A worker with buffers for the tiles of `plan`.
     #[must_use]
     pub fn new(plan: &'p Plan) -> Self {
-        let delays = plan.delays();
-        let longest = plan
-            .tau_axis
-            .map_or(1, |axis| plan.tiles.tile_shape()[axis]);
+        let delay_range = plan.delay_range(&plan.tiles.tile(0));
+        let longest = delay_range.len();
         Self {
             plan,
-            delays,
+            lines: Lines::new(plan),
+            delays: Delays::new(&plan.delays()[delay_range.clone()]),
+            delay_range,
             strides: plan.tiles.strides(),
             buffers: TileBuffers::new(plan),
             row: RowBuffers {
@@ -292,37 +342,32 @@ impl<'p> Worker<'p> {
     /// Computes every cell of `tile`.
     pub fn compute(&mut self, tile: &Tile) {
         let range = self.plan.delay_range(tile);
-        let delays = std::mem::take(&mut self.delays);
-        let part = Delays::new(&delays).range(range.start, range.end);
+        if range != self.delay_range {
+            self.delays = Delays::new(&self.plan.delays()[range.clone()]);
+            self.delay_range = range;
+        }
         if tile.cells() < self.plan.tiles.tile_cells() as u64 {
             self.buffers.clear();
         }
-        let mut index = tile.offset.clone();
         for_each_index(&tile.extent, self.plan.tau_axis, |inside| {
-            for (axis, i) in inside.iter().enumerate() {
-                index[axis] = tile.offset[axis] + i;
-            }
             let at: usize = inside.iter().zip(&self.strides).map(|(i, s)| i * s).sum();
-            self.compute_line(&index, part, at);
+            match self.lines.crossings(&tile.offset, inside) {
+                Ok(crossings) => self.fill_line(&crossings, at),
+                Err(_) => self.refuse_line(at),
+            }
         });
-        self.delays = delays;
     }
 
-    /// Computes the line at `index` into the buffers from place `at` on.
-    fn compute_line(&mut self, index: &[usize], delays: Delays, at: usize) {
-        let crossings = match self.plan.setting(index).groups() {
-            Ok((groups, time_unit)) => Crossings::of(groups).in_physical_time(time_unit),
-            Err(_) => return self.refuse_line(delays.values().len(), at),
-        };
-        let stride = self.plan.tau_axis.map_or(1, |axis| self.strides[axis]);
-        if stride == 1 {
-            self.fill_in_place(&crossings, delays, at);
-        } else {
-            self.fill_by_row(&crossings, delays, at, stride);
+    /// Computes the cells of a line into the buffers from place `at` on.
+    fn fill_line(&mut self, crossings: &Crossings, at: usize) {
+        match self.plan.tau_axis.map_or(1, |axis| self.strides[axis]) {
+            1 => self.fill_in_place(crossings, at),
+            stride => self.fill_by_row(crossings, at, stride),
         }
     }
 
-    fn fill_in_place(&mut self, crossings: &Crossings, delays: Delays, at: usize) {
+    fn fill_in_place(&mut self, crossings: &Crossings, at: usize) {
+        let delays = &self.delays;
         let to = at + delays.values().len();
         let tolerance = self.plan.spec.tolerance;
         let status = &mut self.buffers.status[at..to];
@@ -336,7 +381,8 @@ impl<'p> Worker<'p> {
         }
     }
 
-    fn fill_by_row(&mut self, crossings: &Crossings, delays: Delays, at: usize, stride: usize) {
+    fn fill_by_row(&mut self, crossings: &Crossings, at: usize, stride: usize) {
+        let delays = &self.delays;
         let len = delays.values().len();
         let row = &mut self.row;
         let tolerance = self.plan.spec.tolerance;
@@ -353,7 +399,8 @@ impl<'p> Worker<'p> {
     }
 
     /// A line outside the model's range: its cells keep fill values and say that nothing converged there.
-    fn refuse_line(&mut self, len: usize, at: usize) {
+    fn refuse_line(&mut self, at: usize) {
+        let len = self.delays.values().len();
         let stride = self.plan.tau_axis.map_or(1, |axis| self.strides[axis]);
         for place in (at..).step_by(stride).take(len) {
             self.buffers.status[place] = NOT_CONVERGED;

@@ -429,11 +429,17 @@ impl Setting {
     /// When a parameter is outside the model's range.
     pub fn groups(&self) -> Result<(Groups, f64), ModelError> {
         let oscillator = self.oscillator()?;
-        let control = Control {
+        let groups = oscillator.groups(self.sliding_point()?, self.control());
+        Ok((groups, oscillator.time_unit()))
+    }
+
+    /// Both gains.
+    #[inline]
+    #[must_use]
+    pub fn control(&self) -> Control {
+        Control {
             alpha_v: self.get(Parameter::AlphaV),
             alpha_n: self.get(Parameter::AlphaN),
-        };
-        let groups = oscillator.groups(self.sliding_point()?, control);
-        Ok((groups, oscillator.time_unit()))
+        }
     }
 }

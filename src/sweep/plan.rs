@@ -133,6 +133,7 @@ impl Plan {
         };
         let fixed = &self.spec.fixed;
         put(fixed.law().map_or("no law", |law| law.name()), &[]);
+        put("axes", &[self.spec.axes.len() as f64]);
         for axis in &self.spec.axes {
             put(axis.parameter.name(), &axis.values);
         }

@@ -353,7 +353,10 @@ fn read_units(units: &Entry) -> Result<Units, SpecError> {
         (Some(force), Some(length), Some(time)) => Ok(Units {
             force_length_time: Some([force, length, time]),
         }),
-        _ => Err(units.error("force, length and time are needed, all three")),
+        _ => Err(SpecError::at(
+            units.key_span.clone(),
+            "units: force, length and time are needed, all three",
+        )),
     }
 }
 

@@ -1,0 +1,128 @@
+//! How far counting and storing are from the limits of the machine. Run with `cargo bench --bench throughput`.
+//!
+//! 1. Counting a 1000×1000×1000 grid into reused tile buffers, against filling the same buffers with a constant.
+//! 2. The same on one thread and on all.
+//! 3. A whole `run` of a 10⁹-cell count map, against writing the same bytes uncompressed to the same disk, both synced.
+//!
+//! Alternatives take turns, and medians are printed: machines drift. `SLIPMAP_BENCH_CELLS=100` makes a 100³ grid.
+
+use std::fs::File;
+use std::io::Write;
+use std::path::Path;
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+use std::time::Instant;
+
+use slipmap::store::map_writer::Provenance;
+use slipmap::store::{MapWriter, Output};
+use slipmap::sweep::engine::{TileBuffers, Worker, run};
+use slipmap::sweep::events::Silent;
+use slipmap::sweep::{Plan, SweepSpec};
+
+const ROUNDS: usize = 5;
+
+fn plan(points: usize) -> Plan {
+    let text = format!(
+        "boundaries = false\n[axes]\nmu_prime = {{ from = -1.0, to = 0.2, points = {points} }}\n\
+         alpha_n = {{ from = -3.0, to = 1.0, points = {points} }}\n\
+         tau = {{ from = 0.01, to = 12.0, points = {points} }}\n[fixed]\nalpha_v = -0.1\n"
+    );
+    let spec: SweepSpec = text.parse().expect("the sweep is valid");
+    Plan::new(spec).expect("the plan is valid")
+}
+
+/// Seconds to visit all tiles on `threads` threads, each with buffers of its own.
+fn over_tiles<W>(plan: &Plan, threads: usize, worker: impl Fn() -> W + Sync, visit: impl Fn(&mut W, usize) + Sync) -> f64 {
+    let next = AtomicUsize::new(0);
+    let start = Instant::now();
+    std::thread::scope(|scope| {
+        for _ in 0..threads {
+            scope.spawn(|| {
+                let mut worker = worker();
+                loop {
+                    let number = next.fetch_add(1, Ordering::Relaxed);
+                    if number >= plan.tiles.len() {
+                        break;
+                    }
+                    visit(&mut worker, number);
+                }
+            });
+        }
+    });
+    start.elapsed().as_secs_f64()
+}
+
+fn count(plan: &Plan, threads: usize) -> f64 {
+    over_tiles(plan, threads, || Worker::new(plan), |worker, number| {
+        worker.compute(&plan.tiles.tile(number));
+        std::hint::black_box(&worker.buffers);
+    })
+}
+
+fn fill(plan: &Plan, threads: usize) -> f64 {
+    over_tiles(plan, threads, || TileBuffers::new(plan), |buffers, number| {
+        if let Some(n) = &mut buffers.n_unstable {
+            n.fill(number as u16);
+        }
+        buffers.status.fill(number as u8);
+        std::hint::black_box(&buffers);
+    })
+}
+
+fn store(plan: &Plan, folder: &Path, threads: usize) -> f64 {
+    let start = Instant::now();
+    let output = Output::claim(&folder.join("map.h5")).expect("the folder is writable");
+    let mut writer = MapWriter::create(plan, output, &Provenance::default()).expect("the map can be created");
+    run(plan, threads, &mut writer, &Silent, &AtomicBool::new(false)).expect("the sweep runs");
+    writer.finish().expect("the map can be finished");
+    start.elapsed().as_secs_f64()
+}
+
+fn write_raw(plan: &Plan, folder: &Path) -> f64 {
+    let bytes = plan.cells() * plan.bytes_per_cell();
+    let block = vec![2_u8; 4 << 20];
+    let start = Instant::now();
+    let mut file = File::create(folder.join("raw")).expect("the folder is writable");
+    let mut left = bytes as usize;
+    while left > 0 {
+        let part = left.min(block.len());
+        file.write_all(&block[..part]).expect("the disk takes it");
+        left -= part;
+    }
+    file.sync_all().expect("the disk syncs");
+    start.elapsed().as_secs_f64()
+}
+
+fn median(mut times: Vec<f64>) -> f64 {
+    times.sort_by(f64::total_cmp);
+    times[times.len() / 2]
+}
+
+/// Medians of the two, and of their ratio round by round.
+fn against(a: impl Fn() -> f64, b: impl Fn() -> f64) -> (f64, f64, f64) {
+    let pairs: Vec<(f64, f64)> = (0..ROUNDS).map(|_| (a(), b())).collect();
+    let each = |f: fn(&(f64, f64)) -> f64| median(pairs.iter().map(f).collect());
+    (each(|p| p.0), each(|p| p.1), each(|p| p.0 / p.1))
+}
+
+fn main() {
+    let points = std::env::var("SLIPMAP_BENCH_CELLS").ok().and_then(|n| n.parse().ok()).unwrap_or(1000);
+    let all = std::thread::available_parallelism().map_or(1, usize::from);
+    let plan = plan(points);
+    println!("{points}³ cells, {all} threads, medians of {ROUNDS} rounds");
+    for threads in if all > 1 { vec![1, all] } else { vec![1] } {
+        let (counted, filled, ratio) = against(|| count(&plan, threads), || fill(&plan, threads));
+        println!("count against fill, {threads} threads: {counted:.3} s / {filled:.3} s = {ratio:.2}");
+    }
+    if all > 1 {
+        let (one, many, ratio) = against(|| count(&plan, 1), || count(&plan, all));
+        println!("count, 1 thread against {all}: {one:.3} s / {many:.3} s = {ratio:.2}");
+        let folder = tempfile::tempdir_in(".").expect("the folder is writable");
+        let (one, many, ratio) =
+            against(|| store(&plan, folder.path(), 1), || store(&plan, folder.path(), all));
+        println!("run, 1 thread against {all}: {one:.3} s / {many:.3} s = {ratio:.2}");
+    }
+    let folder = tempfile::tempdir_in(".").expect("the folder is writable");
+    let (stored, raw, ratio) =
+        against(|| store(&plan, folder.path(), all), || write_raw(&plan, folder.path()));
+    println!("run against raw write, {all} threads: {stored:.3} s / {raw:.3} s = {ratio:.2}");
+}

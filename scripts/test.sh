@@ -1,0 +1,87 @@
+#!/usr/bin/env bash
+# Everything that is checked before a change goes in: formatting, lints, documentation, and the whole test suite with other
+# people's programs reading the maps. Gets what is missing first.
+set -euo pipefail
+
+# shellcheck source=scripts/setup.sh
+. "$(dirname "${BASH_SOURCE[0]}")/setup.sh"
+cd "$SLIPMAP_ROOT"
+
+# ncdump, h5dump, Octave and a Python that can make virtual environments.
+install_readers() {
+    local missing=() program
+    for program in ncdump h5dump octave-cli; do
+        have "$program" || missing+=("$program")
+    done
+    python_with_venv >/dev/null || missing+=("Python 3.11 or newer with venv")
+    if [ ${#missing[@]} = 0 ]; then
+        return
+    fi
+    case $(uname -s) in
+    Darwin) have brew && brew_install netcdf hdf5 octave python || true ;;
+    *) have apt-get && apt_install netcdf-bin hdf5-tools octave python3-venv || true ;;
+    esac
+    hash -r
+    for program in ncdump h5dump octave-cli; do
+        have "$program" || die "$program is not here and cannot be installed; the tests read maps with it"
+    done
+    python_with_venv >/dev/null ||
+        die "there is no Python 3.11 or newer with venv, and none can be installed; the tests read maps with it"
+}
+
+# The first Python that is new enough and can make virtual environments.
+python_with_venv() {
+    local python
+    for python in python3 python3.13 python3.12 python3.11 /usr/bin/python3; do
+        if have "$python" &&
+            "$python" -c 'import ensurepip, sys, venv; sys.exit(sys.version_info < (3, 11))' 2>/dev/null; then
+            printf '%s\n' "$python"
+            return 0
+        fi
+    done
+    return 1
+}
+
+# The packages of requirements-readers.txt, in target/readers-venv. The stamp says which ones are there.
+install_python_packages() {
+    local venv=$SLIPMAP_ROOT/target/readers-venv requirements=scripts/requirements-readers.txt
+    local stamp=$venv/requirements-readers.txt
+    export SLIPMAP_PYTHON=$venv/bin/python
+    if cmp -s "$requirements" "$stamp" && "$SLIPMAP_PYTHON" -c '' 2>/dev/null; then
+        return
+    fi
+    say "installing the Python readers into target/readers-venv"
+    rm -rf "$venv"
+    mkdir -p target
+    "$(python_with_venv)" -m venv "$venv" || die "cannot make a Python environment in target/readers-venv"
+    "$SLIPMAP_PYTHON" -m pip install --quiet --disable-pip-version-check -r "$requirements" >&2 ||
+        die "the packages of $requirements cannot be installed: see above which; the tests read maps with them"
+    cp "$requirements" "$stamp"
+}
+
+# step COMMAND…: runs it and says so.
+step() {
+    say ""
+    say "== $*"
+    "$@"
+}
+
+install_readers
+install_python_packages
+
+features=(--features external-readers)
+# shellcheck disable=SC2206
+features+=($SLIPMAP_CARGO_FEATURES)
+
+if cargo fmt --version >/dev/null 2>&1; then
+    step cargo fmt --check
+else
+    say "warning: formatting is not checked, rustfmt is not installed (rustup component add rustfmt)"
+fi
+if cargo clippy --version >/dev/null 2>&1; then
+    step cargo clippy --all-targets "${features[@]}" -- -D warnings
+else
+    say "warning: lints are not checked, clippy is not installed (rustup component add clippy)"
+fi
+RUSTDOCFLAGS="-D warnings" step cargo doc --no-deps "${features[@]}"
+step cargo test --release "${features[@]}"

@@ -1,0 +1,150 @@
+//! `slipmap plot`: a picture of a map.
+
+use std::path::{Path, PathBuf};
+
+use clap::ValueEnum;
+use miette::{MietteDiagnostic, Report};
+use slipmap::report::picture::{self, PictureError, PictureKind, PictureOptions};
+use slipmap::store::MapFile;
+use slipmap::sweep::field::known_fields;
+use slipmap::sweep::{Field, Parameter};
+
+use super::failure::Failure;
+
+#[derive(Debug, clap::Args)]
+pub struct Args {
+    /// The map
+    #[arg(value_name = "MAP.h5")]
+    map: PathBuf,
+    /// The picture to write, .png or .svg [default: the map's name with .png, beside it]
+    #[arg(short, long, value_name = "PICTURE")]
+    output: Option<PathBuf>,
+    /// What to show: n_unstable or delay_margin [default: n_unstable]
+    #[arg(long, value_name = "NAME", value_parser = parse_field)]
+    field: Option<Field>,
+    /// Curves or cells [default: curves where the map holds them for a few values of one axis and no --field is given]
+    #[arg(long)]
+    kind: Option<Kind>,
+    /// Hold an axis at the value nearest to this; again for the same axis: show several values of it
+    #[arg(long, value_name = "AXIS=VALUE", value_parser = parse_at)]
+    at: Vec<(Parameter, f64)>,
+}
+
+/// Kinds of pictures by name.
+#[derive(Debug, Clone, Copy, ValueEnum)]
+enum Kind {
+    /// The exact boundaries of stability
+    Boundaries,
+    /// A heat map of a field
+    Heat,
+}
+
+fn parse_field(name: &str) -> Result<Field, String> {
+    Field::from_name(name).ok_or_else(|| format!("known fields: {}", known_fields()))
+}
+
+fn parse_at(text: &str) -> Result<(Parameter, f64), String> {
+    let (name, value) = text
+        .split_once('=')
+        .ok_or("expected AXIS=VALUE, for example mu_prime=-0.3")?;
+    let name = name.trim().replace('-', "_");
+    let parameter = Parameter::from_name(&name).ok_or_else(|| {
+        let names = Parameter::ALL.map(Parameter::name).join(", ");
+        format!("unknown axis \"{name}\"; known: {names}")
+    })?;
+    let value = value.trim().parse::<f64>().ok().filter(|v| v.is_finite());
+    let value = value.ok_or("the value after = must be a finite number")?;
+    Ok((parameter, value))
+}
+
+pub fn main(args: &Args) -> Result<(), Failure> {
+    let map = MapFile::open(&args.map)?;
+    let path = match &args.output {
+        Some(path) => path.clone(),
+        None => beside(&args.map),
+    };
+    let options = PictureOptions {
+        field: args.field,
+        kind: args.kind.map(|kind| match kind {
+            Kind::Boundaries => PictureKind::Boundaries,
+            Kind::Heat => PictureKind::Heat,
+        }),
+        at: args.at.clone(),
+        ..PictureOptions::default()
+    };
+    picture::draw(&map, &path, &options).map_err(|error| failure(error, args))?;
+    println!("{}", path.display());
+    Ok(())
+}
+
+/// The name of the picture beside a map.
+pub fn beside(map: &Path) -> PathBuf {
+    map.with_extension("png")
+}
+
+fn failure(error: PictureError, args: &Args) -> Failure {
+    let bad = |flag: &str, error: PictureError, help: String| {
+        Failure::bad_input_with_help(format!("{flag}{error}"), help)
+    };
+    match error {
+        PictureError::Store(error) => error.into(),
+        PictureError::Render(_) => {
+            Failure::Failed(Report::new(MietteDiagnostic::new(error.to_string())))
+        }
+        PictureError::Extension { .. } => {
+            let help = "name the picture like fig.png or fig.svg";
+            bad("--output: ", error, help.into())
+        }
+        PictureError::OverMap { .. } => bad("", error, "-o writes elsewhere".into()),
+        PictureError::NoSuchField { ref held, .. } => {
+            let help = format!("it holds {held}");
+            bad("--field: ", error, help)
+        }
+        PictureError::NoCurves { .. } => {
+            let help =
+                "--kind heat draws the cells; boundaries = true in a sweep file traces curves";
+            bad("--kind boundaries: ", error, help.into())
+        }
+        PictureError::NotAnAxis { ref axes, .. } => {
+            let help = format!("its axes: {axes}");
+            bad("--at: ", error, help)
+        }
+        PictureError::OutsideAxis { parameter, .. } => {
+            let help = format!(
+                "slipmap info {} lists the axis {}",
+                args.map.display(),
+                parameter.name()
+            );
+            bad("--at: ", error, help)
+        }
+        PictureError::SeveralValues { .. } => {
+            let help = "hold all axes but one at one value each";
+            bad("--at: ", error, help.into())
+        }
+        PictureError::NothingToDraw => {
+            let help = "slipmap point says everything about one point";
+            bad("", error, help.into())
+        }
+        PictureError::Size { .. } => Failure::bad_input(error.to_string()),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn places_on_axes_are_read() {
+        assert_eq!(parse_at("mu_prime=-0.3"), Ok((Parameter::MuPrime, -0.3)));
+        assert_eq!(parse_at("mu-prime = 1e-2"), Ok((Parameter::MuPrime, 0.01)));
+        for (text, says) in [
+            ("tau", "AXIS=VALUE"),
+            ("delay=3", "unknown axis \"delay\""),
+            ("tau=", "finite number"),
+            ("tau=inf", "finite number"),
+        ] {
+            let error = parse_at(text).unwrap_err();
+            assert!(error.contains(says), "{error}");
+        }
+    }
+}

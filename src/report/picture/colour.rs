@@ -1,0 +1,150 @@
+//! Colours: perceptually ordered and readable by the colour-blind.
+
+/// A colour of the screen.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct Rgb(pub u8, pub u8, pub u8);
+
+/// Text and frames.
+pub const INK: Rgb = Rgb(0x22, 0x22, 0x22);
+/// Text of less weight.
+pub const SOFT_INK: Rgb = Rgb(0x5a, 0x5a, 0x5a);
+/// Grid lines.
+pub const GRID: Rgb = Rgb(0xe6, 0xe6, 0xe6);
+/// Paper.
+pub const PAPER: Rgb = Rgb(0xff, 0xff, 0xff);
+/// Cells without a value.
+pub const NO_VALUE: Rgb = Rgb(0xb9, 0xb9, 0xb9);
+/// Stable cells.
+pub const STABLE: Rgb = Rgb(0x5f, 0xb9, 0xae);
+/// Cells with 2, 4, 6 and at least 8 unstable roots.
+pub const UNSTABLE: [Rgb; 4] = [
+    Rgb(0xf6, 0xe8, 0xc3),
+    Rgb(0xdf, 0xc2, 0x7d),
+    Rgb(0xbf, 0x81, 0x2d),
+    Rgb(0x7a, 0x46, 0x08),
+];
+
+/// Viridis at nine equal steps.
+const VIRIDIS: [Rgb; 9] = [
+    Rgb(68, 1, 84),
+    Rgb(71, 44, 122),
+    Rgb(59, 81, 139),
+    Rgb(44, 113, 142),
+    Rgb(33, 144, 141),
+    Rgb(39, 173, 129),
+    Rgb(92, 200, 99),
+    Rgb(170, 220, 50),
+    Rgb(253, 231, 37),
+];
+
+/// Part of viridis used for lines: its yellow end is too light on white.
+const DARK_PART: f64 = 0.84;
+
+/// ColorBrewer's BrBG: brown, white, teal.
+const BROWN_TEAL: [Rgb; 9] = [
+    Rgb(0x8c, 0x51, 0x0a),
+    Rgb(0xbf, 0x81, 0x2d),
+    Rgb(0xdf, 0xc2, 0x7d),
+    Rgb(0xf6, 0xe8, 0xc3),
+    Rgb(0xf7, 0xf7, 0xf7),
+    Rgb(0xc7, 0xea, 0xe5),
+    Rgb(0x80, 0xcd, 0xc1),
+    Rgb(0x35, 0x97, 0x8f),
+    Rgb(0x01, 0x66, 0x5e),
+];
+
+/// Steps of [`diverging`] on each side of zero: finer than the eye tells apart, coarse enough for cells to merge.
+const STEPS: f64 = 32.0;
+
+/// The colour of line `i` of `n`, from dark to light.
+pub fn of_line(i: usize, n: usize) -> Rgb {
+    let part = if n > 1 {
+        i as f64 / (n - 1) as f64
+    } else {
+        0.3
+    };
+    sample(&VIRIDIS, DARK_PART * part)
+}
+
+/// The colour of a number of unstable roots.
+pub fn of_count(n: f64) -> Rgb {
+    match n {
+        n if n.is_nan() => NO_VALUE,
+        n if n < 1.0 => STABLE,
+        n => UNSTABLE[((n / 2.0).ceil() as usize).clamp(1, UNSTABLE.len()) - 1],
+    }
+}
+
+/// The colour of `value` where ±`range` are the ends: brown below zero, teal above.
+pub fn diverging(value: f64, range: f64) -> Rgb {
+    if value.is_nan() {
+        return NO_VALUE;
+    }
+    let part = (value / range).clamp(-1.0, 1.0);
+    // A value of either sign never rounds to the white of zero: the sign says which side is stable.
+    let step = (part * STEPS).abs().ceil().copysign(part);
+    sample(&BROWN_TEAL, 0.5 + 0.5 * step / STEPS)
+}
+
+/// `colour` mixed with paper; 0: paper.
+pub fn pale(colour: Rgb, part: f64) -> Rgb {
+    mix(PAPER, colour, part)
+}
+
+/// `colour` for letters, which need more contrast than lines.
+pub fn darker(colour: Rgb) -> Rgb {
+    mix(colour, INK, 0.35)
+}
+
+fn sample(table: &[Rgb], part: f64) -> Rgb {
+    let at = part.clamp(0.0, 1.0) * (table.len() - 1) as f64;
+    let below = (at as usize).min(table.len() - 2);
+    mix(table[below], table[below + 1], at - below as f64)
+}
+
+fn mix(a: Rgb, b: Rgb, part: f64) -> Rgb {
+    let channel = |a: u8, b: u8| (f64::from(a) + (f64::from(b) - f64::from(a)) * part).round();
+    Rgb(
+        channel(a.0, b.0) as u8,
+        channel(a.1, b.1) as u8,
+        channel(a.2, b.2) as u8,
+    )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn lightness(c: Rgb) -> f64 {
+        0.2126 * f64::from(c.0) + 0.7152 * f64::from(c.1) + 0.0722 * f64::from(c.2)
+    }
+
+    #[test]
+    fn lines_grow_lighter_and_stay_readable() {
+        let colours: Vec<Rgb> = (0..12).map(|i| of_line(i, 12)).collect();
+        assert!(
+            colours
+                .windows(2)
+                .all(|w| lightness(w[0]) < lightness(w[1]))
+        );
+        assert!(lightness(colours[11]) < 200.0);
+    }
+
+    #[test]
+    fn counts_grow_darker_and_stable_differs() {
+        let counts = [2.0, 4.0, 6.0, 8.0].map(of_count);
+        assert!(counts.windows(2).all(|w| lightness(w[0]) > lightness(w[1])));
+        assert_eq!(of_count(120.0), of_count(8.0));
+        assert_eq!(of_count(0.0), STABLE);
+        assert_eq!(of_count(f64::NAN), NO_VALUE);
+    }
+
+    #[test]
+    fn margins_tell_their_sign() {
+        let [brown, zero, teal] = [-1e-9, 0.0, 1e-9].map(|m| diverging(m, 1.0));
+        assert!(brown.0 > brown.2 && teal.2 > teal.0);
+        assert_eq!(zero, Rgb(0xf7, 0xf7, 0xf7));
+        assert_eq!(diverging(f64::INFINITY, 1.0), diverging(1.0, 1.0));
+        assert_eq!(diverging(f64::NEG_INFINITY, 1.0), diverging(-5.0, 1.0));
+    }
+}

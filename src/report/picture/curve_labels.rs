@@ -1,0 +1,181 @@
+//! Places for labels on curves, where they touch no other curve.
+
+use std::collections::HashMap;
+
+use super::page::Area;
+use super::scene::Point;
+
+/// Curves are looked at in steps of this many pixels.
+const STEP: f64 = 5.0;
+/// Side of the squares in which points are kept.
+const SQUARE: f64 = 40.0;
+/// Distance beyond which more room does not matter.
+const ENOUGH_ROOM: f64 = 60.0;
+
+/// The curves of one label, in pixels.
+pub type Curves = Vec<Vec<Point>>;
+
+/// Distance of a text beside its curve.
+const BESIDE: f64 = 9.0;
+/// What room a place on the curve may lack, compared with one beside it, where it is less clear to what the text belongs.
+const ON_CURVE: f64 = 35.0;
+/// What room a place at the longest curve may lack, compared with one at a tiny lobe.
+const LONG_CURVE: f64 = 50.0;
+/// A text nearer to another curve than this could be taken for that one's.
+const APART: f64 = 3.0;
+
+/// For each set of curves a place on one of them, or beside it, for the middle of a text of this size; none where there is no room.
+pub fn places(sets: &[(Curves, (f64, f64))], area: Area) -> Vec<Option<Point>> {
+    let points = Points::of(sets);
+    let mut taken: Vec<(Point, (f64, f64))> = Vec::new();
+    // Short curves have the fewest places: they choose first.
+    let mut order: Vec<usize> = (0..sets.len()).collect();
+    let length = |i: &usize| sets[*i].0.iter().map(Vec::len).sum::<usize>();
+    order.sort_by_key(length);
+    let mut places = vec![None; sets.len()];
+    for i in order {
+        let (curves, size) = &sets[i];
+        let beside = 0.5 * size.0 + BESIDE;
+        let longest = curves.iter().map(|c| length_of(c)).fold(1.0, f64::max);
+        let candidates = curves.iter().flat_map(|curve| {
+            let bonus = LONG_CURVE * length_of(curve) / longest;
+            stepped(curve).into_iter().map(move |at| (at, bonus))
+        });
+        let best = candidates
+            .flat_map(|((x, y), bonus)| [0.0, beside, -beside].map(|away| ((x + away, y), bonus)))
+            .filter(|&(at, _)| inside(at, *size, area))
+            .filter(|&(at, _)| !taken.iter().any(|other| overlap((at, *size), *other)))
+            .filter_map(|(at, bonus)| Some((at, bonus + points.room(i, at, *size)?)))
+            .fold(None, |best: Option<(Point, f64)>, found| match best {
+                Some(best) if best.1 >= found.1 => Some(best),
+                _ => Some(found),
+            });
+        if let Some((at, _)) = best {
+            taken.push((at, *size));
+            places[i] = Some(at);
+        }
+    }
+    places
+}
+
+fn inside((x, y): Point, (width, height): (f64, f64), area: Area) -> bool {
+    x - 0.6 * width > area.left
+        && x + 0.6 * width < area.right
+        && y - 0.7 * height > area.top
+        && y + 0.7 * height < area.bottom
+}
+
+fn overlap(a: (Point, (f64, f64)), b: (Point, (f64, f64))) -> bool {
+    (a.0.0 - b.0.0).abs() < 0.55 * (a.1.0 + b.1.0) && (a.0.1 - b.0.1).abs() < 0.55 * (a.1.1 + b.1.1)
+}
+
+fn length_of(curve: &[Point]) -> f64 {
+    let steps = curve.windows(2);
+    steps
+        .map(|w| (w[1].0 - w[0].0).hypot(w[1].1 - w[0].1))
+        .sum()
+}
+
+fn stepped(curve: &[Point]) -> Vec<Point> {
+    let mut points = Vec::new();
+    for pair in curve.windows(2) {
+        let ((x0, y0), (x1, y1)) = (pair[0], pair[1]);
+        let steps = ((x1 - x0).hypot(y1 - y0) / STEP).ceil().clamp(1.0, 1e4) as usize;
+        points.extend((0..steps).map(|i| {
+            let part = i as f64 / steps as f64;
+            (x0 + part * (x1 - x0), y0 + part * (y1 - y0))
+        }));
+    }
+    points
+}
+
+/// The points of all curves by square, with the set that they belong to.
+struct Points(HashMap<(i64, i64), Vec<(usize, Point)>>);
+
+impl Points {
+    fn of(sets: &[(Curves, (f64, f64))]) -> Self {
+        let mut squares: HashMap<_, Vec<_>> = HashMap::new();
+        for (i, (curves, _)) in sets.iter().enumerate() {
+            for point in curves.iter().flat_map(|curve| stepped(curve)) {
+                squares.entry(square(point)).or_default().push((i, point));
+            }
+        }
+        Self(squares)
+    }
+
+    /// How good a text at `at` is: how far the curves of other sets stay away, up to [`ENOUGH_ROOM`], with a preference for
+    /// places on its own curve where it hides little of it; none where another curve is too near, or where it hides more than a
+    /// stretch of its own.
+    fn room(&self, own: usize, at: Point, (width, height): (f64, f64)) -> Option<f64> {
+        let reach = (0.5 * width + ENOUGH_ROOM, 0.5 * height + ENOUGH_ROOM);
+        let (low, high) = (
+            square((at.0 - reach.0, at.1 - reach.1)),
+            square((at.0 + reach.0, at.1 + reach.1)),
+        );
+        let (mut room, mut hidden) = (ENOUGH_ROOM, 0.0);
+        for column in low.0..=high.0 {
+            for row in low.1..=high.1 {
+                for &(set, (x, y)) in self.0.get(&(column, row)).into_iter().flatten() {
+                    let away = (
+                        ((x - at.0).abs() - 0.5 * width).max(0.0),
+                        ((y - at.1).abs() - 0.5 * height).max(0.0),
+                    );
+                    let distance = away.0.hypot(away.1);
+                    if set != own {
+                        room = f64::min(room, distance);
+                    } else if distance == 0.0 {
+                        hidden += STEP;
+                    }
+                }
+            }
+        }
+        let on_curve = hidden > 0.0;
+        let least = if on_curve { APART } else { BESIDE + APART };
+        let bonus = if on_curve {
+            ON_CURVE - 0.1 * hidden
+        } else {
+            0.0
+        };
+        (room > least && hidden < 1.4 * width).then_some(room + bonus)
+    }
+}
+
+fn square((x, y): Point) -> (i64, i64) {
+    ((x / SQUARE).floor() as i64, (y / SQUARE).floor() as i64)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const AREA: Area = Area {
+        left: 0.0,
+        top: 0.0,
+        right: 400.0,
+        bottom: 400.0,
+    };
+
+    #[test]
+    fn labels_keep_away_from_other_curves_and_each_other() {
+        let size = (60.0, 20.0);
+        let crossing = [
+            (vec![vec![(0.0, 0.0), (400.0, 400.0)]], size),
+            (vec![vec![(0.0, 400.0), (400.0, 0.0)]], size),
+        ];
+        let places = places(&crossing, AREA);
+        let (a, b) = (places[0].unwrap(), places[1].unwrap());
+        assert!((a.0 - a.1).abs() < 1e-9 && (b.0 + b.1 - 400.0).abs() < 1e-9);
+        for place in [a, b] {
+            assert!(inside(place, size, AREA));
+            assert!((place.0 - 200.0).abs() > 30.0);
+        }
+    }
+
+    #[test]
+    fn no_room_no_label() {
+        let size = (60.0, 20.0);
+        let close = |y: f64| (vec![vec![(0.0, y), (400.0, y)]], size);
+        let places = places(&[close(100.0), close(105.0)], AREA);
+        assert_eq!(places, [None, None]);
+    }
+}

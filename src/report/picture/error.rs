@@ -1,0 +1,84 @@
+//! Why a picture could not be drawn.
+
+use std::path::PathBuf;
+
+use crate::store::StoreError;
+use crate::sweep::Parameter;
+
+/// What went wrong.
+#[derive(Debug, thiserror::Error)]
+pub enum PictureError {
+    /// The map could not be read, or the picture not be written.
+    #[error(transparent)]
+    Store(#[from] StoreError),
+    /// The name of the picture does not end in .png or .svg.
+    #[error("{} is no name for a picture: it must end in .png or .svg", path.display())]
+    Extension {
+        /// The name.
+        path: PathBuf,
+    },
+    /// The picture would replace the map.
+    #[error("the picture would replace the map {}", path.display())]
+    OverMap {
+        /// The map.
+        path: PathBuf,
+    },
+    /// A width or height that makes no picture.
+    #[error("a picture of {width} × {height} pixels is outside the range: {allowed} each way")]
+    Size {
+        /// Width in pixels.
+        width: u32,
+        /// Height in pixels.
+        height: u32,
+        /// The range allowed, in words.
+        allowed: String,
+    },
+    /// No axis has more than one value left.
+    #[error("there is nothing to draw: every axis of the map has one value or is held at one")]
+    NothingToDraw,
+    /// The map does not hold the field.
+    #[error("the map does not hold {field}")]
+    NoSuchField {
+        /// The field.
+        field: &'static str,
+        /// Names of the fields that it holds.
+        held: String,
+    },
+    /// The map holds no crossing curves in the plane asked for.
+    #[error("the map holds no crossing curves to draw: {why}")]
+    NoCurves {
+        /// Why not.
+        why: &'static str,
+    },
+    /// A value is asked for of a parameter that is no axis.
+    #[error("{} is no axis of the map", parameter.name())]
+    NotAnAxis {
+        /// The parameter.
+        parameter: Parameter,
+        /// Names of the axes.
+        axes: String,
+    },
+    /// A value is asked for outside an axis.
+    #[error("{} = {value} is outside the map: {from} to {to}", parameter.name())]
+    OutsideAxis {
+        /// The parameter.
+        parameter: Parameter,
+        /// The value.
+        value: f64,
+        /// Smallest value of the axis.
+        from: f64,
+        /// Largest value of the axis.
+        to: f64,
+    },
+    /// Several values are asked for along more than one axis.
+    #[error("several values are asked for of both {} and {}; one of them may have several", first.name(), second.name())]
+    SeveralValues {
+        /// The one.
+        first: Parameter,
+        /// The other.
+        second: Parameter,
+    },
+    /// The picture could not be rendered.
+    #[error("cannot render the picture: {0}")]
+    Render(String),
+}

@@ -1,0 +1,133 @@
+//! What colours mean, beside the panels.
+
+use super::colour::{INK, Rgb, SOFT_INK};
+use super::page::{Area, SMALL};
+use super::scale::Scale;
+use super::scene::{Align, Scene};
+use super::text::Rich;
+
+const SWATCH: f64 = 44.0;
+const GAP: f64 = 14.0;
+const LINE: f64 = 1.55;
+const BAR_WIDTH: f64 = 30.0;
+const BAR_STEPS: usize = 256;
+
+/// How an entry is drawn.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Swatch {
+    /// A line of this width, over an area of that colour if there is one.
+    Line(Rgb, f64, Option<Rgb>),
+    /// A box.
+    Box(Rgb),
+}
+
+/// A list of colours with their meanings.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Legend {
+    /// Lines above the list.
+    pub heading: Vec<Rich>,
+    /// The list, from the top.
+    pub entries: Vec<(Swatch, Rich)>,
+}
+
+impl Legend {
+    /// Width in pixels.
+    pub fn width(&self, u: f64) -> f64 {
+        let headings = self.heading.iter().map(|line| line.width(SMALL * u));
+        let entries = self.entries.iter();
+        entries
+            .map(|(_, text)| (SWATCH + GAP) * u + text.width(SMALL * u))
+            .chain(headings)
+            .fold(0.0, f64::max)
+    }
+
+    /// Height in pixels.
+    pub fn height(&self, u: f64) -> f64 {
+        let headings = 1.3 * self.heading.len() as f64 + 0.3;
+        (headings + LINE * self.entries.len() as f64) * SMALL * u
+    }
+
+    /// Draws the legend at the upper left corner of `area`.
+    pub fn draw(&self, scene: &mut Scene, area: Area) {
+        let u = scene.unit();
+        let mut y = heading(scene, area, &self.heading);
+        for (swatch, text) in &self.entries {
+            let middle = y + 0.5 * LINE * SMALL * u;
+            let (left, right) = (area.left, area.left + SWATCH * u);
+            let half = 0.5 * SMALL * u;
+            let (from, to) = ((left, middle - half), (right, middle + half));
+            match *swatch {
+                Swatch::Box(colour) => {
+                    scene.rect(from, to, colour);
+                    scene.outline(from, to, SOFT_INK, u);
+                }
+                Swatch::Line(colour, width, below) => {
+                    if let Some(below) = below {
+                        scene.rect(from, to, below);
+                    }
+                    scene.path(vec![(left, middle), (right, middle)], colour, width * u);
+                }
+            }
+            let at = (right + GAP * u, middle + 0.32 * SMALL * u);
+            scene.text(at, Align::Start, text, SMALL * u, INK);
+            y += LINE * SMALL * u;
+        }
+    }
+}
+
+fn heading(scene: &mut Scene, area: Area, lines: &[Rich]) -> f64 {
+    let u = scene.unit();
+    let mut y = area.top;
+    for line in lines {
+        y += SMALL * u;
+        scene.text((area.left, y), Align::Start, line, SMALL * u, INK);
+        y += 0.3 * SMALL * u;
+    }
+    y + 0.3 * SMALL * u
+}
+
+/// A bar of colours with numbers.
+pub struct Bar<'a> {
+    /// Lines above the bar.
+    pub heading: Vec<Rich>,
+    /// The values.
+    pub scale: Scale,
+    /// The colour of a value.
+    pub colour: &'a dyn Fn(f64) -> Rgb,
+}
+
+impl Bar<'_> {
+    /// Width in pixels.
+    pub fn width(&self, u: f64) -> f64 {
+        let ticks = self.scale.ticks(8);
+        let labels = ticks.iter().filter_map(|t| t.label.as_deref());
+        let numbers = labels
+            .map(|l| (BAR_WIDTH + 18.0) * u + Rich::plain(l).width(SMALL * u))
+            .fold(0.0, f64::max);
+        let headings = self.heading.iter().map(|line| line.width(SMALL * u));
+        headings.fold(numbers, f64::max)
+    }
+
+    /// Draws the bar over the height of `area`.
+    pub fn draw(&self, scene: &mut Scene, area: Area) {
+        let u = scene.unit();
+        let top = heading(scene, area, &self.heading) + 0.4 * SMALL * u;
+        let (left, right) = (area.left, area.left + BAR_WIDTH * u);
+        let height = area.bottom - top;
+        let place = |part: f64| area.bottom - height * part;
+        // From the top, each step down to the foot under the next, so that no gap shows.
+        for i in (0..BAR_STEPS).rev() {
+            let [low, high] = [i, i + 1].map(|i| i as f64 / BAR_STEPS as f64);
+            let colour = (self.colour)(self.scale.value(0.5 * (low + high)));
+            scene.rect((left, place(high)), (right, area.bottom), colour);
+        }
+        scene.outline((left, top), (right, area.bottom), INK, 1.2 * u);
+        for tick in self.scale.ticks(8) {
+            let y = place(self.scale.part(tick.value));
+            scene.ruler((right, y), (right + 7.0 * u, y), INK, 1.4 * u);
+            let at = (right + 14.0 * u, y + 0.31 * SMALL * u);
+            let label = tick.label.as_deref().unwrap_or_default();
+            scene.text(at, Align::Start, &Rich::plain(label), SMALL * u, INK);
+        }
+    }
+}

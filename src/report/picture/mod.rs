@@ -1,0 +1,375 @@
+//! Pictures of maps.
+//!
+//! ```text
+//! map → [view] what is shown → [boundaries], [heat] or [line] → [scene] marks in pixels → [render] PNG or SVG
+//! ```
+//!
+//! - `page`, `panels`, `legend`: where things stand; `scale`, `ticks`: from values to places
+//! - `stable_area`, `curve_labels`: the region between curves, and free places on curves
+//! - `colour`, `text`, `font`: how things look
+
+mod boundaries;
+mod colour;
+mod curve_labels;
+mod error;
+mod font;
+mod heat;
+mod legend;
+mod line;
+mod page;
+mod panels;
+mod render;
+mod scale;
+mod scene;
+mod stable_area;
+mod text;
+mod ticks;
+mod view;
+
+use std::fs;
+use std::ops::RangeInclusive;
+use std::path::Path;
+
+use crate::store::schema::root;
+use crate::store::{MapFile, Output, StoreError};
+use crate::sweep::{Field, Parameter};
+pub use error::PictureError;
+use scene::Scene;
+use view::{MOST_PANELS, View};
+
+/// Widths and heights that make a picture, in pixels.
+const SIZES: RangeInclusive<u32> = 300..=5000;
+/// Cells read along an axis: more are not seen in a bitmap, and make an SVG file unwieldy.
+const MOST_CELLS: usize = 1200;
+const MOST_SVG_CELLS: usize = 320;
+
+/// What kind of picture.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum PictureKind {
+    /// The boundaries of stability as curves, one colour per value of the axis outside their plane, like Fig. 2 of the letter.
+    Boundaries,
+    /// A heat map of a field, one panel per value of the axis outside the plane.
+    Heat,
+}
+
+/// How a map is drawn.
+#[derive(Debug, Clone, PartialEq)]
+pub struct PictureOptions {
+    /// The field to show; by default the number of unstable roots.
+    pub field: Option<Field>,
+    /// The kind; by default boundaries where the map holds them for 2 to 12 values of one axis outside their plane and no field
+    /// is asked for, otherwise a heat map.
+    pub kind: Option<PictureKind>,
+    /// Values at which axes are held: the nearest on the axis. Several for one axis make as many panels or colours.
+    pub at: Vec<(Parameter, f64)>,
+    /// Width and height in pixels, 300 to 5000 each.
+    pub size: (u32, u32),
+}
+
+impl Default for PictureOptions {
+    fn default() -> Self {
+        Self {
+            field: None,
+            kind: None,
+            at: Vec::new(),
+            size: (1600, 1100),
+        }
+    }
+}
+
+/// Draws a map to the file `path`, PNG or SVG by its extension. The file appears when it is complete; one that is there is
+/// replaced. The same map and options give the same bytes. Where only one axis has more than one value the picture is a line,
+/// whatever the kind.
+///
+/// # Errors
+/// When the options do not fit the map, there is nothing to draw, the map cannot be read or the file not be written.
+pub fn draw(map: &MapFile, path: &Path, options: &PictureOptions) -> Result<(), PictureError> {
+    let format = Format::of(path)?;
+    if same_file(map.path(), path) {
+        return Err(PictureError::OverMap {
+            path: path.to_owned(),
+        });
+    }
+    let most = match format {
+        Format::Png => MOST_CELLS,
+        Format::Svg => MOST_SVG_CELLS,
+    };
+    let scene = compose(map, options, most)?;
+    let bytes = match format {
+        Format::Png => render::png(&scene),
+        Format::Svg => render::svg(&scene),
+    }?;
+    let output = Output::claim(path)?;
+    fs::write(output.part(), bytes).map_err(|source| StoreError::Io {
+        action: "write",
+        path: path.to_owned(),
+        source,
+    })?;
+    Ok(output.commit()?)
+}
+
+enum Format {
+    Png,
+    Svg,
+}
+
+impl Format {
+    fn of(path: &Path) -> Result<Self, PictureError> {
+        let extension = path.extension().map(|e| e.to_string_lossy().to_lowercase());
+        match extension.as_deref() {
+            Some("png") => Ok(Self::Png),
+            Some("svg") => Ok(Self::Svg),
+            _ => Err(PictureError::Extension {
+                path: path.to_owned(),
+            }),
+        }
+    }
+}
+
+fn same_file(a: &Path, b: &Path) -> bool {
+    match (a.canonicalize(), b.canonicalize()) {
+        (Ok(a), Ok(b)) => a == b,
+        _ => a == b,
+    }
+}
+
+fn compose(map: &MapFile, options: &PictureOptions, most: usize) -> Result<Scene, PictureError> {
+    let (width, height) = options.size;
+    if !(SIZES.contains(&width) && SIZES.contains(&height)) {
+        return Err(PictureError::Size {
+            width,
+            height,
+            allowed: format!("{} to {} pixels", SIZES.start(), SIZES.end()),
+        });
+    }
+    let field = options
+        .field
+        .unwrap_or_else(|| boundaries::stability_field(map));
+    if !map.fields().contains(&field) {
+        let held: Vec<&str> = map.fields().iter().map(|f| f.name()).collect();
+        return Err(PictureError::NoSuchField {
+            field: field.name(),
+            held: held.join(", "),
+        });
+    }
+    let view = View::new(map, &options.at)?;
+    let mut scene = Scene::new(options.size);
+    let Some(y) = view.y else {
+        if options.kind == Some(PictureKind::Boundaries) {
+            return Err(no_curves("only one axis is left to draw along"));
+        }
+        line::draw(map, &view, field, most, &mut scene)?;
+        return Ok(scene);
+    };
+    let in_plane = view.is_boundary_plane(map);
+    let curves = if in_plane { map.curves()? } else { Vec::new() };
+    let fits = view.along.is_some() && view.of <= MOST_PANELS && view.outer_axes(map) == 1;
+    let by_default = fits && options.field.is_none() && !curves.is_empty();
+    match options.kind {
+        Some(PictureKind::Boundaries) if !in_plane => {
+            return Err(no_curves(match map.boundary_plane() {
+                None => "its sweep traced none",
+                Some(_) => "they lie in another plane, of whose axes one is held",
+            }));
+        }
+        None if by_default => boundaries::draw(map, &view, y, &curves, &mut scene)?,
+        Some(PictureKind::Boundaries) => boundaries::draw(map, &view, y, &curves, &mut scene)?,
+        _ => heat::draw(map, &view, y, field, &curves, most, &mut scene)?,
+    }
+    Ok(scene)
+}
+
+fn no_curves(why: &'static str) -> PictureError {
+    PictureError::NoCurves { why }
+}
+
+/// The title of the map's sweep, or `otherwise`.
+fn title(map: &MapFile, otherwise: &str) -> String {
+    let title = map.root_text(root::TITLE).filter(|t| !t.trim().is_empty());
+    title.unwrap_or_else(|| otherwise.to_owned())
+}
+
+#[cfg(test)]
+mod tests {
+    use std::collections::HashSet;
+    use std::path::PathBuf;
+
+    use super::*;
+    use crate::store::MapWriter;
+    use crate::store::map_writer::Provenance;
+    use crate::sweep::{Event, Observer, Plan, SweepSpec, engine};
+
+    struct Silent;
+
+    impl Observer for Silent {
+        fn event(&self, _: &Event) {}
+    }
+
+    const FIG2: &str = "
+        title = \"Velocity control\"
+        fields = [\"n_unstable\", \"delay_margin\"]
+        boundaries = true
+        [axes]
+        mu_prime = [-0.1, -0.3]
+        alpha_v = { from = -1.6, to = 0.4, points = 41 }
+        tau = { from = 0.0, to = 12.0, points = 61 }
+        [units]
+        force = \"N\"
+        length = \"m\"
+        time = \"s\"";
+
+    struct Case {
+        folder: tempfile::TempDir,
+        map: MapFile,
+    }
+
+    impl Case {
+        fn new(sweep: &str) -> Self {
+            let folder = tempfile::tempdir().unwrap();
+            let path = folder.path().join("map.h5");
+            let plan = Plan::new(sweep.parse::<SweepSpec>().unwrap()).unwrap();
+            let provenance = Provenance {
+                program_version: String::new(),
+                git_revision: String::new(),
+                history: String::new(),
+            };
+            let output = Output::claim(&path).unwrap();
+            let mut writer = MapWriter::create(&plan, output, &provenance).unwrap();
+            let stop = std::sync::atomic::AtomicBool::new(false);
+            engine::run(&plan, 1, &mut writer, &Silent, &stop).unwrap();
+            writer.finish().unwrap();
+            let map = MapFile::open(&path).unwrap();
+            Self { folder, map }
+        }
+
+        fn path(&self, name: &str) -> PathBuf {
+            self.folder.path().join(name)
+        }
+
+        fn draw(&self, name: &str, options: &PictureOptions) -> Result<Vec<u8>, PictureError> {
+            draw(&self.map, &self.path(name), options)?;
+            Ok(fs::read(self.path(name)).unwrap())
+        }
+    }
+
+    fn decoded(bytes: &[u8]) -> (u32, u32, Vec<u8>) {
+        let mut reader = png::Decoder::new(bytes).read_info().unwrap();
+        let mut pixels = vec![0; reader.output_buffer_size()];
+        let info = reader.next_frame(&mut pixels).unwrap();
+        (info.width, info.height, pixels)
+    }
+
+    fn of_kind(kind: PictureKind) -> PictureOptions {
+        PictureOptions {
+            kind: Some(kind),
+            ..PictureOptions::default()
+        }
+    }
+
+    #[test]
+    fn a_png_has_its_size_and_many_colours_and_is_the_same_twice() {
+        let case = Case::new(FIG2);
+        for kind in [PictureKind::Boundaries, PictureKind::Heat] {
+            let bytes = case.draw("map.png", &of_kind(kind)).unwrap();
+            let (width, height, pixels) = decoded(&bytes);
+            assert_eq!((width, height), (1600, 1100));
+            let colours: HashSet<&[u8]> = pixels.chunks_exact(3).collect();
+            assert!(colours.len() > 60, "{}", colours.len());
+            assert_eq!(case.draw("again.png", &of_kind(kind)).unwrap(), bytes);
+        }
+        let left: Vec<_> = fs::read_dir(case.folder.path()).unwrap().collect();
+        assert_eq!(left.len(), 3, "the map and two pictures: {left:?}");
+    }
+
+    #[test]
+    fn stable_and_unstable_cells_differ() {
+        let case = Case::new(FIG2);
+        let options = PictureOptions {
+            at: vec![(Parameter::MuPrime, -0.1)],
+            ..of_kind(PictureKind::Heat)
+        };
+        let (width, _, pixels) = decoded(&case.draw("map.png", &options).unwrap());
+        let count = |colour: colour::Rgb| {
+            let wanted = [colour.0, colour.1, colour.2];
+            pixels.chunks_exact(3).filter(|p| *p == wanted).count()
+        };
+        let area = width as usize * 1100;
+        // About a third of the plane is stable.
+        assert!(count(colour::STABLE) > area / 10);
+        assert!(count(colour::of_count(2.0)) > area / 10);
+        // The edges of letters have any grey.
+        assert!(count(colour::NO_VALUE) < area / 1000);
+    }
+
+    #[test]
+    fn an_svg_names_values_axes_and_units() {
+        let case = Case::new(FIG2);
+        let bytes = case.draw("map.svg", &PictureOptions::default()).unwrap();
+        let text = String::from_utf8(bytes).unwrap();
+        let labels = [
+            "Velocity control",
+            "−0.1",
+            "−0.3",
+            "gain of velocity control",
+            "(s⁻¹)",
+            "(s)",
+        ];
+        for label in labels {
+            assert!(text.contains(label), "{label}");
+        }
+        assert!(text.len() < 1_000_000);
+    }
+
+    #[test]
+    fn every_shape_of_map_is_drawn() {
+        for axes in [
+            "mu_prime = [-0.5, -0.1]\n tau = [0.0, 1.0, 2.0, 5.0]",
+            "mu_prime = [-0.1]\n tau = { from = 0, to = 30, points = 3001 }",
+            "mu_prime = [-0.2, -0.1]\n tau = [1.0]",
+            "tau = { from = 0.001, to = 1000, points = 31, spacing = \"log\" }\n mu_prime = [-0.2, -0.1]",
+            "mu_prime = [0.1, 0.2]\n alpha_n = [-1.0, 0.0]\n alpha_v = [-0.2, -0.1]\n tau = [1.0, 2.0]",
+        ] {
+            let case = Case::new(&format!("[axes]\n{axes}"));
+            for name in ["map.png", "map.svg"] {
+                case.draw(name, &PictureOptions::default()).unwrap();
+            }
+        }
+    }
+
+    #[test]
+    fn what_cannot_be_drawn_is_refused_and_leaves_nothing() {
+        let case = Case::new(FIG2);
+        let default = PictureOptions::default();
+        let at = |parameter, value| PictureOptions {
+            at: vec![(parameter, value), (Parameter::MuPrime, -0.1)],
+            ..default.clone()
+        };
+        let small = PictureOptions {
+            size: (10, 10),
+            ..default.clone()
+        };
+        let held = PictureOptions {
+            kind: Some(PictureKind::Boundaries),
+            ..at(Parameter::Tau, 3.0)
+        };
+        for (name, options, says) in [
+            ("map.h5", default.clone(), ".png or .svg"),
+            ("map", default.clone(), ".png or .svg"),
+            ("x.png", at(Parameter::Mass, 1.0), "mass is no axis"),
+            (
+                "x.png",
+                at(Parameter::Tau, 12.5),
+                "tau = 12.5 is outside the map: 0 to 12",
+            ),
+            ("x.png", held, "only one axis is left"),
+            ("x.png", small, "outside the range"),
+        ] {
+            let error = case.draw(name, &options).unwrap_err().to_string();
+            assert!(error.contains(says), "{error}");
+        }
+        assert_eq!(fs::read_dir(case.folder.path()).unwrap().count(), 1);
+        let cell = Case::new("[axes]\nmu_prime = [-0.1]\n tau = [1.0]");
+        let error = cell.draw("x.png", &default).unwrap_err();
+        assert!(matches!(error, PictureError::NothingToDraw));
+    }
+}

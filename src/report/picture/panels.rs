@@ -1,0 +1,270 @@
+//! Panels side by side with common axes: one for a single plane, more for small multiples.
+
+use super::colour::{GRID, INK};
+use super::page::{Area, LABEL, SMALL};
+use super::scale::Scale;
+use super::scene::{Align, Point, Scene};
+use super::text::Rich;
+use super::ticks::Tick;
+
+const TICK: f64 = 8.0;
+const MINOR_TICK: f64 = 4.0;
+const FRAME_WIDTH: f64 = 1.6;
+/// Width over height that panels should have.
+const SHAPE: f64 = 1.25;
+const MOST_TICKS: usize = 10;
+
+/// One panel: where it is, and its scales.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Panel {
+    /// Inside the frame.
+    pub area: Area,
+    /// From left to right.
+    pub x: Scale,
+    /// From bottom to top.
+    pub y: Scale,
+}
+
+impl Panel {
+    /// The place of a value from left to right.
+    pub fn across(&self, x: f64) -> f64 {
+        self.area.left + self.area.width() * self.x.part(x)
+    }
+
+    /// The place of a value from bottom to top.
+    pub fn up(&self, y: f64) -> f64 {
+        self.area.bottom - self.area.height() * self.y.part(y)
+    }
+
+    /// The place of a pair of values.
+    pub fn at(&self, x: f64, y: f64) -> Point {
+        (self.across(x), self.up(y))
+    }
+}
+
+/// What is written at the panels.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Words {
+    /// Below all panels.
+    pub x: Rich,
+    /// To the left of all panels.
+    pub y: Rich,
+    /// Above each panel.
+    pub headings: Vec<Option<Rich>>,
+}
+
+/// Panels in rows.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Panels {
+    /// The panels, row by row from the top.
+    pub panels: Vec<Panel>,
+    columns: usize,
+    ticks: (Vec<Tick>, Vec<Tick>),
+    words: Words,
+    outside: Area,
+}
+
+impl Panels {
+    /// Lays out one panel for each heading in `outside`.
+    pub fn new(scene: &Scene, outside: Area, (x, y): (Scale, Scale), words: Words) -> Self {
+        let u = scene.unit();
+        let n = words.headings.len().max(1);
+        let (columns, rows) = shape(n, outside.width() / outside.height());
+        let heading = if words.headings.iter().any(Option::is_some) {
+            1.85 * SMALL * u
+        } else {
+            0.5 * SMALL * u
+        };
+        let height = (outside.height() - (2.1 * SMALL + 1.1 * LABEL) * u) / rows as f64 - heading;
+        let y_ticks = fitting(&y, |_| 1.7 * SMALL * u, height);
+        let labels = y_ticks.iter().filter_map(|t| t.label.as_deref());
+        let widest = labels
+            .map(|l| Rich::plain(l).width(SMALL * u))
+            .fold(0.0, f64::max);
+        let left = outside.left + 1.4 * LABEL * u + widest + (TICK + 8.0) * u;
+        // Half of the last label of the x axis stands out to the right.
+        let end = 1.1 * SMALL * u;
+        let gap = if columns > 1 { 1.8 * SMALL * u } else { 0.0 };
+        let width = (outside.right - end - left - gap * (columns - 1) as f64) / columns as f64;
+        let label_width = |l: &str| Rich::plain(l).width(SMALL * u) + 0.9 * SMALL * u;
+        let x_ticks = fitting(&x, label_width, width);
+        let panel = |i: usize| {
+            let (row, column) = (i / columns, i % columns);
+            let left = left + column as f64 * (width + gap);
+            let top = outside.top + heading + row as f64 * (height + heading);
+            Panel {
+                area: Area {
+                    left,
+                    top,
+                    right: left + width,
+                    bottom: top + height,
+                },
+                x,
+                y,
+            }
+        };
+        Self {
+            panels: (0..n).map(panel).collect(),
+            columns,
+            ticks: (x_ticks, y_ticks),
+            words,
+            outside,
+        }
+    }
+
+    /// Draws grid lines, before the contents.
+    pub fn draw_grid(&self, scene: &mut Scene) {
+        let width = 1.2 * scene.unit();
+        for panel in &self.panels {
+            let Area {
+                left,
+                top,
+                right,
+                bottom,
+            } = panel.area;
+            for tick in self.ticks.0.iter().filter(|t| t.label.is_some()) {
+                let x = panel.across(tick.value);
+                scene.ruler((x, top), (x, bottom), GRID, width);
+            }
+            for tick in self.ticks.1.iter().filter(|t| t.label.is_some()) {
+                let y = panel.up(tick.value);
+                scene.ruler((left, y), (right, y), GRID, width);
+            }
+        }
+    }
+
+    /// Draws frames, ticks and all that is written, after the contents.
+    pub fn draw_axes(&self, scene: &mut Scene) {
+        let u = scene.unit();
+        for (i, panel) in self.panels.iter().enumerate() {
+            let area = panel.area;
+            let corners = ((area.left, area.top), (area.right, area.bottom));
+            scene.outline(corners.0, corners.1, INK, FRAME_WIDTH * u);
+            self.draw_x_ticks(scene, panel, i + self.columns >= self.panels.len());
+            self.draw_y_ticks(scene, panel, i % self.columns == 0);
+            if let Some(Some(heading)) = self.words.headings.get(i) {
+                let at = (0.5 * (area.left + area.right), area.top - 0.38 * SMALL * u);
+                let size = heading.fitting(SMALL * u, area.width());
+                scene.text(at, Align::Middle, heading, size, INK);
+            }
+        }
+        self.draw_titles(scene);
+    }
+
+    fn draw_x_ticks(&self, scene: &mut Scene, panel: &Panel, labels: bool) {
+        let u = scene.unit();
+        let bottom = panel.area.bottom;
+        for tick in &self.ticks.0 {
+            let x = panel.across(tick.value);
+            let length = length(tick) * u;
+            scene.ruler((x, bottom), (x, bottom + length), INK, FRAME_WIDTH * u);
+            if let Some(label) = tick.label.as_ref().filter(|_| labels) {
+                let at = (x, bottom + TICK * u + 1.1 * SMALL * u);
+                scene.text(at, Align::Middle, &Rich::plain(label), SMALL * u, INK);
+            }
+        }
+    }
+
+    fn draw_y_ticks(&self, scene: &mut Scene, panel: &Panel, labels: bool) {
+        let u = scene.unit();
+        let left = panel.area.left;
+        for tick in &self.ticks.1 {
+            let y = panel.up(tick.value);
+            let length = length(tick) * u;
+            scene.ruler((left - length, y), (left, y), INK, FRAME_WIDTH * u);
+            if let Some(label) = tick.label.as_ref().filter(|_| labels) {
+                let at = (left - (TICK + 6.0) * u, y + 0.31 * SMALL * u);
+                scene.text(at, Align::End, &Rich::plain(label), SMALL * u, INK);
+            }
+        }
+    }
+
+    fn draw_titles(&self, scene: &mut Scene) {
+        let u = scene.unit();
+        let (Some(first), Some(last)) = (self.panels.first(), self.panels.last()) else {
+            return;
+        };
+        let right = self.panels[self.columns.min(self.panels.len()) - 1]
+            .area
+            .right;
+        let outside = self.outside;
+        let words = &self.words;
+        let size = words.x.fitting(LABEL * u, outside.width());
+        let middle = 0.5 * (first.area.left + right);
+        let middle = inside(middle, words.x.width(size), outside.left, outside.right);
+        let at = (middle, outside.bottom - 0.25 * LABEL * u);
+        scene.text(at, Align::Middle, &words.x, size, INK);
+        let size = words.y.fitting(LABEL * u, outside.height());
+        let middle = 0.5 * (first.area.top + last.area.bottom);
+        let middle = inside(middle, words.y.width(size), outside.top, outside.bottom);
+        let at = (outside.left + 0.85 * LABEL * u, middle);
+        scene.upward_text(at, &words.y, size, INK);
+    }
+}
+
+/// The middle nearest to `middle` at which this width stays between two edges.
+fn inside(middle: f64, width: f64, from: f64, to: f64) -> f64 {
+    middle.min(to - 0.5 * width).max(from + 0.5 * width)
+}
+
+fn length(tick: &Tick) -> f64 {
+    if tick.label.is_some() {
+        TICK
+    } else {
+        MINOR_TICK
+    }
+}
+
+/// Columns and rows for `n` panels in an area of this width over height.
+fn shape(n: usize, area: f64) -> (usize, usize) {
+    let mismatch = |columns: usize| {
+        let rows = n.div_ceil(columns);
+        let panel = area * rows as f64 / columns as f64;
+        let empty = (columns * rows - n) as f64 / n as f64;
+        (panel / SHAPE).ln().abs() + empty
+    };
+    let columns = (1..=n)
+        .min_by(|&a, &b| mismatch(a).total_cmp(&mismatch(b)))
+        .unwrap_or(1);
+    (columns, n.div_ceil(columns))
+}
+
+/// As many ticks as have room for labels of the sizes that `size` gives.
+fn fitting(scale: &Scale, size: impl Fn(&str) -> f64, room: f64) -> Vec<Tick> {
+    let fits = |ticks: &[Tick]| {
+        let labelled: Vec<(f64, f64)> = ticks
+            .iter()
+            .filter_map(|t| Some((scale.part(t.value) * room, size(t.label.as_deref()?))))
+            .collect();
+        labelled
+            .windows(2)
+            .all(|w| (w[1].0 - w[0].0).abs() >= 0.5 * (w[0].1 + w[1].1))
+    };
+    let mut candidates = (1..=MOST_TICKS).rev().map(|most| scale.ticks(most));
+    candidates
+        .find(|ticks| !ticks.is_empty() && fits(ticks))
+        .unwrap_or_default()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_panel_has_a_place() {
+        for n in 1..=12 {
+            let (columns, rows) = shape(n, 1.4);
+            assert!(columns * rows >= n && columns * (rows - 1) < n);
+        }
+        assert_eq!(shape(1, 1.4), (1, 1));
+        assert_eq!(shape(9, 1.3), (3, 3));
+        assert_eq!(shape(12, 1.4), (4, 3));
+    }
+
+    #[test]
+    fn labels_do_not_touch() {
+        let scale = Scale::linear(0.0, 12.0);
+        assert!(fitting(&scale, |_| 100.0, 320.0).len() <= 3);
+        assert!(fitting(&scale, |_| 10.0, 1000.0).len() >= 7);
+    }
+}

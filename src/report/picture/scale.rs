@@ -1,0 +1,185 @@
+//! From the values of an axis to places along it.
+
+use super::ticks::{self, Tick};
+
+/// Ratios of neighbouring values on a logarithmic axis agree this well.
+const SAME_RATIO: f64 = 1e-6;
+/// A logarithmic scale over less than this factor shows nothing that a linear one does not.
+const SMALLEST_SPAN: f64 = 3.0;
+
+/// A linear or logarithmic scale between two values.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Scale {
+    log: bool,
+    from: f64,
+    to: f64,
+    smallest_step: f64,
+}
+
+impl Scale {
+    /// The scale from the smallest to the largest of `values`, logarithmic if they are spaced so.
+    pub fn between(values: &[f64]) -> Self {
+        let (from, to) = ends(values);
+        Self {
+            log: log_spaced(values),
+            from,
+            to,
+            smallest_step: 0.0,
+        }
+    }
+
+    /// The scale on which every one of `values` has its whole cell: half a step more at both ends.
+    pub fn around(values: &[f64]) -> Self {
+        let scale = Self::between(values);
+        let edges = scale.edges(values);
+        let (from, to) = ends(&edges);
+        Self { from, to, ..scale }
+    }
+
+    /// A linear scale between two different values.
+    pub fn linear(from: f64, to: f64) -> Self {
+        Self {
+            log: false,
+            from,
+            to,
+            smallest_step: 0.0,
+        }
+    }
+
+    /// The same scale with ticks at least this far apart.
+    pub fn with_smallest_step(self, smallest_step: f64) -> Self {
+        Self {
+            smallest_step,
+            ..self
+        }
+    }
+
+    /// Where a value lies: 0 at the lower end, 1 at the upper one.
+    pub fn part(&self, value: f64) -> f64 {
+        let way = |v: f64| if self.log { v.ln() } else { v };
+        (way(value) - way(self.from)) / (way(self.to) - way(self.from))
+    }
+
+    /// The value at a part of the way.
+    pub fn value(&self, part: f64) -> f64 {
+        if self.log {
+            self.from * (self.to / self.from).powf(part)
+        } else {
+            self.from + (self.to - self.from) * part
+        }
+    }
+
+    /// True if the value lies on the scale.
+    pub fn holds(&self, value: f64) -> bool {
+        (-1e-9..=1.0 + 1e-9).contains(&self.part(value))
+    }
+
+    /// Ticks at round values, about `most` of them with a label.
+    pub fn ticks(&self, most: usize) -> Vec<Tick> {
+        if self.log {
+            ticks::logarithmic(self.from, self.to, most)
+        } else {
+            ticks::linear(self.from, self.to, most, self.smallest_step)
+        }
+    }
+
+    /// The edges of the cells of `values`, one more than there are: midpoints on the scale, and as far beyond the ends.
+    pub fn edges(&self, values: &[f64]) -> Vec<f64> {
+        let middle = |a: f64, b: f64| {
+            if self.log {
+                (a * b).sqrt()
+            } else {
+                0.5 * (a + b)
+            }
+        };
+        let mirrored = |end: f64, edge: f64| {
+            if self.log {
+                end * end / edge
+            } else {
+                2.0 * end - edge
+            }
+        };
+        let inner: Vec<f64> = values.windows(2).map(|w| middle(w[0], w[1])).collect();
+        let (Some(&first), Some(&last)) = (values.first(), values.last()) else {
+            return Vec::new();
+        };
+        let mut edges = Vec::with_capacity(values.len() + 1);
+        edges.push(mirrored(first, inner.first().copied().unwrap_or(first)));
+        edges.extend(&inner);
+        edges.push(mirrored(last, inner.last().copied().unwrap_or(last)));
+        edges
+    }
+
+    /// The edges of cells that stand for all values on the scale: those at the ends reach the ends.
+    pub fn filling_edges(&self, values: &[f64]) -> Vec<f64> {
+        let mut edges = self.edges(values);
+        let growing = values.first() <= values.last();
+        let (first, last) = if growing {
+            (self.from, self.to)
+        } else {
+            (self.to, self.from)
+        };
+        if let [a, .., b] = edges.as_mut_slice() {
+            (*a, *b) = (first, last);
+        }
+        edges
+    }
+}
+
+fn ends(values: &[f64]) -> (f64, f64) {
+    let both = values.iter().fold(None, |ends, &v| match ends {
+        None => Some((v, v)),
+        Some((low, high)) => Some((f64::min(low, v), f64::max(high, v))),
+    });
+    both.unwrap_or((0.0, 1.0))
+}
+
+fn log_spaced(values: &[f64]) -> bool {
+    let (low, high) = ends(values);
+    if values.len() < 3 || low <= 0.0 || high / low < SMALLEST_SPAN {
+        return false;
+    }
+    let ratio = (values[values.len() - 1] / values[0]).powf(1.0 / (values.len() - 1) as f64);
+    values
+        .windows(2)
+        .all(|w| (w[1] / w[0] / ratio - 1.0).abs() < SAME_RATIO)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn cells_of_uneven_values_end_midway() {
+        let values = [-0.1, -0.2, -0.5, -1.5];
+        let scale = Scale::around(&values);
+        let edges = scale.edges(&values);
+        for (edge, expected) in edges.iter().zip([-0.05, -0.15, -0.35, -1.0, -2.0]) {
+            assert!((edge - expected).abs() < 1e-12, "{edges:?}");
+        }
+        assert!((scale.part(-2.0)).abs() < 1e-12 && (scale.part(-0.05) - 1.0).abs() < 1e-12);
+    }
+
+    #[test]
+    fn equal_ratios_make_a_logarithmic_scale() {
+        let values = [0.01, 0.1, 1.0, 10.0];
+        let scale = Scale::between(&values);
+        assert!((scale.part(0.1) - 1.0 / 3.0).abs() < 1e-12);
+        assert!((scale.value(2.0 / 3.0) - 1.0).abs() < 1e-12);
+        assert!((scale.edges(&values)[1] - 0.1f64.powf(1.5)).abs() < 1e-12);
+        for linear in [&[1.0, 2.0, 3.0][..], &[-4.0, -2.0, -1.0], &[1.0, 4.0]] {
+            assert!(!Scale::between(linear).log, "{linear:?}");
+        }
+    }
+
+    #[test]
+    fn thinned_cells_reach_the_ends() {
+        let all: Vec<f64> = (0..10).map(f64::from).collect();
+        let scale = Scale::around(&all);
+        let edges = scale.filling_edges(&[0.0, 4.0, 8.0]);
+        assert_eq!(edges, [-0.5, 2.0, 6.0, 9.5]);
+        let falling: Vec<f64> = all.iter().rev().copied().collect();
+        let edges = Scale::around(&falling).filling_edges(&[9.0, 5.0, 1.0]);
+        assert_eq!(edges, [9.5, 7.0, 3.0, -0.5]);
+    }
+}

@@ -1,0 +1,172 @@
+//! What is on a picture, in pixels from its upper left corner, apart from how it is rendered.
+
+use super::colour::Rgb;
+use super::text::Rich;
+
+/// Place in pixels: to the right, downwards.
+pub type Point = (f64, f64);
+
+/// One thing drawn.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Mark {
+    /// A filled rectangle.
+    Rect {
+        /// Upper left corner.
+        from: Point,
+        /// Lower right corner.
+        to: Point,
+        /// Colour.
+        colour: Rgb,
+        /// 0 to 1.
+        opacity: f64,
+    },
+    /// A polyline with round ends.
+    Path {
+        /// Its points.
+        points: Vec<Point>,
+        /// Colour.
+        colour: Rgb,
+        /// Width in pixels.
+        width: f64,
+    },
+    /// The area between two curves over the same places.
+    Band {
+        /// (x, y of one curve, y of the other), by growing x.
+        slices: Vec<(f64, f64, f64)>,
+        /// Colour.
+        colour: Rgb,
+        /// 0 to 1.
+        opacity: f64,
+    },
+    /// A line of text.
+    Text {
+        /// Left end of the baseline, before a turn.
+        at: Point,
+        /// Height of the font in pixels.
+        size: f64,
+        /// The text, in one font size.
+        text: String,
+        /// Colour.
+        colour: Rgb,
+        /// Reads upwards.
+        upward: bool,
+    },
+    /// A grid of cells.
+    Cells {
+        /// Edges from left to right, one more than there are columns; growing or shrinking.
+        columns: Vec<f64>,
+        /// Edges, one more than there are rows.
+        rows: Vec<f64>,
+        /// Colours, row by row.
+        colours: Vec<Rgb>,
+    },
+}
+
+/// Where a text stands relative to its place.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Align {
+    /// The text starts there.
+    Start,
+    /// Its middle is there.
+    Middle,
+    /// It ends there.
+    End,
+}
+
+/// A picture: marks in the order of drawing.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Scene {
+    /// Width and height in pixels.
+    pub size: (u32, u32),
+    /// What is drawn.
+    pub marks: Vec<Mark>,
+}
+
+impl Scene {
+    /// An empty, white picture.
+    pub fn new(size: (u32, u32)) -> Self {
+        Self {
+            size,
+            marks: Vec::new(),
+        }
+    }
+
+    /// The size of a pixel of a picture of 1600 × 1100 in this one: all fonts and gaps grow with it.
+    pub fn unit(&self) -> f64 {
+        (f64::from(self.size.0) / 1600.0).min(f64::from(self.size.1) / 1100.0)
+    }
+
+    /// Adds a filled rectangle.
+    pub fn rect(&mut self, from: Point, to: Point, colour: Rgb) {
+        self.marks.push(Mark::Rect {
+            from,
+            to,
+            colour,
+            opacity: 1.0,
+        });
+    }
+
+    /// Adds a horizontal or vertical line, sharp to the pixel.
+    pub fn ruler(&mut self, from: Point, to: Point, colour: Rgb, width: f64) {
+        let half = 0.5 * width;
+        let corner = |a: Point, b: Point| (a.0.min(b.0) - half, a.1.min(b.1) - half);
+        let (x0, y0) = corner(from, to);
+        let far = (from.0.max(to.0) + half, from.1.max(to.1) + half);
+        self.rect((x0, y0), far, colour);
+    }
+
+    /// Adds the outline of a rectangle.
+    pub fn outline(&mut self, from: Point, to: Point, colour: Rgb, width: f64) {
+        let (right, left) = ((to.0, from.1), (from.0, to.1));
+        for (a, b) in [(from, right), (right, to), (left, to), (from, left)] {
+            self.ruler(a, b, colour, width);
+        }
+    }
+
+    /// Adds a polyline.
+    pub fn path(&mut self, points: Vec<Point>, colour: Rgb, width: f64) {
+        if points.len() > 1 {
+            self.marks.push(Mark::Path {
+                points,
+                colour,
+                width,
+            });
+        }
+    }
+
+    /// Adds a text whose baseline is at `at`.
+    pub fn text(&mut self, at: Point, align: Align, text: &Rich, size: f64, colour: Rgb) {
+        let left = at.0 - shift(align, text.width(size));
+        for (offset, drop, size, run) in text.placed(size) {
+            self.marks.push(Mark::Text {
+                at: (left + offset, at.1 + drop),
+                size,
+                text: run,
+                colour,
+                upward: false,
+            });
+        }
+    }
+
+    /// Adds a text that reads upwards, its middle at `at`, its baseline to the right of the letters.
+    pub fn upward_text(&mut self, at: Point, text: &Rich, size: f64, colour: Rgb) {
+        let bottom = at.1 + 0.5 * text.width(size);
+        for (offset, drop, size, run) in text.placed(size) {
+            self.marks.push(Mark::Text {
+                at: (at.0 + drop, bottom - offset),
+                size,
+                text: run,
+                colour,
+                upward: true,
+            });
+        }
+    }
+}
+
+fn shift(align: Align, width: f64) -> f64 {
+    match align {
+        Align::Start => 0.0,
+        Align::Middle => 0.5 * width,
+        Align::End => width,
+    }
+}

@@ -1,0 +1,156 @@
+//! The stable region between crossing curves, as exact as the curves are.
+
+use super::panels::Panel;
+use crate::linear::curves::{CurvePiece, StableSide, Vertex};
+
+/// Slices of a region: (x, y of its lower end, y of its upper end) in pixels, by growing x.
+pub type Region = Vec<(f64, f64, f64)>;
+
+/// The stable regions of one plane within a panel, cut into parts that each are one interval at every x.
+///
+/// `pieces` are those that bound the stable region. `without_crossing` says whether sliding is stable at the values of the
+/// panel's x axis where no piece lies.
+pub fn regions(
+    panel: &Panel,
+    pieces: &[&CurvePiece],
+    without_crossing: impl Fn(f64) -> bool,
+) -> Vec<Region> {
+    let columns = panel.area.width().ceil().max(1.0) as usize;
+    let mut open: Vec<Region> = Vec::new();
+    let mut done = Vec::new();
+    for column in 0..=columns {
+        let part = column as f64 / columns as f64;
+        let (x, p) = (
+            panel.area.left + part * panel.area.width(),
+            panel.x.value(part),
+        );
+        let intervals = intervals(panel, pieces, p, &without_crossing);
+        let before = std::mem::take(&mut open);
+        let mut before = before.into_iter().peekable();
+        for interval in intervals {
+            // What ends below this interval goes on no further.
+            while let Some(region) = before.next_if(|region| ends_below(region, interval)) {
+                done.push(region);
+            }
+            let overlapping = before.next_if(|region| !ends_above(region, interval));
+            let mut region = overlapping.unwrap_or_default();
+            region.push((x, interval.0, interval.1));
+            open.push(region);
+        }
+        done.extend(before);
+    }
+    done.append(&mut open);
+    done.retain(|region| region.len() > 1);
+    done
+}
+
+/// True if the last slice of the region lies below the interval, in pixels, which grow downwards.
+fn ends_below(region: &Region, interval: (f64, f64)) -> bool {
+    region.last().is_none_or(|&(_, _, high)| high > interval.0)
+}
+
+/// True if the last slice of the region lies above the interval.
+fn ends_above(region: &Region, interval: (f64, f64)) -> bool {
+    region.last().is_none_or(|&(_, low, _)| low < interval.1)
+}
+
+/// The stable intervals of delay at the parameter `p`, as (lower, upper) pixels.
+fn intervals(
+    panel: &Panel,
+    pieces: &[&CurvePiece],
+    p: f64,
+    without_crossing: impl Fn(f64) -> bool,
+) -> Vec<(f64, f64)> {
+    let mut crossings: Vec<(f64, StableSide)> = pieces
+        .iter()
+        .filter_map(|piece| Some((delay_at(&piece.vertices, p)?, piece.stable_side)))
+        .collect();
+    crossings.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let (bottom, top) = (panel.area.bottom, panel.area.top);
+    if crossings.is_empty() {
+        return Vec::from_iter(without_crossing(p).then_some((bottom, top)));
+    }
+    let mut start = matches!(crossings[0].1, StableSide::Shorter).then_some(bottom);
+    let mut intervals = Vec::new();
+    for (tau, side) in crossings {
+        let here = panel.up(tau).clamp(top, bottom);
+        match side {
+            StableSide::Longer => start = start.or(Some(here)),
+            StableSide::Shorter => intervals.extend(start.take().map(|from| (from, here))),
+            StableSide::Neither => {}
+        }
+    }
+    intervals.extend(start.map(|from| (from, top)));
+    intervals
+}
+
+/// The delay of a curve at `p`; none where it does not reach. A curve is a function of p between its folds.
+fn delay_at(vertices: &[Vertex], p: f64) -> Option<f64> {
+    let first = vertices.first()?.p;
+    let last = vertices.last()?.p;
+    let (low, high) = (first.min(last), first.max(last));
+    // Half open: where one piece goes over into the next, only one of them counts.
+    if !(low <= p && p < high) {
+        return None;
+    }
+    let rising = first < last;
+    let after = vertices.partition_point(|v| if rising { v.p <= p } else { v.p > p });
+    let (a, b) = (vertices.get(after.checked_sub(1)?)?, vertices.get(after)?);
+    let part = if a.p == b.p {
+        0.0
+    } else {
+        (p - a.p) / (b.p - a.p)
+    };
+    Some(a.tau + part * (b.tau - a.tau))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::linear::Direction;
+    use crate::report::picture::page::Area;
+    use crate::report::picture::scale::Scale;
+
+    fn panel() -> Panel {
+        Panel {
+            area: Area {
+                left: 0.0,
+                top: 0.0,
+                right: 100.0,
+                bottom: 100.0,
+            },
+            x: Scale::linear(0.0, 1.0),
+            y: Scale::linear(0.0, 1.0),
+        }
+    }
+
+    fn piece(side: StableSide, from: (f64, f64), to: (f64, f64)) -> CurvePiece {
+        let vertex = |(p, tau)| Vertex { p, tau, omega: 1.0 };
+        CurvePiece {
+            branch: 0,
+            direction: Direction::Right,
+            stable_side: side,
+            vertices: vec![vertex(from), vertex(to)],
+        }
+    }
+
+    #[test]
+    fn a_lens_between_two_curves() {
+        let lower = piece(StableSide::Longer, (0.25, 0.5), (0.75, 0.2));
+        let upper = piece(StableSide::Shorter, (0.75, 0.8), (0.25, 0.5));
+        let regions = regions(&panel(), &[&upper, &lower], |_| false);
+        assert_eq!(regions.len(), 1);
+        let (x, low, high) = regions[0][25];
+        assert_eq!(x, 50.0);
+        assert!((low - 65.0).abs() < 1e-9 && (high - 35.0).abs() < 1e-9);
+    }
+
+    #[test]
+    fn open_ends_reach_the_frame() {
+        let upper = piece(StableSide::Shorter, (0.0, 0.4), (0.5, 0.4));
+        let regions = regions(&panel(), &[&upper], |p| p > 0.8);
+        assert_eq!(regions.len(), 2);
+        assert_eq!(regions[0][3], (3.0, 100.0, 60.0));
+        assert_eq!(regions[1].last(), Some(&(100.0, 100.0, 0.0)));
+    }
+}

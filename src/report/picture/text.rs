@@ -1,0 +1,258 @@
+//! Names, values and units as they are written on a picture.
+
+use super::font;
+use crate::store::map_file::MapAxis;
+use crate::store::schema;
+use crate::sweep::{Field, Parameter};
+
+/// Subscripts relative to the text.
+const SUBSCRIPT_SIZE: f64 = 0.72;
+const SUBSCRIPT_DROP: f64 = 0.18;
+
+/// A line of text in which a letter may be a subscript.
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
+pub struct Rich(Vec<(String, bool)>);
+
+impl Rich {
+    /// A text without subscripts. Characters that no picture can show are left out.
+    pub fn plain(text: &str) -> Self {
+        Self::default().and(text)
+    }
+
+    /// The symbol of a parameter.
+    pub fn symbol(parameter: Parameter) -> Self {
+        Self::default().and_symbol(parameter)
+    }
+
+    /// The text followed by `text`.
+    pub fn and(mut self, text: &str) -> Self {
+        let text: String = text.chars().filter(|c| !c.is_control()).collect();
+        match self.0.last_mut() {
+            Some((last, false)) => last.push_str(&text),
+            _ => self.0.push((text, false)),
+        }
+        self
+    }
+
+    /// The text followed by `other`.
+    pub fn then(mut self, other: Self) -> Self {
+        for (run, lowered) in other.0 {
+            if lowered {
+                self.0.push((run, true));
+            } else {
+                self = self.and(&run);
+            }
+        }
+        self
+    }
+
+    /// The text followed by the symbol of a parameter: what follows `_`, and a 0, are subscripts.
+    pub fn and_symbol(self, parameter: Parameter) -> Self {
+        let symbol = parameter.symbol();
+        let (base, subscript) = match symbol.split_once('_') {
+            Some(parts) => parts,
+            None => match symbol.strip_suffix('0') {
+                Some(base) => (base, "0"),
+                None => (symbol, ""),
+            },
+        };
+        let mut text = self.and(base);
+        if !subscript.is_empty() {
+            text.0.push((subscript.to_owned(), true));
+        }
+        text
+    }
+
+    /// Width in pixels at a font size.
+    pub fn width(&self, size: f64) -> f64 {
+        let runs = self.0.iter();
+        runs.map(|(run, lowered)| font::width(run, run_size(size, *lowered)))
+            .sum()
+    }
+
+    /// The font size, at most `size`, at which the text is no wider than `room`.
+    pub fn fitting(&self, size: f64, room: f64) -> f64 {
+        size * (room / self.width(size).max(f64::MIN_POSITIVE)).min(1.0)
+    }
+
+    /// The runs as (distance from the start, distance below the baseline, font size, text).
+    pub fn placed(&self, size: f64) -> Vec<(f64, f64, f64, String)> {
+        let mut offset = 0.0;
+        let mut runs = Vec::with_capacity(self.0.len());
+        for (run, lowered) in self.0.iter().filter(|(run, _)| !run.is_empty()) {
+            let drop = if *lowered { SUBSCRIPT_DROP * size } else { 0.0 };
+            let size = run_size(size, *lowered);
+            runs.push((offset, drop, size, run.clone()));
+            offset += font::width(run, size);
+        }
+        runs
+    }
+}
+
+fn run_size(size: f64, lowered: bool) -> f64 {
+    if lowered { SUBSCRIPT_SIZE * size } else { size }
+}
+
+/// "μ′ = −0.3 s m⁻¹".
+pub fn assignment(parameter: Parameter, value: f64, unit: &str) -> Rich {
+    Rich::symbol(parameter).and(&format!(" = {}{}", number(value), suffix(unit, " ", "")))
+}
+
+/// "gain of velocity control α_v (s⁻¹)".
+pub fn axis_title(axis: &MapAxis) -> Rich {
+    Rich::plain(axis.parameter.long_name())
+        .and("  ")
+        .and_symbol(axis.parameter)
+        .and(&suffix(&axis.unit, "  (", ")"))
+}
+
+/// What a field is, in full.
+pub fn field_note(field: Field, unit: &str) -> Rich {
+    Rich::plain(schema::long_name(field)).and(&suffix(unit, "  (", ")"))
+}
+
+/// What a field is, in short.
+pub fn field_title(field: Field, unit: &str) -> Rich {
+    let name = match field {
+        Field::NUnstable => "number of unstable roots",
+        Field::DelayMargin => "delay margin",
+    };
+    Rich::plain(name).and(&suffix(unit, "  (", ")"))
+}
+
+/// The unit between brackets; nothing for dimensionless quantities.
+pub fn suffix(unit: &str, open: &str, close: &str) -> String {
+    if unit == "1" || unit.is_empty() {
+        return String::new();
+    }
+    format!("{open}{}{close}", typeset_unit(unit))
+}
+
+/// "kg m2 s-1" as "kg m² s⁻¹".
+fn typeset_unit(unit: &str) -> String {
+    let raise = |c: char| match c {
+        '-' => '⁻',
+        c => superscript(c),
+    };
+    unit.chars().map(raise).collect()
+}
+
+fn superscript(digit: char) -> char {
+    const RAISED: [char; 10] = ['⁰', '¹', '²', '³', '⁴', '⁵', '⁶', '⁷', '⁸', '⁹'];
+    let value = digit.to_digit(10).and_then(|d| RAISED.get(d as usize));
+    value.copied().unwrap_or(digit)
+}
+
+/// A number with at most six digits and a real minus sign.
+pub fn number(value: f64) -> String {
+    if value == 0.0 {
+        return "0".into();
+    }
+    if !value.is_finite() {
+        let sign = if value < 0.0 { "−" } else { "" };
+        return if value.is_nan() {
+            "no value".into()
+        } else {
+            format!("{sign}∞")
+        };
+    }
+    let exponent = decimal_exponent(value);
+    if (-4..6).contains(&exponent) {
+        let decimals = usize::try_from(5 - exponent).unwrap_or(0);
+        return with_minus(trimmed(&format!("{value:.decimals$}")));
+    }
+    let text = format!("{value:.5e}");
+    let mantissa = text.split('e').next().unwrap_or_default();
+    with_power(trimmed(mantissa), exponent)
+}
+
+/// A number with `decimals` digits behind the point, divided by a power of ten that is written behind it.
+pub fn tick_number(value: f64, decimals: usize, exponent: Option<i32>) -> String {
+    match exponent {
+        None => with_minus(&format!("{value:.decimals$}")),
+        Some(_) if value == 0.0 => "0".into(),
+        Some(exponent) => with_power(
+            &format!("{:.decimals$}", value / 10f64.powi(exponent)),
+            exponent,
+        ),
+    }
+}
+
+/// The power of ten of the first digit, after rounding to six digits.
+pub fn decimal_exponent(value: f64) -> i32 {
+    let text = format!("{value:.5e}");
+    let exponent = text.split_once('e').and_then(|(_, e)| e.parse().ok());
+    exponent.unwrap_or(0)
+}
+
+/// 10⁻³, with a factor where it is not 1.
+fn with_power(mantissa: &str, exponent: i32) -> String {
+    let power = typeset_unit(&exponent.to_string());
+    match mantissa {
+        "1" => format!("10{power}"),
+        _ => format!("{} × 10{power}", with_minus(mantissa)),
+    }
+}
+
+fn trimmed(text: &str) -> &str {
+    if text.contains('.') {
+        text.trim_end_matches('0').trim_end_matches('.')
+    } else {
+        text
+    }
+}
+
+fn with_minus(text: &str) -> String {
+    let zero = text.chars().all(|c| matches!(c, '-' | '0' | '.'));
+    if zero {
+        text.trim_start_matches('-').to_owned()
+    } else {
+        text.replace('-', "−")
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_are_short_and_have_a_minus_sign() {
+        for (value, text) in [
+            (-0.3, "−0.3"),
+            (0.1 + 0.2, "0.3"),
+            (12.0, "12"),
+            (123_456.0, "123456"),
+            (1e-9, "10⁻⁹"),
+            (-2.5e12, "−2.5 × 10¹²"),
+            (999_999.9, "10⁶"),
+            (0.0, "0"),
+            (f64::NEG_INFINITY, "−∞"),
+        ] {
+            assert_eq!(number(value), text);
+        }
+        assert_eq!(tick_number(-0.0, 1, None), "0.0");
+        assert_eq!(tick_number(-2e-7, 0, Some(-7)), "−2 × 10⁻⁷");
+    }
+
+    #[test]
+    fn units_are_typeset_and_left_out_where_there_is_none() {
+        assert_eq!(suffix("N m-1", " (", ")"), " (N m⁻¹)");
+        assert_eq!(suffix("1", " (", ")"), "");
+    }
+
+    #[test]
+    fn symbols_have_subscripts() {
+        let runs = |p| Rich::symbol(p).0;
+        assert_eq!(
+            runs(Parameter::AlphaN),
+            [("α".into(), false), ("N".into(), true)]
+        );
+        assert_eq!(
+            runs(Parameter::V0),
+            [("v".into(), false), ("0".into(), true)]
+        );
+        assert_eq!(runs(Parameter::MuPrime), [("μ′".to_string(), false)]);
+        let text = Rich::symbol(Parameter::AlphaN);
+        assert!(text.width(20.0) > Rich::plain("α").width(20.0));
+    }
+}

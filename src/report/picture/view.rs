@@ -1,0 +1,235 @@
+//! What of a map is shown: the axes of the plane, and the values along the others.
+
+use super::error::PictureError;
+use super::text::{Rich, assignment};
+use crate::store::MapFile;
+use crate::store::map_file::MapAxis;
+use crate::store::schema::root;
+use crate::sweep::parameter::Units;
+use crate::sweep::{Parameter, SweepSpec};
+
+/// More panels, or more colours, than this are not told apart.
+pub const MOST_PANELS: usize = 12;
+
+/// The part of a map that a picture shows.
+#[derive(Debug, Clone, PartialEq)]
+pub struct View {
+    /// Axis from left to right.
+    pub x: usize,
+    /// Axis from bottom to top; none where only one axis is left.
+    pub y: Option<usize>,
+    /// The axis along which the panels differ; none for a single one.
+    pub along: Option<usize>,
+    /// For each panel an index along every axis; 0 along the plane's.
+    pub panels: Vec<Vec<usize>>,
+    /// How many panels there would be if all were shown.
+    pub of: usize,
+}
+
+/// Values asked for along one axis, as indices.
+type Asked = Option<Vec<usize>>;
+
+impl View {
+    /// The view of `map` at the values `at` (the nearest on their axes) of as many axes.
+    pub fn new(map: &MapFile, at: &[(Parameter, f64)]) -> Result<Self, PictureError> {
+        let asked = asked(map, at)?;
+        let free: Vec<usize> = (0..map.axes().len())
+            .filter(|&a| asked[a].is_none() && map.axes()[a].values.len() > 1)
+            .collect();
+        let (x, y) = match (map.boundary_plane(), free.as_slice()) {
+            (_, []) => return Err(PictureError::NothingToDraw),
+            (_, &[x]) => (x, None),
+            (Some((p, tau)), free) if free.contains(&p) && free.contains(&tau) => (p, Some(tau)),
+            (_, &[.., a, b]) if map.axes()[a].parameter == Parameter::Tau => (b, Some(a)),
+            (_, &[.., a, b]) => (a, Some(b)),
+        };
+        let outside = |a: &usize| *a != x && Some(*a) != y;
+        let several = several(map, &asked)?;
+        let along = several.or_else(|| free.iter().copied().find(outside));
+        // A line plot shows one line unless more are asked for.
+        let along = along.filter(|_| y.is_some() || several.is_some());
+        let all: Vec<usize> = match along {
+            Some(axis) => match &asked[axis] {
+                Some(indices) => indices.clone(),
+                None => (0..map.axes()[axis].values.len()).collect(),
+            },
+            None => vec![0],
+        };
+        let held: Vec<usize> = (0..map.axes().len())
+            .map(|a| match &asked[a] {
+                Some(indices) => indices.first().copied().unwrap_or(0),
+                None if outside(&a) => map.axes()[a].values.len() / 2,
+                None => 0,
+            })
+            .collect();
+        let of = all.len();
+        let panels = evenly(&all, MOST_PANELS)
+            .into_iter()
+            .map(|i| {
+                let mut index = held.clone();
+                if let Some(axis) = along {
+                    index[axis] = i;
+                }
+                index
+            })
+            .collect();
+        Ok(Self {
+            x,
+            y,
+            along: along.filter(|_| of > 1),
+            panels,
+            of,
+        })
+    }
+
+    /// True if this is the plane of the map's crossing curves.
+    pub fn is_boundary_plane(&self, map: &MapFile) -> bool {
+        self.y
+            .is_some_and(|y| map.boundary_plane() == Some((self.x, y)))
+    }
+
+    /// Number of axes outside the plane along which the map varies.
+    pub fn outer_axes(&self, map: &MapFile) -> usize {
+        (0..map.axes().len())
+            .filter(|&a| a != self.x && Some(a) != self.y && map.axes()[a].values.len() > 1)
+            .count()
+    }
+
+    /// The values of the axes outside the plane in a panel, in the order of the axes.
+    pub fn outer_values(&self, map: &MapFile, panel: &[usize]) -> Vec<f64> {
+        (0..map.axes().len())
+            .filter(|&a| a != self.x && Some(a) != self.y)
+            .map(|a| map.axes()[a].values[panel[a]])
+            .collect()
+    }
+
+    /// What tells a panel from the others, "μ′ = −0.3"; none for a single panel.
+    pub fn heading(&self, map: &MapFile, panel: &[usize]) -> Option<Rich> {
+        let axis = self.along?;
+        let MapAxis {
+            parameter,
+            unit,
+            values,
+        } = &map.axes()[axis];
+        Some(assignment(*parameter, values[panel[axis]], unit))
+    }
+
+    /// What all panels have in common, and how many are left out.
+    pub fn notes(&self, map: &MapFile) -> Vec<Rich> {
+        let mut notes = Vec::new();
+        if let Some(axis) = self.along.filter(|_| self.of > self.panels.len()) {
+            let text = format!("{} of {} values of ", self.panels.len(), self.of);
+            notes.push(Rich::plain(&text).and_symbol(map.axes()[axis].parameter));
+        }
+        for (a, axis) in map.axes().iter().enumerate() {
+            if a != self.x && Some(a) != self.y && Some(a) != self.along {
+                let value = self.panels.first().map_or(0, |panel| panel[a]);
+                notes.push(assignment(axis.parameter, axis.values[value], &axis.unit));
+            }
+        }
+        let units = units(map);
+        // Only what differs from the default, and the gains, since a gain of 0 means no such control.
+        for (parameter, value) in map.scalars() {
+            let gain = matches!(parameter, Parameter::AlphaV | Parameter::AlphaN);
+            if gain || parameter.default_value() != Some(value) {
+                notes.push(assignment(parameter, value, &units.of_parameter(parameter)));
+            }
+        }
+        notes
+    }
+}
+
+/// The units in which the map's sweep was written.
+fn units(map: &MapFile) -> Units {
+    let sweep = map.root_text(root::SWEEP);
+    let spec = sweep.and_then(|text| text.parse::<SweepSpec>().ok());
+    spec.map(|spec| spec.units).unwrap_or_default()
+}
+
+fn asked(map: &MapFile, at: &[(Parameter, f64)]) -> Result<Vec<Asked>, PictureError> {
+    let mut asked: Vec<Asked> = vec![None; map.axes().len()];
+    for &(parameter, value) in at {
+        let found = map.axes().iter().position(|a| a.parameter == parameter);
+        let Some(axis) = found else {
+            let names: Vec<&str> = map.axes().iter().map(|a| a.parameter.name()).collect();
+            return Err(PictureError::NotAnAxis {
+                parameter,
+                axes: names.join(", "),
+            });
+        };
+        let index = nearest(parameter, &map.axes()[axis].values, value)?;
+        let indices = asked[axis].get_or_insert_default();
+        if !indices.contains(&index) {
+            indices.push(index);
+            indices.sort_unstable();
+        }
+    }
+    Ok(asked)
+}
+
+fn nearest(parameter: Parameter, values: &[f64], value: f64) -> Result<usize, PictureError> {
+    let from = values.iter().copied().fold(f64::INFINITY, f64::min);
+    let to = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    let slack = 1e-9 * from.abs().max(to.abs());
+    if !(from - slack..=to + slack).contains(&value) {
+        return Err(PictureError::OutsideAxis {
+            parameter,
+            value,
+            from,
+            to,
+        });
+    }
+    let distances = values.iter().map(|v| (v - value).abs()).enumerate();
+    let best = distances.min_by(|a, b| a.1.total_cmp(&b.1));
+    Ok(best.map_or(0, |(index, _)| index))
+}
+
+/// The axis for which several values are asked.
+fn several(map: &MapFile, asked: &[Asked]) -> Result<Option<usize>, PictureError> {
+    let has_several = |a: &usize| asked[*a].as_ref().is_some_and(|i| i.len() > 1);
+    let mut axes = (0..asked.len()).filter(has_several);
+    let first = axes.next();
+    if let (Some(first), Some(second)) = (first, axes.next()) {
+        return Err(PictureError::SeveralValues {
+            first: map.axes()[first].parameter,
+            second: map.axes()[second].parameter,
+        });
+    }
+    Ok(first)
+}
+
+/// At most `most` of `all`, evenly spread, both ends among them.
+fn evenly(all: &[usize], most: usize) -> Vec<usize> {
+    if all.len() <= most {
+        return all.to_vec();
+    }
+    let last = all.len() - 1;
+    (0..most)
+        .map(|i| all[(i * last + (most - 1) / 2) / (most - 1)])
+        .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn panels_are_spread_evenly_with_both_ends() {
+        let all: Vec<usize> = (0..40).collect();
+        let some = evenly(&all, 12);
+        assert_eq!((some.len(), some[0], some[11]), (12, 0, 39));
+        assert!(some.windows(2).all(|w| (3..=4).contains(&(w[1] - w[0]))));
+        assert_eq!(evenly(&all[..5], 12), [0, 1, 2, 3, 4]);
+    }
+
+    #[test]
+    fn the_nearest_value_must_lie_on_the_axis() {
+        let values = [-0.05, -0.1, -0.2];
+        let at = |value| nearest(Parameter::MuPrime, &values, value);
+        assert_eq!(at(-0.09).unwrap(), 1);
+        assert_eq!(at(-0.2).unwrap(), 2);
+        for outside in [-0.21, 0.0, f64::NAN, f64::INFINITY] {
+            assert!(matches!(at(outside), Err(PictureError::OutsideAxis { .. })));
+        }
+    }
+}

@@ -1,0 +1,229 @@
+//! Maps: every cell is what the library says of its point, for any order of axes, and independent of threads.
+
+use std::path::Path;
+use std::sync::atomic::AtomicBool;
+
+use slipmap::linear::Crossings;
+use slipmap::linear::curves::StableSide;
+use slipmap::linear::status::MARGINAL;
+use slipmap::store::map_writer::Provenance;
+use slipmap::store::{MapFile, MapWriter, Output};
+use slipmap::sweep::events::Silent;
+use slipmap::sweep::{Parameter, Plan, engine};
+
+fn plan(text: &str) -> Plan {
+    Plan::new(text.parse().unwrap_or_else(|e| panic!("{e}\n{text}"))).unwrap()
+}
+
+fn write(plan: &Plan, threads: usize, path: &Path) {
+    let output = Output::claim(path).unwrap();
+    let mut writer = MapWriter::create(plan, output, &Provenance::default()).unwrap();
+    engine::run(plan, threads, &mut writer, &Silent, &AtomicBool::new(false)).unwrap();
+    writer.finish().unwrap();
+}
+
+/// Indices of a cell along every axis.
+fn index_of(mut cell: usize, shape: &[usize]) -> Vec<usize> {
+    let mut index = vec![0; shape.len()];
+    for axis in (0..shape.len()).rev() {
+        index[axis] = cell % shape[axis];
+        cell /= shape[axis];
+    }
+    index
+}
+
+const SWEEPS: [&str; 7] = [
+    // Delays last, middle, first; several tiles with ragged edges.
+    "fields = [\"n_unstable\", \"delay_margin\"]\n[axes]\nmu_prime = [-0.3, -0.1, 0.2]\nalpha_n = { from = -3, to = 1, points = 331 }\ntau = { from = 0, to = 12, points = 517 }\n[fixed]\nalpha_v = -0.1\n",
+    "fields = [\"n_unstable\", \"delay_margin\"]\n[axes]\nalpha_v = { from = -1, to = 1, points = 401 }\ntau = { from = 0.01, to = 30, points = 701, spacing = \"log\" }\nmu_prime = [-0.1, 0.0]\n",
+    "fields = [\"n_unstable\", \"delay_margin\"]\n[axes]\ntau = { from = 0, to = 9, points = 900 }\nalpha_v = { from = -1, to = 1, points = 301 }\nalpha_n = [-1, 0, 0.4]\n[fixed]\nmu_prime = -0.2\n",
+    // A longer line than a tile.
+    "fields = [\"n_unstable\", \"delay_margin\"]\n[axes]\ntau = { from = 0, to = 500, points = 300000 }\nalpha_n = [-1, 0.3]\n[fixed]\nmu_prime = -0.1\n",
+    // No delay axis.
+    "[axes]\nmu_prime = { from = -1, to = 1, points = 600 }\nalpha_v = { from = -1, to = 1, points = 700 }\n[fixed]\ntau = 4.3\n",
+    // A friction law, physical units.
+    "fields = [\"delay_margin\"]\n[axes]\nv0 = { from = 0.05, to = 2, points = 60 }\nmass = [0.5, 4]\ntau = { from = 0, to = 20, points = 200 }\n[fixed]\nalpha_n = -30\nstiffness = 9\nnormal_load = 3\n[friction]\nlaw = \"stribeck\"\nmu0 = 0.3\nv_s = 0.4\nmu_s = 0.8\n",
+    // Crossings denser than cells.
+    "[axes]\ntau = [1, 1e3, 1e6, 1e9]\nalpha_n = [-2, 0.5, 3]\n[fixed]\nmu_prime = -0.4\nalpha_v = 0.3\n",
+];
+
+#[test]
+fn every_cell_is_what_the_library_says() {
+    let folder = tempfile::tempdir().unwrap();
+    for (number, text) in SWEEPS.iter().enumerate() {
+        let plan = plan(text);
+        let path = folder.path().join(format!("{number}.h5"));
+        write(&plan, 2, &path);
+        let file = hdf5::File::open(&path).unwrap();
+        let status = file.dataset("status").unwrap().read_raw::<u8>().unwrap();
+        let counts = file.dataset("n_unstable").map(|d| d.read_raw::<u16>().unwrap());
+        let margins = file.dataset("delay_margin").map(|d| d.read_raw::<f64>().unwrap());
+        assert_eq!(status.len() as u64, plan.cells());
+        for cell in 0..status.len() {
+            // All cells of small maps, every seventh of large ones and those at the ends.
+            if status.len() > 100_000 && cell % 7 != 0 && cell + 20 < status.len() {
+                continue;
+            }
+            let setting = plan.setting(&index_of(cell, plan.shape()));
+            let (groups, unit) = setting.groups().unwrap();
+            let crossings = Crossings::of(groups).in_physical_time(unit);
+            let tau = setting.get(Parameter::Tau);
+            let count = crossings.count(tau, plan.spec.tolerance);
+            assert_eq!(status[cell] & MARGINAL != 0, count.marginal, "{text} {cell}");
+            if let Ok(counts) = &counts {
+                assert_eq!(u64::from(counts[cell]), count.n_unstable.min(65534), "{text} {cell}");
+            }
+            if let Ok(margins) = &margins {
+                assert_eq!(margins[cell].to_bits(), crossings.delay_margin(tau).to_bits(), "{text} {cell}");
+                assert!(count.marginal || (margins[cell] > 0.0) == (count.n_unstable == 0), "{text} {cell}");
+            }
+        }
+    }
+}
+
+/// Every dataset of a file with its raw bytes, group by group.
+fn datasets(group: &hdf5::Group) -> Vec<(String, Vec<u8>)> {
+    let mut all = Vec::new();
+    for dataset in group.datasets().unwrap() {
+        let bytes = match dataset.dtype().unwrap().size() {
+            1 => dataset.read_raw::<i8>().unwrap().iter().map(|v| *v as u8).collect(),
+            2 => dataset.read_raw::<u16>().unwrap().iter().flat_map(|v| v.to_le_bytes()).collect(),
+            4 => dataset.read_raw::<i32>().unwrap().iter().flat_map(|v| v.to_le_bytes()).collect(),
+            _ => dataset.read_raw::<f64>().unwrap().iter().flat_map(|v| v.to_le_bytes()).collect(),
+        };
+        all.push((dataset.name(), bytes));
+    }
+    for group in group.groups().unwrap() {
+        all.extend(datasets(&group));
+    }
+    all
+}
+
+#[test]
+fn the_same_sweep_gives_the_same_bytes_on_any_number_of_threads() {
+    let folder = tempfile::tempdir().unwrap();
+    let plan = plan(SWEEPS[0]);
+    let mut first = None;
+    for threads in [1, 2, 3, 7] {
+        let path = folder.path().join(format!("{threads}.h5"));
+        write(&plan, threads, &path);
+        let found = datasets(&hdf5::File::open(&path).unwrap());
+        assert!(found.len() > 15, "{} datasets", found.len());
+        match &first {
+            None => first = Some(found),
+            Some(first) => assert!(*first == found, "{threads} threads"),
+        }
+    }
+}
+
+/// The map and the curves in it say the same: cells on the two sides of a bounding curve differ in stability.
+#[test]
+fn curves_in_the_map_separate_its_stable_cells() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("map.h5");
+    let plan = plan(&std::fs::read_to_string("sweeps/fig2b.toml").unwrap());
+    write(&plan, 2, &path);
+    let map = MapFile::open(&path).unwrap();
+    assert_eq!(map.boundary_plane(), Some((1, 2)));
+    let curves = map.curves().unwrap();
+    let bounding: Vec<_> =
+        curves.iter().filter(|c| c.piece.stable_side != StableSide::Neither).collect();
+    assert!(bounding.len() > 20);
+    let mut checked = 0;
+    for curve in bounding {
+        let mu_prime = curve.outer[0];
+        for v in &curve.piece.vertices {
+            let stable = |tau: f64| {
+                Crossings::of(slipmap::model::Groups::new(mu_prime, 0.0, v.p)).n_unstable(tau) == 0
+            };
+            let (before, after) = (stable(v.tau - 1e-9), stable(v.tau + 1e-9));
+            // At the ends of a piece another curve passes through the same point.
+            if before != after {
+                assert_eq!(before, curve.piece.stable_side == StableSide::Shorter);
+                checked += 1;
+            }
+        }
+    }
+    assert!(checked > 500, "{checked}");
+}
+
+#[test]
+fn boundaries_can_be_asked_for_in_other_planes() {
+    let folder = tempfile::tempdir().unwrap();
+    for (number, (text, plane)) in [
+        ("[axes]\nmu_prime = { from = -1, to = 0.5, points = 50 }\ntau = { from = 0, to = 9, points = 50 }\n[fixed]\nalpha_n = -1\n", Some((0, 1))),
+        ("[axes]\ntau = { from = 0, to = 9, points = 50 }\nv0 = { from = 0.1, to = 2, points = 50 }\n[fixed]\nalpha_n = -1\n[friction]\nlaw = \"weakening\"\nmu0 = 0.5\nv_s = 0.5\n", Some((1, 0))),
+        ("boundaries = true\n[axes]\nmu_prime = [-1, 1]\nalpha_n = [-1, 0]\n[fixed]\ntau = 1\n", None),
+        ("boundaries = false\n[axes]\nalpha_n = [-1, 0]\ntau = [0, 1]\n[fixed]\nmu_prime = 1\n", None),
+    ].into_iter().enumerate() {
+        let path = folder.path().join(format!("{number}.h5"));
+        write(&plan(text), 1, &path);
+        let map = MapFile::open(&path).unwrap();
+        assert_eq!(map.boundary_plane(), plane, "{text}");
+        assert_eq!(map.curves().unwrap().is_empty(), plane.is_none());
+    }
+}
+
+/// Computes a map in memory and calls `visit` with the parameters and the count of every cell.
+fn cells(text: &str, mut visit: impl FnMut(&slipmap::sweep::Setting, u16)) {
+    let plan = plan(text);
+    let mut worker = engine::Worker::new(&plan);
+    let strides = plan.tiles.strides();
+    for number in 0..plan.tiles.len() {
+        let tile = plan.tiles.tile(number);
+        worker.compute(&tile);
+        let n = worker.buffers.n_unstable.as_ref().unwrap();
+        for cell in 0..tile.cells() as usize {
+            let inside = index_of(cell, &tile.extent);
+            let at: usize = inside.iter().zip(&strides).map(|(i, s)| i * s).sum();
+            let index: Vec<usize> = inside.iter().zip(&tile.offset).map(|(i, o)| i + o).collect();
+            visit(&plan.setting(&index), n[at]);
+        }
+    }
+}
+
+/// The end of velocity control by the tangency condition, seen in a map: stable cells on one side of it, none on the other.
+#[test]
+fn velocity_control_ends_in_the_map_where_the_tangency_says() {
+    let end = slipmap::linear::lobes::LobeControl::Velocity.lobe_end(0);
+    for (distance, width) in [(0.02, 0.02), (0.005, 0.004), (0.001, 0.0008)] {
+        let (inside, outside) = (end.b + distance, end.b - distance);
+        let text = format!(
+            "[axes]\nmu_prime = [{inside}, {outside}]\n\
+             alpha_v = {{ from = {}, to = {}, points = 1501 }}\n\
+             tau = {{ from = {}, to = {}, points = 1501 }}\n",
+            end.gain - width, end.gain + width, end.tau - 5.0 * width, end.tau + 5.0 * width,
+        );
+        let (mut stable_inside, mut stable_outside) = (0, 0);
+        cells(&text, |setting, n| {
+            if n == 0 {
+                match setting.get(Parameter::MuPrime) > end.b {
+                    true => stable_inside += 1,
+                    false => stable_outside += 1,
+                }
+            }
+        });
+        assert!(stable_inside > 0, "no stable cell at b* + {distance}");
+        assert_eq!(stable_outside, 0, "stable cells at b* - {distance}");
+    }
+}
+
+/// The area of the first lobe of velocity control in the (a_v, τ) plane, by counting cells.
+#[test]
+fn areas_of_the_first_velocity_lobe() {
+    for (b, area, range) in [
+        (-0.60, 0.0427, (-0.55, -0.15, 3.6, 4.9)),
+        (-0.68, 0.0030, (-0.40, -0.22, 4.0, 4.6)),
+        (-0.70, 0.0007, (-0.38, -0.26, 4.1, 4.5)),
+    ] {
+        let (a0, a1, t0, t1) = range;
+        let text = format!(
+            "[axes]\nalpha_v = {{ from = {a0}, to = {a1}, points = 2001 }}\n\
+             tau = {{ from = {t0}, to = {t1}, points = 2001 }}\n[fixed]\nmu_prime = {b}\n"
+        );
+        let mut stable = 0_u32;
+        cells(&text, |_, n| stable += u32::from(n == 0));
+        let found = f64::from(stable) * (a1 - a0) * (t1 - t0) / (2000.0 * 2000.0);
+        assert!((found - area).abs() < 0.5e-4 + 0.005 * area, "b = {b}: {found} instead of {area}");
+    }
+}

@@ -1,0 +1,551 @@
+//! Maps as other people's programs read them: xarray, h5py, netCDF4, ncdump, h5dump and Octave. None of them may be missing.
+//!
+//! Each map comes from the program itself; what must be in it comes from the library, cell by cell, and is handed to the
+//! Python programs in `readers/` as a folder with `expected.json` and raw arrays.
+
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+
+use serde_json::{Map, Value, json};
+use slipmap::linear::status::{FLAGS, MARGINAL};
+use slipmap::linear::{Crossings, MarginalTolerance};
+use slipmap::model::{FrictionLaw, Groups};
+use slipmap::sweep::axis::{Spacing, spaced};
+use tempfile::TempDir;
+
+/// The groups of a cell and its unit of time, from the values of the axes.
+type GroupsAt = fn(&[f64]) -> (Groups, f64);
+
+/// A sweep, and what the map of it must hold.
+struct Case {
+    title: &'static str,
+    /// The sweep file without its axes.
+    head: &'static str,
+    /// Name, unit, values and how the sweep file writes them.
+    axes: Vec<Axis>,
+    /// Name, unit and value of every parameter that is no axis and has a meaning.
+    scalars: &'static [(&'static str, &'static str, f64)],
+    margin_unit: &'static str,
+    omega_unit: &'static str,
+    /// The parameter that spans the planes of the crossing curves, with the delay.
+    plane: &'static str,
+    groups_at: GroupsAt,
+}
+
+struct Axis {
+    name: &'static str,
+    unit: &'static str,
+    values: Vec<f64>,
+    toml: String,
+}
+
+impl Axis {
+    fn list(name: &'static str, unit: &'static str, values: &[f64]) -> Self {
+        Self {
+            name,
+            unit,
+            values: values.to_vec(),
+            toml: format!("{values:?}"),
+        }
+    }
+
+    fn range(name: &'static str, unit: &'static str, ends: (f64, f64), points: u64) -> Self {
+        Self::spaced(name, unit, ends, points, Spacing::Linear)
+    }
+
+    fn log(name: &'static str, unit: &'static str, ends: (f64, f64), points: u64) -> Self {
+        Self::spaced(name, unit, ends, points, Spacing::Log)
+    }
+
+    fn spaced(
+        name: &'static str,
+        unit: &'static str,
+        (from, to): (f64, f64),
+        points: u64,
+        spacing: Spacing,
+    ) -> Self {
+        let word = match spacing {
+            Spacing::Linear => "linear",
+            Spacing::Log => "log",
+        };
+        Self {
+            name,
+            unit,
+            values: spaced(from, to, points, spacing).expect("a good axis"),
+            toml: format!(
+                "{{ from = {from:?}, to = {to:?}, points = {points}, spacing = \"{word}\" }}"
+            ),
+        }
+    }
+}
+
+/// Three axes of different lengths, one of them falling; everything dimensionless.
+fn load_control() -> Case {
+    Case {
+        title: "Load control with some velocity control",
+        head: "",
+        axes: vec![
+            Axis::list("mu_prime", "1", &[0.1, -0.1, -0.2, -0.5]),
+            Axis::range("alpha_n", "1", (-6.0, 1.0), 29),
+            Axis::range("tau", "1", (0.0, 9.0), 61),
+        ],
+        scalars: &[
+            ("alpha_v", "1", 0.15),
+            ("mu_k", "1", 1.0),
+            ("mass", "1", 1.0),
+            ("stiffness", "1", 1.0),
+            ("normal_load", "1", 1.0),
+        ],
+        margin_unit: "1",
+        omega_unit: "1",
+        plane: "alpha_n",
+        groups_at: |at| (Groups::new(at[0], 0.15, at[1]), 1.0),
+    }
+}
+
+/// The delay first and logarithmic, so that its lines are strided, over more tiles than one.
+fn delay_first() -> Case {
+    Case {
+        title: "Delay first",
+        head: "",
+        axes: vec![
+            Axis::log("tau", "1", (0.01, 50.0), 701),
+            Axis::range("alpha_v", "1", (-1.5, 0.5), 403),
+            Axis::list("mu_prime", "1", &[-0.3, -0.1]),
+        ],
+        scalars: &[
+            ("alpha_n", "1", -0.5),
+            ("mu_k", "1", 1.0),
+            ("mass", "1", 1.0),
+            ("stiffness", "1", 1.0),
+            ("normal_load", "1", 1.0),
+        ],
+        margin_unit: "1",
+        omega_unit: "1",
+        plane: "alpha_v",
+        groups_at: |at| (Groups::new(at[2], at[1], -0.5), 1.0),
+    }
+}
+
+/// A friction law over the pulling velocity, with units; b, a_v and a_n from their definitions.
+fn friction_law() -> Case {
+    Case {
+        title: "A weakening law in millimetres",
+        head: "[friction]\nlaw = \"weakening\"\nmu0 = 0.4\nv_s = 0.5\nmu_s = 0.9\n\n\
+               [units]\nforce = \"N\"\nlength = \"mm\"\ntime = \"s\"\n",
+        axes: vec![
+            Axis::log("v0", "mm s-1", (0.05, 5.0), 5),
+            Axis::range("alpha_v", "s-1", (-2.0, 1.0), 31),
+            Axis::range("tau", "s", (0.0, 6.0), 47),
+        ],
+        scalars: &[
+            ("alpha_n", "N mm-1", -1.25),
+            ("mass", "N mm-1 s2", 0.5),
+            ("stiffness", "N mm-1", 2.0),
+            ("normal_load", "N", 3.0),
+            ("mu0", "1", 0.4),
+            ("v_s", "mm s-1", 0.5),
+            ("mu_s", "1", 0.9),
+        ],
+        margin_unit: "s",
+        omega_unit: "rad s-1",
+        plane: "alpha_v",
+        groups_at: |at| {
+            let (mass, stiffness, load) = (0.5_f64, 2.0_f64, 3.0_f64);
+            let law = FrictionLaw::weakening(0.4, 0.5, 0.9).expect("a good law");
+            let unit = (mass / stiffness).sqrt();
+            let b = law.mu_prime(at[0]) * load / (stiffness * mass).sqrt();
+            let groups = Groups::new(b, at[1] * unit, law.mu_k(at[0]) * -1.25 / stiffness);
+            (groups, unit)
+        },
+    }
+}
+
+impl Case {
+    fn sweep(&self) -> String {
+        let fixed: String = self
+            .scalars
+            .iter()
+            .filter(|(name, ..)| !["mu0", "v_s", "mu_s"].contains(name))
+            .map(|(name, _, value)| format!("{name} = {value:?}\n"))
+            .collect();
+        let axes: String = self
+            .axes
+            .iter()
+            .map(|axis| format!("{} = {}\n", axis.name, axis.toml))
+            .collect();
+        format!(
+            "title = \"{}\"\nfields = [\"n_unstable\", \"delay_margin\"]\nboundaries = true\n\n\
+             [axes]\n{axes}\n[fixed]\n{fixed}\n{}",
+            self.title, self.head
+        )
+    }
+
+    fn shape(&self) -> Vec<usize> {
+        self.axes.iter().map(|axis| axis.values.len()).collect()
+    }
+
+    fn cells(&self) -> usize {
+        self.shape().iter().product()
+    }
+
+    /// The values of the axes at cell number `cell`, the last axis fastest.
+    fn at(&self, cell: usize) -> Vec<f64> {
+        let mut rest = cell;
+        let mut at: Vec<f64> = self
+            .axes
+            .iter()
+            .rev()
+            .map(|axis| {
+                let value = axis.values[rest % axis.values.len()];
+                rest /= axis.values.len();
+                value
+            })
+            .collect();
+        at.reverse();
+        at
+    }
+
+    fn tau_axis(&self) -> usize {
+        let tau = self.axes.iter().position(|axis| axis.name == "tau");
+        tau.expect("every case has delays")
+    }
+
+    /// Count of unstable roots, delay margin and whether marginal, at these values of the axes.
+    fn cell(&self, at: &[f64]) -> (u16, f64, bool) {
+        let (groups, unit) = (self.groups_at)(at);
+        let crossings = Crossings::of(groups).in_physical_time(unit);
+        let tau = at[self.tau_axis()];
+        let count = crossings.count(tau, MarginalTolerance::default());
+        let n = u16::try_from(count.n_unstable).expect("small counts");
+        (n, crossings.delay_margin(tau), count.marginal)
+    }
+
+    /// Points off the grid, by a quarter of the step to the next value, with the count at the cell next to them.
+    fn picks(&self) -> Vec<Value> {
+        (0..12)
+            .map(|i| (i * 7919 + 13) % self.cells())
+            .map(|cell| {
+                let at = self.at(cell);
+                let mut near = Map::new();
+                for (axis, &value) in self.axes.iter().zip(&at) {
+                    let i = axis.values.iter().position(|v| *v == value).unwrap();
+                    let neighbour = axis.values[if i > 0 { i - 1 } else { i + 1 }];
+                    let shifted = value + 0.25 * (neighbour - value);
+                    near.insert(axis.name.into(), json!(shifted));
+                }
+                json!({ "near": near, "n_unstable": self.cell(&at).0 })
+            })
+            .collect()
+    }
+}
+
+/// A folder with a map, made by the program, and what must be in it.
+struct Written {
+    case: Case,
+    folder: TempDir,
+}
+
+impl Written {
+    fn new(case: Case) -> Self {
+        let folder = TempDir::new().expect("a temporary folder");
+        let written = Self { case, folder };
+        std::fs::write(written.file("sweep.toml"), written.case.sweep()).unwrap();
+        run(&mut written.slipmap(["run", "--quiet", "sweep.toml", "-o", "map.h5"]));
+        written.write_expected();
+        written
+    }
+
+    fn file(&self, name: &str) -> PathBuf {
+        self.folder.path().join(name)
+    }
+
+    fn slipmap<const N: usize>(&self, arguments: [&str; N]) -> Command {
+        command(env!("CARGO_BIN_EXE_slipmap"), self.folder.path(), arguments)
+    }
+
+    fn write_expected(&self) {
+        let case = &self.case;
+        let (mut n, mut margin, mut status) = (Vec::new(), Vec::new(), Vec::new());
+        for cell in 0..case.cells() {
+            let (n_unstable, delay_margin, marginal) = case.cell(&case.at(cell));
+            n.extend(n_unstable.to_le_bytes());
+            margin.extend(delay_margin.to_le_bytes());
+            status.push(if marginal { MARGINAL } else { 0 });
+        }
+        std::fs::write(self.file("n_unstable.u16"), n).unwrap();
+        std::fs::write(self.file("delay_margin.f64"), margin).unwrap();
+        std::fs::write(self.file("status.u8"), status).unwrap();
+        let axes = case
+            .axes
+            .iter()
+            .map(|axis| json!({ "name": axis.name, "units": axis.unit, "values": axis.values }));
+        let scalars = case
+            .scalars
+            .iter()
+            .map(|(name, unit, value)| json!({ "name": name, "units": unit, "value": value }));
+        let expected = json!({
+            "title": case.title,
+            "sweep": case.sweep(),
+            "axes": axes.collect::<Vec<_>>(),
+            "scalars": scalars.collect::<Vec<_>>(),
+            "units": { "n_unstable": "1", "delay_margin": case.margin_unit, "omega": case.omega_unit },
+            "flags": FLAGS.map(|(mask, name)| json!({ "name": name, "mask": mask })),
+            "plane": case.plane,
+            "picks": case.picks(),
+        });
+        std::fs::write(self.file("expected.json"), expected.to_string()).unwrap();
+    }
+
+    fn python(&self, program: &str, arguments: &[&str]) {
+        let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(program);
+        run(python(self.folder.path()).arg(path).args(arguments));
+    }
+
+    /// The counts as the library computes them.
+    fn counts(&self) -> Vec<u16> {
+        (0..self.case.cells())
+            .map(|cell| self.case.cell(&self.case.at(cell)).0)
+            .collect()
+    }
+}
+
+fn command<const N: usize>(program: &str, folder: &Path, arguments: [&str; N]) -> Command {
+    let mut command = Command::new(program);
+    command.current_dir(folder).args(arguments);
+    command
+}
+
+/// The Python that has the packages of `scripts/requirements-readers.txt`.
+fn python(folder: &Path) -> Command {
+    let program = std::env::var("SLIPMAP_PYTHON").unwrap_or_else(|_| "python3".into());
+    let mut command = command(&program, folder, []);
+    command
+        .env("MPLBACKEND", "agg")
+        .env("PYTHONDONTWRITEBYTECODE", "1");
+    command
+}
+
+/// Runs to the end; a program that is missing or fails fails the test, with what it said.
+fn run(command: &mut Command) -> Output {
+    let output = command
+        .output()
+        .unwrap_or_else(|error| panic!("{:?} cannot be run: {error}", command.get_program()));
+    assert!(
+        output.status.success(),
+        "{command:?} ended with {}\n{}{}",
+        output.status,
+        text(&output.stdout),
+        text(&output.stderr),
+    );
+    output
+}
+
+fn text(bytes: &[u8]) -> std::borrow::Cow<'_, str> {
+    String::from_utf8_lossy(bytes)
+}
+
+#[test]
+fn python_reads_load_control() {
+    let written = Written::new(load_control());
+    for reader in ["xarray", "h5py", "netcdf4"] {
+        written.python(&format!("tests/readers/check_{reader}.py"), &[]);
+    }
+}
+
+#[test]
+fn python_reads_strided_tiles() {
+    let written = Written::new(delay_first());
+    for reader in ["xarray", "h5py", "netcdf4"] {
+        written.python(&format!("tests/readers/check_{reader}.py"), &[]);
+    }
+}
+
+#[test]
+fn python_reads_friction_laws_with_units() {
+    let written = Written::new(friction_law());
+    for reader in ["xarray", "h5py", "netcdf4"] {
+        written.python(&format!("tests/readers/check_{reader}.py"), &[]);
+    }
+}
+
+/// Numbers of the text, whatever stands between them.
+fn numbers(text: &str) -> Vec<u16> {
+    text.split(|c: char| !c.is_ascii_digit())
+        .filter(|word| !word.is_empty())
+        .map(|word| word.parse().expect("a count"))
+        .collect()
+}
+
+#[test]
+fn ncdump_prints_the_counts() {
+    let written = Written::new(load_control());
+    let header = run(&mut command(
+        "ncdump",
+        written.folder.path(),
+        ["-h", "map.h5"],
+    ));
+    let header = text(&header.stdout);
+    for line in [
+        "mu_prime = 4 ;",
+        "alpha_n = 29 ;",
+        "tau = 61 ;",
+        "ushort n_unstable(mu_prime, alpha_n, tau) ;",
+        "double delay_margin(mu_prime, alpha_n, tau) ;",
+        "ubyte status(mu_prime, alpha_n, tau) ;",
+        "group: boundaries {",
+        "double tau(vertex) ;",
+        "int vertex_count(curve) ;",
+    ] {
+        assert!(header.contains(line), "`{line}` is missing:\n{header}");
+    }
+    let data = run(&mut command(
+        "ncdump",
+        written.folder.path(),
+        ["-v", "n_unstable", "map.h5"],
+    ));
+    let data = text(&data.stdout);
+    let (_, data) = data.split_once("data:").expect("a data section");
+    let (_, data) = data.split_once("n_unstable =").expect("the counts");
+    let (data, _) = data.split_once(';').expect("an end");
+    assert_eq!(numbers(data), written.counts());
+}
+
+#[test]
+fn h5dump_writes_the_counts() {
+    let written = Written::new(friction_law());
+    let header = run(&mut command(
+        "h5dump",
+        written.folder.path(),
+        ["-H", "map.h5"],
+    ));
+    let header = text(&header.stdout);
+    for line in [
+        "DATASET \"n_unstable\"",
+        "DATASET \"delay_margin\"",
+        "DATASET \"status\"",
+        "GROUP \"boundaries\"",
+        "DATASET \"v0\"",
+        "ATTRIBUTE \"DIMENSION_LIST\"",
+    ] {
+        assert!(header.contains(line), "`{line}` is missing:\n{header}");
+    }
+    let arguments = [
+        "-d",
+        "/n_unstable",
+        "-b",
+        "LE",
+        "-o",
+        "counts.bin",
+        "map.h5",
+    ];
+    run(&mut command("h5dump", written.folder.path(), arguments));
+    let bytes = std::fs::read(written.file("counts.bin")).unwrap();
+    let counts: Vec<u8> = written
+        .counts()
+        .iter()
+        .flat_map(|n| n.to_le_bytes())
+        .collect();
+    assert_eq!(bytes, counts);
+}
+
+/// Octave has the dimensions in reverse order, and the values of whole arrays in the same order as the file.
+#[test]
+fn octave_loads_the_map() {
+    let written = Written::new(load_control());
+    let script = "load('-hdf5', 'map.h5'); \
+                  printf('size %s\\n', mat2str(size(n_unstable))); \
+                  printf('class %s\\n', class(n_unstable)); \
+                  printf('taus %d, last %.17g\\n', numel(tau), tau(end)); \
+                  printf('cell %d\\n', n_unstable(40, 3, 4)); \
+                  printf('vertices %d of %d\\n', sum(boundaries.vertex_count), numel(boundaries.omega)); \
+                  printf('counts '); printf('%d ', n_unstable);";
+    let arguments = [
+        "--no-gui",
+        "--no-history",
+        "--norc",
+        "--quiet",
+        "--eval",
+        script,
+    ];
+    let output = run(&mut command("octave-cli", written.folder.path(), arguments));
+    let said = text(&output.stdout);
+    let case = &written.case;
+    let (cell, _, _) = case.cell(&[-0.5, case.axes[1].values[2], case.axes[2].values[39]]);
+    for line in [
+        "size [61 29 4]".to_owned(),
+        "class uint16".to_owned(),
+        "taus 61, last 9".to_owned(),
+        format!("cell {cell}"),
+    ] {
+        assert!(
+            said.contains(&line),
+            "`{line}` is missing:\n{said}{}",
+            text(&output.stderr)
+        );
+    }
+    let (_, vertices) = said.split_once("vertices ").expect("a number of vertices");
+    let vertices = numbers(vertices.lines().next().unwrap_or_default());
+    assert!(
+        vertices[0] > 0 && vertices[0] == vertices[1],
+        "{vertices:?}"
+    );
+    let (_, counts) = said.split_once("counts ").expect("the counts");
+    assert_eq!(numbers(counts), written.counts());
+}
+
+fn plot_script() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("scripts/plot_fig2.py")
+}
+
+/// The letter's Fig. 2 from the two sweeps that come with the program.
+#[test]
+fn the_letters_figure_is_drawn_from_its_maps() {
+    let folder = TempDir::new().unwrap();
+    let sweeps = Path::new(env!("CARGO_MANIFEST_DIR")).join("sweeps");
+    for name in ["fig2a.toml", "fig2b.toml"] {
+        let sweep = sweeps.join(name);
+        let slipmap = env!("CARGO_BIN_EXE_slipmap");
+        run(command(slipmap, folder.path(), ["run", "--quiet"]).arg(sweep));
+    }
+    for (name, magic, least) in [
+        ("fig2.png", &b"\x89PNG\r\n\x1a\n"[..], 50_000),
+        ("fig2.pdf", &b"%PDF-"[..], 20_000),
+        ("fig2.svg", &b"<?xml"[..], 50_000),
+    ] {
+        let arguments = ["fig2a.h5", "fig2b.h5", "-o", name];
+        run(python(folder.path()).arg(plot_script()).args(arguments));
+        let bytes = std::fs::read(folder.path().join(name)).unwrap();
+        assert!(bytes.starts_with(magic), "{name} is no such file");
+        let size = bytes.len();
+        assert!(
+            (least..3_000_000).contains(&size),
+            "{name} has {size} bytes"
+        );
+    }
+}
+
+#[test]
+fn the_figure_refuses_what_is_no_such_map() {
+    let written = Written::new(delay_first());
+    std::fs::write(written.file("text.h5"), "no map").unwrap();
+    for (maps, message) in [
+        (["text.h5", "map.h5"], "text.h5"),
+        (["map.h5", "missing.h5"], "missing.h5"),
+        (["expected.json", "map.h5"], "expected.json"),
+    ] {
+        let output = python(written.folder.path())
+            .arg(plot_script())
+            .args(maps)
+            .args(["-o", "figure.png"])
+            .output()
+            .expect("Python runs");
+        let said = text(&output.stderr);
+        assert_eq!(output.status.code(), Some(2), "{maps:?}: {said}");
+        assert!(
+            said.contains(message) && !said.contains("Traceback"),
+            "{maps:?}: {said}"
+        );
+        assert!(!written.file("figure.png").exists());
+    }
+}

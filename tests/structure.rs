@@ -1,0 +1,88 @@
+//! Holds the structure that DESIGN.md describes.
+
+use std::path::{Path, PathBuf};
+
+const LAYERS: [&str; 6] = ["model", "linear", "sweep", "store", "report", "cli"];
+
+fn sources(folder: &Path) -> Vec<PathBuf> {
+    let mut files = Vec::new();
+    for entry in std::fs::read_dir(folder).unwrap() {
+        let path = entry.unwrap().path();
+        if path.is_dir() {
+            files.extend(sources(&path));
+        } else if path.extension().is_some_and(|e| e == "rs") {
+            files.push(path);
+        }
+    }
+    files
+}
+
+/// Code of a file without its comments.
+fn code(path: &Path) -> String {
+    let text = std::fs::read_to_string(path).unwrap();
+    text.lines().filter(|l| !l.trim_start().starts_with("//")).collect::<Vec<_>>().join("\n")
+}
+
+#[test]
+fn layers_use_only_those_below() {
+    let mut imports = 0;
+    for (height, layer) in LAYERS.iter().enumerate() {
+        for path in sources(&Path::new("src").join(layer)) {
+            let code = code(&path);
+            for above in &LAYERS[height + 1..] {
+                for form in [format!("crate::{above}"), format!("slipmap::{above}")] {
+                    assert!(!code.contains(&form), "{} uses {form}", path.display());
+                }
+            }
+            imports += code.matches("use crate::").count();
+        }
+    }
+    assert!(imports > 20, "the test still sees the imports: {imports}");
+}
+
+#[test]
+fn the_ground_layers_are_pure() {
+    for layer in ["model", "linear"] {
+        for path in sources(&Path::new("src").join(layer)) {
+            for word in ["std::fs", "std::io", "std::time", "std::thread", "println!", "std::env"] {
+                assert!(!code(&path).contains(word), "{} uses {word}", path.display());
+            }
+        }
+    }
+}
+
+#[test]
+fn libraries_stay_in_their_rooms() {
+    for (library, room) in [
+        ("rayon", "src/sweep/engine.rs"),
+        ("hdf5", "src/store"),
+        ("indicatif", "src/report/progress.rs"),
+        ("plotters", "src/report/picture"),
+        ("clap", "src/cli"),
+        ("miette", "src/cli"),
+    ] {
+        let mut seen = false;
+        for path in sources(Path::new("src")) {
+            let code = code(&path);
+            let used = [format!("use {library}::"), format!(" {library}::"), format!("({library}::")]
+                .iter()
+                .any(|form| code.contains(form));
+            assert!(!used || path.starts_with(room), "{} uses {library}", path.display());
+            seen |= used;
+        }
+        assert!(seen, "{library} is used in {room}");
+    }
+}
+
+#[test]
+fn every_file_that_the_design_names_exists() {
+    let text = std::fs::read_to_string("DESIGN.md").unwrap();
+    let mut names = 0;
+    for name in text.split('`').skip(1).step_by(2) {
+        if name.contains('/') && name.ends_with(".rs") {
+            assert!(Path::new(name).exists(), "{name}");
+            names += 1;
+        }
+    }
+    assert!(names > 30, "{names} names");
+}

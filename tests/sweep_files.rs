@@ -1,0 +1,163 @@
+//! Sweep files: what is understood, and that every mistake is pointed at.
+
+use slipmap::linear::MarginalTolerance;
+use slipmap::sweep::parameter::LawKind;
+use slipmap::sweep::{Field, Parameter, Plan, SweepSpec};
+
+const GOOD: &str = "\
+title = \"all of it\"
+fields = [\"delay_margin\", \"n_unstable\"]
+boundaries = false
+
+[axes]
+v0 = { from = 1e-2, to = 1e1, points = 4, spacing = \"log\" }
+tau = [0, 0.5, 2]
+alpha_n = { from = -8, to = 1, points = 10 }
+
+[fixed]
+alpha_v = -0.1
+mass = 2
+
+[friction]
+law = \"weakening\"
+mu0 = 0.5
+v_s = 0.5
+
+[units]
+force = \"N\"
+length = \"mm\"
+time = \"s\"
+
+[tolerance]
+marginal = 1e-12
+";
+
+#[test]
+fn everything_is_understood() {
+    let spec: SweepSpec = GOOD.parse().unwrap();
+    assert_eq!(spec.title, "all of it");
+    assert_eq!(spec.fields, [Field::NUnstable, Field::DelayMargin]);
+    assert_eq!(spec.boundaries, Some(false));
+    assert_eq!(spec.tolerance, MarginalTolerance(1e-12));
+    let order: Vec<_> = spec.axes.iter().map(|a| a.parameter).collect();
+    assert_eq!(order, [Parameter::V0, Parameter::Tau, Parameter::AlphaN]);
+    assert_eq!(spec.axes[1].values, [0.0, 0.5, 2.0]);
+    assert_eq!(spec.axes[2].values.len(), 10);
+    assert_eq!(spec.fixed.law(), Some(LawKind::Weakening));
+    assert_eq!(spec.fixed.get(Parameter::Mass), 2.0);
+    assert_eq!(spec.fixed.get(Parameter::MuS), 1.0);
+    assert_eq!(spec.units.of_parameter(Parameter::AlphaN), "N mm-1");
+    assert_eq!(spec.units.of_parameter(Parameter::Mass), "N mm-1 s2");
+    assert_eq!(spec.units.of_parameter(Parameter::MuS), "1");
+    assert_eq!(spec.units.angular_frequency(), "rad s-1");
+    assert_eq!(spec.text, GOOD);
+}
+
+#[test]
+fn the_sweeps_that_come_with_slipmap_are_valid() {
+    for entry in std::fs::read_dir("sweeps").unwrap() {
+        let path = entry.unwrap().path();
+        let text = std::fs::read_to_string(&path).unwrap();
+        let spec: SweepSpec = text.parse().unwrap_or_else(|e| panic!("{}: {e}", path.display()));
+        Plan::new(spec).unwrap();
+    }
+}
+
+/// A sweep that is wrong in one way: the text, where the error points, and what it says.
+const BAD: &[(&str, &str, &str)] = &[
+    ("", "", "at least one axis"),
+    ("[axes]\n", "axes", "at least one axis"),
+    ("[axes", "", "unclosed table"),
+    ("axis = 1", "axis", "unknown key `axis`"),
+    ("[axes]\ntou = [1]\n", "tou", "unknown key `axes.tou`"),
+    ("[axes]\ntau = 3\n", "3", "expected an array, found a whole number"),
+    ("[axes]\ntau = [1]\ntau = [2]\n", "tau", "duplicate key"),
+    ("[axes]\ntau = []\nmu_prime = [1]", "[]", "the list is empty"),
+    ("[axes]\ntau = [1, \"x\"]\n", "\"x\"", "expected a number, found a string"),
+    ("[axes]\ntau = [2, 1]\nmu_prime = [1]", "[2, 1]", "values of tau must be strictly increasing"),
+    ("[axes]\nalpha_v = [2, 1, 1]\n", "[2, 1, 1]", "strictly increasing or strictly decreasing"),
+    ("[axes]\ntau = [-1, 1]\n", "-1", "tau = -1 is outside its range: 0 or more"),
+    ("[axes]\ntau = [nan]\n", "nan", "finite number"),
+    ("[axes]\ntau = [1, inf]\n", "inf", "finite number"),
+    ("[axes]\ntau = [1e999]\n", "1e999", "number"),
+    ("[axes]\nmass = [0.0]\n", "0.0", "mass = 0 is outside its range: greater than 0"),
+    ("[axes]\nmass = [-2]\n", "-2", "mass = -2 is outside its range"),
+    ("[axes]\nmu_prime = [1e300]\n", "1e300", "at most 1e12"),
+    ("[axes]\ntau = { from = 1, to = 0, points = 5 }\n", "{ from = 1, to = 0, points = 5 }", "empty or reversed"),
+    ("[axes]\ntau = { from = 1, to = 1, points = 5 }\n", "{ from = 1, to = 1, points = 5 }", "empty or reversed"),
+    ("[axes]\ntau = { from = -1, to = 1, points = 5 }\n", "{ from = -1, to = 1, points = 5 }", "tau = -1"),
+    ("[axes]\ntau = { from = nan, to = 1, points = 5 }\n", "nan", "finite number"),
+    ("[axes]\ntau = { from = 0, to = 1, points = 0 }\n", "{ from = 0, to = 1, points = 0 }", "points = 0 is outside its range"),
+    ("[axes]\ntau = { from = 0, to = 1, points = -3 }\n", "-3", "whole number between 0"),
+    ("[axes]\ntau = { from = 0, to = 1, points = 2.5 }\n", "2.5", "expected a whole number"),
+    ("[axes]\ntau = { from = 0, to = 1, points = 99999999999 }\n", "{ from = 0, to = 1, points = 99999999999 }", "outside its range"),
+    ("[axes]\ntau = { from = 0, to = 1 }\n", "{ from = 0, to = 1 }", "points is missing"),
+    ("[axes]\ntau = { from = 0, points = 3 }\n", "{ from = 0, points = 3 }", "to is missing"),
+    ("[axes]\ntau = { from = 0, to = 1, points = 3, step = 1 }\n", "step", "unknown key `axes.tau.step`"),
+    ("[axes]\ntau = { from = 0, to = 1, points = 3, spacing = \"log\" }\n", "{ from = 0, to = 1, points = 3, spacing = \"log\" }", "needs from > 0"),
+    ("[axes]\ntau = { from = 1, to = 2, points = 3, spacing = \"cubic\" }\n", "\"cubic\"", "unknown spacing"),
+    ("fields = [\"n_stable\"]\n[axes]\ntau = [1]", "\"n_stable\"", "unknown field"),
+    ("fields = []\n[axes]\ntau = [1]", "[]", "the list is empty"),
+    ("fields = [\"n_unstable\", \"n_unstable\"]\n[axes]\ntau = [1]", "\"n_unstable\"", "listed twice"),
+    ("boundaries = 1\n[axes]\ntau = [1]", "1", "expected true or false"),
+    ("[axes]\ntau = [1]\n", "axes", "mu_prime is not given"),
+    ("[axes]\nmu_prime = [1]\n", "axes", "tau is not given"),
+    ("[axes]\ntau = [1]\n[fixed]\ntau = 2\n", "tau", "tau is given twice"),
+    ("[axes]\ntau = [1]\n[fixed]\nmu_prime = 1\nv0 = 2\n", "v0", "v0 needs a friction law"),
+    ("[axes]\ntau = [1]\n[fixed]\nmu_prime = 1\nmu_s = 2\n", "mu_s", "unknown key `fixed.mu_s`"),
+    ("[axes]\ntau = [1]\n[fixed]\nmass = \"heavy\"\n", "\"heavy\"", "expected a number"),
+    ("[axes]\ntau = [1]\n[fixed]\nmass = 0\n", "0", "mass = 0 is outside its range"),
+    ("[axes]\ntau = [1]\n[fixed]\nv0 = 1\n[friction]\nlaw = \"glue\"\n", "\"glue\"", "unknown friction law"),
+    ("[axes]\ntau = [1]\n[fixed]\nv0 = 1\n[friction]\nmu0 = 0.5\n", "friction", "needs a law"),
+    ("[axes]\ntau = [1]\n[fixed]\nv0 = 1\n[friction]\nlaw = \"coulomb\"\n", "\"coulomb\"", "mu0 is not given"),
+    ("[axes]\ntau = [1]\n[friction]\nlaw = \"coulomb\"\nmu0 = 0.5\n", "\"coulomb\"", "v0 is not given"),
+    ("[axes]\ntau = [1]\n[fixed]\nv0 = 1\nmu_prime = 2\n[friction]\nlaw = \"coulomb\"\nmu0 = 0.5\n", "mu_prime", "no meaning with the coulomb law"),
+    ("[axes]\ntau = [1]\n[fixed]\nv0 = 1\n[friction]\nlaw = \"coulomb\"\nmu0 = 0.5\nv_s = 1\n", "v_s", "no meaning with the coulomb law"),
+    ("[axes]\ntau = [1]\n[fixed]\nv0 = 1\n[friction]\nlaw = \"coulomb\"\nmu0 = 1.5\n", "\"coulomb\"", "at most mu_s"),
+    ("[axes]\ntau = [1]\nmu0 = [0.5, 2]\n[fixed]\nv0 = 1\n[friction]\nlaw = \"coulomb\"\n", "\"coulomb\"", "at most mu_s"),
+    ("[axes]\ntau = [1]\nv0 = [0.0, 1]\n[friction]\nlaw = \"coulomb\"\nmu0 = 0.5\n", "0.0", "v0 = 0 is outside its range"),
+    ("[axes]\ntau = [1]\n[units]\nforce = \"N\"\n", "units", "all three"),
+    ("[axes]\ntau = [1]\n[units]\nforce = \"N m\"\n", "\"N m\"", "one word"),
+    ("[axes]\ntau = [1]\n[tolerance]\nmarginal = 0.5\n", "0.5", "outside its range"),
+    ("[axes]\ntau = [1]\n[tolerance]\nmarginal = -1\n", "-1", "outside its range"),
+];
+
+#[test]
+fn every_mistake_is_pointed_at() {
+    for (text, place, says) in BAD {
+        let error = text.parse::<SweepSpec>().expect_err(text);
+        assert!(error.message.contains(says), "{text}\n says: {}", error.message);
+        let span = error.span.unwrap_or(0..0);
+        if !place.is_empty() {
+            assert_eq!(&text[span], *place, "{text}\n {}", error.message);
+        }
+    }
+}
+
+#[test]
+fn absurdly_large_maps_are_refused() {
+    let axis = "{ from = 0, to = 1, points = 10000000 }";
+    let text = format!("[axes]\nmu_prime = {axis}\nalpha_v = {axis}\ntau = [1]\n");
+    let error = Plan::new(text.parse().unwrap()).unwrap_err();
+    assert!(error.message.contains("at most 10000000000000 are allowed"), "{}", error.message);
+    let axes = "mass = {}\nstiffness = {}\nnormal_load = {}\n".replace("{}", "{ from = 1, to = 2, points = 10000000 }");
+    let text = format!("[axes]\nmu_prime = {axis}\ntau = [1]\n{axes}");
+    assert!(Plan::new(text.parse().unwrap()).is_err());
+}
+
+#[test]
+fn equal_plans_have_equal_hashes_and_others_not() {
+    let hash = |text: &str| Plan::new(text.parse().unwrap()).unwrap().hash();
+    let base = "[axes]\ntau = [1, 2]\n[fixed]\nmu_prime = -0.1\nalpha_v = 0.5\n";
+    assert_eq!(hash(base), hash("# the same\n[axes]\ntau = [1.0, 2.0]\n[fixed]\nalpha_v = 5e-1\nmu_prime = -0.1\n"));
+    for other in [
+        "[axes]\ntau = [1, 3]\n[fixed]\nmu_prime = -0.1\nalpha_v = 0.5\n",
+        "[axes]\ntau = [1, 2]\n[fixed]\nmu_prime = -0.1\nalpha_v = 0.6\n",
+        "[axes]\ntau = [1, 2]\n[fixed]\nmu_prime = -0.1\nalpha_n = 0.5\n",
+        "fields = [\"delay_margin\"]\n[axes]\ntau = [1, 2]\n[fixed]\nmu_prime = -0.1\nalpha_v = 0.5\n",
+        "[axes]\ntau = [1, 2]\nmu_prime = [-0.1]\n[fixed]\nalpha_v = 0.5\n",
+        "[axes]\ntau = [1, 2]\n[fixed]\nmu_prime = -0.1\nalpha_v = 0.5\n[tolerance]\nmarginal = 1e-10\n",
+    ] {
+        assert_ne!(hash(base), hash(other), "{other}");
+    }
+}
