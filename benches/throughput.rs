@@ -1,6 +1,7 @@
 //! How far counting and storing are from the limits of the machine. Run with `cargo bench --bench throughput`.
 //!
-//! 1. Counting a 1000×1000×1000 grid into reused tile buffers, against filling the same buffers with a constant.
+//! 1. Counting a 1000×1000×1000 grid into reused tile buffers, against filling the same buffers with a constant (they fit
+//!    a processor's cache), and against filling memory beyond the cache with as many bytes.
 //! 2. The same on one thread and on all.
 //! 3. A whole `run` of a 10⁹-cell count map, against writing the same bytes uncompressed to the same disk, both synced.
 //!
@@ -31,7 +32,12 @@ fn plan(points: usize) -> Plan {
 }
 
 /// Seconds to visit all tiles on `threads` threads, each with buffers of its own.
-fn over_tiles<W>(plan: &Plan, threads: usize, worker: impl Fn() -> W + Sync, visit: impl Fn(&mut W, usize) + Sync) -> f64 {
+fn over_tiles<W>(
+    plan: &Plan,
+    threads: usize,
+    worker: impl Fn() -> W + Sync,
+    visit: impl Fn(&mut W, usize) + Sync,
+) -> f64 {
     let next = AtomicUsize::new(0);
     let start = Instant::now();
     std::thread::scope(|scope| {
@@ -52,26 +58,56 @@ fn over_tiles<W>(plan: &Plan, threads: usize, worker: impl Fn() -> W + Sync, vis
 }
 
 fn count(plan: &Plan, threads: usize) -> f64 {
-    over_tiles(plan, threads, || Worker::new(plan), |worker, number| {
-        worker.compute(&plan.tiles.tile(number));
-        std::hint::black_box(&worker.buffers);
-    })
+    over_tiles(
+        plan,
+        threads,
+        || Worker::new(plan),
+        |worker, number| {
+            worker.compute(&plan.tiles.tile(number));
+            std::hint::black_box(&worker.buffers);
+        },
+    )
 }
 
 fn fill(plan: &Plan, threads: usize) -> f64 {
-    over_tiles(plan, threads, || TileBuffers::new(plan), |buffers, number| {
-        if let Some(n) = &mut buffers.n_unstable {
-            n.fill(number as u16);
+    over_tiles(
+        plan,
+        threads,
+        || TileBuffers::new(plan),
+        |buffers, number| {
+            if let Some(n) = &mut buffers.n_unstable {
+                n.fill(number as u16);
+            }
+            buffers.status.fill(number as u8);
+            std::hint::black_box(&buffers);
+        },
+    )
+}
+
+/// Seconds to fill as many bytes as the map has, over and over in memory that no cache holds.
+fn fill_memory(plan: &Plan, threads: usize) -> f64 {
+    const BYTES: usize = 256 << 20;
+    let mut blocks = vec![vec![1_u8; BYTES]; threads];
+    let bytes = (plan.cells() * plan.bytes_per_cell()) as usize / threads;
+    let start = Instant::now();
+    std::thread::scope(|scope| {
+        for block in &mut blocks {
+            scope.spawn(move || {
+                for (round, from) in (0..bytes).step_by(BYTES).enumerate() {
+                    block[..BYTES.min(bytes - from)].fill(round as u8);
+                    std::hint::black_box(&block);
+                }
+            });
         }
-        buffers.status.fill(number as u8);
-        std::hint::black_box(&buffers);
-    })
+    });
+    start.elapsed().as_secs_f64()
 }
 
 fn store(plan: &Plan, folder: &Path, threads: usize) -> f64 {
     let start = Instant::now();
     let output = Output::claim(&folder.join("map.h5")).expect("the folder is writable");
-    let mut writer = MapWriter::create(plan, output, &Provenance::default()).expect("the map can be created");
+    let mut writer =
+        MapWriter::create(plan, output, &Provenance::default()).expect("the map can be created");
     run(plan, threads, &mut writer, &Silent, &AtomicBool::new(false)).expect("the sweep runs");
     writer.finish().expect("the map can be finished");
     start.elapsed().as_secs_f64()
@@ -105,24 +141,38 @@ fn against(a: impl Fn() -> f64, b: impl Fn() -> f64) -> (f64, f64, f64) {
 }
 
 fn main() {
-    let points = std::env::var("SLIPMAP_BENCH_CELLS").ok().and_then(|n| n.parse().ok()).unwrap_or(1000);
+    let points = std::env::var("SLIPMAP_BENCH_CELLS")
+        .ok()
+        .and_then(|n| n.parse().ok())
+        .unwrap_or(1000);
     let all = std::thread::available_parallelism().map_or(1, usize::from);
     let plan = plan(points);
     println!("{points}³ cells, {all} threads, medians of {ROUNDS} rounds");
     for threads in if all > 1 { vec![1, all] } else { vec![1] } {
         let (counted, filled, ratio) = against(|| count(&plan, threads), || fill(&plan, threads));
-        println!("count against fill, {threads} threads: {counted:.3} s / {filled:.3} s = {ratio:.2}");
+        println!(
+            "count against fill, {threads} threads: {counted:.3} s / {filled:.3} s = {ratio:.2}"
+        );
+        let (counted, filled, ratio) =
+            against(|| count(&plan, threads), || fill_memory(&plan, threads));
+        println!(
+            "count against memory beyond the cache, {threads} threads: {counted:.3} s / {filled:.3} s = {ratio:.2}"
+        );
     }
     if all > 1 {
         let (one, many, ratio) = against(|| count(&plan, 1), || count(&plan, all));
         println!("count, 1 thread against {all}: {one:.3} s / {many:.3} s = {ratio:.2}");
         let folder = tempfile::tempdir_in(".").expect("the folder is writable");
-        let (one, many, ratio) =
-            against(|| store(&plan, folder.path(), 1), || store(&plan, folder.path(), all));
+        let (one, many, ratio) = against(
+            || store(&plan, folder.path(), 1),
+            || store(&plan, folder.path(), all),
+        );
         println!("run, 1 thread against {all}: {one:.3} s / {many:.3} s = {ratio:.2}");
     }
     let folder = tempfile::tempdir_in(".").expect("the folder is writable");
-    let (stored, raw, ratio) =
-        against(|| store(&plan, folder.path(), all), || write_raw(&plan, folder.path()));
+    let (stored, raw, ratio) = against(
+        || store(&plan, folder.path(), all),
+        || write_raw(&plan, folder.path()),
+    );
     println!("run against raw write, {all} threads: {stored:.3} s / {raw:.3} s = {ratio:.2}");
 }

@@ -201,24 +201,16 @@ class Labels:
         own = self.segments_of([slope])
         apart = np.array([np.abs(ink - end).max(axis=1).min(initial=np.inf) for end in anchors])
         crowded = np.clip(1.0 - apart / (4 * self.point), 0.0, 1.0)
-        candidates = []
-        for centre in centres:
-            starts = edge_of_box(centre, size, anchors)
-            lengths = np.hypot(*(anchors - starts).T)
-            for i in np.argsort(lengths)[:1].tolist() + list(range(0, len(anchors), 5)):
-                candidates.append((lengths[i], i, centre, starts[i]))
-        # A leader costs its length, and much more for each line it runs through.
-        candidates.sort(key=lambda c: c[0])
+        # A leader costs its length, and much more where lines are dense and for each line it runs through.
         best, best_cost = None, np.inf
-        for length, i, centre, start in candidates:
-            short = max(0.0, 5 * self.point - length)
-            cost = (length + 2 * short) / self.height
-            if cost >= best_cost:
-                if length > 5 * self.point:
-                    break
-                continue
+        for length, i, centre, start in leaders(centres, size, anchors):
             end = anchors[i]
+            cost = max(length, 10 * self.point - length) / self.height
+            if cost >= best_cost and length > 5 * self.point:
+                break
             cost += 2.0 * crowded[i]
+            if cost >= best_cost:
+                continue
             cost += 2.0 * crossings(start, end, strangers)
             cost += 3.0 * crossings(start, start + 0.98 * (end - start), own)
             if cost < best_cost and self.leader_is_free(start, end):
@@ -262,6 +254,17 @@ class Labels:
         return np.concatenate(segments) if segments else np.zeros((0, 2, 2))
 
 
+def leaders(centres, size, anchors):
+    """(length, anchor, centre, start) of ways from boxes to anchors, by length: the nearest anchor and some others."""
+    found = []
+    for centre in centres:
+        starts = edge_of_box(centre, size, anchors)
+        lengths = np.hypot(*(anchors - starts).T)
+        for i in {int(lengths.argmin()), *range(0, len(anchors), 5)}:
+            found.append((lengths[i], i, centre, starts[i]))
+    return sorted(found, key=lambda leader: leader[:2])
+
+
 def dense(polyline, step):
     """Points along a polyline, no farther than `step` from one another."""
     lengths = np.hypot(*np.diff(polyline, axis=0).T)
@@ -290,7 +293,8 @@ def crossings(start, end, segments):
         return 0
     a, b = segments[:, 0], segments[:, 1]
     apart = side(start, end, a) * side(start, end, b) < 0
-    return int((apart & (side(a, b, start) * side(a, b, end) < 0)).sum())
+    a, b = a[apart], b[apart]
+    return int((side(a, b, start) * side(a, b, end) < 0).sum())
 
 
 def figure(panels):

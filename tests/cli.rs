@@ -29,7 +29,11 @@ impl Folder {
 
     fn command(&self, args: &[&str]) -> Command {
         let mut command = Command::new(env!("CARGO_BIN_EXE_slipmap"));
-        command.args(args).current_dir(self.path()).env("NO_COLOR", "1").env("COLUMNS", "100");
+        command
+            .args(args)
+            .current_dir(self.path())
+            .env("NO_COLOR", "1")
+            .env("COLUMNS", "100");
         command
     }
 
@@ -61,36 +65,83 @@ fn expect(output: &Output, code: i32, says: &str) {
     let text = format!("{}{}", out(output), err(output));
     assert_eq!(output.status.code(), Some(code), "{text}");
     // Messages are wrapped to the terminal: compare words.
-    let words = |text: &str| text.split(|c: char| c.is_whitespace() || c == '│').filter(|w| !w.is_empty()).collect::<Vec<_>>().join(" ");
-    assert!(words(&text).contains(&words(says)), "expected {says:?} in\n{text}");
+    let words = |text: &str| {
+        text.split(|c: char| c.is_whitespace() || c == '│')
+            .filter(|w| !w.is_empty())
+            .collect::<Vec<_>>()
+            .join(" ")
+    };
+    assert!(
+        words(&text).contains(&words(says)),
+        "expected {says:?} in\n{text}"
+    );
     assert!(!text.contains("panicked"), "{text}");
 }
 
 #[test]
 fn run_makes_a_map_and_a_picture_and_goes_on_from_there() {
-    let folder = Folder::with(&[("small.toml", SMALL), ("other.toml", &SMALL.replace("41", "42"))]);
-    expect(&folder.run(&["run", "small.toml"]), 0, "small.h5: 5 002 cells");
-    assert_eq!(folder.files(), ["other.toml", "small.h5", "small.png", "small.toml"]);
-    let first = std::fs::metadata(folder.path().join("small.h5")).unwrap().modified().unwrap();
+    let folder = Folder::with(&[
+        ("small.toml", SMALL),
+        ("other.toml", &SMALL.replace("41", "42")),
+    ]);
+    expect(
+        &folder.run(&["run", "small.toml"]),
+        0,
+        "small.h5: 5 002 cells",
+    );
+    assert_eq!(
+        folder.files(),
+        ["other.toml", "small.h5", "small.png", "small.toml"]
+    );
+    let first = std::fs::metadata(folder.path().join("small.h5"))
+        .unwrap()
+        .modified()
+        .unwrap();
     expect(&folder.run(&["run", "small.toml"]), 0, "already complete");
-    let again = std::fs::metadata(folder.path().join("small.h5")).unwrap().modified().unwrap();
+    let again = std::fs::metadata(folder.path().join("small.h5"))
+        .unwrap()
+        .modified()
+        .unwrap();
     assert_eq!(first, again);
-    expect(&folder.run(&["run", "other.toml", "-o", "small.h5"]), 2, "the map of another sweep");
-    expect(&folder.run(&["run", "other.toml", "-o", "small.h5", "--fresh"]), 0, "5 124 cells");
+    expect(
+        &folder.run(&["run", "other.toml", "-o", "small.h5"]),
+        2,
+        "the map of another sweep",
+    );
+    expect(
+        &folder.run(&["run", "other.toml", "-o", "small.h5", "--fresh"]),
+        0,
+        "5 124 cells",
+    );
     expect(&folder.run(&["info", "small.h5"]), 0, "42 points, -3 to 1");
-    assert_eq!(out(&folder.run(&["info", "small.h5", "--sweep"])), SMALL.replace("41", "42"));
+    assert_eq!(
+        out(&folder.run(&["info", "small.h5", "--sweep"])),
+        SMALL.replace("41", "42")
+    );
 }
 
 #[test]
 fn an_output_that_is_no_map_is_not_touched() {
     let folder = Folder::with(&[("small.toml", SMALL), ("thesis.h5", "years of work")]);
-    expect(&folder.run(&["run", "small.toml", "-o", "thesis.h5"]), 2, "no map of slipmap");
-    assert_eq!(std::fs::read_to_string(folder.path().join("thesis.h5")).unwrap(), "years of work");
+    expect(
+        &folder.run(&["run", "small.toml", "-o", "thesis.h5"]),
+        2,
+        "no map of slipmap",
+    );
+    assert_eq!(
+        std::fs::read_to_string(folder.path().join("thesis.h5")).unwrap(),
+        "years of work"
+    );
     std::fs::create_dir(folder.path().join("folder.h5")).unwrap();
     for fresh in [&["--fresh"][..], &[]] {
         let args = [&["run", "small.toml", "-o", "folder.h5"], fresh].concat();
         let output = folder.run(&args);
-        assert!(!output.status.success() && err(&output).contains("directory") || err(&output).contains("folder"), "{}", err(&output));
+        assert!(
+            !output.status.success() && err(&output).contains("directory")
+                || err(&output).contains("folder"),
+            "{}",
+            err(&output)
+        );
     }
     assert_eq!(folder.files(), ["folder.h5", "small.toml", "thesis.h5"]);
 }
@@ -102,15 +153,25 @@ fn places_that_cannot_be_written_are_named() {
         let output = folder.run(&["run", "small.toml", "-o", place]);
         expect(&output, 1, &format!("cannot write {place}"));
     }
-    expect(&folder.run(&["run", "small.toml", "-o", ".."]), 2, "does not name a file");
+    expect(
+        &folder.run(&["run", "small.toml", "-o", ".."]),
+        2,
+        "does not name a file",
+    );
     assert_eq!(folder.files(), ["small.toml"]);
 }
 
 #[test]
 fn mistakes_in_sweep_files_are_shown_in_place() {
     let folder = Folder::with(&[
-        ("reversed.toml", "[axes]\nmu_prime = [-0.1]\ntau = { from = 12, to = 0, points = 5 }\n"),
-        ("unknown.toml", "[axes]\nmu_prime = [-0.1]\ntau = [1]\n\n[fixed]\nalpha_w = 3\n"),
+        (
+            "reversed.toml",
+            "[axes]\nmu_prime = [-0.1]\ntau = { from = 12, to = 0, points = 5 }\n",
+        ),
+        (
+            "unknown.toml",
+            "[axes]\nmu_prime = [-0.1]\ntau = [1]\n\n[fixed]\nalpha_w = 3\n",
+        ),
     ]);
     let reversed = folder.run(&["run", "reversed.toml"]);
     assert_eq!(reversed.status.code(), Some(2));
@@ -120,10 +181,21 @@ fn mistakes_in_sweep_files_are_shown_in_place() {
     insta::assert_snapshot!("unknown_key", err(&unknown));
     std::fs::write(folder.path().join("latin.toml"), b"# \xe9\n").unwrap();
     expect(&folder.run(&["run", "latin.toml"]), 2, "not UTF-8");
-    expect(&folder.run(&["run", "missing.toml"]), 2, "cannot read missing.toml");
+    expect(
+        &folder.run(&["run", "missing.toml"]),
+        2,
+        "cannot read missing.toml",
+    );
     expect(&folder.run(&["run", "."]), 2, "it is no file");
-    expect(&folder.run(&["plan", "missing.toml"]), 2, "cannot read missing.toml");
-    assert_eq!(folder.files(), ["latin.toml", "reversed.toml", "unknown.toml"]);
+    expect(
+        &folder.run(&["plan", "missing.toml"]),
+        2,
+        "cannot read missing.toml",
+    );
+    assert_eq!(
+        folder.files(),
+        ["latin.toml", "reversed.toml", "unknown.toml"]
+    );
 }
 
 #[test]
@@ -145,13 +217,36 @@ fn usage_mistakes_have_exit_code_2() {
         &["point", "--mu-prime", "1", "--tau", "-1"],
         &["point", "--mu-prime", "1", "--tau", "1", "--mass", "0"],
         &["point", "--mu-prime", "1", "--tau", "1", "--v0", "1"],
-        &["point", "--mu-prime", "1", "--tau", "1", "--friction", "coulomb"],
-        &["point", "--friction", "weakening", "--mu0", "2", "--v-s", "1", "--v0", "1", "--tau", "1"],
+        &[
+            "point",
+            "--mu-prime",
+            "1",
+            "--tau",
+            "1",
+            "--friction",
+            "coulomb",
+        ],
+        &[
+            "point",
+            "--friction",
+            "weakening",
+            "--mu0",
+            "2",
+            "--v-s",
+            "1",
+            "--v0",
+            "1",
+            "--tau",
+            "1",
+        ],
         &["point", "--friction", "glue", "--tau", "1"],
     ] {
         let output = folder.run(args);
         assert_eq!(output.status.code(), Some(2), "{args:?}\n{}", err(&output));
-        assert!(!err(&output).is_empty() && out(&output).is_empty(), "{args:?}");
+        assert!(
+            !err(&output).is_empty() && out(&output).is_empty(),
+            "{args:?}"
+        );
         assert!(!err(&output).contains("panicked"), "{}", err(&output));
     }
     assert_eq!(folder.files(), ["small.toml"]);
@@ -159,11 +254,18 @@ fn usage_mistakes_have_exit_code_2() {
 
 #[test]
 fn files_that_are_no_maps_are_answered() {
-    let folder = Folder::with(&[("text.h5", "hello"), ("empty.h5", ""), ("small.toml", SMALL)]);
+    let folder = Folder::with(&[
+        ("text.h5", "hello"),
+        ("empty.h5", ""),
+        ("small.toml", SMALL),
+    ]);
     expect(&folder.run(&["run", "small.toml"]), 0, "cells");
     let whole = std::fs::read(folder.path().join("small.h5")).unwrap();
     std::fs::write(folder.path().join("half.h5"), &whole[..whole.len() / 2]).unwrap();
-    hdf5::File::create(folder.path().join("bare.h5")).unwrap().close().unwrap();
+    hdf5::File::create(folder.path().join("bare.h5"))
+        .unwrap()
+        .close()
+        .unwrap();
     for name in ["text.h5", "empty.h5", "half.h5", "bare.h5"] {
         for command in ["info", "plot"] {
             expect(&folder.run(&[command, name]), 2, "is not a slipmap map");
@@ -177,11 +279,22 @@ fn files_that_are_no_maps_are_answered() {
 #[test]
 fn point_says_everything_for_people_and_programs() {
     let folder = Folder::new();
-    let args = ["point", "--mu-prime", "-0.7", "--alpha-v", "-0.3174", "--tau", "4.312957"];
+    let args = [
+        "point",
+        "--mu-prime",
+        "-0.7",
+        "--alpha-v",
+        "-0.3174",
+        "--tau",
+        "4.312957",
+    ];
     insta::assert_snapshot!("point", out(&folder.run(&args)));
     let json = folder.run(&[&args[..], &["--json"]].concat());
     let value: serde_json::Value = serde_json::from_slice(&json.stdout).unwrap();
-    assert_eq!((value["n_unstable"].as_u64(), value["stable"].as_bool()), (Some(0), Some(true)));
+    assert_eq!(
+        (value["n_unstable"].as_u64(), value["stable"].as_bool()),
+        (Some(0), Some(true))
+    );
     assert_eq!(value["marginal"].as_bool(), Some(false));
     let near = |value: &serde_json::Value, expected: f64, by: f64| {
         assert!((value.as_f64().unwrap() - expected).abs() < by, "{value}");
@@ -201,18 +314,55 @@ fn point_agrees_with_itself_in_other_units() {
     let json = |args: &[&str]| -> serde_json::Value {
         serde_json::from_slice(&folder.run(&[&["point", "--json"], args].concat()).stdout).unwrap()
     };
-    let plain = json(&["--mu-prime", "-0.2", "--alpha-v", "-0.3", "--alpha-n", "-0.8", "--tau", "3"]);
+    let plain = json(&[
+        "--mu-prime",
+        "-0.2",
+        "--alpha-v",
+        "-0.3",
+        "--alpha-n",
+        "-0.8",
+        "--tau",
+        "3",
+    ]);
     // M = 4, κ = 9: time unit 2/3, b = μ′N0/6, a_v = α_v 2/3, a_n = μ_K α_N/9.
     let scaled = json(&[
-        "--mass", "4", "--stiffness", "9", "--normal-load", "3", "--mu-k", "0.5", "--mu-prime", "-0.4",
-        "--alpha-v", "-0.45", "--alpha-n", "-14.4", "--tau", "2",
+        "--mass",
+        "4",
+        "--stiffness",
+        "9",
+        "--normal-load",
+        "3",
+        "--mu-k",
+        "0.5",
+        "--mu-prime",
+        "-0.4",
+        "--alpha-v",
+        "-0.45",
+        "--alpha-n",
+        "-14.4",
+        "--tau",
+        "2",
     ]);
     assert_eq!(plain["n_unstable"], scaled["n_unstable"]);
     let margins = [&plain, &scaled].map(|v| v["delay_margin"].as_f64().unwrap());
-    assert!((margins[0] * 2.0 / 3.0 - margins[1]).abs() < 1e-12, "{margins:?}");
+    assert!(
+        (margins[0] * 2.0 / 3.0 - margins[1]).abs() < 1e-12,
+        "{margins:?}"
+    );
     // The letter's Fig. 3(b).
     let law = json(&[
-        "--friction", "weakening", "--mu0", "0.5", "--v-s", "0.5", "--v0", "0.1", "--alpha-n", "-10", "--tau", "0.5",
+        "--friction",
+        "weakening",
+        "--mu0",
+        "0.5",
+        "--v-s",
+        "0.5",
+        "--v0",
+        "0.1",
+        "--alpha-n",
+        "-10",
+        "--tau",
+        "0.5",
     ]);
     assert_eq!(law["stable"].as_bool(), Some(true));
     assert!((law["mu_prime"].as_f64().unwrap() + 1.0 / 1.44).abs() < 1e-12);
@@ -229,11 +379,18 @@ fn plan_tells_the_cost_without_writing() {
 
 fn start(folder: &Folder) -> std::process::Child {
     let mut command = folder.command(&["run", "large.toml"]);
-    let child = command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
+    let child = command
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap();
     let part = folder.path().join("large.h5.part");
     let start = Instant::now();
     while !part.exists() {
-        assert!(start.elapsed() < Duration::from_secs(20), "the run did not start");
+        assert!(
+            start.elapsed() < Duration::from_secs(20),
+            "the run did not start"
+        );
         std::thread::sleep(Duration::from_millis(5));
     }
     std::thread::sleep(Duration::from_millis(200));
@@ -243,7 +400,13 @@ fn start(folder: &Folder) -> std::process::Child {
 #[cfg(unix)]
 fn send(signal: &str, child: &std::process::Child) {
     let pid = child.id().to_string();
-    assert!(Command::new("kill").args([signal, &pid]).status().unwrap().success());
+    assert!(
+        Command::new("kill")
+            .args([signal, &pid])
+            .status()
+            .unwrap()
+            .success()
+    );
 }
 
 #[test]
@@ -255,7 +418,11 @@ fn signals_stop_a_run_soon_and_leave_nothing_behind() {
         let sent = Instant::now();
         send(signal, &child);
         let output = child.wait_with_output().unwrap();
-        assert!(sent.elapsed() < Duration::from_secs(2), "{:?}", sent.elapsed());
+        assert!(
+            sent.elapsed() < Duration::from_secs(2),
+            "{:?}",
+            sent.elapsed()
+        );
         expect(&output, code, "large.h5 was not written");
         assert_eq!(folder.files(), ["large.toml"]);
     }
@@ -267,12 +434,20 @@ fn a_killed_run_leaves_no_map_and_does_not_block_the_next() {
     let folder = Folder::with(&[("large.toml", LARGE)]);
     let mut child = start(&folder);
     // While it lives, a second run on the same output is refused.
-    expect(&folder.run(&["run", "large.toml"]), 1, "another run is writing large.h5");
+    expect(
+        &folder.run(&["run", "large.toml"]),
+        1,
+        "another run is writing large.h5",
+    );
     send("-KILL", &child);
     child.wait().unwrap();
     assert!(!folder.path().join("large.h5").exists());
     std::fs::write(folder.path().join("large.toml"), SMALL).unwrap();
-    expect(&folder.run(&["run", "large.toml"]), 0, "large.h5: 5 002 cells");
+    expect(
+        &folder.run(&["run", "large.toml"]),
+        0,
+        "large.h5: 5 002 cells",
+    );
     assert_eq!(folder.files(), ["large.h5", "large.png", "large.toml"]);
 }
 
@@ -283,7 +458,10 @@ fn a_disk_that_is_full_is_named_and_nothing_is_left() {
     let folder = Folder::with(&[("large.toml", LARGE)]);
     let program = env!("CARGO_BIN_EXE_slipmap");
     let output = Command::new("sh")
-        .args(["-c", &format!("ulimit -f 200; exec '{program}' run large.toml")])
+        .args([
+            "-c",
+            &format!("ulimit -f 200; exec '{program}' run large.toml"),
+        ])
         .current_dir(folder.path())
         .output()
         .unwrap();
@@ -296,7 +474,11 @@ fn progress_is_plain_lines_without_a_terminal() {
     let folder = Folder::with(&[("small.toml", SMALL)]);
     let output = folder.run(&["run", "small.toml", "--threads", "2"]);
     expect(&output, 0, "5 002 cells on 2 threads");
-    assert!(!err(&output).contains('\u{1b}') && !err(&output).contains('\r'), "{}", err(&output));
+    assert!(
+        !err(&output).contains('\u{1b}') && !err(&output).contains('\r'),
+        "{}",
+        err(&output)
+    );
     let quiet = folder.run(&["run", "small.toml", "--quiet", "--fresh"]);
     assert_eq!(err(&quiet), "");
 }

@@ -56,8 +56,12 @@ fn every_cell_is_what_the_library_says() {
         write(&plan, 2, &path);
         let file = hdf5::File::open(&path).unwrap();
         let status = file.dataset("status").unwrap().read_raw::<u8>().unwrap();
-        let counts = file.dataset("n_unstable").map(|d| d.read_raw::<u16>().unwrap());
-        let margins = file.dataset("delay_margin").map(|d| d.read_raw::<f64>().unwrap());
+        let counts = file
+            .dataset("n_unstable")
+            .map(|d| d.read_raw::<u16>().unwrap());
+        let margins = file
+            .dataset("delay_margin")
+            .map(|d| d.read_raw::<f64>().unwrap());
         assert_eq!(status.len() as u64, plan.cells());
         for cell in 0..status.len() {
             // All cells of small maps, every seventh of large ones and those at the ends.
@@ -69,13 +73,28 @@ fn every_cell_is_what_the_library_says() {
             let crossings = Crossings::of(groups).in_physical_time(unit);
             let tau = setting.get(Parameter::Tau);
             let count = crossings.count(tau, plan.spec.tolerance);
-            assert_eq!(status[cell] & MARGINAL != 0, count.marginal, "{text} {cell}");
+            assert_eq!(
+                status[cell] & MARGINAL != 0,
+                count.marginal,
+                "{text} {cell}"
+            );
             if let Ok(counts) = &counts {
-                assert_eq!(u64::from(counts[cell]), count.n_unstable.min(65534), "{text} {cell}");
+                assert_eq!(
+                    u64::from(counts[cell]),
+                    count.n_unstable.min(65534),
+                    "{text} {cell}"
+                );
             }
             if let Ok(margins) = &margins {
-                assert_eq!(margins[cell].to_bits(), crossings.delay_margin(tau).to_bits(), "{text} {cell}");
-                assert!(count.marginal || (margins[cell] > 0.0) == (count.n_unstable == 0), "{text} {cell}");
+                assert_eq!(
+                    margins[cell].to_bits(),
+                    crossings.delay_margin(tau).to_bits(),
+                    "{text} {cell}"
+                );
+                assert!(
+                    count.marginal || (margins[cell] > 0.0) == (count.n_unstable == 0),
+                    "{text} {cell}"
+                );
             }
         }
     }
@@ -86,10 +105,30 @@ fn datasets(group: &hdf5::Group) -> Vec<(String, Vec<u8>)> {
     let mut all = Vec::new();
     for dataset in group.datasets().unwrap() {
         let bytes = match dataset.dtype().unwrap().size() {
-            1 => dataset.read_raw::<i8>().unwrap().iter().map(|v| *v as u8).collect(),
-            2 => dataset.read_raw::<u16>().unwrap().iter().flat_map(|v| v.to_le_bytes()).collect(),
-            4 => dataset.read_raw::<i32>().unwrap().iter().flat_map(|v| v.to_le_bytes()).collect(),
-            _ => dataset.read_raw::<f64>().unwrap().iter().flat_map(|v| v.to_le_bytes()).collect(),
+            1 => dataset
+                .read_raw::<i8>()
+                .unwrap()
+                .iter()
+                .map(|v| *v as u8)
+                .collect(),
+            2 => dataset
+                .read_raw::<u16>()
+                .unwrap()
+                .iter()
+                .flat_map(|v| v.to_le_bytes())
+                .collect(),
+            4 => dataset
+                .read_raw::<i32>()
+                .unwrap()
+                .iter()
+                .flat_map(|v| v.to_le_bytes())
+                .collect(),
+            _ => dataset
+                .read_raw::<f64>()
+                .unwrap()
+                .iter()
+                .flat_map(|v| v.to_le_bytes())
+                .collect(),
         };
         all.push((dataset.name(), bytes));
     }
@@ -126,8 +165,10 @@ fn curves_in_the_map_separate_its_stable_cells() {
     let map = MapFile::open(&path).unwrap();
     assert_eq!(map.boundary_plane(), Some((1, 2)));
     let curves = map.curves().unwrap();
-    let bounding: Vec<_> =
-        curves.iter().filter(|c| c.piece.stable_side != StableSide::Neither).collect();
+    let bounding: Vec<_> = curves
+        .iter()
+        .filter(|c| c.piece.stable_side != StableSide::Neither)
+        .collect();
     assert!(bounding.len() > 20);
     let mut checked = 0;
     for curve in bounding {
@@ -176,7 +217,11 @@ fn cells(text: &str, mut visit: impl FnMut(&slipmap::sweep::Setting, u16)) {
         for cell in 0..tile.cells() as usize {
             let inside = index_of(cell, &tile.extent);
             let at: usize = inside.iter().zip(&strides).map(|(i, s)| i * s).sum();
-            let index: Vec<usize> = inside.iter().zip(&tile.offset).map(|(i, o)| i + o).collect();
+            let index: Vec<usize> = inside
+                .iter()
+                .zip(&tile.offset)
+                .map(|(i, o)| i + o)
+                .collect();
             visit(&plan.setting(&index), n[at]);
         }
     }
@@ -192,7 +237,10 @@ fn velocity_control_ends_in_the_map_where_the_tangency_says() {
             "[axes]\nmu_prime = [{inside}, {outside}]\n\
              alpha_v = {{ from = {}, to = {}, points = 1501 }}\n\
              tau = {{ from = {}, to = {}, points = 1501 }}\n",
-            end.gain - width, end.gain + width, end.tau - 5.0 * width, end.tau + 5.0 * width,
+            end.gain - width,
+            end.gain + width,
+            end.tau - 5.0 * width,
+            end.tau + 5.0 * width,
         );
         let (mut stable_inside, mut stable_outside) = (0, 0);
         cells(&text, |setting, n| {
@@ -224,6 +272,9 @@ fn areas_of_the_first_velocity_lobe() {
         let mut stable = 0_u32;
         cells(&text, |_, n| stable += u32::from(n == 0));
         let found = f64::from(stable) * (a1 - a0) * (t1 - t0) / (2000.0 * 2000.0);
-        assert!((found - area).abs() < 0.5e-4 + 0.005 * area, "b = {b}: {found} instead of {area}");
+        assert!(
+            (found - area).abs() < 0.5e-4 + 0.005 * area,
+            "b = {b}: {found} instead of {area}"
+        );
     }
 }

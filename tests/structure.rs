@@ -20,7 +20,10 @@ fn sources(folder: &Path) -> Vec<PathBuf> {
 /// Code of a file without its comments.
 fn code(path: &Path) -> String {
     let text = std::fs::read_to_string(path).unwrap();
-    text.lines().filter(|l| !l.trim_start().starts_with("//")).collect::<Vec<_>>().join("\n")
+    text.lines()
+        .filter(|l| !l.trim_start().starts_with("//"))
+        .collect::<Vec<_>>()
+        .join("\n")
 }
 
 #[test]
@@ -44,8 +47,19 @@ fn layers_use_only_those_below() {
 fn the_ground_layers_are_pure() {
     for layer in ["model", "linear"] {
         for path in sources(&Path::new("src").join(layer)) {
-            for word in ["std::fs", "std::io", "std::time", "std::thread", "println!", "std::env"] {
-                assert!(!code(&path).contains(word), "{} uses {word}", path.display());
+            for word in [
+                "std::fs",
+                "std::io",
+                "std::time",
+                "std::thread",
+                "println!",
+                "std::env",
+            ] {
+                assert!(
+                    !code(&path).contains(word),
+                    "{} uses {word}",
+                    path.display()
+                );
             }
         }
     }
@@ -64,10 +78,18 @@ fn libraries_stay_in_their_rooms() {
         let mut seen = false;
         for path in sources(Path::new("src")) {
             let code = code(&path);
-            let used = [format!("use {library}::"), format!(" {library}::"), format!("({library}::")]
-                .iter()
-                .any(|form| code.contains(form));
-            assert!(!used || path.starts_with(room), "{} uses {library}", path.display());
+            let used = [
+                format!("use {library}::"),
+                format!(" {library}::"),
+                format!("({library}::"),
+            ]
+            .iter()
+            .any(|form| code.contains(form));
+            assert!(
+                !used || path.starts_with(room),
+                "{} uses {library}",
+                path.display()
+            );
             seen |= used;
         }
         assert!(seen, "{library} is used in {room}");

@@ -58,7 +58,9 @@ fn the_sweeps_that_come_with_slipmap_are_valid() {
     for entry in std::fs::read_dir("sweeps").unwrap() {
         let path = entry.unwrap().path();
         let text = std::fs::read_to_string(&path).unwrap();
-        let spec: SweepSpec = text.parse().unwrap_or_else(|e| panic!("{}: {e}", path.display()));
+        let spec: SweepSpec = text
+            .parse()
+            .unwrap_or_else(|e| panic!("{}: {e}", path.display()));
         Plan::new(spec).unwrap();
     }
 }
@@ -70,63 +72,235 @@ const BAD: &[(&str, &str, &str)] = &[
     ("[axes", "", "unclosed table"),
     ("axis = 1", "axis", "unknown key `axis`"),
     ("[axes]\ntou = [1]\n", "tou", "unknown key `axes.tou`"),
-    ("[axes]\ntau = 3\n", "3", "expected an array, found a whole number"),
+    (
+        "[axes]\ntau = 3\n",
+        "3",
+        "expected an array, found a whole number",
+    ),
     ("[axes]\ntau = [1]\ntau = [2]\n", "tau", "duplicate key"),
-    ("[axes]\ntau = []\nmu_prime = [1]", "[]", "the list is empty"),
-    ("[axes]\ntau = [1, \"x\"]\n", "\"x\"", "expected a number, found a string"),
-    ("[axes]\ntau = [2, 1]\nmu_prime = [1]", "[2, 1]", "values of tau must be strictly increasing"),
-    ("[axes]\nalpha_v = [2, 1, 1]\n", "[2, 1, 1]", "strictly increasing or strictly decreasing"),
-    ("[axes]\ntau = [-1, 1]\n", "-1", "tau = -1 is outside its range: 0 or more"),
+    (
+        "[axes]\ntau = []\nmu_prime = [1]",
+        "[]",
+        "the list is empty",
+    ),
+    (
+        "[axes]\ntau = [1, \"x\"]\n",
+        "\"x\"",
+        "expected a number, found a string",
+    ),
+    (
+        "[axes]\ntau = [2, 1]\nmu_prime = [1]",
+        "[2, 1]",
+        "values of tau must be strictly increasing",
+    ),
+    (
+        "[axes]\nalpha_v = [2, 1, 1]\n",
+        "[2, 1, 1]",
+        "strictly increasing or strictly decreasing",
+    ),
+    (
+        "[axes]\ntau = [-1, 1]\n",
+        "-1",
+        "tau = -1 is outside its range: 0 or more",
+    ),
     ("[axes]\ntau = [nan]\n", "nan", "finite number"),
     ("[axes]\ntau = [1, inf]\n", "inf", "finite number"),
     ("[axes]\ntau = [1e999]\n", "1e999", "number"),
-    ("[axes]\nmass = [0.0]\n", "0.0", "mass = 0 is outside its range: greater than 0"),
-    ("[axes]\nmass = [-2]\n", "-2", "mass = -2 is outside its range"),
+    (
+        "[axes]\nmass = [0.0]\n",
+        "0.0",
+        "mass = 0 is outside its range: greater than 0",
+    ),
+    (
+        "[axes]\nmass = [-2]\n",
+        "-2",
+        "mass = -2 is outside its range",
+    ),
     ("[axes]\nmu_prime = [1e300]\n", "1e300", "at most 1e12"),
-    ("[axes]\ntau = { from = 1, to = 0, points = 5 }\n", "{ from = 1, to = 0, points = 5 }", "empty or reversed"),
-    ("[axes]\ntau = { from = 1, to = 1, points = 5 }\n", "{ from = 1, to = 1, points = 5 }", "empty or reversed"),
-    ("[axes]\ntau = { from = -1, to = 1, points = 5 }\n", "{ from = -1, to = 1, points = 5 }", "tau = -1"),
-    ("[axes]\ntau = { from = nan, to = 1, points = 5 }\n", "nan", "finite number"),
-    ("[axes]\ntau = { from = 0, to = 1, points = 0 }\n", "{ from = 0, to = 1, points = 0 }", "points = 0 is outside its range"),
-    ("[axes]\ntau = { from = 0, to = 1, points = -3 }\n", "-3", "whole number between 0"),
-    ("[axes]\ntau = { from = 0, to = 1, points = 2.5 }\n", "2.5", "expected a whole number"),
-    ("[axes]\ntau = { from = 0, to = 1, points = 99999999999 }\n", "{ from = 0, to = 1, points = 99999999999 }", "outside its range"),
-    ("[axes]\ntau = { from = 0, to = 1 }\n", "{ from = 0, to = 1 }", "points is missing"),
-    ("[axes]\ntau = { from = 0, points = 3 }\n", "{ from = 0, points = 3 }", "to is missing"),
-    ("[axes]\ntau = { from = 0, to = 1, points = 3, step = 1 }\n", "step", "unknown key `axes.tau.step`"),
-    ("[axes]\ntau = { from = 0, to = 1, points = 3, spacing = \"log\" }\n", "{ from = 0, to = 1, points = 3, spacing = \"log\" }", "needs from > 0"),
-    ("[axes]\ntau = { from = 1, to = 2, points = 3, spacing = \"cubic\" }\n", "\"cubic\"", "unknown spacing"),
-    ("fields = [\"n_stable\"]\n[axes]\ntau = [1]", "\"n_stable\"", "unknown field"),
+    (
+        "[axes]\ntau = { from = 1, to = 0, points = 5 }\n",
+        "{ from = 1, to = 0, points = 5 }",
+        "empty or reversed",
+    ),
+    (
+        "[axes]\ntau = { from = 1, to = 1, points = 5 }\n",
+        "{ from = 1, to = 1, points = 5 }",
+        "empty or reversed",
+    ),
+    (
+        "[axes]\ntau = { from = -1, to = 1, points = 5 }\n",
+        "{ from = -1, to = 1, points = 5 }",
+        "tau = -1",
+    ),
+    (
+        "[axes]\ntau = { from = nan, to = 1, points = 5 }\n",
+        "nan",
+        "finite number",
+    ),
+    (
+        "[axes]\ntau = { from = 0, to = 1, points = 0 }\n",
+        "{ from = 0, to = 1, points = 0 }",
+        "points = 0 is outside its range",
+    ),
+    (
+        "[axes]\ntau = { from = 0, to = 1, points = -3 }\n",
+        "-3",
+        "whole number between 0",
+    ),
+    (
+        "[axes]\ntau = { from = 0, to = 1, points = 2.5 }\n",
+        "2.5",
+        "expected a whole number",
+    ),
+    (
+        "[axes]\ntau = { from = 0, to = 1, points = 99999999999 }\n",
+        "{ from = 0, to = 1, points = 99999999999 }",
+        "outside its range",
+    ),
+    (
+        "[axes]\ntau = { from = 0, to = 1 }\n",
+        "{ from = 0, to = 1 }",
+        "points is missing",
+    ),
+    (
+        "[axes]\ntau = { from = 0, points = 3 }\n",
+        "{ from = 0, points = 3 }",
+        "to is missing",
+    ),
+    (
+        "[axes]\ntau = { from = 0, to = 1, points = 3, step = 1 }\n",
+        "step",
+        "unknown key `axes.tau.step`",
+    ),
+    (
+        "[axes]\ntau = { from = 0, to = 1, points = 3, spacing = \"log\" }\n",
+        "{ from = 0, to = 1, points = 3, spacing = \"log\" }",
+        "needs from > 0",
+    ),
+    (
+        "[axes]\ntau = { from = 1, to = 2, points = 3, spacing = \"cubic\" }\n",
+        "\"cubic\"",
+        "unknown spacing",
+    ),
+    (
+        "fields = [\"n_stable\"]\n[axes]\ntau = [1]",
+        "\"n_stable\"",
+        "unknown field",
+    ),
     ("fields = []\n[axes]\ntau = [1]", "[]", "the list is empty"),
-    ("fields = [\"n_unstable\", \"n_unstable\"]\n[axes]\ntau = [1]", "\"n_unstable\"", "listed twice"),
-    ("boundaries = 1\n[axes]\ntau = [1]", "1", "expected true or false"),
+    (
+        "fields = [\"n_unstable\", \"n_unstable\"]\n[axes]\ntau = [1]",
+        "\"n_unstable\"",
+        "listed twice",
+    ),
+    (
+        "boundaries = 1\n[axes]\ntau = [1]",
+        "1",
+        "expected true or false",
+    ),
     ("[axes]\ntau = [1]\n", "axes", "mu_prime is not given"),
     ("[axes]\nmu_prime = [1]\n", "axes", "tau is not given"),
-    ("[axes]\ntau = [1]\n[fixed]\ntau = 2\n", "tau", "tau is given twice"),
-    ("[axes]\ntau = [1]\n[fixed]\nmu_prime = 1\nv0 = 2\n", "v0", "v0 needs a friction law"),
-    ("[axes]\ntau = [1]\n[fixed]\nmu_prime = 1\nmu_s = 2\n", "mu_s", "unknown key `fixed.mu_s`"),
-    ("[axes]\ntau = [1]\n[fixed]\nmass = \"heavy\"\n", "\"heavy\"", "expected a number"),
-    ("[axes]\ntau = [1]\n[fixed]\nmass = 0\n", "0", "mass = 0 is outside its range"),
-    ("[axes]\ntau = [1]\n[fixed]\nv0 = 1\n[friction]\nlaw = \"glue\"\n", "\"glue\"", "unknown friction law"),
-    ("[axes]\ntau = [1]\n[fixed]\nv0 = 1\n[friction]\nmu0 = 0.5\n", "friction", "needs a law"),
-    ("[axes]\ntau = [1]\n[fixed]\nv0 = 1\n[friction]\nlaw = \"coulomb\"\n", "\"coulomb\"", "mu0 is not given"),
-    ("[axes]\ntau = [1]\n[friction]\nlaw = \"coulomb\"\nmu0 = 0.5\n", "\"coulomb\"", "v0 is not given"),
-    ("[axes]\ntau = [1]\n[fixed]\nv0 = 1\nmu_prime = 2\n[friction]\nlaw = \"coulomb\"\nmu0 = 0.5\n", "mu_prime", "no meaning with the coulomb law"),
-    ("[axes]\ntau = [1]\n[fixed]\nv0 = 1\n[friction]\nlaw = \"coulomb\"\nmu0 = 0.5\nv_s = 1\n", "v_s", "no meaning with the coulomb law"),
-    ("[axes]\ntau = [1]\n[fixed]\nv0 = 1\n[friction]\nlaw = \"coulomb\"\nmu0 = 1.5\n", "\"coulomb\"", "at most mu_s"),
-    ("[axes]\ntau = [1]\nmu0 = [0.5, 2]\n[fixed]\nv0 = 1\n[friction]\nlaw = \"coulomb\"\n", "\"coulomb\"", "at most mu_s"),
-    ("[axes]\ntau = [1]\nv0 = [0.0, 1]\n[friction]\nlaw = \"coulomb\"\nmu0 = 0.5\n", "0.0", "v0 = 0 is outside its range"),
-    ("[axes]\ntau = [1]\n[units]\nforce = \"N\"\n", "units", "all three"),
-    ("[axes]\ntau = [1]\n[units]\nforce = \"N m\"\n", "\"N m\"", "one word"),
-    ("[axes]\ntau = [1]\n[tolerance]\nmarginal = 0.5\n", "0.5", "outside its range"),
-    ("[axes]\ntau = [1]\n[tolerance]\nmarginal = -1\n", "-1", "outside its range"),
+    (
+        "[axes]\ntau = [1]\n[fixed]\ntau = 2\n",
+        "tau",
+        "tau is given twice",
+    ),
+    (
+        "[axes]\ntau = [1]\n[fixed]\nmu_prime = 1\nv0 = 2\n",
+        "v0",
+        "v0 needs a friction law",
+    ),
+    (
+        "[axes]\ntau = [1]\n[fixed]\nmu_prime = 1\nmu_s = 2\n",
+        "mu_s",
+        "unknown key `fixed.mu_s`",
+    ),
+    (
+        "[axes]\ntau = [1]\n[fixed]\nmass = \"heavy\"\n",
+        "\"heavy\"",
+        "expected a number",
+    ),
+    (
+        "[axes]\ntau = [1]\n[fixed]\nmass = 0\n",
+        "0",
+        "mass = 0 is outside its range",
+    ),
+    (
+        "[axes]\ntau = [1]\n[fixed]\nv0 = 1\n[friction]\nlaw = \"glue\"\n",
+        "\"glue\"",
+        "unknown friction law",
+    ),
+    (
+        "[axes]\ntau = [1]\n[fixed]\nv0 = 1\n[friction]\nmu0 = 0.5\n",
+        "friction",
+        "needs a law",
+    ),
+    (
+        "[axes]\ntau = [1]\n[fixed]\nv0 = 1\n[friction]\nlaw = \"coulomb\"\n",
+        "\"coulomb\"",
+        "mu0 is not given",
+    ),
+    (
+        "[axes]\ntau = [1]\n[friction]\nlaw = \"coulomb\"\nmu0 = 0.5\n",
+        "\"coulomb\"",
+        "v0 is not given",
+    ),
+    (
+        "[axes]\ntau = [1]\n[fixed]\nv0 = 1\nmu_prime = 2\n[friction]\nlaw = \"coulomb\"\nmu0 = 0.5\n",
+        "mu_prime",
+        "no meaning with the coulomb law",
+    ),
+    (
+        "[axes]\ntau = [1]\n[fixed]\nv0 = 1\n[friction]\nlaw = \"coulomb\"\nmu0 = 0.5\nv_s = 1\n",
+        "v_s",
+        "no meaning with the coulomb law",
+    ),
+    (
+        "[axes]\ntau = [1]\n[fixed]\nv0 = 1\n[friction]\nlaw = \"coulomb\"\nmu0 = 1.5\n",
+        "\"coulomb\"",
+        "at most mu_s",
+    ),
+    (
+        "[axes]\ntau = [1]\nmu0 = [0.5, 2]\n[fixed]\nv0 = 1\n[friction]\nlaw = \"coulomb\"\n",
+        "\"coulomb\"",
+        "at most mu_s",
+    ),
+    (
+        "[axes]\ntau = [1]\nv0 = [0.0, 1]\n[friction]\nlaw = \"coulomb\"\nmu0 = 0.5\n",
+        "0.0",
+        "v0 = 0 is outside its range",
+    ),
+    (
+        "[axes]\ntau = [1]\n[units]\nforce = \"N\"\n",
+        "units",
+        "all three",
+    ),
+    (
+        "[axes]\ntau = [1]\n[units]\nforce = \"N m\"\n",
+        "\"N m\"",
+        "one word",
+    ),
+    (
+        "[axes]\ntau = [1]\n[tolerance]\nmarginal = 0.5\n",
+        "0.5",
+        "outside its range",
+    ),
+    (
+        "[axes]\ntau = [1]\n[tolerance]\nmarginal = -1\n",
+        "-1",
+        "outside its range",
+    ),
 ];
 
 #[test]
 fn every_mistake_is_pointed_at() {
     for (text, place, says) in BAD {
         let error = text.parse::<SweepSpec>().expect_err(text);
-        assert!(error.message.contains(says), "{text}\n says: {}", error.message);
+        assert!(
+            error.message.contains(says),
+            "{text}\n says: {}",
+            error.message
+        );
         let span = error.span.unwrap_or(0..0);
         if !place.is_empty() {
             assert_eq!(&text[span], *place, "{text}\n {}", error.message);
@@ -139,8 +313,13 @@ fn absurdly_large_maps_are_refused() {
     let axis = "{ from = 0, to = 1, points = 10000000 }";
     let text = format!("[axes]\nmu_prime = {axis}\nalpha_v = {axis}\ntau = [1]\n");
     let error = Plan::new(text.parse().unwrap()).unwrap_err();
-    assert!(error.message.contains("at most 10000000000000 are allowed"), "{}", error.message);
-    let axes = "mass = {}\nstiffness = {}\nnormal_load = {}\n".replace("{}", "{ from = 1, to = 2, points = 10000000 }");
+    assert!(
+        error.message.contains("at most 10000000000000 are allowed"),
+        "{}",
+        error.message
+    );
+    let axes = "mass = {}\nstiffness = {}\nnormal_load = {}\n"
+        .replace("{}", "{ from = 1, to = 2, points = 10000000 }");
     let text = format!("[axes]\nmu_prime = {axis}\ntau = [1]\n{axes}");
     assert!(Plan::new(text.parse().unwrap()).is_err());
 }
@@ -149,7 +328,10 @@ fn absurdly_large_maps_are_refused() {
 fn equal_plans_have_equal_hashes_and_others_not() {
     let hash = |text: &str| Plan::new(text.parse().unwrap()).unwrap().hash();
     let base = "[axes]\ntau = [1, 2]\n[fixed]\nmu_prime = -0.1\nalpha_v = 0.5\n";
-    assert_eq!(hash(base), hash("# the same\n[axes]\ntau = [1.0, 2.0]\n[fixed]\nalpha_v = 5e-1\nmu_prime = -0.1\n"));
+    assert_eq!(
+        hash(base),
+        hash("# the same\n[axes]\ntau = [1.0, 2.0]\n[fixed]\nalpha_v = 5e-1\nmu_prime = -0.1\n")
+    );
     for other in [
         "[axes]\ntau = [1, 3]\n[fixed]\nmu_prime = -0.1\nalpha_v = 0.5\n",
         "[axes]\ntau = [1, 2]\n[fixed]\nmu_prime = -0.1\nalpha_v = 0.6\n",

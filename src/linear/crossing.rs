@@ -194,9 +194,6 @@ impl Crossings {
     #[inline]
     #[must_use]
     pub fn in_physical_time(self, time_unit: f64) -> Self {
-        if time_unit == 1.0 {
-            return self;
-        }
         let scaled = |crossing: Option<Crossing>| crossing.map(|c| c.scaled(time_unit));
         Self {
             upper: scaled(self.upper),
@@ -318,8 +315,8 @@ fn crossing(
     let omega_error = 0.5 * y_error * per_omega + 2.0 * UNIT_ROUNDOFF * omega;
     // |A| from below, by its larger part: a bound needs no square root.
     let a_size = a_r.abs().max(a_i.abs());
-    let theta_error = (y_error + (b.abs() + 2.0 * a_v.abs()) * omega_error) / a_size
-        + ROUNDINGS * UNIT_ROUNDOFF;
+    let theta_error =
+        (y_error + (b.abs() + 2.0 * a_v.abs()) * omega_error) / a_size + ROUNDINGS * UNIT_ROUNDOFF;
     Some(Crossing {
         omega,
         theta,

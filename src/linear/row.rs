@@ -127,7 +127,9 @@ impl Row<'_> {
     /// Marks the cells marginal to the crossing at `delay`, which lies just below the delay number `index`.
     #[inline(always)]
     fn mark(&self, crossing: &Crossing, delay: f64, index: usize, status: &mut [u8]) {
-        let allowed = self.crossings.marginal_distance(crossing, delay, self.tolerance);
+        let allowed = self
+            .crossings
+            .marginal_distance(crossing, delay, self.tolerance);
         let (below, above) = (self.delays.fenced[index], self.delays.fenced[index + 1]);
         if delay - below <= allowed || above - delay <= allowed {
             self.mark_within(delay, allowed, index, status);
@@ -149,17 +151,13 @@ impl Row<'_> {
     fn by_crossings(&self, n_unstable: &mut [u16], status: &mut [u8]) {
         let crossings = self.crossings;
         let len = n_unstable.len();
-        let mut families = [
-            self.cursor(crossings.upper.as_ref(), status),
-            self.cursor(crossings.lower.as_ref(), status),
-        ];
+        let mut upper = self.cursor(crossings.upper.as_ref(), status);
+        let mut lower = self.cursor(crossings.lower.as_ref(), status);
         let mut from = 0;
         loop {
-            // Chosen by index rather than by branch: which family comes next cannot be predicted.
-            let next = usize::from(families[1].index < families[0].index);
-            let to = families[next].index;
-            let [upper, lower] = [&families[0], &families[1]].map(|family| family.passed);
-            let count = (crossings.at_zero_delay + 2 * upper).saturating_sub(2 * lower);
+            let to = upper.index.min(lower.index);
+            let count =
+                (crossings.at_zero_delay + 2 * upper.passed).saturating_sub(2 * lower.passed);
             if count > u64::from(MOST_COUNTED) {
                 status[from..to].iter_mut().for_each(|s| *s |= SATURATED);
             }
@@ -168,7 +166,11 @@ impl Row<'_> {
                 break;
             }
             from = to;
-            self.advance(&mut families[next], status);
+            if upper.index == to {
+                self.advance(&mut upper, status);
+            } else {
+                self.advance(&mut lower, status);
+            }
         }
         let mut touch = self.cursor(crossings.touch.as_ref(), status);
         while touch.index < len {

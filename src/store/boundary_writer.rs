@@ -146,7 +146,11 @@ impl BoundaryWriter {
             "how a pair of roots crosses with growing delay",
             "1",
         )?;
-        put_flags(&direction.dataset, &[-1, 0, 1], "to_the_left touch to_the_right")?;
+        put_flags(
+            &direction.dataset,
+            &[-1, 0, 1],
+            "to_the_left touch to_the_right",
+        )?;
         let stable_side = columns.make(
             "stable_side",
             "side of the curve on which sliding is stable",

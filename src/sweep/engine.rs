@@ -16,7 +16,7 @@ use super::tile::{Tile, for_each_index};
 use crate::linear::Crossings;
 use crate::linear::row::Delays;
 use crate::linear::status::NOT_CONVERGED;
-use crate::model::{ModelError, Oscillator, SlidingPoint};
+use crate::model::{Groups, ModelError, Oscillator, SlidingPoint};
 
 /// Planes of crossing curves that are held in memory at a time.
 const PLANES_AT_ONCE: usize = 256;
@@ -261,12 +261,14 @@ pub struct Worker<'p> {
     delays: Delays,
     delay_range: Range<usize>,
     strides: Vec<usize>,
+    /// Cells between neighbouring delays.
+    stride: usize,
     /// The cells of the tile computed last.
     pub buffers: TileBuffers,
     row: RowBuffers,
 }
 
-/// The crossings of one line after the other. What does not change from line to line is not computed again.
+/// The groups of one line after the other. What does not change from line to line is not computed again.
 struct Lines<'p> {
     plan: &'p Plan,
     setting: Setting,
@@ -287,16 +289,19 @@ impl<'p> Lines<'p> {
         }
     }
 
-    /// The crossings of the line at `offset` + `inside`, in physical time.
+    /// The groups of the line at `offset` + `inside`, and its unit of time.
     #[inline(always)]
-    fn crossings(&mut self, offset: &[usize], inside: &[usize]) -> Result<Crossings, ModelError> {
+    fn groups(&mut self, offset: &[usize], inside: &[usize]) -> Result<(Groups, f64), ModelError> {
         for (axis, known) in self.index.iter_mut().enumerate() {
             let index = offset[axis] + inside[axis];
             if *known != index {
                 *known = index;
                 let axis = &self.plan.spec.axes[axis];
                 self.setting.set(axis.parameter, axis.values[index]);
-                if !matches!(axis.parameter, Parameter::AlphaV | Parameter::AlphaN | Parameter::Tau) {
+                if !matches!(
+                    axis.parameter,
+                    Parameter::AlphaV | Parameter::AlphaN | Parameter::Tau
+                ) {
                     self.uncontrolled = None;
                 }
             }
@@ -307,7 +312,7 @@ impl<'p> Lines<'p> {
             .get_or_insert_with(|| Ok((setting.oscillator()?, setting.sliding_point()?)));
         let (oscillator, sliding) = uncontrolled.as_ref().map_err(Clone::clone)?;
         let groups = oscillator.groups(*sliding, setting.control());
-        Ok(Crossings::of(groups).in_physical_time(oscillator.time_unit()))
+        Ok((groups, oscillator.time_unit()))
     }
 }
 
@@ -324,12 +329,14 @@ impl<'p> Worker<'p> {
     pub fn new(plan: &'p Plan) -> Self {
         let delay_range = plan.delay_range(&plan.tiles.tile(0));
         let longest = delay_range.len();
+        let strides = plan.tiles.strides();
         Self {
             plan,
             lines: Lines::new(plan),
             delays: Delays::new(&plan.delays()[delay_range.clone()]),
             delay_range,
-            strides: plan.tiles.strides(),
+            stride: plan.tau_axis.map_or(1, |axis| strides[axis]),
+            strides,
             buffers: TileBuffers::new(plan),
             row: RowBuffers {
                 status: vec![0; longest],
@@ -351,18 +358,23 @@ impl<'p> Worker<'p> {
         }
         for_each_index(&tile.extent, self.plan.tau_axis, |inside| {
             let at: usize = inside.iter().zip(&self.strides).map(|(i, s)| i * s).sum();
-            match self.lines.crossings(&tile.offset, inside) {
-                Ok(crossings) => self.fill_line(&crossings, at),
+            match self.lines.groups(&tile.offset, inside) {
+                Ok((groups, time_unit)) => self.fill_line(groups, time_unit, at),
                 Err(_) => self.refuse_line(at),
             }
         });
     }
 
     /// Computes the cells of a line into the buffers from place `at` on.
-    fn fill_line(&mut self, crossings: &Crossings, at: usize) {
-        match self.plan.tau_axis.map_or(1, |axis| self.strides[axis]) {
-            1 => self.fill_in_place(crossings, at),
-            stride => self.fill_by_row(crossings, at, stride),
+    #[inline]
+    fn fill_line(&mut self, groups: Groups, time_unit: f64, at: usize) {
+        let mut crossings = Crossings::of(groups);
+        if time_unit != 1.0 {
+            crossings = crossings.in_physical_time(time_unit);
+        }
+        match self.stride {
+            1 => self.fill_in_place(&crossings, at),
+            stride => self.fill_by_row(&crossings, at, stride),
         }
     }
 
@@ -401,8 +413,7 @@ impl<'p> Worker<'p> {
     /// A line outside the model's range: its cells keep fill values and say that nothing converged there.
     fn refuse_line(&mut self, at: usize) {
         let len = self.delays.values().len();
-        let stride = self.plan.tau_axis.map_or(1, |axis| self.strides[axis]);
-        for place in (at..).step_by(stride).take(len) {
+        for place in (at..).step_by(self.stride).take(len) {
             self.buffers.status[place] = NOT_CONVERGED;
             if let Some(n) = &mut self.buffers.n_unstable {
                 n[place] = N_UNSTABLE_FILL;
