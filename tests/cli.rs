@@ -399,10 +399,11 @@ fn start(folder: &Folder) -> std::process::Child {
 
 #[cfg(unix)]
 fn send(signal: &str, child: &std::process::Child) {
-    let pid = child.id().to_string();
+    // The shell's own kill: a bare machine has no other.
+    let kill = format!("kill {signal} {}", child.id());
     assert!(
-        Command::new("kill")
-            .args([signal, &pid])
+        Command::new("sh")
+            .args(["-c", &kill])
             .status()
             .unwrap()
             .success()

@@ -70,6 +70,7 @@ fn libraries_stay_in_their_rooms() {
     for (library, room) in [
         ("rayon", "src/sweep/engine.rs"),
         ("hdf5", "src/store"),
+        ("wide", "src/linear/crossing.rs"),
         ("indicatif", "src/report/progress.rs"),
         ("plotters", "src/report/picture"),
         ("clap", "src/cli"),

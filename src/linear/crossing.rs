@@ -19,6 +19,8 @@
 
 use std::f64::consts::TAU;
 
+use wide::f64x2;
+
 use crate::model::Groups;
 
 /// Half an ulp of 1, the relative error of one rounded operation.
@@ -166,26 +168,19 @@ impl Crossings {
         let discriminant = discriminant(groups);
         let discriminant_error = ROUNDINGS * UNIT_ROUNDOFF * (c * c + 4.0 * d.abs());
         if discriminant.abs() <= discriminant_error {
-            let y_error = 0.5 * discriminant_error.sqrt();
-            crossings.touch = crossing(groups, -0.5 * c, y_error, None, Direction::Touch);
+            let y = f64x2::splat(-0.5 * c);
+            let y_error = f64x2::splat(0.5 * discriminant_error.sqrt());
+            crossings.touch = Arms::new(groups, y, y_error, 1.0 + y).crossing(0, Direction::Touch);
         } else if discriminant > 0.0 {
-            let pair = YPair::solve(c, d, discriminant.sqrt(), discriminant_error);
-            let product = frequency_product(groups);
-            let (x_upper, x_lower) = (1.0 + pair.upper, 1.0 + pair.lower);
-            crossings.upper = crossing(
-                groups,
-                pair.upper,
-                pair.upper_error,
-                Some((x_lower, product)),
-                Direction::Right,
-            );
-            crossings.lower = crossing(
-                groups,
-                pair.lower,
-                pair.lower_error,
-                Some((x_upper, product)),
-                Direction::Left,
-            );
+            let (y, y_error) = roots(c, d, discriminant.sqrt(), discriminant_error);
+            let mut x = (1.0 + y).to_array();
+            if x[1] < 0.25 && x[0] > 0.25 {
+                // 1 + y loses digits where x is small; the product of both keeps them.
+                x[1] = frequency_product(groups) / x[0];
+            }
+            let arms = Arms::new(groups, y, y_error, f64x2::from(x));
+            crossings.upper = arms.crossing(0, Direction::Right);
+            crossings.lower = arms.crossing(1, Direction::Left);
         }
         crossings
     }
@@ -251,90 +246,97 @@ fn unstable_at_zero_delay(groups: Groups) -> u64 {
     if growth > 0.0 { 2 } else { 0 }
 }
 
-/// Both real roots of (1), without cancellation, and bounds on their errors.
-struct YPair {
-    upper: f64,
-    lower: f64,
-    upper_error: f64,
-    lower_error: f64,
+/// Both real roots y of (1), the upper one first, without cancellation, and bounds on their errors.
+#[inline]
+fn roots(c: f64, d: f64, root: f64, discriminant_error: f64) -> (f64x2, f64x2) {
+    // The root of larger size first, then the other from the product d.
+    let large = -0.5 * (c + root.copysign(c));
+    let per_large = 1.0 / large;
+    let small = d / large;
+    let large_error = 0.25 * discriminant_error / root + ROUNDINGS * UNIT_ROUNDOFF * large.abs();
+    let small_error =
+        small.abs() * (large_error * per_large.abs() + 2.0 * ROUNDINGS * UNIT_ROUNDOFF);
+    if c.is_sign_positive() {
+        (
+            f64x2::from([small, large]),
+            f64x2::from([small_error, large_error]),
+        )
+    } else {
+        (
+            f64x2::from([large, small]),
+            f64x2::from([large_error, small_error]),
+        )
+    }
 }
 
-impl YPair {
-    #[inline]
-    fn solve(c: f64, d: f64, root: f64, discriminant_error: f64) -> Self {
-        // The root of larger size first, then the other from the product d.
-        let large = -0.5 * (c + root.copysign(c));
-        let small = d / large;
-        let large_error =
-            0.25 * discriminant_error / root + ROUNDINGS * UNIT_ROUNDOFF * large.abs();
-        let small_error = small.abs() * (large_error / large.abs() + ROUNDINGS * UNIT_ROUNDOFF);
-        if c.is_sign_positive() {
-            Self {
-                upper: small,
-                lower: large,
-                upper_error: small_error,
-                lower_error: large_error,
-            }
-        } else {
-            Self {
-                upper: large,
-                lower: small,
-                upper_error: large_error,
-                lower_error: small_error,
-            }
+/// What two crossings are made of, computed side by side: the arms ω₊ and ω₋ need the same operations.
+struct Arms {
+    x: [f64; 2],
+    y: [f64; 2],
+    undamped: bool,
+    omega: [f64; 2],
+    theta: [f64; 2],
+    first_delay: [f64; 2],
+    period: [f64; 2],
+    phase_error: [f64; 2],
+    frequency_error: [f64; 2],
+}
+
+impl Arms {
+    /// Equation (2) at x = 1 + y, for x > 0; what stands where x is not positive means nothing.
+    #[inline(always)]
+    fn new(groups: Groups, y: f64x2, y_error: f64x2, x: f64x2) -> Self {
+        let Groups { b, a_v, a_n } = groups;
+        let omega = x.sqrt();
+        let (b_r, b_i) = (-y, b * omega);
+        let (a_r, a_i) = (f64x2::splat(a_v.mul_add(b, a_n)), a_v * omega);
+        let a_norm_sqr = a_r * a_r + a_i * a_i;
+        let sine = a_r * b_i - a_i * b_r;
+        let cosine = a_norm_sqr - (a_r * b_r + a_i * b_i);
+        let theta = phase(sine, cosine);
+
+        let per_omega = 1.0 / omega;
+        let omega_error = 0.5 * y_error * per_omega + 2.0 * UNIT_ROUNDOFF * omega;
+        // |A| from below, by its larger part: a bound needs no square root.
+        let a_size = a_r.abs().fast_max(a_i.abs());
+        let theta_error = (y_error + (b.abs() + 2.0 * a_v.abs()) * omega_error) / a_size
+            + f64x2::splat(ROUNDINGS * UNIT_ROUNDOFF);
+        let frequency_error = omega_error * per_omega + f64x2::splat(4.0 * UNIT_ROUNDOFF);
+        Self {
+            x: x.to_array(),
+            y: y.to_array(),
+            undamped: b == 0.0,
+            omega: omega.to_array(),
+            theta: theta.to_array(),
+            first_delay: (theta * per_omega).to_array(),
+            period: (TAU * per_omega).to_array(),
+            phase_error: (theta_error * per_omega).to_array(),
+            frequency_error: frequency_error.to_array(),
         }
     }
-}
 
-/// The crossing at x = 1 + y > 0, or none. `vieta` = (the other x, the product of both) serves where x is small.
-#[inline(always)]
-fn crossing(
-    groups: Groups,
-    y: f64,
-    y_error: f64,
-    vieta: Option<(f64, f64)>,
-    direction: Direction,
-) -> Option<Crossing> {
-    let Groups { b, a_v, a_n } = groups;
-    let x = match vieta {
-        Some((other, product)) if 1.0 + y < 0.25 && other > 0.25 => product / other,
-        _ => 1.0 + y,
-    };
-    if x.is_nan() || x <= 0.0 {
-        return None;
+    /// The crossing of one arm, or none where x is not positive.
+    #[inline(always)]
+    fn crossing(&self, arm: usize, direction: Direction) -> Option<Crossing> {
+        (self.x[arm] > 0.0).then(|| Crossing {
+            omega: self.omega[arm],
+            theta: self.theta[arm],
+            first_branch: u64::from(self.undamped && self.y[arm] == 0.0),
+            direction,
+            first_delay: self.first_delay[arm],
+            period: self.period[arm],
+            phase_error: self.phase_error[arm],
+            frequency_error: self.frequency_error[arm],
+        })
     }
-    let omega = x.sqrt();
-    let (b_r, b_i) = (-y, b * omega);
-    let (a_r, a_i) = (a_v.mul_add(b, a_n), a_v * omega);
-    let a_norm_sqr = a_r * a_r + a_i * a_i;
-    let sine = a_r * b_i - a_i * b_r;
-    let cosine = a_norm_sqr - (a_r * b_r + a_i * b_i);
-    let theta = phase(sine, cosine);
-
-    let per_omega = 1.0 / omega;
-    let omega_error = 0.5 * y_error * per_omega + 2.0 * UNIT_ROUNDOFF * omega;
-    // |A| from below, by its larger part: a bound needs no square root.
-    let a_size = a_r.abs().max(a_i.abs());
-    let theta_error =
-        (y_error + (b.abs() + 2.0 * a_v.abs()) * omega_error) / a_size + ROUNDINGS * UNIT_ROUNDOFF;
-    Some(Crossing {
-        omega,
-        theta,
-        first_branch: u64::from(b == 0.0 && y == 0.0),
-        direction,
-        first_delay: theta * per_omega,
-        period: TAU * per_omega,
-        phase_error: theta_error * per_omega,
-        frequency_error: omega_error * per_omega + 4.0 * UNIT_ROUNDOFF,
-    })
 }
 
 /// The argument of `cosine` + i `sine` in [0, 2π].
 ///
 /// A phase that is negative by less than rounding comes out as 2π, which is right: the crossing at τ = 0⁻ is none, the one
 /// a turn later is. The exact zero comes out as 0.
-#[inline]
-fn phase(sine: f64, cosine: f64) -> f64 {
+#[inline(always)]
+fn phase(sine: f64x2, cosine: f64x2) -> f64x2 {
     let angle = sine.atan2(cosine);
-    if angle < 0.0 { angle + TAU } else { angle }
+    angle + (f64x2::splat(TAU) & angle.simd_lt(f64x2::ZERO))
 }

@@ -2,6 +2,8 @@
 //!
 //! Between two crossings the count is constant, so a row costs its crossings plus the time to fill memory.
 
+use std::cell::Cell;
+
 use super::count::MarginalTolerance;
 use super::crossing::{Crossing, Crossings};
 use super::stable_delays::MarginWalk;
@@ -42,6 +44,9 @@ impl Delays {
     fn first_above(&self, tau: f64) -> usize {
         let fenced = self.fenced.as_slice();
         let most = fenced.len() - 2;
+        if tau >= fenced[most] {
+            return most;
+        }
         if self.per_step == 0.0 {
             return fenced[1..=most].partition_point(|&v| v <= tau);
         }
@@ -86,6 +91,8 @@ struct Row<'a> {
     crossings: &'a Crossings,
     delays: &'a Delays,
     tolerance: MarginalTolerance,
+    /// Some cell's status was changed.
+    flagged: Cell<bool>,
 }
 
 impl Row<'_> {
@@ -137,14 +144,21 @@ impl Row<'_> {
     }
 
     #[cold]
+    fn flag(&self, status: &mut [u8], flag: u8) {
+        status.iter_mut().for_each(|s| *s |= flag);
+        self.flagged.set(true);
+    }
+
+    #[cold]
     fn mark_within(&self, delay: f64, allowed: f64, index: usize, status: &mut [u8]) {
         let near = |tau: f64| (tau - delay).abs() <= allowed;
         let (below, above) = self.delays.values().split_at(index);
         let marked_below = below.iter().rev().take_while(|&&tau| near(tau)).count();
         let marked_above = above.iter().take_while(|&&tau| near(tau)).count();
-        for cell in &mut status[index - marked_below..index + marked_above] {
-            *cell |= MARGINAL;
-        }
+        self.flag(
+            &mut status[index - marked_below..index + marked_above],
+            MARGINAL,
+        );
     }
 
     /// Fills between crossings: the cost is that of the crossings and of memory.
@@ -159,7 +173,7 @@ impl Row<'_> {
             let count =
                 (crossings.at_zero_delay + 2 * upper.passed).saturating_sub(2 * lower.passed);
             if count > u64::from(MOST_COUNTED) {
-                status[from..to].iter_mut().for_each(|s| *s |= SATURATED);
+                self.flag(&mut status[from..to], SATURATED);
             }
             fill_ahead(&mut n_unstable[from..], to - from, saturated(count));
             if to == len {
@@ -185,11 +199,10 @@ impl Row<'_> {
         if !crossings.undamped {
             return;
         }
-        for (tau, status) in self.delays.values().iter().zip(&mut *status) {
-            if !crossings.marginal_everywhere_or_at_zero(*tau, self.tolerance) {
-                break;
-            }
-            *status |= MARGINAL;
+        let marginal = |&&tau: &&f64| crossings.marginal_everywhere_or_at_zero(tau, self.tolerance);
+        let first_ones = self.delays.values().iter().take_while(marginal).count();
+        if first_ones > 0 {
+            self.flag(&mut status[..first_ones], MARGINAL);
         }
         if self.delays.fenced[1] == 0.0 {
             n_unstable[0] = 0;
@@ -201,11 +214,12 @@ impl Row<'_> {
         for ((tau, n), status) in self.delays.values().iter().zip(n_unstable).zip(status) {
             let count = self.crossings.count(*tau, self.tolerance);
             *n = saturated(count.n_unstable);
+            let cell = std::slice::from_mut(status);
             if count.n_unstable > u64::from(MOST_COUNTED) {
-                *status |= SATURATED;
+                self.flag(cell, SATURATED);
             }
             if count.marginal {
-                *status |= MARGINAL;
+                self.flag(cell, MARGINAL);
             }
         }
     }
@@ -232,22 +246,23 @@ fn saturated(count: u64) -> u16 {
 impl Crossings {
     /// The count of unstable roots and the status at every delay of a row: as [`Crossings::count`] says, cell by cell.
     ///
-    /// `n_unstable` and `status` have the length of `delays`, which is at least 1; every element is written. Counts above
-    /// [`MOST_COUNTED`] are cut and say so in the status.
+    /// `n_unstable` and `status` have the length of `delays`. Every element of `n_unstable` is written. `status` holds zeros
+    /// to begin with, and flags are added where there are any: true is returned if so. Counts above [`MOST_COUNTED`] are cut
+    /// and say so in the status.
     pub fn fill_counts(
         &self,
         delays: &Delays,
         tolerance: MarginalTolerance,
         n_unstable: &mut [u16],
         status: &mut [u8],
-    ) {
+    ) -> bool {
         let values = delays.values();
         let row = Row {
             crossings: self,
             delays,
             tolerance,
+            flagged: Cell::new(false),
         };
-        status.fill(0);
         let length = values[values.len() - 1] - values[0];
         let fastest = self.upper.or(self.touch).map_or(0.0, |c| c.omega);
         if fastest * length > 4.0 * values.len() as f64 {
@@ -255,6 +270,7 @@ impl Crossings {
         } else {
             row.by_crossings(n_unstable, status);
         }
+        row.flagged.get()
     }
 
     /// The signed distance to the nearest change of stability at every delay of a row, see [`Crossings::delay_margin`].
@@ -274,8 +290,9 @@ mod tests {
 
     fn check_row(crossings: &Crossings, values: &[f64]) {
         let tolerance = MarginalTolerance::default();
-        let (mut n, mut status) = (vec![9; values.len()], vec![9; values.len()]);
-        crossings.fill_counts(&Delays::new(values), tolerance, &mut n, &mut status);
+        let (mut n, mut status) = (vec![9; values.len()], vec![0; values.len()]);
+        let flagged = crossings.fill_counts(&Delays::new(values), tolerance, &mut n, &mut status);
+        assert_eq!(flagged, status.iter().any(|&s| s != 0));
         for ((tau, n), status) in values.iter().zip(n).zip(status) {
             let count = crossings.count(*tau, tolerance);
             assert_eq!(n, saturated(count.n_unstable), "{crossings:?} {tau}");

@@ -70,6 +70,7 @@ impl Oscillator {
 
     /// The dimensionless groups at a sliding point under control (physics of the letter's Eq. 3).
     #[must_use]
+    #[inline]
     pub fn groups(&self, sliding: SlidingPoint, control: Control) -> Groups {
         Groups {
             b: sliding.mu_prime * self.normal_load / self.damping_unit,

@@ -265,6 +265,8 @@ pub struct Worker<'p> {
     stride: usize,
     /// The cells of the tile computed last.
     pub buffers: TileBuffers,
+    /// Every status in the buffers is zero.
+    unflagged: bool,
     row: RowBuffers,
 }
 
@@ -338,6 +340,7 @@ impl<'p> Worker<'p> {
             stride: plan.tau_axis.map_or(1, |axis| strides[axis]),
             strides,
             buffers: TileBuffers::new(plan),
+            unflagged: false,
             row: RowBuffers {
                 status: vec![0; longest],
                 n_unstable: vec![0; longest],
@@ -353,9 +356,13 @@ impl<'p> Worker<'p> {
             self.delays = Delays::new(&self.plan.delays()[range.clone()]);
             self.delay_range = range;
         }
-        if tile.cells() < self.plan.tiles.tile_cells() as u64 {
+        let whole = tile.cells() == self.plan.tiles.tile_cells() as u64;
+        if !whole {
             self.buffers.clear();
+        } else if !self.unflagged {
+            self.buffers.status.fill(0);
         }
+        self.unflagged = whole;
         for_each_index(&tile.extent, self.plan.tau_axis, |inside| {
             let at: usize = inside.iter().zip(&self.strides).map(|(i, s)| i * s).sum();
             match self.lines.groups(&tile.offset, inside) {
@@ -387,7 +394,11 @@ impl<'p> Worker<'p> {
             Some(n) => &mut n[at..to],
             None => &mut self.row.n_unstable[..to - at],
         };
-        crossings.fill_counts(delays, tolerance, n, status);
+        if !self.unflagged {
+            status.fill(0);
+        }
+        let flagged = crossings.fill_counts(delays, tolerance, n, status);
+        self.unflagged &= !flagged;
         if let Some(margin) = &mut self.buffers.delay_margin {
             crossings.fill_delay_margins(delays, &mut margin[at..to]);
         }
@@ -399,8 +410,12 @@ impl<'p> Worker<'p> {
         let row = &mut self.row;
         let tolerance = self.plan.spec.tolerance;
         let (n, status) = (&mut row.n_unstable[..len], &mut row.status[..len]);
-        crossings.fill_counts(delays, tolerance, n, status);
-        scatter(status, &mut self.buffers.status[at..], stride);
+        status.fill(0);
+        let flagged = crossings.fill_counts(delays, tolerance, n, status);
+        if flagged || !self.unflagged {
+            scatter(status, &mut self.buffers.status[at..], stride);
+        }
+        self.unflagged &= !flagged;
         if let Some(out) = &mut self.buffers.n_unstable {
             scatter(n, &mut out[at..], stride);
         }
@@ -413,6 +428,7 @@ impl<'p> Worker<'p> {
     /// A line outside the model's range: its cells keep fill values and say that nothing converged there.
     fn refuse_line(&mut self, at: usize) {
         let len = self.delays.values().len();
+        self.unflagged = false;
         for place in (at..).step_by(self.stride).take(len) {
             self.buffers.status[place] = NOT_CONVERGED;
             if let Some(n) = &mut self.buffers.n_unstable {
