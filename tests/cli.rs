@@ -483,3 +483,33 @@ fn progress_is_plain_lines_without_a_terminal() {
     let quiet = folder.run(&["run", "small.toml", "--quiet", "--fresh"]);
     assert_eq!(err(&quiet), "");
 }
+
+/// `slipmap … | head -0` and closed streams: no panic, and the map is complete.
+#[test]
+#[cfg(unix)]
+fn a_reader_that_has_gone_is_no_failure() {
+    let folder = Folder::with(&[("small.toml", SMALL)]);
+    let program = env!("CARGO_BIN_EXE_slipmap");
+    for (args, redirect) in [
+        ("run small.toml --fresh", "2>err | true"),
+        ("run small.toml --fresh", ">&- 2>err"),
+        ("run small.toml --fresh", ">/dev/full 2>err"),
+        ("run small.toml --fresh", ">err 2>&-"),
+        ("info small.h5", "2>err | true"),
+        ("point --mu-prime 1 --tau 1", "2>err | true"),
+        ("plan small.toml", "2>err | true"),
+        ("plot small.h5", "2>err | true"),
+        ("info missing.h5", ">err 2>&-"),
+    ] {
+        let line = format!("sleep 0.05; '{program}' {args} {redirect}");
+        let output = Command::new("sh")
+            .args(["-c", &line])
+            .current_dir(folder.path())
+            .output()
+            .unwrap();
+        let said = std::fs::read_to_string(folder.path().join("err")).unwrap();
+        assert!(!said.contains("panicked"), "{line}\n{said}");
+        assert!(output.status.code().is_some_and(|code| code <= 2), "{line}");
+        assert!(folder.path().join("small.h5").exists());
+    }
+}

@@ -7,12 +7,16 @@ use slipmap::model::ModelError;
 use slipmap::store::StoreError;
 use slipmap::sweep::SpecError;
 
+use super::say;
+
 /// Why a command did not do what it was asked for.
 pub enum Failure {
     /// Exit code 1: it could not be done.
     Failed(Report),
     /// Exit code 2: the input does not make sense.
     BadInput(Report),
+    /// Exit code 0: whoever read the output has read enough.
+    ReaderGone,
     /// Exit code 130 or 143: a signal.
     Interrupted {
         /// What was left behind.
@@ -52,13 +56,14 @@ impl Failure {
     pub fn report(self) -> ExitCode {
         let (report, code) = match self {
             Self::Interrupted { message, code } => {
-                eprintln!("{message}");
+                say::remark(message);
                 return ExitCode::from(code);
             }
+            Self::ReaderGone => return ExitCode::SUCCESS,
             Self::Failed(report) => (report, 1),
             Self::BadInput(report) => (report, 2),
         };
-        eprintln!("{report:?}");
+        say::remark(format_args!("{report:?}"));
         ExitCode::from(code)
     }
 }
@@ -83,6 +88,9 @@ impl From<ModelError> for Failure {
 
 impl From<std::io::Error> for Failure {
     fn from(error: std::io::Error) -> Self {
+        if error.kind() == std::io::ErrorKind::BrokenPipe {
+            return Self::ReaderGone;
+        }
         let message = format!("cannot write to standard output: {error}");
         Self::Failed(Report::new(MietteDiagnostic::new(message)))
     }

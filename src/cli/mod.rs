@@ -7,6 +7,7 @@ mod plan;
 mod plot;
 mod point;
 mod run;
+mod say;
 mod sweep_file;
 
 use std::process::ExitCode;

@@ -10,6 +10,7 @@ use slipmap::sweep::field::known_fields;
 use slipmap::sweep::{Field, Parameter};
 
 use super::failure::Failure;
+use super::say;
 
 #[derive(Debug, clap::Args)]
 pub struct Args {
@@ -73,7 +74,7 @@ pub fn main(args: &Args) -> Result<(), Failure> {
         ..PictureOptions::default()
     };
     picture::draw(&map, &path, &options).map_err(|error| failure(error, args))?;
-    println!("{}", path.display());
+    say::result(path.display());
     Ok(())
 }
 

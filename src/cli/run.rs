@@ -18,6 +18,7 @@ use slipmap::sweep::{Plan, RunError, engine};
 
 use super::failure::Failure;
 use super::plot;
+use super::say;
 use super::sweep_file::read_plan;
 
 /// More threads than this are taken for a slip of the finger.
@@ -62,10 +63,10 @@ pub fn main(args: &Args) -> Result<(), Failure> {
     let plan = read_plan(&args.sweep)?;
     let path = output_path(args)?;
     if !args.fresh && already_there(&path, &plan)? {
-        println!(
+        say::result(format_args!(
             "{} is already complete; --fresh computes it again",
             path.display()
-        );
+        ));
         if !plot::beside(&path).exists() {
             show(&path, args.quiet);
         }
@@ -83,14 +84,14 @@ pub fn main(args: &Args) -> Result<(), Failure> {
     }
     writer.finish()?;
     let elapsed = progress.elapsed();
-    println!(
+    say::result(format_args!(
         "{}: {} cells in {} ({} cells/s), {}",
         path.display(),
         grouped(plan.cells()),
         seconds(elapsed),
         prefixed(plan.cells() as f64 / elapsed),
         bytes(std::fs::metadata(&path).map_or(0, |m| m.len())),
-    );
+    ));
     show(&path, args.quiet);
     Ok(())
 }
@@ -99,22 +100,22 @@ pub fn main(args: &Args) -> Result<(), Failure> {
 fn show(path: &Path, quiet: bool) {
     let map = match MapFile::open(path) {
         Ok(map) => map,
-        Err(error) => return eprintln!("warning: no picture: {error}"),
+        Err(error) => return say::remark(format_args!("warning: no picture: {error}")),
     };
     let picture = plot::beside(path);
     match picture::draw(&map, &picture, &PictureOptions::default()) {
-        Ok(()) => println!("{}", picture.display()),
+        Ok(()) => say::result(picture.display()),
         Err(PictureError::NothingToDraw) => {}
-        Err(error) => eprintln!("warning: no picture: {error}"),
+        Err(error) => say::remark(format_args!("warning: no picture: {error}")),
     }
     if quiet || !std::io::stderr().is_terminal() {
         return;
     }
     let no_colour = std::env::var_os("NO_COLOR").is_some_and(|value| !value.is_empty());
     match preview(&map, PREVIEW_WIDTH, !no_colour) {
-        Ok(Some(text)) => eprint!("{text}"),
+        Ok(Some(text)) => say::remark(text.trim_end_matches('\n')),
         Ok(None) => {}
-        Err(error) => eprintln!("warning: no preview: {error}"),
+        Err(error) => say::remark(format_args!("warning: no preview: {error}")),
     }
 }
 

@@ -1,6 +1,7 @@
 //! Progress of a sweep: a bar on a terminal, plain lines elsewhere.
 
 use std::cell::Cell;
+use std::io::Write;
 use std::time::{Duration, Instant};
 
 use indicatif::{ProgressBar, ProgressState, ProgressStyle};
@@ -54,7 +55,7 @@ impl Progress {
     fn line(&self, text: &str) {
         if self.quiet {
         } else if self.bar.is_hidden() {
-            eprintln!("{text}");
+            let _ = writeln!(std::io::stderr(), "{text}");
         } else {
             self.bar.println(text);
         }

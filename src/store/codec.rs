@@ -5,7 +5,7 @@
 use std::collections::HashMap;
 use std::sync::Arc;
 
-use libdeflater::{CompressionLvl, Compressor};
+use zlib_rs::{DeflateConfig, ReturnCode, Strategy, compress_bound, compress_slice};
 
 /// The deflate level that the files name.
 pub(super) const DEFLATE_LEVEL: u8 = 1;
@@ -14,8 +14,8 @@ pub(super) const DEFLATE_LEVEL: u8 = 1;
 pub(super) type Chunk = Arc<[u8]>;
 
 /// Compresses chunks of one thread.
+#[derive(Default)]
 pub(super) struct ChunkCodec {
-    compressor: Compressor,
     shuffled: Vec<u8>,
     out: Vec<u8>,
     /// Chunks of one repeated element, by its bytes and size.
@@ -26,6 +26,9 @@ pub(super) struct ChunkCodec {
 pub(super) trait Element: Copy + PartialEq {
     /// Size in bytes.
     const SIZE: usize;
+    /// How deflate looks for repetitions: counts and flags come in long runs, and looking only for those is several times
+    /// faster and finds more.
+    const STRATEGY: Strategy;
     /// The bits, for telling constant chunks apart.
     fn bits(self) -> u64;
     /// Bytes as they lie in memory.
@@ -33,9 +36,10 @@ pub(super) trait Element: Copy + PartialEq {
 }
 
 macro_rules! element {
-    ($kind:ty, $bits:expr) => {
+    ($kind:ty, $strategy:expr, $bits:expr) => {
         impl Element for $kind {
             const SIZE: usize = size_of::<$kind>();
+            const STRATEGY: Strategy = $strategy;
             fn bits(self) -> u64 {
                 $bits(self)
             }
@@ -46,21 +50,9 @@ macro_rules! element {
         }
     };
 }
-element!(u8, u64::from);
-element!(u16, u64::from);
-element!(f64, f64::to_bits);
-
-impl Default for ChunkCodec {
-    fn default() -> Self {
-        let level = CompressionLvl::new(i32::from(DEFLATE_LEVEL)).unwrap_or_default();
-        Self {
-            compressor: Compressor::new(level),
-            shuffled: Vec::new(),
-            out: Vec::new(),
-            constant: HashMap::new(),
-        }
-    }
-}
+element!(u8, Strategy::Rle, u64::from);
+element!(u16, Strategy::Rle, u64::from);
+element!(f64, Strategy::Default, f64::to_bits);
 
 impl ChunkCodec {
     /// The chunk as HDF5 stores it: bytes shuffled (for elements longer than one) and deflated.
@@ -84,13 +76,18 @@ impl ChunkCodec {
             shuffle(raw, T::SIZE, &mut self.shuffled);
             &self.shuffled
         };
-        let bound = self.compressor.zlib_compress_bound(input.len());
+        let bound = compress_bound(input.len());
         self.out.resize(bound.max(self.out.len()), 0);
-        let length = self
-            .compressor
-            .zlib_compress(input, &mut self.out)
-            .unwrap_or_else(|_| unreachable!("the buffer has the size that the library asked for"));
-        Arc::from(&self.out[..length])
+        let config = DeflateConfig {
+            level: i32::from(DEFLATE_LEVEL),
+            strategy: T::STRATEGY,
+            ..DeflateConfig::default()
+        };
+        match compress_slice(&mut self.out, input, config) {
+            (chunk, ReturnCode::Ok) => Arc::from(&*chunk),
+            // The buffer has the size that the library asks for, and the settings are constants.
+            (_, code) => unreachable!("deflate ended with {code:?}"),
+        }
     }
 }
 
