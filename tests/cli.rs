@@ -114,6 +114,22 @@ fn run_makes_a_map_and_a_picture_and_goes_on_from_there() {
         "5 124 cells",
     );
     expect(&folder.run(&["info", "small.h5"]), 0, "42 points, -3 to 1");
+    // A picture that somebody else made is not drawn over.
+    std::fs::write(folder.path().join("small.png"), "a photograph").unwrap();
+    expect(
+        &folder.run(&["run", "small.toml", "--fresh"]),
+        0,
+        "small.png is there and not by slipmap",
+    );
+    assert_eq!(
+        std::fs::read_to_string(folder.path().join("small.png")).unwrap(),
+        "a photograph"
+    );
+    expect(
+        &folder.run(&["run", "other.toml", "-o", "small.h5", "--fresh"]),
+        0,
+        "5 124 cells",
+    );
     assert_eq!(
         out(&folder.run(&["info", "small.h5", "--sweep"])),
         SMALL.replace("41", "42")
@@ -123,26 +139,25 @@ fn run_makes_a_map_and_a_picture_and_goes_on_from_there() {
 #[test]
 fn an_output_that_is_no_map_is_not_touched() {
     let folder = Folder::with(&[("small.toml", SMALL), ("thesis.h5", "years of work")]);
-    expect(
-        &folder.run(&["run", "small.toml", "-o", "thesis.h5"]),
-        2,
-        "no map of slipmap",
-    );
+    std::fs::create_dir(folder.path().join("folder.h5")).unwrap();
+    for fresh in [&["--fresh"][..], &[]] {
+        for (name, says) in [
+            ("thesis.h5", "no map of slipmap"),
+            ("small.toml", "no map of slipmap"),
+            ("folder.h5", "it is a folder"),
+        ] {
+            let args = [&["run", "small.toml", "-o", name], fresh].concat();
+            expect(&folder.run(&args), 2, says);
+        }
+    }
     assert_eq!(
         std::fs::read_to_string(folder.path().join("thesis.h5")).unwrap(),
         "years of work"
     );
-    std::fs::create_dir(folder.path().join("folder.h5")).unwrap();
-    for fresh in [&["--fresh"][..], &[]] {
-        let args = [&["run", "small.toml", "-o", "folder.h5"], fresh].concat();
-        let output = folder.run(&args);
-        assert!(
-            !output.status.success() && err(&output).contains("directory")
-                || err(&output).contains("folder"),
-            "{}",
-            err(&output)
-        );
-    }
+    assert_eq!(
+        std::fs::read_to_string(folder.path().join("small.toml")).unwrap(),
+        SMALL
+    );
     assert_eq!(folder.files(), ["folder.h5", "small.toml", "thesis.h5"]);
 }
 

@@ -62,7 +62,7 @@ pub fn default_threads() -> usize {
 pub fn main(args: &Args) -> Result<(), Failure> {
     let plan = read_plan(&args.sweep)?;
     let path = output_path(args)?;
-    if !args.fresh && already_there(&path, &plan)? {
+    if already_there(&path, &plan, args.fresh)? {
         say::result(format_args!(
             "{} is already complete; --fresh computes it again",
             path.display()
@@ -103,7 +103,16 @@ fn show(path: &Path, quiet: bool) {
         Err(error) => return say::remark(format_args!("warning: no picture: {error}")),
     };
     let picture = plot::beside(path);
-    match picture::draw(&map, &picture, &PictureOptions::default()) {
+    let drawn = if picture::may_replace(&picture) {
+        picture::draw(&map, &picture, &PictureOptions::default())
+    } else {
+        let name = picture.display();
+        say::remark(format_args!(
+            "warning: no picture: {name} is there and not by slipmap; `slipmap plot -o` draws elsewhere"
+        ));
+        Err(PictureError::NothingToDraw)
+    };
+    match drawn {
         Ok(()) => say::result(picture.display()),
         Err(PictureError::NothingToDraw) => {}
         Err(error) => say::remark(format_args!("warning: no picture: {error}")),
@@ -136,21 +145,30 @@ fn output_path(args: &Args) -> Result<PathBuf, Failure> {
     Ok(path)
 }
 
-/// True if the map of this plan is there; an error if something else is.
-fn already_there(path: &Path, plan: &Plan) -> Result<bool, Failure> {
+/// True if the map of this plan is there and `fresh` is not set; an error if what is there must not be replaced.
+///
+/// `fresh` replaces maps only: another file under that name is more likely a slip than a wish.
+fn already_there(path: &Path, plan: &Plan, fresh: bool) -> Result<bool, Failure> {
     if !path.exists() {
         return Ok(false);
     }
-    let refuse = |why: String| {
-        Failure::bad_input_with_help(
-            format!("{} is already there: {why}", path.display()),
-            "--fresh replaces it; -o writes elsewhere",
-        )
-    };
     match MapFile::open(path) {
+        Ok(_) if fresh => Ok(false),
         Ok(map) if map.root_text(root::PLAN_HASH).as_deref() == Some(&plan.hash()) => Ok(true),
-        Ok(_) => Err(refuse("the map of another sweep".into())),
-        Err(StoreError::NotAMap { why, .. }) => Err(refuse(format!("no map of slipmap ({why})"))),
+        Ok(_) => Err(Failure::bad_input_with_help(
+            format!(
+                "{} is already there: the map of another sweep",
+                path.display()
+            ),
+            "--fresh replaces it; -o writes elsewhere",
+        )),
+        Err(StoreError::NotAMap { why, .. }) => Err(Failure::bad_input_with_help(
+            format!(
+                "{} is already there and no map of slipmap: {why}",
+                path.display()
+            ),
+            "it is left as it is; remove it first, or write elsewhere with -o",
+        )),
         Err(error) => Err(error.into()),
     }
 }

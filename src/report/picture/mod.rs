@@ -27,6 +27,7 @@ mod ticks;
 mod view;
 
 use std::fs;
+use std::io::Read;
 use std::ops::RangeInclusive;
 use std::path::Path;
 
@@ -42,6 +43,9 @@ const SIZES: RangeInclusive<u32> = 300..=5000;
 /// Cells read along an axis: more are not seen in a bitmap, and make an SVG file unwieldy.
 const MOST_CELLS: usize = 1200;
 const MOST_SVG_CELLS: usize = 320;
+
+/// The part of a PNG file in which its signature is looked for.
+const BYTES_TO_SIGNATURE: u64 = 512;
 
 /// What kind of picture.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -106,6 +110,19 @@ pub fn draw(map: &MapFile, path: &Path, options: &PictureOptions) -> Result<(), 
         source,
     })?;
     Ok(output.commit()?)
+}
+
+/// True if `path` is free, or holds a PNG picture of slipmap's: nobody's work is lost by drawing there unasked.
+#[must_use]
+pub fn may_replace(path: &Path) -> bool {
+    let Ok(file) = fs::File::open(path) else {
+        return !path.exists();
+    };
+    let mut start = Vec::new();
+    file.take(BYTES_TO_SIGNATURE)
+        .read_to_end(&mut start)
+        .is_ok()
+        && render::signed(&start)
 }
 
 enum Format {

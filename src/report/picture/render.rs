@@ -43,10 +43,22 @@ pub fn png(scene: &Scene) -> Result<Vec<u8>, PictureError> {
     encoder.set_color(png::ColorType::Rgb);
     encoder.set_depth(png::BitDepth::Eight);
     encoder.set_compression(png::Compression::Default);
+    encoder
+        .add_text_chunk(SIGNATURE.0.into(), SIGNATURE.1.into())
+        .map_err(refused)?;
     let mut writer = encoder.write_header().map_err(refused)?;
     writer.write_image_data(&pixels).map_err(refused)?;
     writer.finish().map_err(refused)?;
     Ok(bytes)
+}
+
+/// The text in a PNG file that says who drew it.
+const SIGNATURE: (&str, &str) = ("Software", "slipmap");
+
+/// True for the start of a PNG file that [`png`] made.
+pub fn signed(start: &[u8]) -> bool {
+    let text = [SIGNATURE.0.as_bytes(), b"\0", SIGNATURE.1.as_bytes()].concat();
+    start.windows(text.len()).any(|part| part == text)
 }
 
 /// The picture as an SVG file.
