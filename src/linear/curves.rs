@@ -20,7 +20,7 @@ const COARSE_SEGMENTS: usize = 8;
 const FLATNESS: f64 = 2e-4;
 const MOST_HALVINGS: u32 = 12;
 /// More arcs than this in one window are refused: no picture could show them.
-const MOST_ARCS: u64 = 20_000;
+const MOST_ARCS: u64 = 2000;
 
 /// A point of a crossing curve, exact to rounding.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -275,7 +275,7 @@ impl Crossings {
 
     /// The signed distance to the nearest change of stability at every delay of a row, see [`Crossings::delay_margin`].
     pub fn fill_delay_margins(&self, delays: &Delays, margins: &mut [f64]) {
-        let mut walk = MarginWalk::new(self.stable_delays());
+        let mut walk = MarginWalk::new(self);
         for (tau, margin) in delays.values().iter().zip(margins) {
             *margin = walk.margin_at(*tau);
         }

@@ -1,9 +1,15 @@
-//! All delay intervals on which continuous sliding is stable.
+//! All delay intervals on which continuous sliding is stable, in closed form.
 //!
-//! One setting of (b, a_v, a_n) fixes them all at once: they lie between a crossing to the left and the next one to the
-//! right. Pairs come in at ω₊ faster than they leave at ω₋, so there are finitely many.
-
-use std::f64::consts::TAU;
+//! Let U_0 < U_1 < … be the delays at which pairs cross to the right and L_0 < L_1 < … those at which they cross to the left.
+//! The count n₀ + 2 #{U_i < τ} − 2 #{L_i < τ} is zero exactly on
+//!
+//! ```text
+//! n₀ = 2:   (L_i, U_i),                   i = 0, 1, …                                       (1)
+//! n₀ = 0:   (0, U_0)  and  (L_{i−1}, U_i), i = 1, 2, …
+//! ```
+//!
+//! as far as these are not empty. Pairs come in more often than they leave (ω₊ > ω₋), so the lengths shrink by the same
+//! amount from each to the next, and the first empty one ends the list.
 
 use super::crossing::{Crossing, Crossings};
 
@@ -20,13 +26,25 @@ pub struct StableInterval {
 #[derive(Debug, Clone)]
 pub struct StableDelays {
     crossings: Crossings,
-    next_upper: u64,
-    next_lower: u64,
-    n_unstable: u64,
-    from: f64,
-    /// No delay above this one is stable.
-    last: f64,
-    finished: bool,
+    next: u64,
+}
+
+impl Iterator for StableDelays {
+    type Item = StableInterval;
+
+    fn next(&mut self) -> Option<StableInterval> {
+        let first = self.crossings.first_interval();
+        if self.next < first {
+            self.next = first;
+        }
+        let interval = self.crossings.stable_interval(self.next)?;
+        self.next += 1;
+        Some(interval)
+    }
+}
+
+fn nth_delay(crossing: &Option<Crossing>, i: u64) -> Option<f64> {
+    crossing.map(|c| c.delay(c.first_branch + i))
 }
 
 impl Crossings {
@@ -35,112 +53,133 @@ impl Crossings {
     pub fn stable_delays(&self) -> StableDelays {
         StableDelays {
             crossings: *self,
-            next_upper: self.upper.map_or(0, |c| c.first_branch),
-            next_lower: self.lower.map_or(0, |c| c.first_branch),
-            n_unstable: self.at_zero_delay,
-            from: 0.0,
-            last: last_possible(self),
-            finished: self.always_marginal,
+            next: 0,
         }
     }
 
     /// Signed distance in τ to the nearest change of stability: positive where stable, negative where not, infinite where
     /// stability never changes, and 0 at every delay where all of them are marginal. Same time unit as the crossings.
-    ///
-    /// For many delays of one line walk [`StableDelays`] once instead.
     #[must_use]
     pub fn delay_margin(&self, tau: f64) -> f64 {
-        let mut walk = MarginWalk::new(self.stable_delays());
-        walk.margin_at(tau)
+        MarginWalk::new(self).margin_at(tau)
     }
-}
 
-/// Beyond this delay pairs have come in for good: the count (1) of [`super::count`] stays above zero there.
-fn last_possible(crossings: &Crossings) -> f64 {
-    match (&crossings.upper, &crossings.lower) {
-        (Some(upper), Some(lower)) => {
-            let turns = TAU * 2.0 + upper.theta - lower.theta;
-            turns / (upper.omega - lower.omega)
+    /// The interval number `i` of (1), or none where it is empty.
+    #[inline]
+    fn stable_interval(&self, i: u64) -> Option<StableInterval> {
+        let stable_at_once = self.at_zero_delay == 0;
+        let from = match (stable_at_once, i) {
+            _ if self.always_marginal => None,
+            (true, 0) => Some(0.0),
+            (true, i) => nth_delay(&self.lower, i - 1),
+            (false, i) => nth_delay(&self.lower, i),
+        }?;
+        let to = nth_delay(&self.upper, i).unwrap_or(f64::INFINITY);
+        (from < to).then_some(StableInterval { from, to })
+    }
+
+    /// 0, or 1 where the interval from τ = 0 on is empty because a pair comes in right there.
+    fn first_interval(&self) -> u64 {
+        u64::from(self.at_zero_delay == 0 && self.stable_interval(0).is_none())
+    }
+
+    /// The number of the last stable interval, or none where there is none.
+    fn last_interval(&self) -> Option<u64> {
+        let first = self.first_interval();
+        let exists = |i: u64| self.stable_interval(i).is_some();
+        if !exists(first) {
+            return None;
         }
-        (Some(upper), None) => upper.delay(upper.first_branch + 1),
-        (None, _) => f64::INFINITY,
-    }
-}
-
-impl Iterator for StableDelays {
-    type Item = StableInterval;
-
-    fn next(&mut self) -> Option<StableInterval> {
-        while !self.finished {
-            let delay = |c: &Option<Crossing>, k| c.map_or(f64::INFINITY, |c: Crossing| c.delay(k));
-            let upper = delay(&self.crossings.upper, self.next_upper);
-            let lower = delay(&self.crossings.lower, self.next_lower);
-            let (from, was_stable) = (self.from, self.n_unstable == 0);
-            let here = upper.min(lower);
-            self.finished = here == f64::INFINITY || here > self.last;
-            // At equal delays the pair that comes in goes first, so that no interval of length zero appears.
-            if upper <= lower {
-                self.next_upper += 1;
-                self.n_unstable += 2;
+        // Lengths only shrink: doubling and halving finds the last, however many there are.
+        let mut step = 1;
+        while step < 1 << 52 && exists(first + step) {
+            step *= 2;
+        }
+        let (mut there, mut gone) = (first + step / 2, first + step);
+        while gone - there > 1 {
+            let middle = there + (gone - there) / 2;
+            if exists(middle) {
+                there = middle;
             } else {
-                self.next_lower += 1;
-                self.n_unstable = self.n_unstable.saturating_sub(2);
-            }
-            self.from = here;
-            if was_stable && here > from {
-                return Some(StableInterval { from, to: here });
+                gone = middle;
             }
         }
-        None
+        Some(if exists(there) { there } else { first })
+    }
+
+    /// The number of the last interval that begins below `tau`, whether empty or not.
+    fn interval_below(&self, tau: f64) -> Option<u64> {
+        let begun = self.lower.map_or(0, |c| c.count_below(tau));
+        match self.at_zero_delay {
+            0 => Some(begun),
+            _ => begun.checked_sub(1),
+        }
     }
 }
 
-/// Distances to the nearest change of stability, for delays that do not decrease from call to call.
+/// Distances to the nearest change of stability on one line. Quick for delays that grow from call to call, right for any.
 #[derive(Debug, Clone)]
-pub struct MarginWalk {
-    always_marginal: bool,
-    intervals: StableDelays,
-    previous: Option<StableInterval>,
-    current: Option<StableInterval>,
+pub struct MarginWalk<'c> {
+    crossings: &'c Crossings,
+    last: Option<u64>,
+    /// Where `below` and `above` hold: the delays looked at last.
+    valid: (f64, f64),
+    below: Option<StableInterval>,
+    above: Option<StableInterval>,
 }
 
-impl MarginWalk {
-    /// Starts before the first of `intervals`.
+impl<'c> MarginWalk<'c> {
+    /// For the line with these crossings.
     #[must_use]
-    pub fn new(mut intervals: StableDelays) -> Self {
-        let current = intervals.next();
+    pub fn new(crossings: &'c Crossings) -> Self {
         Self {
-            always_marginal: intervals.crossings.always_marginal,
-            intervals,
-            previous: None,
-            current,
+            crossings,
+            last: crossings.last_interval(),
+            valid: (f64::INFINITY, f64::NEG_INFINITY),
+            below: None,
+            above: None,
         }
     }
 
-    /// The signed distance at `tau`, see [`Crossings::delay_margin`]. `tau` must not be smaller than at the call before.
+    /// The signed distance at `tau` ≥ 0, see [`Crossings::delay_margin`].
     #[inline]
     pub fn margin_at(&mut self, tau: f64) -> f64 {
-        while let Some(interval) = self.current
-            && interval.to < tau
-        {
-            self.previous = self.current;
-            self.current = self.intervals.next();
+        if !(self.valid.0 < tau && tau <= self.valid.1) {
+            self.look_around(tau);
         }
-        let since_previous = self.previous.map_or(f64::INFINITY, |p| tau - p.to);
-        match self.current {
-            Some(interval) if interval.from == 0.0 || interval.from < tau => {
-                // Stability does not change at the lower end τ = 0 of all delays.
-                let since_from = if interval.from == 0.0 {
-                    f64::INFINITY
-                } else {
-                    tau - interval.from
-                };
-                (interval.to - tau).min(since_from)
-            }
-            Some(interval) => -since_previous.min(interval.from - tau),
-            None if self.always_marginal => 0.0,
-            None => -since_previous,
+        if self.crossings.always_marginal {
+            return 0.0;
         }
+        let to_next = self.above.map_or(f64::INFINITY, |next| next.from - tau);
+        match self.below {
+            // Stability does not change at the lower end τ = 0 of all delays.
+            Some(StableInterval { from, to }) if tau <= to => match from {
+                0.0 => to - tau,
+                _ => (to - tau).min(tau - from),
+            },
+            Some(passed) => 0.0 - to_next.min(tau - passed.to),
+            None => 0.0 - to_next,
+        }
+    }
+
+    /// Finds the stable intervals that begin below and above `tau`.
+    fn look_around(&mut self, tau: f64) {
+        let below = self.crossings.interval_below(tau);
+        let interval = |i: u64| {
+            let exists = self.last.is_some_and(|last| i <= last);
+            exists.then(|| self.crossings.stable_interval(i)).flatten()
+        };
+        let (this, next) = match (below, self.last) {
+            (Some(i), Some(last)) => (Some(i.min(last)), i + 1),
+            (Some(i), None) => (None, i + 1),
+            (None, _) => (None, 0),
+        };
+        self.below = this.and_then(interval);
+        self.above = interval(next);
+        let from = self.below.map_or(-1.0, |b| b.from);
+        // τ = 0 belongs to the interval that begins there.
+        let from = if from == 0.0 { -1.0 } else { from };
+        self.valid = (from, self.above.map_or(f64::INFINITY, |a| a.from));
     }
 }
 
@@ -201,7 +240,7 @@ mod tests {
         ] {
             let crossings = Crossings::of(Groups::new(b, a_v, a_n));
             let stable: Vec<_> = crossings.stable_delays().collect();
-            let mut walk = MarginWalk::new(crossings.stable_delays());
+            let mut walk = MarginWalk::new(&crossings);
             for i in 1..40_000 {
                 let tau = f64::from(i) * 0.01;
                 let inside = stable.iter().any(|s| s.from < tau && tau < s.to);
@@ -219,6 +258,21 @@ mod tests {
                     );
                 }
             }
+        }
+    }
+
+    /// ω₋ and ω₊ nearly coincide: the intervals are too many to walk through, and the answers come at once all the same.
+    #[test]
+    fn nearly_tangent_lines_are_no_slower() {
+        for (b, a_n) in [(0.0, 1e-12), (0.0, -1e-12), (1e-13, 1e-12), (-1e-13, -1e-9), (-1e-13, 1e-9)] {
+            let crossings = Crossings::of(Groups::new(b, 0.0, a_n));
+            for tau in [0.5, 7.0, 1e4, 1e9] {
+                let margin = crossings.delay_margin(tau);
+                assert!(!margin.is_nan());
+                let count = crossings.count(tau, MarginalTolerance::default());
+                assert!(count.marginal || (margin > 0.0) == (count.n_unstable == 0), "{b} {a_n} {tau}");
+            }
+            assert!(crossings.stable_delays().take(1000).count() <= 1000);
         }
     }
 }
