@@ -109,6 +109,26 @@ fn run_makes_a_map_and_a_picture_and_goes_on_from_there() {
         "the map of another sweep",
     );
     expect(
+        &folder.run(&["run", "small.toml", "-o", "new.png"]),
+        2,
+        "the name of a png picture",
+    );
+    std::fs::write(
+        folder.path().join("re.titled.toml"),
+        SMALL.replace("small", "tall"),
+    )
+    .unwrap();
+    expect(
+        &folder.run(&["run", "re.titled.toml", "-o", "small.h5"]),
+        0,
+        "the sweep file has changed otherwise",
+    );
+    expect(
+        &folder.run(&["run", "re.titled.toml"]),
+        0,
+        "re.titled.h5: 5 002 cells",
+    );
+    expect(
         &folder.run(&["run", "other.toml", "-o", "small.h5", "--fresh"]),
         0,
         "5 124 cells",
@@ -306,6 +326,17 @@ fn point_says_everything_for_people_and_programs() {
     insta::assert_snapshot!("point", out(&folder.run(&args)));
     let json = folder.run(&[&args[..], &["--json"]].concat());
     let value: serde_json::Value = serde_json::from_slice(&json.stdout).unwrap();
+    let scientific = folder.run(&[
+        "point",
+        "--mu-prime",
+        "-7e-1",
+        "--alpha-v",
+        "-.3174",
+        "--tau",
+        "4.312957",
+        "--json",
+    ]);
+    assert_eq!(out(&scientific), out(&json));
     assert_eq!(
         (value["n_unstable"].as_u64(), value["stable"].as_bool()),
         (Some(0), Some(true))
@@ -399,7 +430,7 @@ fn start(folder: &Folder) -> std::process::Child {
         .stderr(Stdio::piped())
         .spawn()
         .unwrap();
-    let part = folder.path().join("large.h5.part");
+    let part = folder.path().join(".large.h5.slipmap-part");
     let start = Instant::now();
     while !part.exists() {
         assert!(

@@ -96,3 +96,45 @@ fn undamped_counts_equal_winding_numbers() {
         }
     }
 }
+
+/// ω → 0: whether the slow crossing exists at all is decided by a sign, however small the frequency is.
+#[test]
+fn slow_crossings_exist_or_not() {
+    for (b, a_n) in [
+        (-2.29, 0.500_000_000_000_000_2),
+        (-2.29, 0.499_999_999_999_999_9),
+        (-0.5, 0.500_000_000_000_000_2),
+        (-0.5, 0.499_999_999_999_999_9),
+    ] {
+        let crossings = Crossings::of(Groups::new(b, 0.0, a_n));
+        // x₊ x₋ = 1 − 2 a_n and x₊ + x₋ = 2 − b² − 2 a_n: the slow x is the quotient.
+        let slow: f64 = (1.0 - 2.0 * a_n) / (2.0 - b * b - 2.0 * a_n);
+        let found = crossings.iter().find(|c| c.omega < 1e-3);
+        assert_eq!(found.is_some(), slow > 0.0, "{b} {a_n}");
+        if let Some(crossing) = found {
+            assert!((crossing.omega / slow.sqrt() - 1.0).abs() < 1e-12);
+        }
+    }
+}
+
+proptest! {
+    /// At a tangency in physical units the groups themselves are rounded: it is recognised all the same, and its cells are
+    /// marginal rather than wrong.
+    #[test]
+    fn tangencies_in_physical_units_are_marginal(
+        b in -5.0..-0.01_f64,
+        mass in 0.1..10.0_f64,
+        stiffness in 0.1..10.0_f64,
+        load in 0.1..10.0_f64,
+        mu_k in 0.1..1.0_f64,
+    ) {
+        use slipmap::model::{Control, Oscillator, SlidingPoint};
+        let oscillator = Oscillator::new(mass, stiffness, load).unwrap();
+        let mu_prime = b * (stiffness * mass).sqrt() / load;
+        let alpha_n = -(0.5 * b * b - b) * stiffness / mu_k;
+        let groups = oscillator.groups(SlidingPoint { mu_k, mu_prime }, Control { alpha_v: 0.0, alpha_n });
+        let crossings = Crossings::of(groups).in_physical_time(oscillator.time_unit());
+        let touch = crossings.touch.expect("the tangency is recognised");
+        prop_assert!(crossings.marginal(touch.delay(0), MarginalTolerance::default()));
+    }
+}

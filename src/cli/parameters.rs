@@ -29,46 +29,45 @@ impl From<Law> for LawKind {
 
 /// A point of parameter space.
 #[derive(Debug, Args)]
-#[command(allow_negative_numbers = true)]
 pub struct ParameterArgs {
     /// μ_K′(v0), slope of the friction coefficient at the sliding velocity
-    #[arg(long, value_name = "B")]
+    #[arg(long, allow_hyphen_values = true, value_name = "B")]
     mu_prime: Option<f64>,
     /// α_v, gain of velocity control [default: 0]
-    #[arg(long, value_name = "A")]
+    #[arg(long, allow_hyphen_values = true, value_name = "A")]
     alpha_v: Option<f64>,
     /// α_N, gain of load control [default: 0]
-    #[arg(long, value_name = "A")]
+    #[arg(long, allow_hyphen_values = true, value_name = "A")]
     alpha_n: Option<f64>,
     /// τ, delay of the feedback
-    #[arg(long, value_name = "T")]
+    #[arg(long, allow_hyphen_values = true, value_name = "T")]
     tau: Option<f64>,
     /// μ_K(v0), kinetic friction coefficient at the sliding velocity [default: 1]
-    #[arg(long, value_name = "M")]
+    #[arg(long, allow_hyphen_values = true, value_name = "M")]
     mu_k: Option<f64>,
     /// M, mass [default: 1]
-    #[arg(long)]
+    #[arg(long, allow_hyphen_values = true)]
     mass: Option<f64>,
     /// κ, stiffness [default: 1]
-    #[arg(long)]
+    #[arg(long, allow_hyphen_values = true)]
     stiffness: Option<f64>,
     /// N0, normal load [default: 1]
-    #[arg(long)]
+    #[arg(long, allow_hyphen_values = true)]
     normal_load: Option<f64>,
     /// Friction law, instead of --mu-prime and --mu-k
     #[arg(long)]
     friction: Option<Law>,
     /// v0, pulling velocity (with --friction)
-    #[arg(long)]
+    #[arg(long, allow_hyphen_values = true)]
     v0: Option<f64>,
     /// μ0 of the friction law
-    #[arg(long)]
+    #[arg(long, allow_hyphen_values = true)]
     mu0: Option<f64>,
     /// v_s of the friction law
-    #[arg(long)]
+    #[arg(long, allow_hyphen_values = true)]
     v_s: Option<f64>,
     /// μ_S, static friction coefficient [default: 1]
-    #[arg(long)]
+    #[arg(long, allow_hyphen_values = true)]
     mu_s: Option<f64>,
 }
 

@@ -74,7 +74,7 @@ pub fn main(args: &Args) -> Result<(), Failure> {
         ..PictureOptions::default()
     };
     picture::draw(&map, &path, &options).map_err(|error| failure(error, args))?;
-    say::result(path.display());
+    say::result(path.display())?;
     Ok(())
 }
 

@@ -62,15 +62,14 @@ pub fn default_threads() -> usize {
 pub fn main(args: &Args) -> Result<(), Failure> {
     let plan = read_plan(&args.sweep)?;
     let path = output_path(args)?;
-    if already_there(&path, &plan, args.fresh)? {
-        say::result(format_args!(
-            "{} is already complete; --fresh computes it again",
-            path.display()
-        ));
+    if let Some(remark) = already_there(&path, &plan, args.fresh)? {
         if !plot::beside(&path).exists() {
             show(&path, args.quiet);
         }
-        return Ok(());
+        return say::result(format_args!(
+            "{} is already complete{remark}",
+            path.display()
+        ));
     }
     let signals = Signals::catch()?;
     let progress = Progress::new(args.quiet);
@@ -84,7 +83,7 @@ pub fn main(args: &Args) -> Result<(), Failure> {
     }
     writer.finish()?;
     let elapsed = progress.elapsed();
-    say::result(format_args!(
+    let told = say::result(format_args!(
         "{}: {} cells in {} ({} cells/s), {}",
         path.display(),
         grouped(plan.cells()),
@@ -93,7 +92,7 @@ pub fn main(args: &Args) -> Result<(), Failure> {
         bytes(std::fs::metadata(&path).map_or(0, |m| m.len())),
     ));
     show(&path, args.quiet);
-    Ok(())
+    told
 }
 
 /// Draws a complete map beside it, and on the terminal. What fails here is a warning: the map is there.
@@ -113,7 +112,8 @@ fn show(path: &Path, quiet: bool) {
         Err(PictureError::NothingToDraw)
     };
     match drawn {
-        Ok(()) => say::result(picture.display()),
+        // Where standard output takes no more, the line about the map has said so.
+        Ok(()) => drop(say::result(picture.display())),
         Err(PictureError::NothingToDraw) => {}
         Err(error) => say::remark(format_args!("warning: no picture: {error}")),
     }
@@ -133,7 +133,9 @@ fn output_path(args: &Args) -> Result<PathBuf, Failure> {
         Some(path) => path.clone(),
         None => {
             let stem = args.sweep.file_stem().unwrap_or(args.sweep.as_os_str());
-            PathBuf::from(stem).with_extension("h5")
+            let mut name = stem.to_owned();
+            name.push(".h5");
+            PathBuf::from(name)
         }
     };
     if path.file_name().is_none() {
@@ -142,19 +144,31 @@ fn output_path(args: &Args) -> Result<PathBuf, Failure> {
             path.display()
         )));
     }
+    let extension = path.extension().map(|e| e.to_string_lossy().to_lowercase());
+    if let Some(kind @ ("png" | "svg")) = extension.as_deref() {
+        return Err(Failure::bad_input_with_help(
+            format!(
+                "--output {} would be a map with the name of a {kind} picture",
+                path.display()
+            ),
+            "maps end in .h5; the picture is drawn beside",
+        ));
+    }
     Ok(path)
 }
 
-/// True if the map of this plan is there and `fresh` is not set; an error if what is there must not be replaced.
+/// A remark if the map of this plan is there and `fresh` is not set; an error if what is there must not be replaced.
 ///
 /// `fresh` replaces maps only: another file under that name is more likely a slip than a wish.
-fn already_there(path: &Path, plan: &Plan, fresh: bool) -> Result<bool, Failure> {
+fn already_there(path: &Path, plan: &Plan, fresh: bool) -> Result<Option<String>, Failure> {
     if !path.exists() {
-        return Ok(false);
+        return Ok(None);
     }
     match MapFile::open(path) {
-        Ok(_) if fresh => Ok(false),
-        Ok(map) if map.root_text(root::PLAN_HASH).as_deref() == Some(&plan.hash()) => Ok(true),
+        Ok(_) if fresh => Ok(None),
+        Ok(map) if map.root_text(root::PLAN_HASH).as_deref() == Some(&plan.hash()) => {
+            Ok(Some(what_differs(&map, plan)))
+        }
         Ok(_) => Err(Failure::bad_input_with_help(
             format!(
                 "{} is already there: the map of another sweep",
@@ -170,6 +184,19 @@ fn already_there(path: &Path, plan: &Plan, fresh: bool) -> Result<bool, Failure>
             "it is left as it is; remove it first, or write elsewhere with -o",
         )),
         Err(error) => Err(error.into()),
+    }
+}
+
+/// What `--fresh` would change in a complete map of the same cells.
+fn what_differs(map: &MapFile, plan: &Plan) -> String {
+    let version = map.root_text(root::PROGRAM_VERSION).unwrap_or_default();
+    if version != env!("CARGO_PKG_VERSION") {
+        format!(", computed by slipmap {version}; --fresh computes it again")
+    } else if map.root_text(root::SWEEP).as_deref() != Some(&plan.spec.text) {
+        ", with the same cells; the sweep file has changed otherwise: --fresh takes that over"
+            .into()
+    } else {
+        "; --fresh computes it again".into()
     }
 }
 

@@ -3,9 +3,11 @@
 use std::fmt::Display;
 use std::io::Write;
 
-/// A line on standard output: a result.
-pub fn result(line: impl Display) {
-    let _ = writeln!(std::io::stdout(), "{line}");
+use super::failure::Failure;
+
+/// A line on standard output: a result. Fails where it cannot be written, a full disk for instance.
+pub fn result(line: impl Display) -> Result<(), Failure> {
+    Ok(writeln!(std::io::stdout(), "{line}")?)
 }
 
 /// A line on standard error: a remark.

@@ -147,10 +147,16 @@ pub struct Crossings {
 }
 
 impl Crossings {
-    /// The crossings of a line, from the quadratic (1) of the module. Finite groups are assumed.
+    /// The crossings of a line, from the quadratic (1) of the module. Finite groups are assumed; sizes below 1e-150 are taken
+    /// for zero.
     #[inline]
     #[must_use]
     pub fn of(groups: Groups) -> Self {
+        let groups = Groups::new(
+            without_underflow(groups.b),
+            without_underflow(groups.a_v),
+            without_underflow(groups.a_n),
+        );
         let b = groups.b;
         let mut crossings = Self {
             at_zero_delay: unstable_at_zero_delay(groups),
@@ -166,19 +172,31 @@ impl Crossings {
         }
         let (c, d) = quadratic(groups);
         let discriminant = discriminant(groups);
-        let discriminant_error = ROUNDINGS * UNIT_ROUNDOFF * (c * c + 4.0 * d.abs());
+        // What rounding of the groups themselves does to c and d counts as well: it matters where they cancel.
+        let Groups { a_v, a_n, .. } = groups;
+        let c_error = ROUNDINGS * UNIT_ROUNDOFF * (b * b + 2.0 * a_n.abs());
+        let d_error = ROUNDINGS * UNIT_ROUNDOFF * (b * b + 2.0 * (b * a_v).abs());
+        let discriminant_error = 2.0 * c.abs() * c_error + 4.0 * d_error;
         if discriminant.abs() <= discriminant_error {
             let y = f64x2::splat(-0.5 * c);
             let y_error = f64x2::splat(0.5 * discriminant_error.sqrt());
-            crossings.touch = Arms::new(groups, y, y_error, 1.0 + y).crossing(0, Direction::Touch);
+            let x_error = y_error + f64x2::splat(UNIT_ROUNDOFF);
+            let arms = Arms::new(groups, (y, y_error), (1.0 + y, x_error));
+            crossings.touch = arms.crossing(0, Direction::Touch);
         } else if discriminant > 0.0 {
-            let (y, y_error) = roots(c, d, discriminant.sqrt(), discriminant_error);
+            let (y, y_error) = roots((c, c_error), d, discriminant.sqrt(), discriminant_error);
             let mut x = (1.0 + y).to_array();
-            if x[1] < 0.25 && x[0] > 0.25 {
-                // 1 + y loses digits where x is small; the product of both keeps them.
-                x[1] = frequency_product(groups) / x[0];
+            let mut x_error = (y_error + f64x2::splat(UNIT_ROUNDOFF)).to_array();
+            for (small, other) in [(0, 1), (1, 0)] {
+                if x[small].abs() < 0.25 && x[other].abs() > 0.25 {
+                    // 1 + y loses digits where x is small, its sign among them; the product of both keeps them.
+                    x[small] = frequency_product(groups) / x[other];
+                    let relative = x_error[other] / x[other].abs() + ROUNDINGS * UNIT_ROUNDOFF;
+                    x_error[small] = x[small].abs() * relative;
+                }
             }
-            let arms = Arms::new(groups, y, y_error, f64x2::from(x));
+            let x = (f64x2::from(x), f64x2::from(x_error));
+            let arms = Arms::new(groups, (y, y_error), x);
             crossings.upper = arms.crossing(0, Direction::Right);
             crossings.lower = arms.crossing(1, Direction::Left);
         }
@@ -205,6 +223,12 @@ impl Crossings {
             .into_iter()
             .flatten()
     }
+}
+
+/// `group`, or zero where its square would underflow.
+#[inline]
+fn without_underflow(group: f64) -> f64 {
+    if group.abs() < 1e-150 { 0.0 } else { group }
 }
 
 /// c and d of the quadratic (1) of the module.
@@ -248,12 +272,12 @@ fn unstable_at_zero_delay(groups: Groups) -> u64 {
 
 /// Both real roots y of (1), the upper one first, without cancellation, and bounds on their errors.
 #[inline]
-fn roots(c: f64, d: f64, root: f64, discriminant_error: f64) -> (f64x2, f64x2) {
+fn roots((c, c_error): (f64, f64), d: f64, root: f64, discriminant_error: f64) -> (f64x2, f64x2) {
     // The root of larger size first, then the other from the product d.
     let large = -0.5 * (c + root.copysign(c));
     let per_large = 1.0 / large;
     let small = d / large;
-    let large_error = 0.25 * discriminant_error / root + ROUNDINGS * UNIT_ROUNDOFF * large.abs();
+    let large_error = 0.25 * discriminant_error / root + 0.5 * c_error;
     let small_error =
         small.abs() * (large_error * per_large.abs() + 2.0 * ROUNDINGS * UNIT_ROUNDOFF);
     if c.is_sign_positive() {
@@ -285,7 +309,7 @@ struct Arms {
 impl Arms {
     /// Equation (2) at x = 1 + y, for x > 0; what stands where x is not positive means nothing.
     #[inline(always)]
-    fn new(groups: Groups, y: f64x2, y_error: f64x2, x: f64x2) -> Self {
+    fn new(groups: Groups, (y, y_error): (f64x2, f64x2), (x, x_error): (f64x2, f64x2)) -> Self {
         let Groups { b, a_v, a_n } = groups;
         let omega = x.sqrt();
         let (b_r, b_i) = (-y, b * omega);
@@ -296,7 +320,7 @@ impl Arms {
         let theta = phase(sine, cosine);
 
         let per_omega = 1.0 / omega;
-        let omega_error = 0.5 * y_error * per_omega + 2.0 * UNIT_ROUNDOFF * omega;
+        let omega_error = 0.5 * x_error * per_omega + 2.0 * UNIT_ROUNDOFF * omega;
         // |A| from below, by its larger part: a bound needs no square root.
         let a_size = a_r.abs().fast_max(a_i.abs());
         let theta_error = (y_error + (b.abs() + 2.0 * a_v.abs()) * omega_error) / a_size

@@ -21,6 +21,8 @@ const FLATNESS: f64 = 2e-4;
 const MOST_HALVINGS: u32 = 12;
 /// More arcs than this in one window are refused: no picture could show them.
 const MOST_ARCS: u64 = 2000;
+/// More corners than this in one window are refused, for the same reason.
+const MOST_CORNERS: u64 = 5000;
 
 /// A point of a crossing curve, exact to rounding.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -83,10 +85,14 @@ pub struct PlaneCurves {
 
 /// Too many branches lie in the window to be traced one by one.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
-#[error("{arcs} crossing curves lie in one window; at most {MOST_ARCS} are traced")]
+#[error(
+    "{arcs} crossing curves with {corners} corners or more lie in one window; at most {MOST_ARCS} with {MOST_CORNERS} are traced"
+)]
 pub struct TooManyCurves {
-    /// How many there are.
+    /// How many curves there are.
     pub arcs: u64,
+    /// How many corners were found before giving up.
+    pub corners: u64,
 }
 
 /// A window of the (p, τ) plane.
@@ -149,8 +155,15 @@ pub fn trace(
         .filter(|p| window.p.contains(p))
         .chain([*window.p.start(), *window.p.end()])
         .collect();
+    // The same breakpoint found by two conditions differs by rounding: the sliver between is no stretch.
+    let sliver = 1e-12 * window.p_width();
+    for end in &mut ends {
+        if end.abs() <= sliver {
+            *end = 0.0;
+        }
+    }
     ends.sort_by(f64::total_cmp);
-    ends.dedup();
+    ends.dedup_by(|next, kept| *next - *kept <= sliver);
     let mut curves = PlaneCurves::default();
     for pair in ends.windows(2) {
         Stretch::new(&crossings_at, pair[0], pair[1], window).trace(&mut curves)?;
@@ -225,7 +238,11 @@ impl<'a, F: Fn(f64) -> Crossings> Stretch<'a, F> {
     /// The end `s` (0 or 1), moved inwards as little as needed for the arcs of the middle to exist there: at a fold the two
     /// arms end within the square root of rounding of one another.
     fn end_node(&self, s: f64) -> f64 {
-        let arms = |c: Crossings| [Arm::Upper, Arm::Lower].map(|arm| arm_of(&c, arm).is_some());
+        // At b = 0 itself the numbering of the branches jumps.
+        let arms = |c: Crossings| {
+            let [upper, lower] = [Arm::Upper, Arm::Lower].map(|arm| arm_of(&c, arm).is_some());
+            (upper, lower, c.undamped)
+        };
         let wanted = arms(self.at(0.5));
         let inwards = |by: f64| if s == 0.0 { by } else { 1.0 - by };
         let mut by = 1e-9;
@@ -265,9 +282,13 @@ impl<'a, F: Fn(f64) -> Crossings> Stretch<'a, F> {
         let ranges = [Arm::Upper, Arm::Lower].map(|arm| self.branches(arm));
         let arcs = ranges.iter().map(|r| r.end - r.start).sum();
         if arcs > MOST_ARCS {
-            return Err(TooManyCurves { arcs });
+            return Err(TooManyCurves { arcs, corners: 0 });
         }
         let cuts = self.cuts(ranges[0].clone());
+        let corners = (curves.corners.len() + cuts.len()) as u64;
+        if corners > MOST_CORNERS {
+            return Err(TooManyCurves { arcs, corners });
+        }
         for (arm, range) in [Arm::Upper, Arm::Lower].into_iter().zip(ranges) {
             for branch in range {
                 self.trace_arc(arm, branch, &cuts, curves);
@@ -284,6 +305,9 @@ impl<'a, F: Fn(f64) -> Crossings> Stretch<'a, F> {
         let mut cuts = Vec::new();
         let (s, nodes) = self.corner_nodes();
         for branch in upper_branches {
+            if cuts.len() as u64 > MOST_CORNERS {
+                break;
+            }
             let places: Vec<Option<u64>> = nodes
                 .iter()
                 .map(|c| {
@@ -375,21 +399,27 @@ impl<'a, F: Fn(f64) -> Crossings> Stretch<'a, F> {
             .iter()
             .map(|c| arm_of(c, arm).map_or(f64::INFINITY, |c| c.delay(branch)))
             .collect();
-        let inside = |tau: f64| lo <= tau && tau <= hi;
+        // −1 below the window, 0 inside, 1 above.
+        let side = |tau: f64| i8::from(tau > hi) - i8::from(tau < lo);
         let mut stretches = Vec::new();
-        let mut from = inside(delays[0]).then_some(self.s[0]);
+        let mut from = (side(delays[0]) == 0).then_some(self.s[0]);
         for i in 0..NODES {
-            let (here, next) = (delays[i], delays[i + 1]);
-            if inside(here) == inside(next) {
-                continue;
-            }
-            let outside = if inside(here) { next } else { here };
-            let edge = if outside > hi { hi } else { lo };
-            let beyond = |s: f64| self.delay(s, arm, branch) - edge;
-            let s = bisect(self.s[i], self.s[i + 1], beyond);
-            match from.take() {
-                Some(start) => stretches.push((start, s)),
-                None => from = Some(s),
+            let (here, next) = (side(delays[i]), side(delays[i + 1]));
+            let edge = |bound: f64| {
+                bisect(self.s[i], self.s[i + 1], |s| {
+                    self.delay(s, arm, branch) - bound
+                })
+            };
+            let bound = |side: i8| if side > 0 { hi } else { lo };
+            match (here, next) {
+                _ if here == next => {}
+                // Right through a window narrower than the distance of the nodes.
+                (-1, 1) => stretches.push((edge(lo), edge(hi))),
+                (1, -1) => stretches.push((edge(hi), edge(lo))),
+                (0, outside) => {
+                    stretches.extend(from.take().map(|start| (start, edge(bound(outside)))))
+                }
+                (outside, _) => from = Some(edge(bound(outside))),
             }
         }
         if let Some(start) = from {
@@ -606,6 +636,50 @@ mod tests {
                         assert!(hit, "b = {b}, a_n = {a_n}, τ = {tau}");
                     }
                 }
+            }
+        }
+    }
+
+    /// A plane of b, which the sweep scans for its breakpoints: none of its pieces is a sliver at b = 0.
+    #[test]
+    fn the_plane_of_the_slope_crosses_zero_without_slivers() {
+        let groups_at = |b: f64| Groups::new(b, 0.0, -0.38);
+        let window = Window {
+            p: -1.47..=0.53,
+            tau: 0.0..=20.0,
+        };
+        let breakpoints = scan_breakpoints(groups_at, &window.p, 4096);
+        let curves = check(&groups_at, &breakpoints, &window);
+        assert!(curves.pieces.len() > 10);
+        for piece in &curves.pieces {
+            let ps = || piece.vertices.iter().map(|v| v.p);
+            let extent = ps().fold(f64::MIN, f64::max) - ps().fold(f64::MAX, f64::min);
+            assert!(extent > 1e-9, "{piece:?}");
+        }
+        assert!(curves.corners.iter().all(|c| c.p.abs() > 1e-9));
+    }
+
+    #[test]
+    fn narrow_windows_miss_no_curve() {
+        let (groups_at, breakpoints) = velocity_plane(-0.2, 0.0);
+        for tau in [4.0, 4.2, 2.0, 9.5] {
+            let window = Window {
+                p: -1.6..=0.4,
+                tau: tau..=tau + 1e-4,
+            };
+            let curves = check(&groups_at, &breakpoints, &window);
+            for i in 0..2000 {
+                let a_v = -1.6 + 0.001 * f64::from(i);
+                let line = Crossings::of(groups_at(a_v));
+                let changes = line
+                    .iter()
+                    .any(|c| c.branch_at(tau) != c.branch_at(tau + 1e-4));
+                let near = curves
+                    .pieces
+                    .iter()
+                    .flat_map(|p| &p.vertices)
+                    .any(|v| (v.p - a_v).abs() < 0.01);
+                assert!(near || !changes, "a_v = {a_v}, τ = {tau}");
             }
         }
     }

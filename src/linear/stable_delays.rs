@@ -264,13 +264,22 @@ mod tests {
     /// ω₋ and ω₊ nearly coincide: the intervals are too many to walk through, and the answers come at once all the same.
     #[test]
     fn nearly_tangent_lines_are_no_slower() {
-        for (b, a_n) in [(0.0, 1e-12), (0.0, -1e-12), (1e-13, 1e-12), (-1e-13, -1e-9), (-1e-13, 1e-9)] {
+        for (b, a_n) in [
+            (0.0, 1e-12),
+            (0.0, -1e-12),
+            (1e-13, 1e-12),
+            (-1e-13, -1e-9),
+            (-1e-13, 1e-9),
+        ] {
             let crossings = Crossings::of(Groups::new(b, 0.0, a_n));
             for tau in [0.5, 7.0, 1e4, 1e9] {
                 let margin = crossings.delay_margin(tau);
                 assert!(!margin.is_nan());
                 let count = crossings.count(tau, MarginalTolerance::default());
-                assert!(count.marginal || (margin > 0.0) == (count.n_unstable == 0), "{b} {a_n} {tau}");
+                assert!(
+                    count.marginal || (margin > 0.0) == (count.n_unstable == 0),
+                    "{b} {a_n} {tau}"
+                );
             }
             assert!(crossings.stable_delays().take(1000).count() <= 1000);
         }

@@ -10,6 +10,9 @@ use zlib_rs::{DeflateConfig, ReturnCode, Strategy, compress_bound, compress_slic
 /// The deflate level that the files name.
 pub(super) const DEFLATE_LEVEL: u8 = 1;
 
+/// Constant chunks that are remembered.
+const MOST_CONSTANT: usize = 64;
+
 /// A compressed chunk; equal chunks share their bytes.
 pub(super) type Chunk = Arc<[u8]>;
 
@@ -64,6 +67,9 @@ impl ChunkCodec {
             return Arc::clone(chunk);
         }
         let chunk = self.compress(values);
+        if self.constant.len() >= MOST_CONSTANT {
+            self.constant.clear();
+        }
         self.constant.insert(key, Arc::clone(&chunk));
         chunk
     }

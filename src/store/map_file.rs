@@ -58,10 +58,14 @@ impl MapFile {
     /// # Errors
     /// When the file is missing, no HDF5 file, no map, of another format version, or damaged.
     pub fn open(path: &Path) -> Result<Self, StoreError> {
-        std::fs::File::open(path).map_err(StoreError::io("open", path))?;
-        if path.is_dir() {
+        let metadata = std::fs::metadata(path).map_err(StoreError::io("open", path))?;
+        if metadata.is_dir() {
             return Err(StoreError::not_a_map(path, "it is a folder"));
         }
+        if !metadata.is_file() {
+            return Err(StoreError::not_a_map(path, "it is no regular file"));
+        }
+        std::fs::File::open(path).map_err(StoreError::io("open", path))?;
         let file = File::open(path)
             .map_err(|_| StoreError::not_a_map(path, "it is no HDF5 file, or a damaged one"))?;
         let version: i32 = first_number(&file, root::FORMAT_VERSION).ok_or_else(|| {
@@ -356,7 +360,12 @@ fn read_axes(file: &File, path: &Path) -> Result<Vec<MapAxis>, StoreError> {
                     unit: text(&dataset, "units")?,
                 })
             };
-            read().map_err(|_| StoreError::not_a_map(path, format!("its axis {name} is damaged")))
+            let damaged = || StoreError::not_a_map(path, format!("its axis {name} is damaged"));
+            let axis = read().map_err(|_| damaged())?;
+            if axis.values.is_empty() {
+                return Err(damaged());
+            }
+            Ok(axis)
         })
         .collect()
 }

@@ -14,10 +14,10 @@ pub struct Output {
     lock: Option<File>,
 }
 
-fn beside(path: &Path, suffix: &str) -> PathBuf {
-    let mut name = path.as_os_str().to_owned();
-    name.push(suffix);
-    PathBuf::from(name)
+/// A hidden neighbour of `path` by a name that nobody else gives.
+fn beside(path: &Path, purpose: &str) -> PathBuf {
+    let name = path.file_name().unwrap_or_default().to_string_lossy();
+    path.with_file_name(format!(".{name}.slipmap-{purpose}"))
 }
 
 impl Output {
@@ -30,8 +30,12 @@ impl Output {
             let source = std::io::Error::from(std::io::ErrorKind::IsADirectory);
             return Err(StoreError::io("write", path)(source));
         }
-        let lock_path = beside(path, ".lock");
+        let lock_path = beside(path, "lock");
         loop {
+            if lock_path.symlink_metadata().is_ok_and(|m| !m.is_file()) {
+                let source = std::io::Error::from(std::io::ErrorKind::AlreadyExists);
+                return Err(StoreError::io("lock", &lock_path)(source));
+            }
             let lock = OpenOptions::new()
                 .create(true)
                 .truncate(false)
@@ -51,9 +55,14 @@ impl Output {
             }
             // Another run may have removed the file between opening and locking: then the lock is on nothing.
             if still_there(&lock, &lock_path) {
+                let part = beside(path, "part");
+                // What a run that died left, or a link: the file that is written to is always a new one.
+                if part.symlink_metadata().is_ok() {
+                    fs::remove_file(&part).map_err(StoreError::io("replace", &part))?;
+                }
                 return Ok(Self {
                     path: path.to_owned(),
-                    part: beside(path, ".part"),
+                    part,
                     lock_path,
                     lock: Some(lock),
                 });
@@ -139,8 +148,8 @@ mod tests {
     fn a_dead_runs_lock_does_not_block() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("map.h5");
-        fs::write(beside(&path, ".lock"), "").unwrap();
-        fs::write(beside(&path, ".part"), "torn").unwrap();
+        fs::write(beside(&path, "lock"), "").unwrap();
+        fs::write(beside(&path, "part"), "torn").unwrap();
         assert!(Output::claim(&path).is_ok());
     }
 }

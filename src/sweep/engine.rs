@@ -19,7 +19,7 @@ use crate::linear::status::NOT_CONVERGED;
 use crate::model::{Groups, ModelError, Oscillator, SlidingPoint};
 
 /// Planes of crossing curves that are held in memory at a time.
-const PLANES_AT_ONCE: usize = 256;
+const PLANES_AT_ONCE: usize = 16;
 /// Tiles that wait for the sink, per thread.
 const TILES_WAITING: usize = 2;
 
@@ -164,10 +164,14 @@ fn run_boundaries<S: Sink>(
         let traced: Result<Vec<BoundaryPlane>, ModelError> = pool.install(|| {
             batch
                 .par_iter()
+                .filter(|_| !stop.load(Ordering::Relaxed))
                 .map(|index| trace_plane(plan, index))
                 .collect()
         });
         let traced = traced?;
+        if traced.len() < batch.len() {
+            return Err(RunError::Interrupted);
+        }
         for plane in &traced {
             match &plane.curves {
                 Ok(curves) => {
@@ -335,7 +339,7 @@ impl<'p> Worker<'p> {
         Self {
             plan,
             lines: Lines::new(plan),
-            delays: Delays::new(&plan.delays()[delay_range.clone()]),
+            delays: Delays::new(&plan.delays(delay_range.clone())),
             delay_range,
             stride: plan.tau_axis.map_or(1, |axis| strides[axis]),
             strides,
@@ -353,7 +357,7 @@ impl<'p> Worker<'p> {
     pub fn compute(&mut self, tile: &Tile) {
         let range = self.plan.delay_range(tile);
         if range != self.delay_range {
-            self.delays = Delays::new(&self.plan.delays()[range.clone()]);
+            self.delays = Delays::new(&self.plan.delays(range.clone()));
             self.delay_range = range;
         }
         let whole = tile.cells() == self.plan.tiles.tile_cells() as u64;

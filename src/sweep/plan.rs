@@ -101,11 +101,11 @@ impl Plan {
         setting
     }
 
-    /// The delays of the sweep, or the one fixed delay.
+    /// The delays in `range` of the sweep's, or the one fixed delay.
     #[must_use]
-    pub fn delays(&self) -> Vec<f64> {
+    pub fn delays(&self, range: std::ops::Range<usize>) -> Vec<f64> {
         match self.tau_axis {
-            Some(axis) => self.spec.axes[axis].values.clone(),
+            Some(axis) => self.spec.axes[axis].values[range].to_vec(),
             None => vec![self.spec.fixed.get(Parameter::Tau)],
         }
     }
