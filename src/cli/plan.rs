@@ -7,6 +7,7 @@ use std::time::{Duration, Instant};
 use slipmap::report::numbers::{bytes, grouped, prefixed, seconds};
 use slipmap::store::map_writer::TileEncoder;
 use slipmap::sweep::Plan;
+use slipmap::sweep::boundaries::{planes, trace_plane};
 use slipmap::sweep::engine::{Encode, Worker};
 
 use super::failure::Failure;
@@ -30,6 +31,7 @@ pub fn main(args: &Args) -> Result<(), Failure> {
     let plan = read_plan(&args.sweep)?;
     let threads = args.threads.unwrap_or_else(default_threads);
     let per_cell = sample(&plan);
+    let per_plane = sample_planes(&plan)?;
     let mut out = std::io::stdout().lock();
     for axis in &plan.spec.axes {
         let (first, last) = (axis.values[0], axis.values[axis.len() - 1]);
@@ -58,7 +60,8 @@ pub fn main(args: &Args) -> Result<(), Failure> {
     writeln!(out, "bytes       {} before compression", bytes(size))?;
     let in_memory = cells * plan.bytes_per_cell() * 4 * threads as u64;
     writeln!(out, "memory      about {}", bytes(in_memory + (30 << 20)))?;
-    let total = per_cell * plan.cells() as f64 / threads as f64;
+    let curves = per_plane * plan.boundary_planes() as f64 / threads as f64;
+    let total = per_cell * plan.cells() as f64 / threads as f64 + curves;
     writeln!(
         out,
         "time        about {} on {threads} threads ({} cells/s a thread in a timed sample)",
@@ -66,6 +69,24 @@ pub fn main(args: &Args) -> Result<(), Failure> {
         prefixed(1.0 / per_cell),
     )?;
     Ok(())
+}
+
+/// Seconds per plane of crossing curves on one thread, from planes spread over the sweep.
+fn sample_planes(plan: &Plan) -> Result<f64, Failure> {
+    let planes = planes(plan);
+    let start = Instant::now();
+    let mut done = 0;
+    while start.elapsed() < SAMPLE && done < planes.len() {
+        let index = (spread(done) * planes.len() as f64) as usize;
+        std::hint::black_box(trace_plane(plan, &planes[index])?);
+        done += 1;
+    }
+    Ok(start.elapsed().as_secs_f64() / done.max(1) as f64)
+}
+
+/// A number in [0, 1) for each sample: multiples of the golden ratio fall evenly, wherever the sampling ends.
+fn spread(sample: usize) -> f64 {
+    (sample as f64 * 0.618_033_988_749_895).fract()
 }
 
 /// Seconds per cell on one thread, from tiles spread over the map: computed and compressed, not written.
@@ -76,9 +97,7 @@ fn sample(plan: &Plan) -> f64 {
     let (mut cells, mut done) = (0, 0);
     let tiles = plan.tiles.len();
     while start.elapsed() < SAMPLE && done < tiles {
-        // Multiples of the golden ratio fall evenly, wherever the sample ends.
-        let part = (done as f64 * 0.618_033_988_749_895).fract();
-        let tile = plan.tiles.tile((part * tiles as f64) as usize);
+        let tile = plan.tiles.tile((spread(done) * tiles as f64) as usize);
         worker.compute(&tile);
         std::hint::black_box(encoder.encode(&worker.buffers));
         cells += tile.cells();
