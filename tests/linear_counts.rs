@@ -117,6 +117,42 @@ fn slow_crossings_exist_or_not() {
     }
 }
 
+/// Slow crossings among others at very long delays, where every digit of ω₋ counts. Reference counts from the quadratic in
+/// 60-digit arithmetic.
+#[test]
+fn slow_crossings_count_at_long_delays() {
+    for (b, a_v, a_n, tau, expected) in [
+        (
+            0.946_137_786_371_393_1,
+            0.0,
+            0.499_999_999_999_999_94,
+            41_752_384_583.390_144,
+            4_302_890_154,
+        ),
+        (
+            -1.274_230_921_471_411_4,
+            -0.813_477_601_604_242_7,
+            -0.536_558_313_888_527_8,
+            9_595_506_249.347_267,
+            3_677_222_970,
+        ),
+        (
+            0.853_218_171_164_021_2,
+            0.552_824_055_794_832_3,
+            0.028_320_470_139_812_37,
+            79_655_443_934.941_27,
+            27_952_537_676,
+        ),
+    ] {
+        let count =
+            Crossings::of(Groups::new(b, a_v, a_n)).count(tau, MarginalTolerance::default());
+        assert!(
+            count.marginal || count.n_unstable == expected,
+            "{b} {a_v} {a_n}: {count:?}"
+        );
+    }
+}
+
 proptest! {
     /// At a tangency in physical units the groups themselves are rounded: it is recognised all the same, and its cells are
     /// marginal rather than wrong.

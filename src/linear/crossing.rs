@@ -188,7 +188,7 @@ impl Crossings {
             let mut x = (1.0 + y).to_array();
             let mut x_error = (y_error + f64x2::splat(UNIT_ROUNDOFF)).to_array();
             for (small, other) in [(0, 1), (1, 0)] {
-                if x[small].abs() < 0.25 && x[other].abs() > 0.25 {
+                if x[small].abs() < 0.25 && x[other].abs() > 2.0 * x[small].abs() {
                     // 1 + y loses digits where x is small, its sign among them; the product of both keeps them.
                     x[small] = frequency_product(groups) / x[other];
                     let relative = x_error[other] / x[other].abs() + ROUNDINGS * UNIT_ROUNDOFF;
@@ -251,7 +251,11 @@ pub fn discriminant(groups: Groups) -> f64 {
 #[must_use]
 pub fn frequency_product(groups: Groups) -> f64 {
     let Groups { b, a_v, a_n } = groups;
-    (-2.0 * b).mul_add(a_v, 1.0 - 2.0 * a_n)
+    let sum = 1.0 - 2.0 * a_n;
+    // What rounding took from the sum (Knuth's two-sum): it counts where the rest cancels.
+    let part = sum - 1.0;
+    let lost = (1.0 - (sum - part)) + (-2.0 * a_n - part);
+    (-2.0 * b).mul_add(a_v, sum) + lost
 }
 
 /// The number of unstable roots at τ = 0⁺.
