@@ -104,7 +104,7 @@ impl Crossings {
                 gone = middle;
             }
         }
-        Some(if exists(there) { there } else { first })
+        Some(there)
     }
 
     /// The number of the last interval that begins below `tau`, whether empty or not.

@@ -380,6 +380,7 @@ impl<'p> Worker<'p> {
     #[inline]
     fn fill_line(&mut self, groups: Groups, time_unit: f64, at: usize) {
         let mut crossings = Crossings::of(groups);
+        // Dimensionless sweeps, the most common ones, need no scaling.
         if time_unit != 1.0 {
             crossings = crossings.in_physical_time(time_unit);
         }
