@@ -71,6 +71,7 @@ fn libraries_stay_in_their_rooms() {
         ("rayon", "src/sweep/engine.rs"),
         ("hdf5", "src/store"),
         ("wide", "src/linear/crossing.rs"),
+        ("faer", "src/linear/collocation.rs"),
         ("indicatif", "src/report/progress.rs"),
         ("plotters", "src/report/picture"),
         ("clap", "src/cli"),

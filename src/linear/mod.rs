@@ -12,16 +12,23 @@
 //! - [`curves`]: crossing curves in a plane of a parameter and the delay, cut at their corners
 //! - [`lobes`]: where the stable regions of pure control end
 
+mod branches;
+pub mod certificate;
 pub mod characteristic;
+pub mod collocation;
 pub mod count;
 pub mod crossing;
 pub mod curves;
 pub mod gains;
 pub mod lobes;
+pub mod newton;
 mod roots;
 pub mod row;
+pub mod sensitivity;
+pub mod spectrum;
 pub mod stable_delays;
 pub mod status;
+pub mod track;
 
 pub use count::{Count, MarginalTolerance};
 pub use crossing::{Crossing, Crossings, Direction};

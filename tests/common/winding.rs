@@ -1,10 +1,10 @@
-//! An independent count of unstable roots: the argument principle along the imaginary axis.
+//! An independent count of roots: the argument principle along a vertical line, in small steps.
 //!
-//! It shares nothing with the crate but the definition of D, written out here once more. D has no poles and, far out in
-//! the right half-plane, behaves like λ²; so with R beyond every root of the right half-plane,
+//! It shares nothing with the crate but the definition of D, written out here once more. D has no poles and, far out right
+//! of the line, behaves like (λ − σ)²; so with R beyond every root there,
 //!
 //! ```text
-//! n = (2 arg D(R e^{iφ})|_{φ: 0 → π/2} − 2 arg D(iω)|_{ω: 0 → R}) / 2π.
+//! n = (2 arg D(σ + R e^{iφ})|_{φ: 0 → π/2} − 2 arg D(σ + iω)|_{ω: 0 → R}) / 2π.
 //! ```
 //!
 //! Steps are bounded by |D| over a Lipschitz constant of D, so that no turn can be skipped.
@@ -12,19 +12,32 @@
 use num_complex::Complex64;
 
 /// The number of roots with positive real part, or none where D comes too near to zero on the imaginary axis.
+#[allow(dead_code, reason = "not every test binary uses it")]
 pub fn unstable_roots(b: f64, a_v: f64, a_n: f64, tau: f64) -> Option<u64> {
-    let d = |l: Complex64| l * l + b * l + 1.0 - (a_n + a_v * (b + l)) * (1.0 - (-l * tau).exp());
-    let beyond =
-        1.0 + 2.0 * (b.abs() + 2.0 * a_v.abs() + (1.0 + 2.0 * (a_n + a_v * b).abs()).sqrt());
-    let along_axis = turn(
+    roots_right_of(b, a_v, a_n, tau, 0.0)
+}
+
+/// The number of roots with Re λ > `line`, or none where D comes too near to zero on that line.
+pub fn roots_right_of(b: f64, a_v: f64, a_n: f64, tau: f64, line: f64) -> Option<u64> {
+    let kappa = (-line * tau).exp();
+    let d = |m: Complex64| {
+        let l = m + line;
+        l * l + b * l + 1.0 - (a_n + a_v * (b + l)) * (1.0 - (-l * tau).exp())
+    };
+    // |D(σ + μ) − μ²| ≤ linear |μ| + constant for Re μ ≥ 0.
+    let linear = (2.0 * line + b).abs() + a_v.abs() * (1.0 + kappa);
+    let at_line = (a_n + a_v * (b + line)).abs();
+    let constant = (line * line + b * line + 1.0).abs() + at_line * (1.0 + kappa);
+    let beyond = 1.0 + 2.0 * (linear + constant.sqrt());
+    let along_line = turn(
         |s| d(Complex64::new(0.0, s)),
         beyond,
-        |s| 2.0 * s + b.abs() + 2.0 * a_v.abs() + (a_n.abs() + a_v.abs() * (b.abs() + s)) * tau,
+        |s| 2.0 * s + linear + (at_line + a_v.abs() * s) * kappa * tau,
     )?;
-    // On the arc D/λ² stays within 1 of 1, so its argument needs no tracking.
+    // On the arc D/μ² stays within 1 of 1, so its argument needs no tracking.
     let corner = Complex64::new(0.0, beyond);
     let along_arc = std::f64::consts::PI + (d(corner) / (corner * corner)).arg();
-    let n = (along_arc - along_axis) / std::f64::consts::PI;
+    let n = (along_arc - along_line) / std::f64::consts::PI;
     assert!((n - n.round()).abs() < 1e-6, "winding number {n}");
     Some(n.round() as u64)
 }

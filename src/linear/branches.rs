@@ -1,0 +1,131 @@
+//! Starting values for characteristic roots from the branches of the complex logarithm.
+//!
+//! With P = B − A and Q = A the equation D = 0 reads λτ = log(−Q/P) + 2πik: every root belongs to a branch k, and for long
+//! delays or far from the zeros of P and Q to one branch a root. Newton's method on this equation is then near its goal
+//! from the start, at any delay and with no matrix. Nothing promises that all roots are found: [`super::spectrum`] counts
+//! them, and turns to collocation where some are missing.
+
+use std::f64::consts::{PI, TAU};
+
+use num_complex::Complex64;
+
+use super::characteristic::root_bound;
+use super::newton::divide;
+use crate::model::Groups;
+
+/// Newton steps on the logarithmic equation before a start is handed over.
+const STEPS: u32 = 4;
+/// Most branches looked at; beyond this the line was set too far left.
+const MOST_BRANCHES: usize = 1 << 15;
+/// Parts into which the real axis is cut to find real roots.
+const REAL_PARTS: u32 = 12;
+
+/// P and Q of the module with their derivatives, by the coefficients.
+struct Pair {
+    p0: f64,
+    p1: f64,
+    q0: f64,
+    q1: f64,
+}
+
+impl Pair {
+    fn new(groups: Groups) -> Self {
+        let Groups { b, a_v, a_n } = groups;
+        let q0 = a_n + a_v * b;
+        Self {
+            p0: 1.0 - q0,
+            p1: b - a_v,
+            q0,
+            q1: a_v,
+        }
+    }
+
+    /// P, P′, Q at λ.
+    fn at(&self, lambda: Complex64) -> (Complex64, Complex64, Complex64) {
+        (
+            lambda * (lambda + self.p1) + self.p0,
+            2.0 * lambda + self.p1,
+            self.q0 + self.q1 * lambda,
+        )
+    }
+}
+
+/// Writes starting values for the roots with Re λ > `line`, Im λ ≥ 0 to `starts`, replacing what it holds.
+///
+/// `tau` > 0 in units of √(M/κ). Control must act.
+pub fn starting_values(groups: Groups, tau: f64, line: f64, starts: &mut Vec<Complex64>) {
+    starts.clear();
+    let pair = Pair::new(groups);
+    let radius = root_bound(groups, tau, line);
+    let branches = (radius * tau / PI).ceil() + 2.0;
+    for j in 0..(branches as usize).min(MOST_BRANCHES) {
+        let omega = PI * j as f64 / tau;
+        if let Some(start) = follow_branch(&pair, tau, omega) {
+            starts.push(start);
+        }
+    }
+    // Weak feedback leaves the zeros of P, short delays those of B where they are.
+    for (linear, constant) in [(pair.p1, pair.p0), (groups.b, 1.0)] {
+        starts.extend(quadratic_zeros(linear, constant));
+    }
+    real_starts(&pair, tau, line, radius, starts);
+}
+
+/// Newton's method on λτ = log(−Q/P) + 2πik from the branch that `omega` belongs to.
+fn follow_branch(pair: &Pair, tau: f64, omega: f64) -> Option<Complex64> {
+    let on_axis = Complex64::new(0.0, omega);
+    let (p, _, q) = pair.at(on_axis);
+    let mut lambda = Complex64::new(0.5 * (q.norm_sqr() / p.norm_sqr()).ln() / tau, omega);
+    for _ in 0..STEPS {
+        let (p, slope, q) = pair.at(lambda);
+        let log = -divide(p, q);
+        let log = Complex64::new(0.5 * log.norm_sqr().ln(), log.im.atan2(log.re));
+        let mut mismatch = lambda * tau + log;
+        mismatch.im -= TAU * (mismatch.im / TAU).round();
+        let derivative = tau + divide(slope, p) - divide(Complex64::from(pair.q1), q);
+        lambda -= divide(mismatch, derivative);
+    }
+    (lambda.re.is_finite() && lambda.im.is_finite())
+        .then(|| Complex64::new(lambda.re, lambda.im.abs()))
+}
+
+/// The zeros of λ² + `linear` λ + `constant` in the upper half-plane and on the real axis.
+pub(super) fn quadratic_zeros(linear: f64, constant: f64) -> impl Iterator<Item = Complex64> {
+    let half = -0.5 * linear;
+    let discriminant = half * half - constant;
+    let zeros = if discriminant < 0.0 {
+        [Some(Complex64::new(half, (-discriminant).sqrt())), None]
+    } else {
+        // The larger one first, the other from the product.
+        let large = half + discriminant.sqrt().copysign(half);
+        let small = if large == 0.0 { 0.0 } else { constant / large };
+        [large, small].map(|zero| Some(Complex64::from(zero)))
+    };
+    zeros.into_iter().flatten()
+}
+
+/// A start in each part of the real axis right of `line` in which D changes its sign.
+fn real_starts(pair: &Pair, tau: f64, line: f64, radius: f64, starts: &mut Vec<Complex64>) {
+    let value = |s: f64| {
+        let (p, _, q) = pair.at(Complex64::from(s));
+        p.re + q.re * (-s * tau).exp()
+    };
+    let place = |i: u32| line + (radius + 1e-9 - line) * f64::from(i) / f64::from(REAL_PARTS);
+    let mut before = value(place(0));
+    for i in 1..=REAL_PARTS {
+        let here = value(place(i));
+        if (before > 0.0) != (here > 0.0) {
+            let (mut from, mut to) = (place(i - 1), place(i));
+            for _ in 0..8 {
+                let middle = 0.5 * (from + to);
+                if (value(middle) > 0.0) == (before > 0.0) {
+                    from = middle;
+                } else {
+                    to = middle;
+                }
+            }
+            starts.push(Complex64::from(0.5 * (from + to)));
+        }
+        before = here;
+    }
+}

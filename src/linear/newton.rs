@@ -1,0 +1,126 @@
+//! Polishing of a characteristic root.
+
+use num_complex::Complex64;
+
+use super::characteristic::Jet;
+use crate::model::Groups;
+
+/// Steps after which a start is given up.
+const MOST_STEPS: u32 = 40;
+
+/// A characteristic root, polished until rounding of D is all that is left.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Root {
+    /// λ with Im λ ≥ 0, in units of √(κ/M); with Im λ > 0 it stands for the pair λ, λ*.
+    pub lambda: Complex64,
+    /// Estimate of |λ − exact root|: the rounding error of D over |D′|, or what it comes to at a double root.
+    pub error: f64,
+}
+
+impl Root {
+    /// Number of roots that this one stands for: 1 if it is real, else 2.
+    #[must_use]
+    pub fn count(&self) -> u64 {
+        if self.lambda.im == 0.0 { 1 } else { 2 }
+    }
+
+    /// Some other root lies so near that rounding hardly tells them apart.
+    #[must_use]
+    pub fn nearly_multiple(&self) -> bool {
+        self.error > 1e-10 * (1.0 + self.lambda.norm())
+    }
+}
+
+/// The step δ of Halley's method, λ − δ being the next iterate: cubic where Newton's is quadratic, at the cost of D″.
+#[inline(always)]
+#[must_use]
+pub(super) fn halley_step(jet: &Jet) -> Complex64 {
+    let newton = divide(jet.value, jet.first);
+    let bend = divide(jet.second, jet.first);
+    divide(newton, 1.0 - 0.5 * newton * bend)
+}
+
+/// p/q, for numbers whose squares neither overflow nor vanish; NaN where they do.
+#[inline(always)]
+pub(super) fn divide(p: Complex64, q: Complex64) -> Complex64 {
+    let scale = 1.0 / (q.re * q.re + q.im * q.im);
+    Complex64::new(
+        (p.re * q.re + p.im * q.im) * scale,
+        (p.im * q.re - p.re * q.im) * scale,
+    )
+}
+
+/// The root to which Halley's method converges from `start`, or none if it does not.
+///
+/// A start on the real axis stays on it. A root within its error of the real axis is taken for a real one.
+#[must_use]
+pub fn polish(groups: Groups, tau: f64, start: Complex64) -> Option<Root> {
+    let root = iterate(groups, tau, start)?;
+    if root.lambda.im != 0.0 && root.lambda.im.abs() <= 4.0 * root.error {
+        let real = iterate(groups, tau, Complex64::new(root.lambda.re, 0.0));
+        return Some(
+            real.filter(|r| (r.lambda - root.lambda).norm() <= 16.0 * root.error)
+                .unwrap_or(root),
+        );
+    }
+    Some(root)
+}
+
+fn iterate(groups: Groups, tau: f64, start: Complex64) -> Option<Root> {
+    let mut lambda = start;
+    let mut last_step = f64::INFINITY;
+    for _ in 0..MOST_STEPS {
+        let jet = Jet::at(groups, tau, lambda);
+        let rounding = jet.rounding(groups, tau, lambda);
+        let step = halley_step(&jet);
+        let size = step.norm();
+        let settled = jet.value.norm() <= rounding || size <= f64::EPSILON * lambda.norm();
+        // At rounding level steps no longer shrink; the last good one is taken.
+        if settled && (size >= 0.25 * last_step || size <= f64::EPSILON * lambda.norm()) {
+            return Some(finished(lambda, &jet, rounding));
+        }
+        if !size.is_finite() {
+            return settled.then(|| finished(lambda, &jet, rounding));
+        }
+        lambda -= step;
+        last_step = size;
+    }
+    None
+}
+
+/// `lambda` with its error: |D| ≤ `rounding` leaves room for |D′|δ + |D″|δ²/2 of that size.
+fn finished(lambda: Complex64, jet: &Jet, rounding: f64) -> Root {
+    let simple = rounding / jet.first.norm();
+    let double = (2.0 * rounding / jet.second.norm()).sqrt();
+    Root {
+        lambda: Complex64::new(lambda.re, lambda.im.abs()),
+        error: simple.min(double) + f64::EPSILON * lambda.norm(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::model::known_cases;
+
+    #[test]
+    fn known_roots_are_reached_from_afar() {
+        let case = known_cases::beyond_the_letters_limit();
+        let root = polish(case.groups, case.tau, Complex64::new(0.03, 0.8)).expect("converges");
+        assert!(
+            (root.lambda - Complex64::new(-0.0075, 0.7958)).norm() < 1e-4,
+            "{root:?}"
+        );
+        assert!(root.error < 1e-14);
+        assert!(!root.nearly_multiple());
+    }
+
+    #[test]
+    fn a_double_root_is_told_by_its_error() {
+        // b = 2 without control: (λ + 1)².
+        let root =
+            polish(Groups::new(2.0, 0.0, 0.0), 1.0, Complex64::new(-0.7, 0.0)).expect("converges");
+        assert!((root.lambda.re + 1.0).abs() < 4.0 * root.error);
+        assert!(root.error < 1e-7 && root.nearly_multiple());
+    }
+}

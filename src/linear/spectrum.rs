@@ -1,0 +1,230 @@
+//! All characteristic roots right of a vertical line, none missed.
+//!
+//! Starting values come from the branches of the logarithm, or, where these do not lead to every root, from collocation
+//! with as many nodes as it takes; each is polished, duplicates are removed, and the number that is left is compared with
+//! the number that the argument principle says there is ([`super::certificate`]).
+
+use num_complex::Complex64;
+
+use super::branches::{quadratic_zeros, starting_values};
+use super::certificate::roots_right_of;
+use super::characteristic::{root_bound, unstable_root_bound};
+use super::collocation::{eigenvalues, nodes_for};
+use super::newton::{Root, polish};
+use crate::model::Groups;
+
+/// Collocation with more nodes each time, at most so often.
+const COLLOCATIONS: u32 = 4;
+/// |στ| up to which e^(−στ) and what is made of it neither overflow nor lose all meaning.
+const FARTHEST_LEFT: f64 = 300.0;
+
+/// Finds roots, keeping its memory from one point to the next.
+#[derive(Debug, Clone, Default)]
+pub struct RootFinder {
+    starts: Vec<Complex64>,
+    roots: Vec<Root>,
+    /// How often the branches of the logarithm were not enough.
+    pub collocations: u64,
+}
+
+/// Some roots right of the line were not found, or one lies on it.
+#[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
+#[error("not every characteristic root right of {line} was found")]
+pub struct Incomplete {
+    /// The line.
+    pub line: f64,
+}
+
+impl RootFinder {
+    /// Every root with Re λ > `line` and Im λ ≥ 0: by falling real part, among equal ones by rising imaginary part.
+    /// A double root stands there twice.
+    ///
+    /// `tau` ≥ 0 in units of √(M/κ), `line` in their inverse.
+    ///
+    /// # Errors
+    /// When roots are missing or one lies on the line within rounding.
+    pub fn right_of(&mut self, groups: Groups, tau: f64, line: f64) -> Result<&[Root], Incomplete> {
+        self.roots.clear();
+        let incomplete = Incomplete { line };
+        if tau == 0.0 || groups.uncontrolled() {
+            self.starts.clear();
+            self.starts.extend(quadratic_zeros(groups.b, 1.0));
+            self.polish_starts(groups, tau, line);
+            self.complete(2);
+            return Ok(&self.roots);
+        }
+        let count = roots_right_of(groups, tau, line).ok_or(incomplete)?;
+        starting_values(groups, tau, line, &mut self.starts);
+        self.polish_starts(groups, tau, line);
+        if self.complete(count) {
+            return Ok(&self.roots);
+        }
+        self.collocations += 1;
+        let mut nodes = nodes_for(tau, root_bound(groups, tau, line));
+        for _ in 0..COLLOCATIONS {
+            self.starts = eigenvalues(groups, tau, nodes).ok_or(incomplete)?;
+            self.polish_starts(groups, tau, line);
+            if self.complete(count) {
+                return Ok(&self.roots);
+            }
+            nodes += nodes / 2;
+        }
+        Err(incomplete)
+    }
+
+    /// The rightmost roots, at least `wanted` counted with multiplicity and pairs as two, ordered as by
+    /// [`RootFinder::right_of`]; fewer where no more lie right of `leftmost`.
+    ///
+    /// # Errors
+    /// When roots are missing.
+    pub fn rightmost(
+        &mut self,
+        groups: Groups,
+        tau: f64,
+        wanted: u64,
+        leftmost: f64,
+    ) -> Result<&[Root], Incomplete> {
+        let line = line_left_of(groups, tau, wanted, leftmost);
+        self.right_of(groups, tau, line)
+    }
+
+    /// Adds what the starting values lead to, without duplicates, in order.
+    fn polish_starts(&mut self, groups: Groups, tau: f64, line: f64) {
+        for &start in &self.starts {
+            let Some(root) = polish(groups, tau, start) else {
+                continue;
+            };
+            let same = |r: &Root| {
+                let apart = 8.0 * (r.error + root.error) + 1e-12 * (1.0 + root.lambda.norm());
+                (r.lambda - root.lambda).norm() <= apart
+            };
+            if root.lambda.re > line && !self.roots.iter().any(same) {
+                self.roots.push(root);
+            }
+        }
+        self.roots.sort_by(|p, q| {
+            let by_real = q.lambda.re.total_cmp(&p.lambda.re);
+            by_real.then(p.lambda.im.total_cmp(&q.lambda.im))
+        });
+    }
+
+    /// Whether the roots are `count`; a root that is multiple to rounding is repeated as often as that takes.
+    fn complete(&mut self, count: u64) -> bool {
+        let found: u64 = self.roots.iter().map(Root::count).sum();
+        let Some(missing) = count.checked_sub(found) else {
+            return false;
+        };
+        if missing == 0 {
+            return true;
+        }
+        let mut multiple = self
+            .roots
+            .iter()
+            .enumerate()
+            .filter(|(_, r)| r.nearly_multiple());
+        let (Some((place, &root)), None) = (multiple.next(), multiple.next()) else {
+            return false;
+        };
+        let times = missing / root.count();
+        if missing % root.count() != 0 || times > 2 {
+            return false;
+        }
+        for _ in 0..times {
+            self.roots.insert(place, root);
+        }
+        true
+    }
+}
+
+/// A line with at least `wanted` roots to its right and few more; at or a little right of `leftmost` where there are fewer.
+fn line_left_of(groups: Groups, tau: f64, wanted: u64, leftmost: f64) -> f64 {
+    if tau == 0.0 || groups.uncontrolled() {
+        return f64::NEG_INFINITY;
+    }
+    let leftmost = leftmost.max(-FARTHEST_LEFT / tau);
+    // The line itself may hit a root; its neighbours then do not.
+    let count = |line: f64| {
+        [0.0, 1e-3, -1.7e-3]
+            .into_iter()
+            .map(|shift| line + shift * (1e-3 + line.abs()))
+            .find_map(|line| roots_right_of(groups, tau, line).map(|n| (line, n)))
+    };
+    let (mut left, mut right) = (0.0, unstable_root_bound(groups));
+    let mut step = 0.5_f64.min(1.0 / tau);
+    let mut enough = None;
+    loop {
+        match count(left) {
+            Some((line, n)) if n >= wanted => {
+                enough = Some((line, n));
+                break;
+            }
+            None if left < 0.0 => break,
+            _ if left <= leftmost => break,
+            _ => {}
+        }
+        right = left;
+        left = (left - step).max(leftmost);
+        step *= 2.0;
+    }
+    let Some((mut line, mut n)) = enough else {
+        return count(right).map_or(right, |(line, _)| line);
+    };
+    for _ in 0..40 {
+        if n <= wanted + 2 || right - line <= 1e-6 * (1.0 + line.abs()) {
+            break;
+        }
+        match count(0.5 * (line + right)) {
+            Some((middle, at_middle)) if at_middle >= wanted => (line, n) = (middle, at_middle),
+            Some((middle, _)) => right = middle,
+            None => break,
+        }
+    }
+    line
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Both ways to starting values lead to the same roots.
+    #[test]
+    fn branches_and_collocation_agree() {
+        let mut finder = RootFinder::default();
+        for i in 0..300 {
+            let t = f64::from(i);
+            let groups = Groups::new(
+                (t * 0.7).sin() - 0.7,
+                2.0 * (t * 1.3).sin(),
+                5.0 * (t * 2.1).sin() - 3.0,
+            );
+            let tau = 6.0 * (1.01 + (t * 0.37).sin());
+            let roots = finder
+                .rightmost(groups, tau, 6, f64::NEG_INFINITY)
+                .expect("complete")
+                .to_vec();
+            let nodes = 2 * nodes_for(
+                tau,
+                roots.iter().map(|r| r.lambda.norm()).fold(1.0, f64::max),
+            );
+            let eigenvalues = eigenvalues(groups, tau, nodes).expect("converges");
+            for root in roots {
+                let nearest = |z: &Complex64| (root.lambda - z).norm();
+                let nearest = eigenvalues
+                    .iter()
+                    .map(nearest)
+                    .fold(f64::INFINITY, f64::min);
+                assert!(nearest < 1e-5, "{groups:?} {tau}: {root:?} {nearest}");
+            }
+        }
+    }
+
+    #[test]
+    fn double_roots_stand_twice() {
+        let mut finder = RootFinder::default();
+        // (λ + 1)², without control.
+        let roots = finder
+            .right_of(Groups::new(2.0, 0.0, 0.0), 1.0, -3.0)
+            .expect("complete");
+        assert_eq!(roots.iter().map(Root::count).sum::<u64>(), 2);
+    }
+}
