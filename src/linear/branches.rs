@@ -17,6 +17,8 @@ use crate::model::Groups;
 const STEPS: u32 = 4;
 /// Most branches looked at; beyond this the line was set too far left.
 const MOST_BRANCHES: usize = 1 << 15;
+/// The first of them are followed in any case.
+const ALWAYS_FOLLOWED: usize = 4;
 /// Parts into which the real axis is cut to find real roots.
 const REAL_PARTS: u32 = 12;
 
@@ -58,11 +60,22 @@ pub fn starting_values(groups: Groups, tau: f64, line: f64, starts: &mut Vec<Com
     let pair = Pair::new(groups);
     let radius = root_bound(groups, tau, line);
     let branches = (radius * tau / PI).ceil() + 2.0;
+    let kappa = (-line * tau).exp();
+    let place = |j: usize| PI * j as f64 / tau;
+    // A root right of the line lies where feedback is the larger part on the line, as far as one can tell from there.
+    let inside = |j: usize| {
+        let (p, _, q) = pair.at(Complex64::new(line, place(j)));
+        p.norm_sqr() <= kappa * kappa * q.norm_sqr()
+    };
+    let (mut before, mut here) = (true, true);
     for j in 0..(branches as usize).min(MOST_BRANCHES) {
-        let omega = PI * j as f64 / tau;
-        if let Some(start) = follow_branch(&pair, tau, omega) {
+        let after = j < ALWAYS_FOLLOWED || inside(j + 1);
+        if (before || here || after)
+            && let Some(start) = follow_branch(&pair, tau, place(j))
+        {
             starts.push(start);
         }
+        (before, here) = (here, after);
     }
     // Weak feedback leaves the zeros of P, short delays those of B where they are.
     for (linear, constant) in [(pair.p1, pair.p0), (groups.b, 1.0)] {

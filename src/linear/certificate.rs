@@ -27,7 +27,7 @@
 //! (2) rounds: it is undecided only where a root lies within rounding of the line. Nothing here is shared with the tracker,
 //! the spectrum or the crossing delays.
 
-use std::f64::consts::{PI, TAU};
+use std::f64::consts::TAU;
 
 use crate::model::Groups;
 
@@ -38,9 +38,30 @@ const ROUNDINGS: f64 = 8.0 * f64::EPSILON;
 ///
 /// `tau` ≥ 0 in units of √(M/κ), `line` in their inverse. Real roots count once, complex pairs twice. Also none where
 /// e^(−στ) overflows.
+#[inline]
 #[must_use]
 pub fn roots_right_of(groups: Groups, tau: f64, line: f64) -> Option<u64> {
-    Line::new(groups, tau, line)?.roots_to_the_right()
+    Line::new(groups, tau, line)?.turning()?.count(tau)
+}
+
+/// The number of roots right of the imaginary axis, at any delay of a line: there κ = 1 and only (2) depends on the delay.
+#[derive(Debug, Clone, Copy)]
+pub struct UnstableCount(Option<Turning>);
+
+impl UnstableCount {
+    /// For the line of `groups`.
+    #[must_use]
+    pub fn new(groups: Groups) -> Self {
+        let line = Line::new(groups, 0.0, 0.0);
+        Self(line.and_then(|line| line.turning()))
+    }
+
+    /// As [`roots_right_of`] zero at the delay `tau`.
+    #[inline]
+    #[must_use]
+    pub fn at(&self, tau: f64) -> Option<u64> {
+        self.0.as_ref()?.count(tau)
+    }
 }
 
 /// A number and a bound on its rounding error.
@@ -80,7 +101,6 @@ impl Rounded {
 
 /// D on a vertical line, in the symbols of the module.
 struct Line {
-    tau: f64,
     c: Rounded,
     p: Rounded,
     q0: Rounded,
@@ -91,9 +111,31 @@ struct Line {
     beta: Rounded,
 }
 
+/// Equation (3) with what does not depend on the delay, κ given, worked out.
+#[derive(Debug, Clone, Copy)]
+struct Turning {
+    /// 1 − [arg P(∞) − arg D(0)]/π.
+    without_turns: f64,
+    up: Option<Switch>,
+    down: Option<Switch>,
+}
+
+/// A place ω where the larger one of P and κQ changes.
+#[derive(Debug, Clone, Copy)]
+struct Switch {
+    omega: f64,
+    omega_error: f64,
+    /// arg P − arg Q.
+    phase: f64,
+    phase_error: f64,
+}
+
 impl Line {
+    #[inline(always)]
     fn new(groups: Groups, tau: f64, line: f64) -> Option<Self> {
         let Groups { b, a_v, a_n } = groups;
+        // Without feedback the delay does not matter.
+        let tau = if groups.uncontrolled() { 0.0 } else { tau };
         let decay = (-line * tau).exp_m1();
         let kappa = decay + 1.0;
         if !kappa.is_finite() {
@@ -101,27 +143,25 @@ impl Line {
         }
         let q0 = Rounded::sum([a_n, a_v * b, a_v * line]);
         let open_loop = Rounded::sum([line * line, b * line, 1.0]);
-        let c = Rounded::sum([line * line, b * line, 1.0, -a_n, -a_v * b, -a_v * line]);
+        let c = Rounded::sum([open_loop.value, -q0.value]).plus_error(open_loop.error + q0.error);
         let p = Rounded::sum([2.0 * line, b, -a_v]);
         let kappa_error = ROUNDINGS * kappa * (1.0 + (line * tau).abs());
         // D(σ) = B − A(1 − κ): exact where στ is small.
         let fed_back = q0.value * decay;
         let sum = Rounded::sum([open_loop.value, fed_back])
             .plus_error(open_loop.error + q0.error * decay.abs() + q0.value.abs() * kappa_error);
-        let echoed = kappa * q0.value;
-        let mirror = Rounded::sum([c.value, -echoed])
+        let mirror = Rounded::sum([c.value, -kappa * q0.value])
             .plus_error(c.error + kappa * q0.error + q0.value.abs() * kappa_error);
         let delayed_slope = kappa * a_v;
-        let beta = Rounded::sum([
+        let squares = [
             0.5 * p.value * p.value,
             -c.value,
             -0.5 * delayed_slope * delayed_slope,
-        ]);
-        let beta = beta.plus_error(
+        ];
+        let beta = Rounded::sum(squares).plus_error(
             p.value.abs() * p.error + c.error + delayed_slope.abs() * a_v.abs() * kappa_error,
         );
         Some(Self {
-            tau,
             c,
             p,
             q0,
@@ -132,36 +172,37 @@ impl Line {
         })
     }
 
-    fn roots_to_the_right(&self) -> Option<u64> {
+    /// Where the stretches meet; none where a real root is too near to the line.
+    #[inline(always)]
+    fn turning(&self) -> Option<Turning> {
         if !self.sum.decided() {
             return None;
         }
         let (beta, gamma) = (self.beta, self.gamma());
+        let square = beta.value * beta.value;
         let discriminant = Rounded {
-            value: beta.value * beta.value - gamma.value,
+            value: square - gamma.value,
             error: 2.0 * beta.value.abs() * beta.error
                 + gamma.error
-                + ROUNDINGS * (beta.value * beta.value + gamma.value.abs()),
+                + ROUNDINGS * (square + gamma.value.abs()),
         };
-        if gamma.value > 0.0 && gamma.decided() {
-            if beta.value >= 0.0 && beta.decided() || discriminant.value < -discriminant.error {
+        if gamma.value > gamma.error {
+            if beta.value > beta.error || discriminant.value < -discriminant.error {
                 return self.polynomial_alone();
             }
             if !discriminant.decided() {
-                // ω₋ and ω₊ coincide to rounding: whatever turns there are on the way up, there are on the way down.
+                // ω₋ and ω₊ coincide to rounding: whatever turns there are on the way up, there are on the way down. They
+                // cancel, but for a delay at which it is in doubt which they are.
                 let error = beta.error + (2.0 * discriminant.error).sqrt();
-                self.turns(-beta.value, error)?;
-                return self.polynomial_alone();
+                let both = Some(self.switch(-beta.value, error));
+                return Some(Turning {
+                    up: both,
+                    down: both,
+                    ..self.polynomial_alone()?
+                });
             }
         }
-        let root = discriminant.value.max(0.0).sqrt();
-        let root_error = if root > 0.0 {
-            discriminant.error / root
-        } else {
-            discriminant.error.sqrt()
-        };
-        let rounding = ROUNDINGS * (beta.value.abs() + root);
-        let upper_error = beta.error + root_error + rounding;
+        let root = discriminant.value.max(discriminant.error).sqrt();
         let upper = if beta.value <= 0.0 {
             root - beta.value
         } else {
@@ -170,17 +211,28 @@ impl Line {
         if upper <= 0.0 {
             return None;
         }
-        let up = self.turns(upper, upper_error)?;
-        if gamma.value > 0.0 || !gamma.decided() {
-            let lower = (gamma.value / upper).max(0.0);
-            let lower_error = gamma.error / upper + lower * upper_error / upper;
-            let down = self.turns(lower, lower_error)?;
-            self.total(self.argument_at_zero(self.c.value, self.p.value), up - down)
+        let per_upper = 1.0 / upper;
+        let upper_error =
+            beta.error + discriminant.error / root + ROUNDINGS * (beta.value.abs() + root);
+        let up = Some(self.switch(upper, upper_error));
+        if gamma.value >= -gamma.error {
+            let lower = (gamma.value * per_upper).max(0.0);
+            let lower_error = (gamma.error + lower * upper_error) * per_upper;
+            Some(Turning {
+                without_turns: self.without_turns(self.c.value, self.p.value),
+                up,
+                down: Some(self.switch(lower, lower_error)),
+            })
         } else {
-            self.total(self.argument_at_zero(self.q0.value, self.q1), up)
+            Some(Turning {
+                without_turns: self.without_turns(self.q0.value, self.q1),
+                up,
+                down: None,
+            })
         }
     }
 
+    #[inline(always)]
     fn gamma(&self) -> Rounded {
         let (sum, mirror) = (self.sum, self.mirror);
         let value = sum.value * mirror.value;
@@ -192,55 +244,78 @@ impl Line {
         }
     }
 
-    /// Equation (3) where P is larger than κQ all along the line: the zeros of P decide.
-    fn polynomial_alone(&self) -> Option<u64> {
+    /// Where P is larger than κQ all along the line: the zeros of P decide.
+    fn polynomial_alone(&self) -> Option<Turning> {
         if !self.c.decided() || (self.c.value > 0.0 && !self.p.decided()) {
             return None;
         }
-        self.total(self.argument_at_zero(self.c.value, self.p.value), 0.0)
+        Some(Turning {
+            without_turns: self.without_turns(self.c.value, self.p.value),
+            up: None,
+            down: None,
+        })
     }
 
-    /// The argument just above ω = 0 of `real` + iω · `slope`.
-    fn argument_at_zero(&self, real: f64, slope: f64) -> f64 {
-        if real > 0.0 {
-            0.0
-        } else if slope < 0.0 {
-            -PI
-        } else {
-            PI
-        }
+    /// 1 − [arg P(∞) − arg D(0)]/π, where just above ω = 0 D has the argument of `real` + iω · `slope`.
+    #[inline(always)]
+    fn without_turns(&self, real: f64, slope: f64) -> f64 {
+        let far_out = if self.p.value < 0.0 { -1.0 } else { 1.0 };
+        let at_zero = match (real > 0.0, slope < 0.0) {
+            (true, _) => 0.0,
+            (false, true) => -1.0,
+            (false, false) => 1.0,
+        };
+        1.0 - (far_out - at_zero)
     }
 
-    /// Equation (3); `turns` = m(ω₊) − m(ω₋).
-    fn total(&self, argument_at_zero: f64, turns: f64) -> Option<u64> {
-        let argument_far_out = if self.p.value < 0.0 { -PI } else { PI };
-        let n = 1.0 - (argument_far_out - argument_at_zero) / PI + 2.0 * turns;
-        (n >= 0.0).then_some(n.round() as u64)
-    }
-
-    /// Equation (2) at ω² = `x`, known within `error`; none where it might round either way.
-    fn turns(&self, x: f64, error: f64) -> Option<f64> {
+    /// The place ω² = `x`, known within `error`.
+    #[inline(always)]
+    fn switch(&self, x: f64, error: f64) -> Switch {
         let omega = x.max(0.0).sqrt();
-        let omega_error = error / omega.max(error.sqrt()) + ROUNDINGS * omega;
+        let omega_error = if omega > 0.0 {
+            (error / omega).min(error.sqrt()) + ROUNDINGS * omega
+        } else {
+            error.sqrt()
+        };
         let (p_re, p_im) = (self.c.value - x, self.p.value * omega);
         let (q_re, q_im) = (self.q0.value, self.q1 * omega);
         // + 0.0: a negative zero would choose the wrong side of the cut.
-        let p_argument = (p_im + 0.0).atan2(p_re);
-        let q_argument = (q_im + 0.0).atan2(q_re);
-        let phase = p_argument - q_argument + omega * self.tau;
+        let phase = (p_im + 0.0).atan2(p_re) - (q_im + 0.0).atan2(q_re);
         let p_size = p_re.abs().max(p_im.abs());
         let q_size = q_re.abs().max(q_im.abs());
         let p_error =
             self.c.error + error + self.p.error * omega + self.p.value.abs() * omega_error;
         let q_error = self.q0.error + self.q1.abs() * omega_error;
-        let phase_error = omega_error * self.tau
-            + p_error / p_size
-            + q_error / q_size
-            + ROUNDINGS * (TAU + omega * self.tau);
-        let turns = phase / TAU;
-        let whole = turns.round();
-        let to_half = 0.5 - (turns - whole).abs();
+        Switch {
+            omega,
+            omega_error,
+            phase,
+            phase_error: p_error / p_size + q_error / q_size + ROUNDINGS * TAU,
+        }
+    }
+}
+
+impl Switch {
+    /// Equation (2); none where it might round either way.
+    #[inline(always)]
+    fn turns(&self, tau: f64) -> Option<f64> {
+        let angle = self.omega * tau;
+        let turns = (self.phase + angle) * (1.0 / TAU);
+        let whole = turns.round_ties_even();
+        let error = self.phase_error + self.omega_error * tau + ROUNDINGS * angle;
         // NaN is undecided as well.
-        (to_half * TAU > phase_error).then_some(whole)
+        ((0.5 - (turns - whole).abs()) * TAU > error).then_some(whole)
+    }
+}
+
+impl Turning {
+    #[inline(always)]
+    fn count(&self, tau: f64) -> Option<u64> {
+        let turns = |switch: &Option<Switch>| match switch {
+            Some(switch) => switch.turns(tau),
+            None => Some(0.0),
+        };
+        let n = self.without_turns + 2.0 * (turns(&self.up)? - turns(&self.down)?);
+        (n >= 0.0).then_some(n as u64)
     }
 }

@@ -52,15 +52,17 @@ impl Jet {
     /// A bound on the rounding error of [`Jet::value`] at `lambda`, to within a small factor.
     ///
     /// Divided by |D′| it bounds what Newton's method can reach at a simple root.
+    #[inline]
     #[must_use]
     pub fn rounding(&self, groups: Groups, tau: f64, lambda: Complex64) -> f64 {
         let Groups { b, a_v, a_n } = groups;
-        let size = lambda.norm();
+        // Sums of absolute parts bound absolute values without square roots.
+        let size = lambda.l1_norm();
         let feedback = a_n.abs() + a_v.abs() * (b.abs() + size);
         let polynomial = 1.0 + size * (size + b.abs());
         // The argument λτ is rounded as well, and with it the phase of E.
-        let delayed = self.delayed.norm() * (1.0 + size * tau);
-        4.0 * f64::EPSILON * (polynomial + feedback * (self.difference.norm() + delayed))
+        let delayed = self.delayed.l1_norm() * (1.0 + size * tau);
+        4.0 * f64::EPSILON * (polynomial + feedback * (self.difference.l1_norm() + delayed))
     }
 }
 

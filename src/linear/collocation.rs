@@ -19,19 +19,21 @@ use num_complex::Complex64;
 
 use crate::model::Groups;
 
-/// Fewest and most nodes N.
-const NODES: std::ops::RangeInclusive<usize> = 6..=1024;
+/// Most nodes N: beyond this an eigenvalue problem takes a good part of a second.
+const MOST_NODES: usize = 384;
 
 /// How many nodes resolve every root λ with |λ| ≤ `radius`.
 ///
 /// As Wu and Michiels (2012) advise, from the problem: the interpolant of e^(λθ) on [−τ, 0] has to be good on all of the
 /// region where roots can be. With |λ|τ/2 as the argument of the Chebyshev expansion its error falls faster than any power
 /// once N exceeds that argument.
+///
+/// None where that takes more than is reasonable.
 #[must_use]
-pub fn nodes_for(tau: f64, radius: f64) -> usize {
+pub fn nodes_for(tau: f64, radius: f64) -> Option<usize> {
     let half_angle = 0.5 * tau * radius;
     let nodes = 1.15 * half_angle + 3.0 * half_angle.cbrt() + 6.0;
-    (nodes.min(*NODES.end() as f64) as usize).max(*NODES.start())
+    (nodes <= MOST_NODES as f64).then_some(nodes as usize)
 }
 
 /// Approximate roots with Im λ ≥ 0 from `nodes` nodes, by falling real part; those far left mean nothing.

@@ -32,12 +32,26 @@ impl Root {
 }
 
 /// The step δ of Halley's method, λ − δ being the next iterate: cubic where Newton's is quadratic, at the cost of D″.
+///
+/// `newton` = D/D′ and `bend` = D″/D′.
 #[inline(always)]
 #[must_use]
-pub(super) fn halley_step(jet: &Jet) -> Complex64 {
-    let newton = divide(jet.value, jet.first);
-    let bend = divide(jet.second, jet.first);
+pub(super) fn halley_step(newton: Complex64, bend: Complex64) -> Complex64 {
     divide(newton, 1.0 - 0.5 * newton * bend)
+}
+
+/// The step to the nearer zero of the parabola that touches D: Halley's but for the neighbourhood of a double root, where
+/// that one stalls.
+fn step_of(jet: &Jet) -> Complex64 {
+    let square = jet.first * jet.first;
+    let bent = 2.0 * jet.value * jet.second;
+    if bent.norm_sqr() < 0.25 * square.norm_sqr() {
+        return halley_step(divide(jet.value, jet.first), divide(jet.second, jet.first));
+    }
+    let root = (square - bent).sqrt();
+    let denominators = [jet.first + root, jet.first - root];
+    let [plus, minus] = denominators.map(|d| d.norm_sqr());
+    2.0 * jet.value / denominators[usize::from(minus > plus)]
 }
 
 /// p/q, for numbers whose squares neither overflow nor vanish; NaN where they do.
@@ -72,7 +86,7 @@ fn iterate(groups: Groups, tau: f64, start: Complex64) -> Option<Root> {
     for _ in 0..MOST_STEPS {
         let jet = Jet::at(groups, tau, lambda);
         let rounding = jet.rounding(groups, tau, lambda);
-        let step = halley_step(&jet);
+        let step = step_of(&jet);
         let size = step.norm();
         let settled = jet.value.norm() <= rounding || size <= f64::EPSILON * lambda.norm();
         // At rounding level steps no longer shrink; the last good one is taken.

@@ -8,15 +8,15 @@ use num_complex::Complex64;
 
 use super::branches::{quadratic_zeros, starting_values};
 use super::certificate::roots_right_of;
-use super::characteristic::{root_bound, unstable_root_bound};
+use super::characteristic::{Jet, root_bound, unstable_root_bound};
 use super::collocation::{eigenvalues, nodes_for};
-use super::newton::{Root, polish};
+use super::newton::{Root, divide, polish};
 use crate::model::Groups;
 
 /// Collocation with more nodes each time, at most so often.
-const COLLOCATIONS: u32 = 4;
+const COLLOCATIONS: u32 = 3;
 /// |στ| up to which e^(−στ) and what is made of it neither overflow nor lose all meaning.
-const FARTHEST_LEFT: f64 = 300.0;
+const FARTHEST_LEFT: f64 = 700.0;
 
 /// Finds roots, keeping its memory from one point to the next.
 #[derive(Debug, Clone, Default)]
@@ -49,7 +49,7 @@ impl RootFinder {
         if tau == 0.0 || groups.uncontrolled() {
             self.starts.clear();
             self.starts.extend(quadratic_zeros(groups.b, 1.0));
-            self.polish_starts(groups, tau, line);
+            self.polish_starts(groups, 0.0, line);
             self.complete(2);
             return Ok(&self.roots);
         }
@@ -59,8 +59,8 @@ impl RootFinder {
         if self.complete(count) {
             return Ok(&self.roots);
         }
+        let mut nodes = nodes_for(tau, root_bound(groups, tau, line)).ok_or(incomplete)?;
         self.collocations += 1;
-        let mut nodes = nodes_for(tau, root_bound(groups, tau, line));
         for _ in 0..COLLOCATIONS {
             self.starts = eigenvalues(groups, tau, nodes).ok_or(incomplete)?;
             self.polish_starts(groups, tau, line);
@@ -90,22 +90,39 @@ impl RootFinder {
 
     /// Adds what the starting values lead to, without duplicates, in order.
     fn polish_starts(&mut self, groups: Groups, tau: f64, line: f64) {
-        for &start in &self.starts {
-            let Some(root) = polish(groups, tau, start) else {
-                continue;
-            };
-            let same = |r: &Root| {
-                let apart = 8.0 * (r.error + root.error) + 1e-12 * (1.0 + root.lambda.norm());
-                (r.lambda - root.lambda).norm() <= apart
-            };
-            if root.lambda.re > line && !self.roots.iter().any(same) {
-                self.roots.push(root);
+        for i in 0..self.starts.len() {
+            let added = self.polish_start(groups, tau, line, self.starts[i]);
+            if let Some(root) = added.filter(Root::nearly_multiple) {
+                // Two roots next to one another: D is nearly a parabola, which tells where the other one is.
+                let jet = Jet::at(groups, tau, root.lambda);
+                let twin = root.lambda - 2.0 * divide(jet.first, jet.second);
+                self.polish_start(groups, tau, line, twin);
             }
         }
         self.roots.sort_by(|p, q| {
             let by_real = q.lambda.re.total_cmp(&p.lambda.re);
             by_real.then(p.lambda.im.total_cmp(&q.lambda.im))
         });
+    }
+
+    /// Adds the root to which `start` leads, if it is a new one, and returns it.
+    fn polish_start(
+        &mut self,
+        groups: Groups,
+        tau: f64,
+        line: f64,
+        start: Complex64,
+    ) -> Option<Root> {
+        let root = polish(groups, tau, start)?;
+        let known = self.roots.iter().any(|r| {
+            let apart = 8.0 * (r.error + root.error) + 1e-12 * (1.0 + root.lambda.norm());
+            (r.lambda - root.lambda).norm() <= apart
+        });
+        if known || root.lambda.re <= line {
+            return None;
+        }
+        self.roots.push(root);
+        Some(root)
     }
 
     /// Whether the roots are `count`; a root that is multiple to rounding is repeated as often as that takes.

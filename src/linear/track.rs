@@ -1,12 +1,42 @@
 //! The rightmost roots along a line: all delays at one setting of the gains and the damping.
-use super::certificate::roots_right_of;
-use super::newton::Root;
+//!
+//! Roots are continued from delay to delay: a predictor of second order from dλ/dτ, then Halley's method, which from there
+//! is at rounding level in one evaluation of D. Besides the roots that are reported, a few behind them are followed, so that
+//! it is known when another becomes the rightmost. Nothing relies on that: in each cell the certificate counts the roots
+//! right of those reported. Where it finds one, where roots run into one another or an iteration does not settle, all are
+//! found anew ([`RootFinder`]). So they are at every [`BLOCK`]-th delay, which makes the values of a cell independent of
+//! where a tile begins.
+
+use num_complex::Complex64;
+
+use super::certificate::{UnstableCount, roots_right_of};
+use super::characteristic::Jet;
+use super::newton::{Root, divide, halley_step};
+use super::sensitivity::Sensitivity;
 use super::spectrum::RootFinder;
 use super::status::{CERTIFIED, DISAGREE, MARGINAL, NOT_CONVERGED, SATURATED};
 use crate::model::Groups;
 
 /// Most roots that can be reported for a cell, pairs counted once.
 pub const MOST_ROOTS: usize = 8;
+/// Tracking starts anew at delays whose index on the line is a multiple of this.
+pub const BLOCK: usize = 4096;
+/// The margin of the certificate, but for nearly multiple roots.
+pub const MARGIN: f64 = 1e-10;
+
+/// Roots followed beyond those reported.
+const COMPANIONS: usize = 2;
+const MOST_TRACKS: usize = MOST_ROOTS + COMPANIONS;
+/// Evaluations of D after which a root is lost.
+const MOST_EVALUATIONS: u32 = 4;
+/// How far the margin may be widened where a root is nearly multiple.
+const WIDEST_MARGIN: f64 = 1e-3;
+/// What a step may leave of the error, relative.
+const SETTLED: f64 = 2e-16;
+/// Steps longer than this part of the distance at which D bends lead no one knows where.
+const FARTHEST_STEP: f64 = 0.3;
+/// A root with an imaginary part below this (relative) is real, or nearly double.
+const NEARLY_REAL: f64 = 1e-9;
 
 /// What was found in one cell.
 #[derive(Debug, Clone, Copy)]
@@ -18,11 +48,55 @@ pub struct Cell<'t> {
     pub margin: f64,
 }
 
+/// How much work was done, for tests and benchmarks.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub struct Work {
+    /// Cells visited.
+    pub cells: u64,
+    /// Cells in which all roots were found anew.
+    pub reseeded: u64,
+    /// Evaluations of D on the way from cell to cell.
+    pub evaluations: u64,
+}
+
+/// A root that is being followed.
+#[derive(Debug, Clone, Copy)]
+struct Track {
+    lambda: Complex64,
+    /// dλ/dτ here and one cell earlier.
+    slope: Complex64,
+    earlier_slope: Complex64,
+    error: f64,
+}
+
+const NO_TRACK: Track = Track {
+    lambda: Complex64::ZERO,
+    slope: Complex64::ZERO,
+    earlier_slope: Complex64::ZERO,
+    error: 0.0,
+};
+const NO_ROOT: Root = Root {
+    lambda: Complex64::ZERO,
+    error: 0.0,
+};
+
 /// Follows the rightmost roots along lines, keeping its memory from one line to the next.
 #[derive(Debug, Clone)]
 pub struct RootTracker {
     wanted: usize,
     finder: RootFinder,
+    tracks: [Track; MOST_TRACKS],
+    /// How many of `tracks` are in use.
+    followed: usize,
+    roots: [Root; MOST_ROOTS],
+    /// How many of `roots` are reported, and how many should be.
+    reported: usize,
+    expected: usize,
+    /// The delay at which `tracks` stand, and the step that led there.
+    tau: f64,
+    step: f64,
+    /// What was done since the tracker was made.
+    pub work: Work,
 }
 
 impl RootTracker {
@@ -32,55 +106,276 @@ impl RootTracker {
         Self {
             wanted: wanted.clamp(1, MOST_ROOTS),
             finder: RootFinder::default(),
+            tracks: [NO_TRACK; MOST_TRACKS],
+            followed: 0,
+            roots: [NO_ROOT; MOST_ROOTS],
+            reported: 0,
+            expected: 0,
+            tau: 0.0,
+            step: 0.0,
+            work: Work::default(),
         }
     }
 
     /// Visits every cell of a line in order.
     ///
     /// `delays` increase, in units of which `time_unit` = √(M/κ) makes one dimensionless; `first` is the index of the first
-    /// of them on the whole line. `counts` are their numbers of unstable roots by the closed form; `status` comes with what
-    /// that form has to say and gains certified, not converged or disagree.
+    /// of them on the whole line, a multiple of [`BLOCK`] for values that do not depend on how the line is cut. `counts`
+    /// are their numbers of unstable roots by the closed form; `status` comes with what that form has to say and gains
+    /// certified, marginal, not converged or disagree.
     pub fn follow(
         &mut self,
         groups: Groups,
         (delays, time_unit): (&[f64], f64),
-        _first: usize,
+        first: usize,
         counts: &[u16],
         status: &mut [u8],
         mut visit: impl FnMut(usize, Cell),
     ) {
-        for (i, delay) in delays.iter().enumerate() {
-            let tau = delay / time_unit;
-            let Ok(roots) =
-                self.finder
-                    .rightmost(groups, tau, 2 * self.wanted as u64, f64::NEG_INFINITY)
-            else {
-                status[i] |= NOT_CONVERGED;
-                visit(
-                    i,
-                    Cell {
-                        roots: &[],
-                        margin: f64::NAN,
-                    },
-                );
-                continue;
+        // Without control every delay is as none: e^(−λτ) must not overflow where nothing depends on it.
+        let per_unit = if groups.uncontrolled() {
+            0.0
+        } else {
+            1.0 / time_unit
+        };
+        let unstable = UnstableCount::new(groups);
+        self.work.cells += delays.len() as u64;
+        for (i, ((delay, &count), status)) in
+            delays.iter().zip(counts).zip(status.iter_mut()).enumerate()
+        {
+            let tau = delay * per_unit;
+            // Where control begins to act there are more roots than before.
+            let fresh = i == 0 || (first + i).is_multiple_of(BLOCK) || self.tau == 0.0;
+            let tracked = if !fresh && self.advance(groups, tau) {
+                self.judge(groups, tau, unstable.at(tau), (count, *status))
+            } else {
+                Err(Doubt::Missed)
             };
-            let roots = &roots[..roots.len().min(self.wanted)];
-            let s = roots[0].lambda.re;
-            let margin = 1e-6;
-            status[i] |= match roots_right_of(groups, tau, s + margin * s.abs().max(1.0)) {
-                Some(0) => CERTIFIED,
-                Some(_) => DISAGREE,
-                None => NOT_CONVERGED,
+            let found = tracked.or_else(|_| {
+                self.start_anew(groups, tau)?;
+                self.judge(groups, tau, unstable.at(tau), (count, *status))
+            });
+            let (margin, flag) = match found {
+                Ok(found) => found,
+                Err(doubt) => (f64::NAN, doubt.flag()),
             };
-            match roots_right_of(groups, tau, 0.0) {
-                Some(n) if n != u64::from(counts[i]) && status[i] & (SATURATED | MARGINAL) == 0 => {
-                    status[i] |= DISAGREE
-                }
-                None => status[i] |= MARGINAL,
-                _ => {}
-            }
-            visit(i, Cell { roots, margin });
+            *status |= flag;
+            visit(
+                i,
+                Cell {
+                    roots: &self.roots[..self.reported],
+                    margin,
+                },
+            );
         }
+    }
+
+    /// Continues every track to `tau`; false where the roots to be reported are not among them any more.
+    #[inline]
+    fn advance(&mut self, groups: Groups, tau: f64) -> bool {
+        let step = tau - self.tau;
+        let bend = if self.step > 0.0 {
+            0.5 * step / self.step
+        } else {
+            0.0
+        };
+        (self.tau, self.step) = (tau, step);
+        let mut kept = 0;
+        for i in 0..self.followed {
+            let track = self.tracks[i];
+            let ahead = track.slope + (track.slope - track.earlier_slope) * bend;
+            let predicted = track.lambda + ahead * step;
+            if let Some((found, evaluations)) = correct(groups, tau, predicted) {
+                self.work.evaluations += u64::from(evaluations);
+                self.tracks[kept] = Track {
+                    earlier_slope: track.slope,
+                    ..found
+                };
+                kept += 1;
+            }
+        }
+        self.followed = kept;
+        self.choose()
+    }
+
+    /// Fills `roots` with the rightmost tracks. False where there are too few, or two are the same root.
+    #[inline]
+    fn choose(&mut self) -> bool {
+        let tracks = &mut self.tracks[..self.followed];
+        let mut distinct = true;
+        // Insertion sort: the order changes seldom.
+        for i in 1..tracks.len() {
+            let mut j = i;
+            while j > 0 && tracks[j].lambda.re > tracks[j - 1].lambda.re {
+                tracks.swap(j, j - 1);
+                j -= 1;
+            }
+        }
+        for i in 1..tracks.len() {
+            for j in 0..i {
+                let gap = tracks[i].lambda - tracks[j].lambda;
+                distinct &= gap.norm_sqr() > 1e-16;
+            }
+        }
+        self.reported = self.expected.min(tracks.len());
+        for (root, track) in self.roots.iter_mut().zip(&tracks[..self.reported]) {
+            *root = Root {
+                lambda: track.lambda,
+                error: track.error,
+            };
+        }
+        distinct && self.reported == self.expected
+    }
+
+    /// Finds all roots anew at `tau`.
+    #[cold]
+    fn start_anew(&mut self, groups: Groups, tau: f64) -> Result<(), Doubt> {
+        self.work.reseeded += 1;
+        (self.tau, self.step) = (tau, 0.0);
+        self.followed = 0;
+        self.reported = 0;
+        // Roots farther left than this are far from being the rightmost for many delays to come.
+        let horizon = -0.5 - 3.0 / tau;
+        let all = 2 * (self.wanted + COMPANIONS) as u64;
+        self.seed(groups, tau, all, horizon)?;
+        if self.followed < self.wanted {
+            self.seed(groups, tau, 2 * self.wanted as u64, f64::NEG_INFINITY)?;
+        }
+        self.expected = self.wanted.min(self.followed);
+        self.choose();
+        Ok(())
+    }
+
+    fn seed(&mut self, groups: Groups, tau: f64, count: u64, leftmost: f64) -> Result<(), Doubt> {
+        let found = self.finder.rightmost(groups, tau, count, leftmost);
+        let roots = found.map_err(|_| Doubt::Undecided)?;
+        self.followed = roots.len().min(MOST_TRACKS);
+        for (track, root) in self.tracks.iter_mut().zip(roots) {
+            let slope = Sensitivity::of(groups, tau, root.lambda).tau;
+            *track = Track {
+                lambda: root.lambda,
+                slope,
+                earlier_slope: slope,
+                error: root.error,
+            };
+        }
+        Ok(())
+    }
+
+    /// Shows that right of each reported root there are no others than those reported. Returns the margin.
+    #[inline]
+    fn certify(&self, groups: Groups, tau: f64) -> Result<f64, Doubt> {
+        let roots = &self.roots[..self.reported];
+        if roots.is_empty() {
+            return Err(Doubt::Undecided);
+        }
+        let mut widest = MARGIN;
+        for root in roots {
+            let unit = root.lambda.re.abs().max(1.0);
+            let mut margin = MARGIN.max(16.0 * root.error / unit);
+            let line = loop {
+                let line = root.lambda.re + margin * unit;
+                match roots_right_of(groups, tau, line) {
+                    Some(count) => break (line, count),
+                    None if margin < WIDEST_MARGIN => margin *= 8.0,
+                    None => return Err(Doubt::Undecided),
+                }
+            };
+            let known = roots.iter().filter(|r| r.lambda.re > line.0);
+            if known.map(Root::count).sum::<u64>() != line.1 {
+                return Err(Doubt::Missed);
+            }
+            widest = widest.max(margin);
+        }
+        Ok(widest)
+    }
+
+    /// The margin and the status of the cell at `tau`: `unstable`, from the certificate, is the number of roots right of
+    /// zero, `count` the closed form's, which comes with what is known of it in `status`.
+    #[inline]
+    fn judge(
+        &self,
+        groups: Groups,
+        tau: f64,
+        unstable: Option<u64>,
+        (count, status): (u16, u8),
+    ) -> Result<(f64, u8), Doubt> {
+        let margin = self.certify(groups, tau)?;
+        let Some(unstable) = unstable else {
+            return Ok((margin, MARGINAL));
+        };
+        let rightmost = &self.roots[0];
+        let sign_is_right = rightmost.lambda.re.abs() <= rightmost.error
+            || (rightmost.lambda.re > 0.0) == (unstable > 0);
+        if !sign_is_right {
+            return Err(Doubt::Missed);
+        }
+        if status & SATURATED != 0 || unstable == u64::from(count) {
+            Ok((margin, CERTIFIED))
+        } else if status & MARGINAL != 0 {
+            Ok((margin, 0))
+        } else {
+            Err(Doubt::Missed)
+        }
+    }
+}
+
+/// Why a cell is not certified.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Doubt {
+    /// There are roots that were not found, or roots that are none.
+    Missed,
+    /// An iteration or the certificate came to no end.
+    Undecided,
+}
+
+impl Doubt {
+    const fn flag(self) -> u8 {
+        match self {
+            Self::Missed => DISAGREE,
+            Self::Undecided => NOT_CONVERGED,
+        }
+    }
+}
+
+/// The root near `predicted` at the delay `tau`; none where Halley's method does not settle at once.
+#[inline]
+fn correct(groups: Groups, tau: f64, predicted: Complex64) -> Option<(Track, u32)> {
+    let mut lambda = predicted;
+    for evaluation in 1..=MOST_EVALUATIONS {
+        let jet = Jet::at(groups, tau, lambda);
+        let per_slope = divide(Complex64::ONE, jet.first);
+        let bend = jet.second * per_slope;
+        let step = halley_step(jet.value * per_slope, bend);
+        let next = lambda - step;
+        // What Halley's method leaves is of third order in the step, over the square of the distance at which D bends.
+        let size = step.l1_norm();
+        let turn = size * bend.l1_norm().max(tau);
+        if size * turn * turn <= SETTLED * (1.0 + next.l1_norm()) {
+            let nearly_real = next.im != 0.0 && next.im.abs() < NEARLY_REAL * (1.0 + next.re.abs());
+            if !nearly_real {
+                return Some((track_at(groups, tau, next, &jet, per_slope), evaluation));
+            }
+            lambda = Complex64::new(next.re, 0.0);
+        } else if turn < FARTHEST_STEP {
+            lambda = next;
+        } else {
+            return None;
+        }
+    }
+    None
+}
+
+/// The track at `lambda`, with D evaluated next to it.
+#[inline]
+fn track_at(groups: Groups, tau: f64, lambda: Complex64, jet: &Jet, per_slope: Complex64) -> Track {
+    let slope = jet.feedback * jet.delayed * lambda * per_slope;
+    let error = jet.rounding(groups, tau, lambda) * per_slope.l1_norm();
+    let mirrored = |z: Complex64| if lambda.im < 0.0 { z.conj() } else { z };
+    Track {
+        lambda: mirrored(lambda),
+        slope: mirrored(slope),
+        earlier_slope: mirrored(slope),
+        error,
     }
 }
