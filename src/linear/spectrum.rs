@@ -219,10 +219,8 @@ mod tests {
                 .rightmost(groups, tau, 6, f64::NEG_INFINITY)
                 .expect("complete")
                 .to_vec();
-            let nodes = 2 * nodes_for(
-                tau,
-                roots.iter().map(|r| r.lambda.norm()).fold(1.0, f64::max),
-            );
+            let radius = roots.iter().map(|r| r.lambda.norm()).fold(1.0, f64::max);
+            let nodes = 2 * nodes_for(tau, radius).expect("short delays");
             let eigenvalues = eigenvalues(groups, tau, nodes).expect("converges");
             for root in roots {
                 let nearest = |z: &Complex64| (root.lambda - z).norm();
