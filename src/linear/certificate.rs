@@ -6,6 +6,7 @@
 //! P = c − ω² + i p ω,        c = P(σ),  p = P′(σ)
 //! Q = q₀ + i q₁ ω,           q₀ = Q(σ), q₁ = a_v
 //! F(x) = |P|² − κ²|Q|² = x² + 2βx + γ,   x = ω²                                             (1)
+//!      = y² + 2hy + 2hc − κ²q₀²,         y = x − c = −Re P,   h = (p² − κ²q₁²)/2
 //! ```
 //!
 //! F has at most two zeros ω₋ < ω₊, so the line falls into at most three stretches on which either P or κQ e^(−iωτ) is
@@ -108,7 +109,9 @@ struct Line {
     /// D(σ) = c + κ q₀ and its mirror c − κ q₀; their product is γ.
     sum: Rounded,
     mirror: Rounded,
-    beta: Rounded,
+    h: Rounded,
+    /// κ q₀.
+    echo: Rounded,
 }
 
 /// Equation (3) with what does not depend on the delay, κ given, worked out.
@@ -150,17 +153,18 @@ impl Line {
         let fed_back = q0.value * decay;
         let sum = Rounded::sum([open_loop.value, fed_back])
             .plus_error(open_loop.error + q0.error * decay.abs() + q0.value.abs() * kappa_error);
-        let mirror = Rounded::sum([c.value, -kappa * q0.value])
-            .plus_error(c.error + kappa * q0.error + q0.value.abs() * kappa_error);
+        let echo = Rounded {
+            value: kappa * q0.value,
+            error: kappa * q0.error + q0.value.abs() * kappa_error,
+        };
+        let mirror = Rounded::sum([c.value, -echo.value]).plus_error(c.error + echo.error);
         let delayed_slope = kappa * a_v;
-        let squares = [
+        let h = Rounded::sum([
             0.5 * p.value * p.value,
-            -c.value,
             -0.5 * delayed_slope * delayed_slope,
-        ];
-        let beta = Rounded::sum(squares).plus_error(
-            p.value.abs() * p.error + c.error + delayed_slope.abs() * a_v.abs() * kappa_error,
-        );
+        ]);
+        let h =
+            h.plus_error(p.value.abs() * p.error + delayed_slope.abs() * a_v.abs() * kappa_error);
         Some(Self {
             c,
             p,
@@ -168,7 +172,8 @@ impl Line {
             q1: a_v,
             sum,
             mirror,
-            beta,
+            h,
+            echo,
         })
     }
 
@@ -178,58 +183,105 @@ impl Line {
         if !self.sum.decided() {
             return None;
         }
-        let (beta, gamma) = (self.beta, self.gamma());
-        let square = beta.value * beta.value;
-        let discriminant = Rounded {
-            value: square - gamma.value,
-            error: 2.0 * beta.value.abs() * beta.error
-                + gamma.error
-                + ROUNDINGS * (square + gamma.value.abs()),
-        };
+        let beta =
+            Rounded::sum([self.h.value, -self.c.value]).plus_error(self.h.error + self.c.error);
+        let gamma = self.gamma();
+        let discriminant = self.discriminant();
         if gamma.value > gamma.error {
             if beta.value > beta.error || discriminant.value < -discriminant.error {
                 return self.polynomial_alone();
             }
             if !discriminant.decided() {
-                // ω₋ and ω₊ coincide to rounding: whatever turns there are on the way up, there are on the way down. They
-                // cancel, but for a delay at which it is in doubt which they are.
-                let error = beta.error + (2.0 * discriminant.error).sqrt();
-                let both = Some(self.switch(-beta.value, error));
-                return Some(Turning {
-                    up: both,
-                    down: both,
-                    ..self.polynomial_alone()?
-                });
+                return self.nearly_touching(discriminant.error);
             }
         }
         let root = discriminant.value.max(discriminant.error).sqrt();
-        let upper = if beta.value <= 0.0 {
-            root - beta.value
-        } else {
-            -gamma.value / (beta.value + root)
+        let root = Rounded {
+            value: root,
+            error: discriminant.error / root,
         };
-        if upper <= 0.0 {
-            return None;
-        }
-        let per_upper = 1.0 / upper;
-        let upper_error =
-            beta.error + discriminant.error / root + ROUNDINGS * (beta.value.abs() + root);
-        let up = Some(self.switch(upper, upper_error));
-        if gamma.value >= -gamma.error {
-            let lower = (gamma.value * per_upper).max(0.0);
-            let lower_error = (gamma.error + lower * upper_error) * per_upper;
-            Some(Turning {
-                without_turns: self.without_turns(self.c.value, self.p.value),
-                up,
-                down: Some(self.switch(lower, lower_error)),
-            })
-        } else {
-            Some(Turning {
+        let [y_upper, y_lower] = self.real_parts(root);
+        let upper = upper_zero(beta, gamma, root)?;
+        let up = Some(self.switch(upper, y_upper));
+        if gamma.value < -gamma.error {
+            return Some(Turning {
                 without_turns: self.without_turns(self.q0.value, self.q1),
                 up,
                 down: None,
-            })
+            });
         }
+        let per_upper = 1.0 / upper.value;
+        let lower = (gamma.value * per_upper).max(0.0);
+        let lower = Rounded {
+            value: lower,
+            error: (gamma.error + lower * upper.error) * per_upper,
+        };
+        Some(Turning {
+            without_turns: self.without_turns(self.c.value, self.p.value),
+            up,
+            down: Some(self.switch(lower, y_lower)),
+        })
+    }
+
+    /// ω₋ and ω₊ coincide to rounding: whatever turns there are on the way up, there are on the way down. They cancel, but
+    /// for a delay at which it is in doubt which they are.
+    fn nearly_touching(&self, discriminant_error: f64) -> Option<Turning> {
+        let y = Rounded {
+            value: -self.h.value,
+            error: self.h.error + (2.0 * discriminant_error).sqrt(),
+        };
+        let x = Rounded::sum([self.c.value, y.value]).plus_error(self.c.error + y.error);
+        let both = Some(self.switch(x, y));
+        Some(Turning {
+            up: both,
+            down: both,
+            ..self.polynomial_alone()?
+        })
+    }
+
+    /// y at ω₊ and ω₋ without cancellation, `root` being the square root of the discriminant: the larger one first, the
+    /// other from their product.
+    #[inline(always)]
+    fn real_parts(&self, root: Rounded) -> [Rounded; 2] {
+        let (c, h, echo) = (self.c, self.h, self.echo);
+        let large = -(h.value + root.value.copysign(h.value));
+        let large_error = h.error + root.error + ROUNDINGS * large.abs();
+        let per_large = 1.0 / large.abs();
+        let terms = [2.0 * h.value * c.value, -echo.value * echo.value];
+        let product = Rounded::sum(terms).plus_error(
+            2.0 * (h.value.abs() * c.error
+                + h.error * c.value.abs()
+                + echo.value.abs() * echo.error),
+        );
+        let small = Rounded {
+            value: product.value / large,
+            error: (product.error + product.value.abs() * large_error * per_large) * per_large,
+        };
+        let large = Rounded {
+            value: large,
+            error: large_error,
+        };
+        if h.value < 0.0 {
+            [large, small]
+        } else {
+            [small, large]
+        }
+    }
+
+    /// β² − γ, in the form without their cancellation: h² − 2hc + κ²q₀².
+    #[inline(always)]
+    fn discriminant(&self) -> Rounded {
+        let (c, h, echo) = (self.c, self.h, self.echo);
+        let terms = [
+            h.value * h.value,
+            -2.0 * h.value * c.value,
+            echo.value * echo.value,
+        ];
+        Rounded::sum(terms).plus_error(
+            2.0 * h.error * (h.value.abs() + c.value.abs())
+                + 2.0 * h.value.abs() * c.error
+                + 2.0 * echo.value.abs() * echo.error,
+        )
     }
 
     #[inline(always)]
@@ -268,23 +320,22 @@ impl Line {
         1.0 - (far_out - at_zero)
     }
 
-    /// The place ω² = `x`, known within `error`.
+    /// The place ω² = `x`, where Re P = −`y`.
     #[inline(always)]
-    fn switch(&self, x: f64, error: f64) -> Switch {
-        let omega = x.max(0.0).sqrt();
+    fn switch(&self, x: Rounded, y: Rounded) -> Switch {
+        let omega = x.value.max(0.0).sqrt();
         let omega_error = if omega > 0.0 {
-            (error / omega).min(error.sqrt()) + ROUNDINGS * omega
+            (x.error / omega).min(x.error.sqrt()) + ROUNDINGS * omega
         } else {
-            error.sqrt()
+            x.error.sqrt()
         };
-        let (p_re, p_im) = (self.c.value - x, self.p.value * omega);
+        let (p_re, p_im) = (-y.value, self.p.value * omega);
         let (q_re, q_im) = (self.q0.value, self.q1 * omega);
         // + 0.0: a negative zero would choose the wrong side of the cut.
         let phase = (p_im + 0.0).atan2(p_re) - (q_im + 0.0).atan2(q_re);
         let p_size = p_re.abs().max(p_im.abs());
         let q_size = q_re.abs().max(q_im.abs());
-        let p_error =
-            self.c.error + error + self.p.error * omega + self.p.value.abs() * omega_error;
+        let p_error = y.error + self.p.error * omega + self.p.value.abs() * omega_error;
         let q_error = self.q0.error + self.q1.abs() * omega_error;
         Switch {
             omega,
@@ -293,6 +344,20 @@ impl Line {
             phase_error: p_error / p_size + q_error / q_size + ROUNDINGS * TAU,
         }
     }
+}
+
+/// ω₊² from (1), `root` being the square root of the discriminant; none where it is not positive.
+#[inline(always)]
+fn upper_zero(beta: Rounded, gamma: Rounded, root: Rounded) -> Option<Rounded> {
+    let value = if beta.value <= 0.0 {
+        root.value - beta.value
+    } else {
+        -gamma.value / (beta.value + root.value)
+    };
+    (value > 0.0).then_some(Rounded {
+        value,
+        error: beta.error + root.error + ROUNDINGS * (beta.value.abs() + root.value),
+    })
 }
 
 impl Switch {
