@@ -20,7 +20,7 @@ import matplotlib.pyplot as plt
 import numpy as np
 import xarray as xr
 
-FORMAT_VERSION = 1
+FORMAT_VERSIONS = (1, 2)
 # Size of the labels on the lines, in points.
 LABEL_SIZE = 7
 
@@ -94,8 +94,8 @@ def read(path):
             version = cells.attrs.get("slipmap_format_version")
             if version is None:
                 raise NoSuchMap(f"{path}: not a map of slipmap")
-            if int(version) != FORMAT_VERSION:
-                raise NoSuchMap(f"{path}: format {version} of a map; this program reads {FORMAT_VERSION}")
+            if int(version) not in FORMAT_VERSIONS:
+                raise NoSuchMap(f"{path}: format {version} of a map; this program reads {FORMAT_VERSIONS[0]} to {FORMAT_VERSIONS[-1]}")
             if "n_unstable" not in cells:
                 raise NoSuchMap(f"{path}: the map has no n_unstable; add it to the sweep's fields")
             cells = cells.load()
@@ -109,15 +109,16 @@ def read(path):
 
 
 def stable_pieces(curves, gain):
-    """(mu_prime, x, tau) of every piece of a curve with the stable region beside it."""
+    """(mu_prime, x, tau) of every piece of a crossing curve with the stable region beside it."""
+    degrees = curves.get("degree_of_stability", xr.zeros_like(curves["stable_side"])).values
     ends = np.cumsum(curves["vertex_count"].values)
     starts = ends - curves["vertex_count"].values
     return [
         (slope, curves[gain].values[start:end], curves["tau"].values[start:end])
-        for slope, side, start, end in zip(
-            curves["mu_prime"].values, curves["stable_side"].values, starts, ends, strict=True
+        for slope, side, degree, start, end in zip(
+            curves["mu_prime"].values, curves["stable_side"].values, degrees, starts, ends, strict=True
         )
-        if side != 0
+        if side != 0 and degree == 0
     ]
 
 

@@ -1,5 +1,8 @@
 //! Maps: every cell is what the library says of its point, for any order of axes, and independent of threads.
 
+#[allow(dead_code, reason = "not every test binary uses all of it")]
+mod common;
+
 use std::path::Path;
 use std::sync::atomic::AtomicBool;
 
@@ -186,6 +189,90 @@ fn curves_in_the_map_separate_its_stable_cells() {
         }
     }
     assert!(checked > 500, "{checked}");
+}
+
+const DEGREES: &str = "degree_of_stability = [0.05, 0.1]\n[axes]\nmass = [1, 4]\nalpha_n = { from = -6, to = 1, points = 50 }\ntau = { from = 0, to = 12, points = 50 }\n[fixed]\nmu_prime = -0.1\nalpha_v = -0.05\n[units]\nforce = \"N\"\nlength = \"m\"\ntime = \"s\"\n";
+
+/// Curves of a degree of stability come back from the file, and roots are where they say: by winding numbers.
+#[test]
+fn degrees_of_stability_bound_what_they_say() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("map.h5");
+    let plan = plan(DEGREES);
+    write(&plan, 2, &path);
+    let map = MapFile::open(&path).unwrap();
+    assert_eq!(map.degree_unit(), "s-1");
+    let curves = map.curves().unwrap();
+    let mut checked = [0; 2];
+    for curve in &curves {
+        let sigma = curve.degree_of_stability;
+        let Some(number) = [0.05, 0.1].iter().position(|s| *s == sigma) else {
+            assert_eq!(sigma, 0.0);
+            continue;
+        };
+        let vertices = &curve.piece.vertices;
+        for v in vertices.iter().skip(1).step_by(9).take(vertices.len() / 9) {
+            let mut setting = plan.spec.fixed;
+            setting.set(Parameter::Mass, curve.outer[0]);
+            setting.set(Parameter::AlphaN, v.p);
+            let (g, unit) = setting.groups().unwrap();
+            let count = |tau: f64| {
+                common::winding::roots_right_of(g.b, g.a_v, g.a_n, tau / unit, -sigma * unit)
+            };
+            let side = match curve.piece.stable_side {
+                StableSide::Shorter => -1e-4,
+                StableSide::Longer => 1e-4,
+                StableSide::Neither => unreachable!("only what bounds is traced"),
+            };
+            // Next to a corner or a fold the decaying region is narrower than the step.
+            let ends = [vertices[0], vertices[vertices.len() - 1]];
+            if v.tau < 1e-3 || ends.iter().any(|w| (v.tau - w.tau).hypot(v.p - w.p) < 0.05) {
+                continue;
+            }
+            assert_eq!(count(v.tau + side), Some(0), "{v:?}");
+            assert_eq!(count(v.tau - side), Some(2), "{v:?}");
+            checked[number] += 1;
+        }
+    }
+    assert!(checked.iter().all(|&n| n > 20), "{checked:?}");
+    let corners = hdf5::File::open(&path).unwrap();
+    let degrees = corners.dataset("boundaries/corner_degree_of_stability");
+    assert!(degrees.unwrap().read_raw::<f64>().unwrap().contains(&0.05));
+}
+
+/// A map of the first format version holds no degrees of stability: its curves are crossings.
+#[test]
+fn maps_of_the_first_version_are_read() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("map.h5");
+    write(&plan(SWEEPS[1]), 1, &path);
+    let set_version = |version: i32| {
+        let file = hdf5::File::open_rw(&path).unwrap();
+        let attribute = file.attr("slipmap_format_version").unwrap();
+        attribute.write_raw(&[version]).unwrap();
+        let group = file.group("boundaries").unwrap();
+        for name in ["degree_of_stability", "corner_degree_of_stability"] {
+            if group.link_exists(name) {
+                group.unlink(name).unwrap();
+            }
+        }
+    };
+    let found = MapFile::open(&path).unwrap().curves().unwrap();
+    set_version(1);
+    assert_eq!(MapFile::open(&path).unwrap().curves().unwrap(), found);
+    assert!(!found.is_empty() && found.iter().all(|c| c.degree_of_stability == 0.0));
+    for version in [0, 3] {
+        set_version(version);
+        let error = MapFile::open(&path).unwrap_err().to_string();
+        assert!(error.contains("this program reads 1 to 2"), "{error}");
+    }
+}
+
+#[test]
+fn degrees_of_stability_are_part_of_the_plan() {
+    let without = DEGREES.split_once('\n').unwrap().1;
+    let hashes = [without, DEGREES, &DEGREES.replace("0.1]", "0.2]")].map(|t| plan(t).hash());
+    assert!(hashes[0] != hashes[1] && hashes[1] != hashes[2]);
 }
 
 #[test]

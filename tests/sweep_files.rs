@@ -7,7 +7,8 @@ use slipmap::sweep::{Field, Parameter, Plan, SweepSpec};
 const GOOD: &str = "\
 title = \"all of it\"
 fields = [\"delay_margin\", \"n_unstable\"]
-boundaries = false
+boundaries = true
+degree_of_stability = [0.05, 1]
 
 [axes]
 v0 = { from = 1e-2, to = 1e1, points = 4, spacing = \"log\" }
@@ -37,7 +38,8 @@ fn everything_is_understood() {
     let spec: SweepSpec = GOOD.parse().unwrap();
     assert_eq!(spec.title, "all of it");
     assert_eq!(spec.fields, [Field::NUnstable, Field::DelayMargin]);
-    assert_eq!(spec.boundaries, Some(false));
+    assert_eq!(spec.boundaries, Some(true));
+    assert_eq!(spec.degrees_of_stability, [0.05, 1.0]);
     assert_eq!(spec.tolerance, MarginalTolerance(1e-12));
     let order: Vec<_> = spec.axes.iter().map(|a| a.parameter).collect();
     assert_eq!(order, [Parameter::V0, Parameter::Tau, Parameter::AlphaN]);
@@ -192,6 +194,51 @@ const BAD: &[(&str, &str, &str)] = &[
         "fields = [\"n_unstable\", \"n_unstable\"]\n[axes]\ntau = [1]",
         "\"n_unstable\"",
         "listed twice",
+    ),
+    (
+        "degree_of_stability = 0.1\n[axes]\ntau = [1]",
+        "0.1",
+        "degree_of_stability: expected an array, found a number",
+    ),
+    (
+        "degree_of_stability = []\n[axes]\ntau = [1]",
+        "[]",
+        "0 values; 1 to 16 are allowed",
+    ),
+    (
+        "degree_of_stability = [1,2,3,4,5,6,7,8,9,10,11,12,13,14,15,16,17]\n[axes]\ntau = [1]",
+        "[1,2,3,4,5,6,7,8,9,10,11,12,13,14,15,16,17]",
+        "17 values; 1 to 16 are allowed",
+    ),
+    (
+        "degree_of_stability = [0.1, 0.0]\n[axes]\ntau = [1]",
+        "0.0",
+        "0 is outside its range: greater than 0",
+    ),
+    (
+        "degree_of_stability = [-0.1]\n[axes]\ntau = [1]",
+        "-0.1",
+        "-0.1 is outside its range",
+    ),
+    (
+        "degree_of_stability = [inf]\n[axes]\ntau = [1]",
+        "inf",
+        "finite number",
+    ),
+    (
+        "degree_of_stability = [0.2, 0.2]\n[axes]\ntau = [1]",
+        "0.2",
+        "the values must be strictly increasing",
+    ),
+    (
+        "boundaries = false\ndegree_of_stability = [0.1]\n[axes]\ntau = [1, 2]\nalpha_v = [1, 2]\n[fixed]\nmu_prime = -1",
+        "degree_of_stability",
+        "traced with the boundaries, and boundaries = false",
+    ),
+    (
+        "degree_of_stability = [0.1]\n[axes]\ntau = [1]\nalpha_v = [1, 2]\n[fixed]\nmu_prime = -1",
+        "degree_of_stability",
+        "there is no plane for its curves",
     ),
     (
         "boundaries = 1\n[axes]\ntau = [1]",

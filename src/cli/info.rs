@@ -66,7 +66,9 @@ pub fn main(args: &Args) -> Result<(), Failure> {
     }
     let curves = map.curves()?;
     if map.boundary_plane().is_some() {
-        let bounding = curves
+        let (crossing, decaying): (Vec<_>, Vec<_>) =
+            curves.iter().partition(|c| c.degree_of_stability == 0.0);
+        let bounding = crossing
             .iter()
             .filter(|c| c.piece.stable_side != StableSide::Neither)
             .count();
@@ -74,9 +76,13 @@ pub fn main(args: &Args) -> Result<(), Failure> {
             "boundaries",
             format!(
                 "{} crossing curves, {bounding} of them bound a stable region",
-                curves.len()
+                crossing.len()
             ),
         )?;
+        if !decaying.is_empty() {
+            let curves = format!("{} curves of degrees of stability", decaying.len());
+            row("", curves)?;
+        }
     }
     Ok(())
 }

@@ -17,12 +17,12 @@ const NODES: usize = 192;
 /// Segments into which a piece is cut before it is refined.
 const COARSE_SEGMENTS: usize = 8;
 /// A segment is fine enough when its middle is nearer to its chord than this part of the window.
-const FLATNESS: f64 = 2e-4;
+pub(super) const FLATNESS: f64 = 2e-4;
 const MOST_HALVINGS: u32 = 12;
 /// More arcs than this in one window are refused: no picture could show them.
-const MOST_ARCS: u64 = 2000;
+pub(super) const MOST_ARCS: u64 = 2000;
 /// More corners than this in one window are refused, for the same reason.
-const MOST_CORNERS: u64 = 5000;
+pub(super) const MOST_CORNERS: u64 = 5000;
 
 /// A point of a crossing curve, exact to rounding.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -59,16 +59,16 @@ pub struct CurvePiece {
     pub vertices: Vec<Vertex>,
 }
 
-/// A point where a curve of ω₊ crosses one of ω₋: two pairs lie on the axis at once.
+/// A point where two curves cross: two pairs lie on the axis at once, on one of ω₊ and on one of ω₋.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Corner {
     /// The plane's parameter.
     pub p: f64,
     /// Delay.
     pub tau: f64,
-    /// Frequency and branch of the pair that crosses to the right.
+    /// Larger frequency, with its branch; on the imaginary axis that of the pair that crosses to the right.
     pub upper: (f64, u64),
-    /// Frequency and branch of the pair that crosses to the left.
+    /// Smaller frequency, with its branch; on the imaginary axis that of the pair that crosses to the left.
     pub lower: (f64, u64),
     /// The stable region has a corner here.
     pub bounds_stable: bool,
@@ -105,11 +105,11 @@ pub struct Window {
 }
 
 impl Window {
-    fn p_width(&self) -> f64 {
+    pub(super) fn p_width(&self) -> f64 {
         (self.p.end() - self.p.start()).max(f64::MIN_POSITIVE)
     }
 
-    fn tau_width(&self) -> f64 {
+    pub(super) fn tau_width(&self) -> f64 {
         (self.tau.end() - self.tau.start()).max(f64::MIN_POSITIVE)
     }
 }

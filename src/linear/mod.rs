@@ -10,6 +10,7 @@
 //! - [`status`]: what a cell says about itself
 //! - [`gains`]: the crossing curve with one gain given and the other solved for
 //! - [`curves`]: crossing curves in a plane of a parameter and the delay, cut at their corners
+//! - [`decay`]: curves of a given degree of stability in such a plane: where max Re λ = −σ
 //! - [`lobes`]: where the stable regions of pure control end
 
 mod branches;
@@ -19,6 +20,7 @@ pub mod collocation;
 pub mod count;
 pub mod crossing;
 pub mod curves;
+pub mod decay;
 pub mod gains;
 pub mod lobes;
 pub mod newton;

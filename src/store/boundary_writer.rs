@@ -1,4 +1,4 @@
-//! Crossing curves in a map: CF contiguous ragged arrays, appended plane by plane.
+//! Crossing curves in a map, and curves of degrees of stability: CF contiguous ragged arrays, appended plane by plane.
 //!
 //! Dimensions of the group: `curve` (one piece of a curve), `vertex` (all vertices of all pieces, one piece after the
 //! other) and `corner` (points where two curves cross).
@@ -8,9 +8,9 @@ use hdf5::{Dataset, Group, H5Type};
 
 use super::attributes::{put_numbers, put_text};
 use super::netcdf::{DimensionId, Dimensions, named};
-use super::schema::{BOUNDARIES, PLANE};
+use super::schema::{BOUNDARIES, CORNER_DEGREE_OF_STABILITY, DEGREE_OF_STABILITY, PLANE};
 use crate::linear::Direction;
-use crate::linear::curves::{Corner, CurvePiece, PlaneCurves, StableSide};
+use crate::linear::curves::{Corner, CurvePiece, StableSide};
 use crate::sweep::boundaries::BoundaryPlane;
 use crate::sweep::{Parameter, Plan};
 
@@ -49,10 +49,12 @@ pub(super) struct BoundaryWriter {
     branch: Column<i64>,
     direction: Column<i8>,
     stable_side: Column<i8>,
+    degree: Column<f64>,
     curve_outer: Vec<Column<f64>>,
     corner_columns: [Column<f64>; 4],
     corner_branches: [Column<i64>; 2],
     corner_stable: Column<i8>,
+    corner_degree: Column<f64>,
     corner_outer: Vec<Column<f64>>,
 }
 
@@ -116,7 +118,7 @@ impl BoundaryWriter {
         put_text(
             &group,
             "title",
-            "exact crossing curves: where characteristic roots lie on the imaginary axis",
+            "exact crossing curves: where characteristic roots lie on the imaginary axis; and boundaries of degrees of stability",
         )?;
         let curve = dimensions.add_bare(&group, "curve")?;
         let vertex = dimensions.add_bare(&group, "vertex")?;
@@ -131,6 +133,7 @@ impl BoundaryWriter {
             &format!("{} {}", parameter.name(), Parameter::Tau.name()),
         )?;
         let frequency = plan.spec.units.angular_frequency();
+        let rate = plan.spec.units.rate();
         let outer_parameters = || outer.iter().map(|&axis| plan.spec.axes[axis].parameter);
 
         let mut columns = Columns {
@@ -153,13 +156,18 @@ impl BoundaryWriter {
         )?;
         let stable_side = columns.make(
             "stable_side",
-            "side of the curve on which sliding is stable",
+            "side of the curve on which sliding is stable, to its degree of stability",
             "1",
         )?;
         put_flags(
             &stable_side.dataset,
             &[-1, 0, 1],
             "shorter_delays neither longer_delays",
+        )?;
+        let degree = columns.make(
+            DEGREE_OF_STABILITY,
+            "degree of stability: roots on the curve have this real part, negated",
+            &rate,
         )?;
         let curve_outer = outer_parameters()
             .map(|parameter| columns.of_parameter("", parameter, plan))
@@ -178,24 +186,24 @@ impl BoundaryWriter {
             columns.of_parameter("corner_", Parameter::Tau, plan)?,
             columns.make(
                 "corner_omega_upper",
-                "frequency of the pair crossing to the right",
+                "larger frequency; at degree of stability 0 the pair crosses to the right",
                 &frequency,
             )?,
             columns.make(
                 "corner_omega_lower",
-                "frequency of the pair crossing to the left",
+                "smaller frequency; at degree of stability 0 the pair crosses to the left",
                 &frequency,
             )?,
         ];
         let corner_branches = [
             columns.make(
                 "corner_branch_upper",
-                "branch of the pair crossing to the right",
+                "branch of the pair with the larger frequency",
                 "1",
             )?,
             columns.make(
                 "corner_branch_lower",
-                "branch of the pair crossing to the left",
+                "branch of the pair with the smaller frequency",
                 "1",
             )?,
         ];
@@ -205,6 +213,11 @@ impl BoundaryWriter {
             "1",
         )?;
         put_flags(&corner_stable.dataset, &[0, 1], "no yes")?;
+        let corner_degree = columns.make(
+            CORNER_DEGREE_OF_STABILITY,
+            "degree of stability of the curves that meet",
+            &rate,
+        )?;
         let corner_outer = outer_parameters()
             .map(|parameter| columns.of_parameter("corner_", parameter, plan))
             .collect::<hdf5::Result<_>>()?;
@@ -218,10 +231,12 @@ impl BoundaryWriter {
             branch,
             direction,
             stable_side,
+            degree,
             curve_outer,
             corner_columns,
             corner_branches,
             corner_stable,
+            corner_degree,
             corner_outer,
         })
     }
@@ -229,25 +244,26 @@ impl BoundaryWriter {
     /// Appends the curves of the next planes.
     pub fn append(&mut self, plan: &Plan, planes: &[BoundaryPlane]) -> hdf5::Result<()> {
         for plane in planes {
-            let Ok(PlaneCurves { pieces, corners }) = &plane.curves else {
-                continue;
-            };
             let outer: Vec<f64> = self
                 .outer
                 .iter()
                 .map(|&axis| plan.spec.axes[axis].values[plane.index[axis]])
                 .collect();
-            for piece in pieces {
-                self.append_piece(piece, &outer);
-            }
-            for corner in corners {
-                self.append_corner(corner, &outer);
+            for of in &plane.curves {
+                let Ok(curves) = &of.curves else { continue };
+                for piece in &curves.pieces {
+                    self.append_piece(piece, of.degree_of_stability, &outer);
+                }
+                for corner in &curves.corners {
+                    self.append_corner(corner, of.degree_of_stability, &outer);
+                }
             }
         }
         self.flush()
     }
 
-    fn append_piece(&mut self, piece: &CurvePiece, outer: &[f64]) {
+    fn append_piece(&mut self, piece: &CurvePiece, degree: f64, outer: &[f64]) {
+        self.degree.waiting.push(degree);
         self.vertex_count.waiting.push(piece.vertices.len() as i32);
         self.branch.waiting.push(piece.branch as i64);
         self.direction.waiting.push(match piece.direction {
@@ -269,7 +285,8 @@ impl BoundaryWriter {
         }
     }
 
-    fn append_corner(&mut self, corner: &Corner, outer: &[f64]) {
+    fn append_corner(&mut self, corner: &Corner, degree: f64, outer: &[f64]) {
+        self.corner_degree.waiting.push(degree);
         push_each(
             &mut self.corner_columns,
             &[corner.p, corner.tau, corner.upper.0, corner.lower.0],
@@ -297,6 +314,7 @@ impl BoundaryWriter {
         for column in columns
             .chain(&mut self.corner_columns)
             .chain(&mut self.corner_outer)
+            .chain([&mut self.degree, &mut self.corner_degree])
         {
             column.flush()?;
         }

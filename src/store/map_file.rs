@@ -6,7 +6,7 @@ use hdf5::{Dataset, File, H5Type, Hyperslab, SliceOrIndex};
 
 use super::attributes::text;
 use super::error::StoreError;
-use super::schema::{self, BOUNDARIES, PLANE, STATUS, root};
+use super::schema::{self, BOUNDARIES, DEGREE_OF_STABILITY, PLANE, STATUS, root};
 use crate::linear::Direction;
 use crate::linear::curves::{CurvePiece, StableSide, Vertex};
 use crate::sweep::engine::N_UNSTABLE_FILL;
@@ -28,6 +28,8 @@ pub struct MapAxis {
 pub struct MapCurve {
     /// Values of the axes outside the plane, in the order of the map's axes.
     pub outer: Vec<f64>,
+    /// Degree of stability σ, 1/time: roots on the curve have Re λ = −σ. 0 for crossings of the imaginary axis.
+    pub degree_of_stability: f64,
     /// The curve.
     pub piece: CurvePiece,
 }
@@ -71,14 +73,11 @@ impl MapFile {
         let version: i32 = first_number(&file, root::FORMAT_VERSION).ok_or_else(|| {
             StoreError::not_a_map(path, format!("it has no {}", root::FORMAT_VERSION))
         })?;
-        if version != schema::FORMAT_VERSION {
-            return Err(StoreError::not_a_map(
-                path,
-                format!(
-                    "its format version is {version}, this program reads {}",
-                    schema::FORMAT_VERSION
-                ),
-            ));
+        let (oldest, newest) = (schema::OLDEST_FORMAT_VERSION, schema::FORMAT_VERSION);
+        if !(oldest..=newest).contains(&version) {
+            let why =
+                format!("its format version is {version}, this program reads {oldest} to {newest}");
+            return Err(StoreError::not_a_map(path, why));
         }
         let axes = read_axes(&file, path)?;
         let fields = Field::ALL
@@ -291,6 +290,16 @@ impl MapFile {
         Some((axes.next()??, axes.next()??))
     }
 
+    /// The unit of degrees of stability; "1" where the map holds none.
+    #[must_use]
+    pub fn degree_unit(&self) -> String {
+        let name = format!("{BOUNDARIES}/{DEGREE_OF_STABILITY}");
+        let dataset = self.file.dataset(&name);
+        dataset
+            .and_then(|d| text(&d, "units"))
+            .unwrap_or_else(|_| "1".into())
+    }
+
     /// All curves of the map, in order. Empty where it holds none.
     ///
     /// # Errors
@@ -312,12 +321,17 @@ impl MapFile {
             let sides = group.dataset("stable_side")?.read_raw::<i8>()?;
             let (ps, taus) = (column(self.axes[p].parameter.name())?, column("tau")?);
             let omegas = column("omega")?;
+            let degrees = match group.link_exists(DEGREE_OF_STABILITY) {
+                true => column(DEGREE_OF_STABILITY)?,
+                false => Vec::new(),
+            };
             let mut vertices = ps.into_iter().zip(taus).zip(omegas);
             let mut curves = Vec::with_capacity(counts.len());
             for (i, &count) in counts.iter().enumerate() {
                 let of = |columns: &[i8]| columns.get(i).copied().unwrap_or(0);
                 curves.push(MapCurve {
                     outer: outer.iter().filter_map(|c| c.get(i).copied()).collect(),
+                    degree_of_stability: degrees.get(i).copied().unwrap_or(0.0),
                     piece: CurvePiece {
                         branch: branches.get(i).map_or(0, |&b| b.max(0) as u64),
                         direction: match of(&directions) {

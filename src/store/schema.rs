@@ -3,8 +3,10 @@
 use crate::sweep::Field;
 use crate::sweep::parameter::Units;
 
-/// Version of the layout described here. Readers refuse others.
-pub const FORMAT_VERSION: i32 = 1;
+/// Version of the layout described here, which is written. 2: [`DEGREE_OF_STABILITY`] of every curve.
+pub const FORMAT_VERSION: i32 = 2;
+/// The oldest version that is still read; readers refuse older and newer ones.
+pub const OLDEST_FORMAT_VERSION: i32 = 1;
 
 /// Conventions that a map follows.
 pub const CONVENTIONS: &str = "CF-1.11";
@@ -42,6 +44,11 @@ pub const BOUNDARIES: &str = "boundaries";
 
 /// Attribute of that group: the two axes that span the planes of the curves, the parameter and the delay.
 pub const PLANE: &str = "plane";
+
+/// σ of each curve: roots on it have Re λ = −σ. Absent before format version 2, where it is 0.
+pub const DEGREE_OF_STABILITY: &str = "degree_of_stability";
+/// σ of the curves that meet in a corner.
+pub const CORNER_DEGREE_OF_STABILITY: &str = "corner_degree_of_stability";
 
 /// What a field is, for `long_name`.
 #[must_use]

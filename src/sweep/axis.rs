@@ -23,6 +23,22 @@ pub struct Axis {
     pub values: Vec<f64>,
 }
 
+/// The axes of the planes in which curves can be traced, (parameter, delay): the last gain axis, else the last other axis,
+/// and the delay. None where there are no two such axes with two values or more.
+#[must_use]
+pub fn plane_of_curves(axes: &[Axis]) -> Option<(usize, usize)> {
+    let several =
+        |axis: &Axis, delay: bool| axis.len() > 1 && (axis.parameter == Parameter::Tau) == delay;
+    let tau = axes.iter().position(|axis| several(axis, true))?;
+    let last = |gain: bool| {
+        axes.iter().rposition(|axis| {
+            let is_gain = matches!(axis.parameter, Parameter::AlphaV | Parameter::AlphaN);
+            several(axis, false) && (is_gain || !gain)
+        })
+    };
+    Some((last(true).or_else(|| last(false))?, tau))
+}
+
 /// Values that make no axis, in words.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[error("{0}")]

@@ -1,10 +1,12 @@
-//! Crossing curves of a whole sweep: one plane (parameter, delay) for each setting of the other axes.
+//! Crossing curves of a whole sweep, and those of its degrees of stability: one plane (parameter, delay) for each setting of
+//! the other axes.
 
 use super::parameter::{Parameter, Setting};
 use super::plan::Plan;
 use super::tile::for_each_index;
 use crate::linear::Crossings;
 use crate::linear::curves::{PlaneCurves, TooManyCurves, Window, scan_breakpoints, trace};
+use crate::linear::decay;
 use crate::linear::gains::{load_gain_breakpoints, velocity_gain_breakpoints};
 use crate::model::{Groups, ModelError};
 
@@ -16,6 +18,15 @@ const SCAN_STEPS: usize = 4096;
 pub struct BoundaryPlane {
     /// Index along every axis of the sweep; 0 along the plane's own two.
     pub index: Vec<usize>,
+    /// The curves of the boundary of stability, then those of each degree of stability.
+    pub curves: Vec<DegreeCurves>,
+}
+
+/// The curves of one degree of stability in one plane.
+#[derive(Debug, Clone)]
+pub struct DegreeCurves {
+    /// σ in 1/time: the curves are where a root has Re λ = −σ. 0 for crossings of the imaginary axis.
+    pub degree_of_stability: f64,
     /// The curves; an error where there are too many.
     pub curves: Result<PlaneCurves, TooManyCurves>,
 }
@@ -44,9 +55,11 @@ pub fn trace_plane(plan: &Plan, index: &[usize]) -> Result<BoundaryPlane, ModelE
                 p: ends(plan.spec.axes[p].range()),
                 tau: ends(plan.spec.axes[tau].range()),
             };
-            trace_window(plan.setting(index), plan.spec.axes[p].parameter, &window)?
+            let parameter = plan.spec.axes[p].parameter;
+            let degrees = &plan.spec.degrees_of_stability;
+            trace_window(plan.setting(index), parameter, &window, degrees)?
         }
-        None => Ok(PlaneCurves::default()),
+        None => Vec::new(),
     };
     Ok(BoundaryPlane {
         index: index.to_vec(),
@@ -62,7 +75,8 @@ fn trace_window(
     setting: Setting,
     parameter: Parameter,
     window: &Window,
-) -> Result<Result<PlaneCurves, TooManyCurves>, ModelError> {
+    degrees_of_stability: &[f64],
+) -> Result<Vec<DegreeCurves>, ModelError> {
     let groups_at = |p: f64| {
         let mut setting = setting;
         setting.set(parameter, p);
@@ -70,10 +84,11 @@ fn trace_window(
     };
     let (start, time_unit) = groups_at(*window.p.start())?;
     groups_at(*window.p.end())?;
-    let crossings_at = |p: f64| match groups_at(p) {
-        Ok((groups, unit)) => Crossings::of(groups).in_physical_time(unit),
-        // Between two valid ends the model stays valid: its ranges are intervals.
-        Err(_) => Crossings::of(Groups::new(1.0, 0.0, 0.0)),
+    // Between two valid ends the model stays valid: its ranges are intervals.
+    let valid_groups_at = |p: f64| groups_at(p).unwrap_or((Groups::new(1.0, 0.0, 0.0), 1.0));
+    let crossings_at = |p: f64| {
+        let (groups, unit) = valid_groups_at(p);
+        Crossings::of(groups).in_physical_time(unit)
     };
     let breakpoints: Vec<f64> = match parameter {
         Parameter::AlphaV => velocity_gain_breakpoints(start.b, start.a_n)
@@ -87,11 +102,15 @@ fn trace_window(
                 .map(|a_n| a_n * to_physical)
                 .collect()
         }
-        _ => scan_breakpoints(
-            |p| groups_at(p).map_or(Groups::new(1.0, 0.0, 0.0), |(groups, _)| groups),
-            &window.p,
-            SCAN_STEPS,
-        ),
+        _ => scan_breakpoints(|p| valid_groups_at(p).0, &window.p, SCAN_STEPS),
     };
-    Ok(trace(crossings_at, &breakpoints, window))
+    let boundary = DegreeCurves {
+        degree_of_stability: 0.0,
+        curves: trace(crossings_at, &breakpoints, window),
+    };
+    let degrees = degrees_of_stability.iter().map(|&sigma| DegreeCurves {
+        degree_of_stability: sigma,
+        curves: decay::trace(valid_groups_at, sigma, window),
+    });
+    Ok(std::iter::once(boundary).chain(degrees).collect())
 }

@@ -173,13 +173,11 @@ fn run_boundaries<S: Sink>(
             return Err(RunError::Interrupted);
         }
         for plane in &traced {
-            match &plane.curves {
-                Ok(curves) => {
-                    pieces += curves.pieces.len() as u64;
-                    corners += curves.corners.len() as u64;
-                }
-                Err(_) => planes_left_out += 1,
+            for curves in plane.curves.iter().filter_map(|of| of.curves.as_ref().ok()) {
+                pieces += curves.pieces.len() as u64;
+                corners += curves.corners.len() as u64;
             }
+            planes_left_out += u64::from(plane.curves.iter().any(|of| of.curves.is_err()));
         }
         sink.write_boundaries(&traced).map_err(RunError::Sink)?;
     }

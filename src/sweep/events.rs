@@ -16,7 +16,7 @@ pub enum Event {
         pieces: u64,
         /// Points where they meet.
         corners: u64,
-        /// Planes left out because more curves cross them than can be traced.
+        /// Planes without the curves of one degree of stability or more, because too many cross them to be traced.
         planes_left_out: u64,
     },
     /// A tile is computed and handed over.

@@ -236,6 +236,12 @@ impl Units {
         self.of([0, 0, 1])
     }
 
+    /// The unit of a rate of decay, one over time.
+    #[must_use]
+    pub fn rate(&self) -> String {
+        self.of([0, 0, -1])
+    }
+
     /// The unit of an angular frequency.
     #[must_use]
     pub fn angular_frequency(&self) -> String {

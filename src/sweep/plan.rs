@@ -2,6 +2,7 @@
 
 use sha2::{Digest, Sha256};
 
+use super::axis::plane_of_curves;
 use super::parameter::{Parameter, Setting};
 use super::spec::{SpecError, SweepSpec};
 use super::tile::{Tile, TileGrid};
@@ -51,7 +52,7 @@ impl Plan {
             .iter()
             .position(|axis| axis.parameter == Parameter::Tau);
         let tile_shape = tile_shape(&shape, tau_axis);
-        let boundary_plane = boundary_plane(&spec, tau_axis);
+        let boundary_plane = boundary_plane(&spec);
         Ok(Self {
             tiles: TileGrid::new(shape, tile_shape),
             tau_axis,
@@ -147,6 +148,10 @@ impl Plan {
         }
         put("marginal", &[self.spec.tolerance.0]);
         put("boundaries", &[f64::from(self.boundary_plane.is_some())]);
+        // Absent where there are none: maps of earlier versions stay equal.
+        if !self.spec.degrees_of_stability.is_empty() {
+            put("degree_of_stability", &self.spec.degrees_of_stability);
+        }
         hash.finalize().iter().map(|b| format!("{b:02x}")).collect()
     }
 }
@@ -171,17 +176,9 @@ fn tile_shape(shape: &[usize], tau_axis: Option<usize>) -> Vec<usize> {
     tile
 }
 
-/// The plane of crossing curves: the last gain axis, else the last other axis, and the delay. None where there is no such
-/// plane, or where it is not wanted.
-fn boundary_plane(spec: &SweepSpec, tau_axis: Option<usize>) -> Option<(usize, usize)> {
-    let tau = tau_axis.filter(|&t| spec.axes[t].len() > 1)?;
-    let last = |gain: bool| {
-        spec.axes.iter().rposition(|axis| {
-            let is_gain = matches!(axis.parameter, Parameter::AlphaV | Parameter::AlphaN);
-            axis.len() > 1 && axis.parameter != Parameter::Tau && (is_gain || !gain)
-        })
-    };
-    let p = last(true).or_else(|| last(false))?;
+/// The plane of crossing curves; none where there is no such plane, or where it is not wanted.
+fn boundary_plane(spec: &SweepSpec) -> Option<(usize, usize)> {
+    let (p, tau) = plane_of_curves(&spec.axes)?;
     let planes: u64 = spec
         .axes
         .iter()
@@ -189,6 +186,9 @@ fn boundary_plane(spec: &SweepSpec, tau_axis: Option<usize>) -> Option<(usize, u
         .filter(|&(i, _)| i != p && i != tau)
         .map(|(_, axis)| axis.len() as u64)
         .product();
-    let wanted = spec.boundaries.unwrap_or(planes <= PLANES_TRACED_UNASKED);
+    let asked = spec
+        .boundaries
+        .or((!spec.degrees_of_stability.is_empty()).then_some(true));
+    let wanted = asked.unwrap_or(planes <= PLANES_TRACED_UNASKED);
     wanted.then_some((p, tau))
 }

@@ -4,6 +4,7 @@
 //! title = "Velocity control"              # optional
 //! fields = ["n_unstable", "delay_margin"] # optional, n_unstable by default; status is always there
 //! boundaries = true                       # optional: the exact crossing curves as polylines
+//! degree_of_stability = [0.05, 0.1]       # optional: also the curves max Re λ = −σ for these σ, in 1/time
 //!
 //! [axes]                                  # in this order they are the dimensions of the map
 //! mu_prime = [-0.1, -0.2, -0.5]
@@ -29,12 +30,17 @@
 
 use std::ops::Range;
 
-use super::axis::{Axis, Spacing, spaced};
+use super::axis::{Axis, Spacing, plane_of_curves, spaced};
 use super::field::{Field, known_fields};
 use super::parameter::{GivenError, LawKind, Parameter, Setting, Units};
 pub use super::toml_reader::SpecError;
 use super::toml_reader::{Entry, entries, parse};
 use crate::linear::MarginalTolerance;
+
+/// More degrees of stability than this are refused.
+const MOST_DEGREES: usize = 16;
+/// The largest degree of stability, in 1/time.
+const LARGEST_DEGREE: f64 = 1e12;
 
 /// A sweep as its file describes it: every value in range, every name known.
 #[derive(Debug, Clone, PartialEq)]
@@ -49,6 +55,8 @@ pub struct SweepSpec {
     pub fields: Vec<Field>,
     /// Whether to trace crossing curves; none: where that is cheap.
     pub boundaries: Option<bool>,
+    /// Degrees of stability σ > 0, in 1/time and increasing, whose curves max Re λ = −σ are traced beside the boundaries.
+    pub degrees_of_stability: Vec<f64>,
     /// How near to a crossing a cell is marginal.
     pub tolerance: MarginalTolerance,
     /// Units of the parameters.
@@ -72,6 +80,7 @@ impl std::str::FromStr for SweepSpec {
                 "title" => draft.title = entry.string()?.to_owned(),
                 "fields" => draft.fields = Some(read_fields(&entry)?),
                 "boundaries" => draft.boundaries = Some(entry.boolean()?),
+                "degree_of_stability" => draft.read_degrees(&entry)?,
                 "axes" => draft.read_axes(&entry)?,
                 "fixed" => draft.read_fixed(&entry)?,
                 "friction" => draft.read_friction(&entry)?,
@@ -82,6 +91,7 @@ impl std::str::FromStr for SweepSpec {
                         "title",
                         "fields",
                         "boundaries",
+                        "degree_of_stability",
                         "axes",
                         "fixed",
                         "friction",
@@ -106,6 +116,8 @@ struct Draft {
     title: String,
     fields: Option<Vec<Field>>,
     boundaries: Option<bool>,
+    degrees: Vec<f64>,
+    degrees_place: Option<Range<usize>>,
     axes: Vec<Axis>,
     axes_place: Option<Range<usize>>,
     fixed: Vec<(Parameter, f64)>,
@@ -126,6 +138,12 @@ impl Draft {
             parameter,
             place: entry.key_span.clone(),
         });
+        Ok(())
+    }
+
+    fn read_degrees(&mut self, degrees: &Entry) -> Result<(), SpecError> {
+        self.degrees = read_degrees(degrees)?;
+        self.degrees_place = Some(degrees.key_span.clone());
         Ok(())
     }
 
@@ -209,6 +227,7 @@ impl Draft {
             });
         }
         self.check_what_is_given()?;
+        self.check_degrees()?;
         let mut fixed = Setting::new(self.law.as_ref().map(|(law, _)| *law));
         for (parameter, value) in &self.fixed {
             fixed.set(*parameter, *value);
@@ -220,10 +239,34 @@ impl Draft {
             fixed,
             fields: self.fields.unwrap_or_else(|| vec![Field::NUnstable]),
             boundaries: self.boundaries,
+            degrees_of_stability: self.degrees,
             tolerance: self.tolerance,
             units: self.units,
             text: text.to_owned(),
         })
+    }
+
+    /// There are boundaries beside which to trace degrees of stability.
+    fn check_degrees(&self) -> Result<(), SpecError> {
+        let Some(place) = &self.degrees_place else {
+            return Ok(());
+        };
+        let refuse = |message: &str, help: &str| {
+            Err(SpecError::at(place.clone(), format!("degree_of_stability: {message}")).help(help))
+        };
+        if self.boundaries == Some(false) {
+            return refuse(
+                "its curves are traced with the boundaries, and boundaries = false",
+                "set boundaries = true, or leave degree_of_stability out",
+            );
+        }
+        if plane_of_curves(&self.axes).is_none() {
+            return refuse(
+                "there is no plane for its curves",
+                "an axis tau and another axis are needed, with two values or more each",
+            );
+        }
+        Ok(())
     }
 
     /// Every parameter that is needed is there, none that would be ignored.
@@ -309,6 +352,30 @@ fn read_list(axis: &Entry, parameter: Parameter) -> Result<Vec<f64>, SpecError> 
                 .map_err(|e| SpecError::at(element.span.clone(), e.to_string()))
         })
         .collect()
+}
+
+fn read_degrees(entry: &Entry) -> Result<Vec<f64>, SpecError> {
+    let elements = entry
+        .array()
+        .map_err(|e| e.help("for example: degree_of_stability = [0.05, 0.1]"))?;
+    if elements.is_empty() || elements.len() > MOST_DEGREES {
+        let message = format!("{} values; 1 to {MOST_DEGREES} are allowed", elements.len());
+        return Err(entry.error(message));
+    }
+    let mut degrees: Vec<f64> = Vec::new();
+    for element in &elements {
+        let value = element.number()?;
+        if !(1.0 / LARGEST_DEGREE..=LARGEST_DEGREE).contains(&value) {
+            return Err(element.error(format!(
+                "{value} is outside its range: greater than 0, between 1e-12 and 1e12"
+            )));
+        }
+        if degrees.last().is_some_and(|last| *last >= value) {
+            return Err(element.error("the values must be strictly increasing"));
+        }
+        degrees.push(value);
+    }
+    Ok(degrees)
 }
 
 fn read_fields(entry: &Entry) -> Result<Vec<Field>, SpecError> {

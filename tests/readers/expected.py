@@ -65,7 +65,7 @@ def check_boundaries(column):
     equal("sum of vertex_count", int(count.sum()), len(tau))
     equal("vertices of the plane's parameter", len(p), len(tau))
     equal("vertices with a frequency", len(omega), len(tau))
-    for name in ["branch", "direction", "stable_side", *OUTER]:
+    for name in ["branch", "direction", "stable_side", "degree_of_stability", *OUTER]:
         equal(f"length of {name}", len(column(name)), len(count))
     for name in OUTER:
         strange = set(column(name)) - set(AXES[name])

@@ -1,8 +1,9 @@
 //! The boundaries of stability in one plane, a colour for each value of the axis outside it.
 
 use super::PictureError;
-use super::colour::{self, PAPER, Rgb};
+use super::colour::{self, INK, PAPER, Rgb};
 use super::curve_labels::{Curves, places};
+use super::degrees::Degrees;
 use super::legend::{Legend, Swatch};
 use super::page::{self, SMALL};
 use super::panels::{Panel, Panels, Words};
@@ -28,6 +29,8 @@ struct Family<'a> {
     short: Option<Rich>,
     bounding: Vec<&'a CurvePiece>,
     others: Vec<&'a CurvePiece>,
+    /// Those of a degree of stability above zero.
+    decaying: Vec<&'a MapCurve>,
     index: &'a [usize],
 }
 
@@ -43,7 +46,8 @@ pub fn draw(
     let title = super::title(map, "Boundaries of stable sliding");
     let mut body = page::head(scene, &title, &view.notes(map));
     let u = scene.unit();
-    let legend = legend(map, view, &families);
+    let degrees = Degrees::of(map, curves);
+    let legend = legend(map, view, &families, &degrees);
     let column = body.cut_right(legend.width(u), 30.0 * u);
     let (x_axis, y_axis) = (&map.axes()[view.x], &map.axes()[y]);
     let scales = (
@@ -70,6 +74,10 @@ pub fn draw(
         }
     }
     for family in &families {
+        for curve in &family.decaying {
+            let points = traced(panel, &curve.piece);
+            degrees.draw(curve.degree_of_stability, &points, family.colour, scene);
+        }
         for piece in &family.bounding {
             scene.path(traced(panel, piece), family.colour, WIDTH * u);
         }
@@ -85,7 +93,9 @@ fn families<'a>(map: &MapFile, view: &'a View, curves: &'a [MapCurve]) -> Vec<Fa
     let several = view.panels.len() > 1;
     let family = |(i, index): (usize, &'a Vec<usize>)| {
         let outer = view.outer_values(map, index);
-        let here = || curves.iter().filter(|c| c.outer == outer).map(|c| &c.piece);
+        let of_family = || curves.iter().filter(|c| c.outer == outer);
+        let crossing = |c: &&MapCurve| c.degree_of_stability == 0.0;
+        let here = || of_family().filter(crossing).map(|c| &c.piece);
         let bounds = |piece: &&CurvePiece| piece.stable_side != StableSide::Neither;
         let value = view.along.map(|axis| &map.axes()[axis]);
         Family {
@@ -97,6 +107,7 @@ fn families<'a>(map: &MapFile, view: &'a View, curves: &'a [MapCurve]) -> Vec<Fa
             bounding: here().filter(bounds).collect(),
             // With several values at once they would hide what bounds the stable regions.
             others: here().filter(|p| !several && !bounds(p)).collect(),
+            decaying: of_family().filter(|c| !crossing(c)).collect(),
             index,
         }
     };
@@ -189,7 +200,7 @@ fn label(families: &[Family], panel: &Panel, scene: &mut Scene) {
     }
 }
 
-fn legend(map: &MapFile, view: &View, families: &[Family]) -> Legend {
+fn legend(map: &MapFile, view: &View, families: &[Family], degrees: &Degrees) -> Legend {
     let tint = |family: &Family| Some(colour::pale(family.colour, 2.0 * SHADE));
     let mut entries: Vec<(Swatch, Rich)> = Vec::new();
     let mut heading = Vec::new();
@@ -219,5 +230,10 @@ fn legend(map: &MapFile, view: &View, families: &[Family]) -> Legend {
             entries.push((other, Rich::plain("other crossings")));
         }
     }
+    let colour = match families {
+        [family] => family.colour,
+        _ => INK,
+    };
+    entries.extend(degrees.entries(colour));
     Legend { heading, entries }
 }

@@ -2,6 +2,7 @@
 
 use super::PictureError;
 use super::colour::{self, INK, NO_VALUE, Rgb, STABLE, UNSTABLE};
+use super::degrees::Degrees;
 use super::legend::{Bar, Legend, Swatch};
 use super::page::{self, Area};
 use super::panels::{Panel, Panels, Words};
@@ -41,7 +42,8 @@ pub fn draw(
         .iter()
         .map(|panel| map.plane(field, panel, (y, view.x), most))
         .collect::<Result<_, _>>()?;
-    let key = Key::new(field, &unit, &planes, !curves.is_empty());
+    let degrees = Degrees::of(map, curves);
+    let key = Key::new(field, &unit, &planes, !curves.is_empty()).with(degrees.entries(INK));
     let column = body.cut_right(key.width(scene.unit()), GAP * scene.unit());
     let (x_axis, y_axis) = (&map.axes()[view.x], &map.axes()[y]);
     let scales = (Scale::around(&x_axis.values), Scale::around(&y_axis.values));
@@ -57,7 +59,7 @@ pub fn draw(
             .push(cells(panel, plane, |value| key.colour(value)));
         let outer = view.outer_values(map, index);
         for curve in curves.iter().filter(|c| c.outer == outer) {
-            draw_curve(panel, curve, scene);
+            draw_curve(panel, curve, &degrees, scene);
         }
     }
     panels.draw_axes(scene);
@@ -75,11 +77,15 @@ pub fn draw(
     Ok(())
 }
 
-fn draw_curve(panel: &Panel, curve: &MapCurve, scene: &mut Scene) {
+fn draw_curve(panel: &Panel, curve: &MapCurve, degrees: &Degrees, scene: &mut Scene) {
     if curve.piece.stable_side != StableSide::Neither {
         let vertices = curve.piece.vertices.iter();
-        let points = vertices.map(|v| panel.at(v.p, v.tau)).collect();
-        scene.path(points, INK, BOUNDARY_WIDTH * scene.unit());
+        let points: Vec<_> = vertices.map(|v| panel.at(v.p, v.tau)).collect();
+        if curve.degree_of_stability > 0.0 {
+            degrees.draw(curve.degree_of_stability, &points, INK, scene);
+        } else {
+            scene.path(points, INK, BOUNDARY_WIDTH * scene.unit());
+        }
     }
 }
 
@@ -157,6 +163,14 @@ impl Key {
                 }
             }
         }
+    }
+
+    /// The key with more entries at the end of its list.
+    fn with(mut self, more: Vec<(Swatch, Rich)>) -> Self {
+        match &mut self {
+            Self::Counts(legend) | Self::Margins { legend, .. } => legend.entries.extend(more),
+        }
+        self
     }
 
     fn colour(&self, value: f64) -> Rgb {

@@ -17,6 +17,8 @@ const BAR_STEPS: usize = 256;
 pub enum Swatch {
     /// A line of this width, over an area of that colour if there is one.
     Line(Rgb, f64, Option<Rgb>),
+    /// A dashed line of this width, with (length, gap) of its dashes.
+    Dashed(Rgb, f64, (f64, f64)),
     /// A box.
     Box(Rgb),
 }
@@ -60,6 +62,10 @@ impl Legend {
                 Swatch::Box(colour) => {
                     scene.rect(from, to, colour);
                     scene.outline(from, to, SOFT_INK, u);
+                }
+                Swatch::Dashed(colour, width, dash) => {
+                    let line = [(left, middle), (right, middle)];
+                    scene.dashed(&line, colour, width * u, dash);
                 }
                 Swatch::Line(colour, width, below) => {
                     if let Some(below) = below {

@@ -6,11 +6,13 @@
 //!
 //! - `page`, `panels`, `legend`: where things stand; `scale`, `ticks`: from values to places
 //! - `stable_area`, `curve_labels`: the region between curves, and free places on curves
+//! - `degrees`: dashed curves of degrees of stability
 //! - `colour`, `text`, `font`: how things look
 
 mod boundaries;
 mod colour;
 mod curve_labels;
+mod degrees;
 mod error;
 mod font;
 mod heat;

@@ -134,6 +134,39 @@ impl Scene {
         }
     }
 
+    /// Adds a polyline in dashes: (length, gap) in units of the picture.
+    pub fn dashed(&mut self, points: &[Point], colour: Rgb, width: f64, dash: (f64, f64)) {
+        let u = self.unit();
+        let lengths = [dash.0 * u, dash.1 * u];
+        let (mut on, mut left) = (true, lengths[0]);
+        let mut current: Vec<Point> = points.first().copied().into_iter().collect();
+        for pair in points.windows(2) {
+            let (mut from, to) = (pair[0], pair[1]);
+            let mut length = (to.0 - from.0).hypot(to.1 - from.1);
+            while length > left {
+                let part = left / length;
+                from = (
+                    from.0 + part * (to.0 - from.0),
+                    from.1 + part * (to.1 - from.1),
+                );
+                length -= left;
+                if on {
+                    current.push(from);
+                    self.path(std::mem::take(&mut current), colour, width);
+                } else {
+                    current.push(from);
+                }
+                on = !on;
+                left = lengths[usize::from(!on)];
+            }
+            left -= length;
+            if on {
+                current.push(to);
+            }
+        }
+        self.path(current, colour, width);
+    }
+
     /// Adds a text whose baseline is at `at`.
     pub fn text(&mut self, at: Point, align: Align, text: &Rich, size: f64, colour: Rgb) {
         let left = at.0 - shift(align, text.width(size));

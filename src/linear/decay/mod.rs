@@ -1,0 +1,288 @@
+//! Curves of a given degree of stability: the boundary, in a plane (p, τ), of the region where every root has Re λ < −σ.
+//!
+//! On it a root lies on the line, D(−σ + iω; p, τ) = 0. With D = P + Q e^(−λτ) and κ = e^(στ) that takes |P| = κ|Q|, a
+//! quadratic in ω² at every (p, τ), so at most two pairs and a real root lie on the line at once.
+//!
+//! **Finding.** The number of roots right of the line is known at every point ([`certificate`](super::certificate)). Along
+//! 257 columns of constant p, and along the window's edges of shortest and longest delay, every change of "none is" is
+//! enclosed. A column is looked at in steps of at most 1/16 of the period 2π/ω₊ of the fastest root that can lie on the line,
+//! and of 1/256 of the window (but at most 16384 steps). It ends where (ω₊ − ω₋)τ > 6π: by Eqs. (2) and (3) of the
+//! certificate, in which arg P and arg Q vary by at most π each, n ≥ 2(ω₊ − ω₋)τ/2π − 5 there, and ω₊ − ω₋ grows with τ.
+//!
+//! **Following.** From each change the boundary is followed by predictor and corrector in (p, τ, ω), where curves are smooth
+//! at folds ω₋ = ω₊ as well. It goes over to another curve where a second root comes to the line: a corner, solved for with
+//! both roots, or a double real root −σ, from which the curve of a pair starts. Every vertex is exact to rounding.
+//!
+//! **Limits.** A part of the region, or a hole in it, is missed if it lies between two neighbouring columns (1/256 of the
+//! window in p), or if every column passes it in one step of its delays. Smaller windows show smaller parts. A boundary that
+//! leaves the delay free (no control at all) is no curve over p and left out.
+
+mod corner;
+mod plane;
+mod seeds;
+mod walk;
+
+use std::f64::consts::TAU;
+
+use super::Direction;
+use super::curves::{
+    Corner, CurvePiece, MOST_ARCS, MOST_CORNERS, PlaneCurves, StableSide, TooManyCurves, Vertex,
+    Window,
+};
+use crate::model::Groups;
+use corner::Turn;
+use plane::{DecayPlane, Family};
+use seeds::{COLUMNS, Line, Seed};
+use walk::{Arc, Way};
+
+/// Steps along all boundaries of one window.
+const MOST_STEPS: usize = 1 << 20;
+
+/// Traces the boundary of the region in `window` where every root has Re λ < −`sigma`.
+///
+/// `groups_at` gives the groups and the unit of time √(M/κ) at a value of p inside the window; p, τ, ω and `sigma` > 0 are in
+/// the units of that time. Every piece bounds the region: `stable_side` is the side on which all roots are left of the line.
+/// `direction` says how the root on the line moves as the delay grows, `branch` is the number of whole turns of ωτ at the
+/// middle of the piece. Along a piece p only grows or only falls. What may be missed: see the module.
+///
+/// # Errors
+/// When there are more curves in the window than can be traced.
+pub fn trace(
+    groups_at: impl Fn(f64) -> (Groups, f64),
+    sigma: f64,
+    window: &Window,
+) -> Result<PlaneCurves, TooManyCurves> {
+    let plane = DecayPlane {
+        groups_at: &groups_at,
+        sigma,
+        window,
+    };
+    let mut tracer = Tracer {
+        found: Found::default(),
+        curves: PlaneCurves::default(),
+        steps: MOST_STEPS,
+        plane,
+    };
+    for seed in tracer.plane.seeds() {
+        if !tracer.found.holds(&seed) {
+            tracer.follow(&seed)?;
+        }
+    }
+    Ok(tracer.curves)
+}
+
+/// Where the boundaries traced so far meet the lines of the seeds.
+#[derive(Default)]
+struct Found {
+    /// Delays, for each column.
+    columns: Vec<Vec<f64>>,
+    /// Values of p on the edges of shortest and longest delay.
+    edges: [Vec<f64>; 2],
+}
+
+impl Found {
+    fn on(&mut self, line: Line) -> &mut Vec<f64> {
+        match line {
+            Line::Column(i) => {
+                self.columns.resize(COLUMNS + 1, Vec::new());
+                &mut self.columns[i]
+            }
+            Line::Edge { longest } => &mut self.edges[usize::from(longest)],
+        }
+    }
+
+    fn holds(&mut self, seed: &Seed) -> bool {
+        let slack = 1e-6 * (seed.to - seed.from);
+        let range = seed.from - slack..=seed.to + slack;
+        self.on(seed.line).iter().any(|x| range.contains(x))
+    }
+}
+
+struct Tracer<'a> {
+    plane: DecayPlane<'a>,
+    found: Found,
+    curves: PlaneCurves,
+    steps: usize,
+}
+
+impl Tracer<'_> {
+    /// Traces the boundary on which `seed` lies.
+    fn follow(&mut self, seed: &Seed) -> Result<(), TooManyCurves> {
+        let Some((start, family)) = self.plane.locate(seed) else {
+            return Ok(());
+        };
+        let mut forward = self.walk(start, family, 1.0)?;
+        let arcs = if forward.closed {
+            closed(std::mem::take(&mut forward.arcs))
+        } else {
+            let backward = self.walk(start, family, -1.0)?;
+            forward.corners.extend(backward.corners);
+            joined(backward.arcs, forward.arcs)
+        };
+        for arc in &arcs {
+            self.mark(arc);
+            self.curves.pieces.extend(self.piece(arc));
+        }
+        let corners = forward.corners.iter().map(corner);
+        self.curves.corners.extend(corners);
+        self.check_limits(false)
+    }
+
+    fn walk(&mut self, start: Vertex, family: Family, sense: f64) -> Result<Way, TooManyCurves> {
+        let way = self.plane.walk(start, family, sense, self.steps);
+        let vertices: usize = way.arcs.iter().map(|arc| arc.vertices.len()).sum();
+        self.steps = self.steps.saturating_sub(vertices);
+        self.check_limits(way.too_long)?;
+        Ok(way)
+    }
+
+    fn check_limits(&self, too_long: bool) -> Result<(), TooManyCurves> {
+        let arcs = self.curves.pieces.len() as u64;
+        let corners = self.curves.corners.len() as u64;
+        if too_long || arcs > MOST_ARCS || corners > MOST_CORNERS {
+            return Err(TooManyCurves { arcs, corners });
+        }
+        Ok(())
+    }
+
+    /// Notes where an arc meets columns and edges.
+    fn mark(&mut self, arc: &Arc) {
+        let window = self.plane.window;
+        for pair in arc.vertices.windows(2) {
+            for i in self.columns_between(pair[0].p, pair[1].p) {
+                let tau = self.at_column(arc.family, (pair[0], pair[1]), self.plane.column(i));
+                self.found.on(Line::Column(i)).push(tau);
+            }
+        }
+        let slack = 1e-9 * window.tau_width();
+        for end in [arc.vertices.first(), arc.vertices.last()]
+            .into_iter()
+            .flatten()
+        {
+            for (longest, edge) in [(false, window.tau.start()), (true, window.tau.end())] {
+                if (end.tau - edge).abs() <= slack {
+                    self.found.on(Line::Edge { longest }).push(end.p);
+                }
+            }
+        }
+    }
+
+    fn columns_between(&self, p: f64, q: f64) -> std::ops::Range<usize> {
+        let window = self.plane.window;
+        let place = |p: f64| (p - window.p.start()) / window.p_width() * COLUMNS as f64;
+        let (from, to) = (place(p.min(q)), place(p.max(q)));
+        let from = (from - 1e-9).ceil().max(0.0) as usize;
+        // Empty where no column lies between.
+        let to = (to + 1e-9).floor().min(COLUMNS as f64) + 1.0;
+        from..to.max(0.0) as usize
+    }
+
+    /// The delay at which the curve from `v` to `w` passes `p`.
+    fn at_column(&self, family: Family, (v, w): (Vertex, Vertex), p: f64) -> f64 {
+        let part = if v.p == w.p {
+            0.0
+        } else {
+            (p - v.p) / (w.p - v.p)
+        };
+        let between = Vertex {
+            p,
+            tau: v.tau + part * (w.tau - v.tau),
+            omega: v.omega + part * (w.omega - v.omega),
+        };
+        let solved = self.plane.correct(between, family, [1.0, 0.0, 0.0]);
+        let near = |tau: f64| {
+            let reach =
+                (w.tau - v.tau).abs() + super::curves::FLATNESS * self.plane.window.tau_width();
+            (tau - between.tau).abs() <= reach
+        };
+        solved
+            .map(|v| v.tau)
+            .filter(|&tau| near(tau))
+            .unwrap_or(between.tau)
+    }
+
+    /// The piece of an arc; none where p does not vary along it.
+    fn piece(&self, arc: &Arc) -> Option<CurvePiece> {
+        let (first, last) = (arc.vertices.first()?, arc.vertices.last()?);
+        if (last.p - first.p).abs() <= 1e-13 * self.plane.window.p_width() {
+            return None;
+        }
+        let middle = arc.vertices[arc.vertices.len() / 2];
+        let longer = last.p > first.p;
+        Some(CurvePiece {
+            branch: turns(middle.omega, middle.tau),
+            direction: if longer {
+                Direction::Left
+            } else {
+                Direction::Right
+            },
+            stable_side: if longer {
+                StableSide::Longer
+            } else {
+                StableSide::Shorter
+            },
+            vertices: monotone(&arc.vertices, longer),
+        })
+    }
+}
+
+/// The vertices of an arc from end to end, without those that rounding has put on the wrong side of a neighbour in p.
+fn monotone(vertices: &[Vertex], rising: bool) -> Vec<Vertex> {
+    let mut kept: Vec<Vertex> = Vec::with_capacity(vertices.len());
+    let follows = |v: &Vertex, w: &Vertex| if rising { w.p > v.p } else { w.p < v.p };
+    for (i, v) in vertices.iter().enumerate() {
+        if i + 1 == vertices.len() {
+            while kept.len() > 1 && kept.last().is_some_and(|last| !follows(last, v)) {
+                kept.pop();
+            }
+        } else if kept.last().is_some_and(|last| !follows(last, v)) {
+            continue;
+        }
+        kept.push(*v);
+    }
+    kept
+}
+
+fn turns(omega: f64, tau: f64) -> u64 {
+    (omega * tau / TAU).max(0.0) as u64
+}
+
+fn corner(turn: &Turn) -> Corner {
+    let pair = |omega: f64| (omega, turns(omega, turn.tau));
+    Corner {
+        p: turn.p,
+        tau: turn.tau,
+        upper: pair(turn.before.max(turn.after)),
+        lower: pair(turn.before.min(turn.after)),
+        bounds_stable: true,
+    }
+}
+
+/// The arcs of a way that came back: its beginning belongs to its last arc.
+fn closed(mut arcs: Vec<Arc>) -> Vec<Arc> {
+    if arcs.len() > 1
+        && let Some(last) = arcs.pop()
+    {
+        let first = std::mem::take(&mut arcs[0].vertices);
+        arcs[0].vertices = last.vertices;
+        arcs[0].vertices.extend(first.into_iter().skip(1));
+    }
+    arcs
+}
+
+/// The arcs of two ways from one place, the first gone backwards.
+fn joined(mut backward: Vec<Arc>, forward: Vec<Arc>) -> Vec<Arc> {
+    for arc in &mut backward {
+        arc.vertices.reverse();
+    }
+    backward.reverse();
+    let mut forward = forward.into_iter();
+    if let (Some(arc), Some(rest)) = (backward.last_mut(), forward.next()) {
+        arc.vertices.extend(rest.vertices.into_iter().skip(1));
+    }
+    backward.extend(forward);
+    backward
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,58 @@
+//! Curves of degrees of stability: dashed, the shorter the dashes the larger σ.
+
+use super::colour::Rgb;
+use super::legend::Swatch;
+use super::scene::{Point, Scene};
+use super::text::{Rich, number, suffix};
+use crate::store::MapFile;
+use crate::store::map_file::MapCurve;
+
+/// Width of the curves, in units of the picture.
+pub const WIDTH: f64 = 1.6;
+/// Length of the longest dashes and what each further degree leaves of it, in units of the picture.
+const LONGEST: f64 = 16.0;
+const SHRINKING: f64 = 0.5;
+const SHORTEST: f64 = 0.5;
+/// Gap behind a dash.
+const GAP: f64 = 6.0;
+
+/// The degrees of stability above zero of some curves, increasing.
+pub struct Degrees {
+    values: Vec<f64>,
+    unit: String,
+}
+
+impl Degrees {
+    pub fn of(map: &MapFile, curves: &[MapCurve]) -> Self {
+        let mut values: Vec<f64> = curves.iter().map(|c| c.degree_of_stability).collect();
+        values.retain(|&sigma| sigma > 0.0);
+        values.sort_by(f64::total_cmp);
+        values.dedup();
+        Self {
+            values,
+            unit: map.degree_unit(),
+        }
+    }
+
+    /// Entries of a legend, one for each degree.
+    pub fn entries(&self, colour: Rgb) -> Vec<(Swatch, Rich)> {
+        let unit = suffix(&self.unit, " ", "");
+        let entry = |(i, sigma): (usize, &f64)| {
+            let text = Rich::plain(&format!("σ = {}{unit}", number(*sigma)));
+            (Swatch::Dashed(colour, WIDTH, dash(i)), text)
+        };
+        self.values.iter().enumerate().map(entry).collect()
+    }
+
+    /// Draws the curve of one of the degrees.
+    pub fn draw(&self, degree: f64, points: &[Point], colour: Rgb, scene: &mut Scene) {
+        let place = self.values.partition_point(|&sigma| sigma < degree);
+        scene.dashed(points, colour, WIDTH * scene.unit(), dash(place));
+    }
+}
+
+/// (length of a dash, of the gap behind it) of the `i`-th degree, in units of the picture.
+fn dash(i: usize) -> (f64, f64) {
+    let length = LONGEST * SHRINKING.powi(i.min(16) as i32);
+    (length.max(SHORTEST), GAP)
+}
