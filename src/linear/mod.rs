@@ -11,7 +11,9 @@
 //! - [`gains`]: the crossing curve with one gain given and the other solved for
 //! - [`curves`]: crossing curves in a plane of a parameter and the delay, cut at their corners
 //! - [`lobes`]: where the stable regions of pure control end
+//! - [`best`]: the settings of fastest decay, for every stable region
 
+pub mod best;
 mod branches;
 pub mod certificate;
 pub mod characteristic;

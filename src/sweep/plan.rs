@@ -2,6 +2,7 @@
 
 use sha2::{Digest, Sha256};
 
+use super::best::gain_plane;
 use super::parameter::{Parameter, Setting};
 use super::spec::{SpecError, SweepSpec};
 use super::tile::{Tile, TileGrid};
@@ -91,6 +92,12 @@ impl Plan {
         }
     }
 
+    /// The axes (gain, delay) of the planes whose best settings are looked for, if they are.
+    #[must_use]
+    pub fn best_plane(&self) -> Option<(usize, usize)> {
+        gain_plane(&self.spec.axes).filter(|_| self.spec.best)
+    }
+
     /// The parameters of the cell at `index`, one index per axis.
     #[must_use]
     pub fn setting(&self, index: &[usize]) -> Setting {
@@ -147,6 +154,9 @@ impl Plan {
         }
         put("marginal", &[self.spec.tolerance.0]);
         put("boundaries", &[f64::from(self.boundary_plane.is_some())]);
+        if self.spec.best {
+            put("best", &[]);
+        }
         hash.finalize().iter().map(|b| format!("{b:02x}")).collect()
     }
 }

@@ -4,6 +4,7 @@
 //! title = "Velocity control"              # optional
 //! fields = ["n_unstable", "delay_margin"] # optional, n_unstable by default; status is always there
 //! boundaries = true                       # optional: the exact crossing curves as polylines
+//! best = true                             # optional: the gain and delay of fastest decay in every plane of the two
 //!
 //! [axes]                                  # in this order they are the dimensions of the map
 //! mu_prime = [-0.1, -0.2, -0.5]
@@ -30,6 +31,7 @@
 use std::ops::Range;
 
 use super::axis::{Axis, Spacing, spaced};
+use super::best::gain_plane;
 use super::field::{Field, known_fields};
 use super::parameter::{GivenError, LawKind, Parameter, Setting, Units};
 pub use super::toml_reader::SpecError;
@@ -49,6 +51,8 @@ pub struct SweepSpec {
     pub fields: Vec<Field>,
     /// Whether to trace crossing curves; none: where that is cheap.
     pub boundaries: Option<bool>,
+    /// Whether to look for the best setting of every plane (gain, delay).
+    pub best: bool,
     /// How near to a crossing a cell is marginal.
     pub tolerance: MarginalTolerance,
     /// Units of the parameters.
@@ -72,6 +76,7 @@ impl std::str::FromStr for SweepSpec {
                 "title" => draft.title = entry.string()?.to_owned(),
                 "fields" => draft.fields = Some(read_fields(&entry)?),
                 "boundaries" => draft.boundaries = Some(entry.boolean()?),
+                "best" => draft.best = entry.boolean()?.then(|| entry.key_span.clone()),
                 "axes" => draft.read_axes(&entry)?,
                 "fixed" => draft.read_fixed(&entry)?,
                 "friction" => draft.read_friction(&entry)?,
@@ -82,6 +87,7 @@ impl std::str::FromStr for SweepSpec {
                         "title",
                         "fields",
                         "boundaries",
+                        "best",
                         "axes",
                         "fixed",
                         "friction",
@@ -106,6 +112,8 @@ struct Draft {
     title: String,
     fields: Option<Vec<Field>>,
     boundaries: Option<bool>,
+    /// Where the best settings are asked for, if they are.
+    best: Option<Range<usize>>,
     axes: Vec<Axis>,
     axes_place: Option<Range<usize>>,
     fixed: Vec<(Parameter, f64)>,
@@ -209,6 +217,7 @@ impl Draft {
             });
         }
         self.check_what_is_given()?;
+        self.check_best()?;
         let mut fixed = Setting::new(self.law.as_ref().map(|(law, _)| *law));
         for (parameter, value) in &self.fixed {
             fixed.set(*parameter, *value);
@@ -220,10 +229,24 @@ impl Draft {
             fixed,
             fields: self.fields.unwrap_or_else(|| vec![Field::NUnstable]),
             boundaries: self.boundaries,
+            best: self.best.is_some(),
             tolerance: self.tolerance,
             units: self.units,
             text: text.to_owned(),
         })
+    }
+
+    /// Best settings are looked for in planes of a gain and the delay: both must be axes.
+    fn check_best(&self) -> Result<(), SpecError> {
+        match &self.best {
+            Some(place) if gain_plane(&self.axes).is_none() => {
+                let message =
+                    "best needs an axis of a gain and one of the delay, with two points or more";
+                Err(SpecError::at(place.clone(), message)
+                    .help("alpha_v or alpha_n, and tau, in [axes]; the best setting is looked for within their ranges"))
+            }
+            _ => Ok(()),
+        }
     }
 
     /// Every parameter that is needed is there, none that would be ignored.
