@@ -415,6 +415,141 @@ fn point_agrees_with_itself_in_other_units() {
 }
 
 #[test]
+fn best_says_where_decay_is_fastest() {
+    let folder = Folder::new();
+    let args = ["best", "--mu-prime", "-0.1"];
+    insta::assert_snapshot!("best", out(&folder.run(&args)));
+    let json = |args: &[&str]| -> serde_json::Value {
+        let output = folder.run(&[&["best", "--json"], args].concat());
+        assert_eq!(output.status.code(), Some(0), "{}", err(&output));
+        serde_json::from_slice(&output.stdout).unwrap()
+    };
+    let near = |value: &serde_json::Value, expected: f64| {
+        let value = value.as_f64().unwrap();
+        assert!((value / expected - 1.0).abs() < 1e-8, "{value} {expected}");
+    };
+    let load = json(&["--mu-prime", "-0.1", "--control", "load"]);
+    assert_eq!(load["best"]["kind"], "triple real root");
+    assert_eq!(load["best"]["certified"], true);
+    assert_eq!(load["regions"].as_array().unwrap().len(), 7);
+    near(&load["best"]["alpha"], -3.061_457_594);
+    // M = 4, κ = 9: time unit 2/3, b = μ′N0/6, a_n = μ_K α_N/9.
+    let scaled = json(&[
+        "--mu-prime",
+        "-0.2",
+        "--mass",
+        "4",
+        "--stiffness",
+        "9",
+        "--normal-load",
+        "3",
+        "--mu-k",
+        "0.5",
+        "--control",
+        "load",
+    ]);
+    for (name, unit) in [
+        ("alpha", 18.0),
+        ("tau", 2.0 / 3.0),
+        ("abscissa", 1.5),
+        ("relaxation_time", 2.0 / 3.0),
+    ] {
+        near(
+            &scaled["best"][name],
+            load["best"][name].as_f64().unwrap() * unit,
+        );
+    }
+    // Only a lobe of positive gain is left in these ranges.
+    let lobe = json(&[
+        "--mu-prime",
+        "-0.1",
+        "--control",
+        "load",
+        "--alpha-from",
+        "0",
+        "--alpha-to",
+        "1",
+        "--tau-from",
+        "4",
+        "--tau-to",
+        "7",
+    ]);
+    assert_eq!(lobe["regions"].as_array().unwrap().len(), 1);
+    near(
+        &lobe["best"]["alpha"],
+        load["regions"][1]["alpha"].as_f64().unwrap(),
+    );
+    assert_eq!(lobe["searched"]["tau"], serde_json::json!([4.0, 7.0]));
+    // The other gain acts as given.
+    let mixed = json(&["--mu-prime", "-0.1", "--alpha-n", "-0.5"]);
+    assert!(mixed["best"]["abscissa"].as_f64().unwrap() < 0.0);
+}
+
+#[test]
+fn best_without_a_stable_setting_says_so() {
+    let folder = Folder::new();
+    let args = ["best", "--mu-prime", "-0.8"];
+    expect(
+        &folder.run(&args),
+        0,
+        "no stable setting in the ranges; the least unstable one is",
+    );
+    let json = folder.run(&[&args[..], &["--json"]].concat());
+    let value: serde_json::Value = serde_json::from_slice(&json.stdout).unwrap();
+    assert!(value["best"]["relaxation_time"].is_null());
+    assert!(value["best"]["abscissa"].as_f64().unwrap() > 0.0);
+    assert_eq!(value["regions"].as_array().unwrap().len(), 0);
+}
+
+#[test]
+fn mistakes_in_the_flags_of_best_are_answered() {
+    let folder = Folder::new();
+    let with = |args: &[&str]| folder.run(&[&["best", "--mu-prime", "-0.1"], args].concat());
+    for (args, says) in [
+        (
+            &["--tau", "3"][..],
+            "--tau 3 would fix tau, which is searched",
+        ),
+        (
+            &["--alpha-v", "1"],
+            "--alpha-v 1 would fix alpha_v, which is searched",
+        ),
+        (
+            &["--control", "load", "--alpha-n", "1"],
+            "--alpha-n 1 would fix alpha_n, which is searched",
+        ),
+        (&["--control", "both"], "invalid value 'both'"),
+        (
+            &["--alpha-from", "nan"],
+            "--alpha-from NaN is outside its range: a finite number",
+        ),
+        (
+            &["--alpha-to", "inf"],
+            "--alpha-to inf is outside its range: a finite number",
+        ),
+        (
+            &["--tau-from", "-1"],
+            "--tau-from -1 is outside its range: 0 or more",
+        ),
+        (
+            &["--alpha-from", "2", "--alpha-to", "1"],
+            "--alpha-from 2 is above --alpha-to 1",
+        ),
+        (
+            &["--alpha-from", "9"],
+            "--alpha-from 9 is above --alpha-to 2, its default",
+        ),
+        (
+            &["--mass", "0"],
+            "--mass 0 is outside its range: greater than 0",
+        ),
+    ] {
+        expect(&with(args), 2, says);
+    }
+    expect(&folder.run(&["best"]), 2, "mu_prime is not given");
+}
+
+#[test]
 fn plan_tells_the_cost_without_writing() {
     let folder = Folder::with(&[("large.toml", LARGE)]);
     let output = folder.run(&["plan", "large.toml", "--threads", "3"]);

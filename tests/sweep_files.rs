@@ -105,6 +105,26 @@ const BAD: &[(&str, &str, &str)] = &[
         "-1",
         "tau = -1 is outside its range: 0 or more",
     ),
+    (
+        "best = 1\n[axes]\nalpha_v = [0, 1]\ntau = [1, 2]\n[fixed]\nmu_prime = 1\n",
+        "1",
+        "expected true or false, found a whole number",
+    ),
+    (
+        "best = true\n[axes]\nmu_prime = [0, 1]\ntau = [1, 2]\n[fixed]\nalpha_v = 1\n",
+        "best",
+        "best needs an axis of a gain and one of the delay",
+    ),
+    (
+        "best = true\n[axes]\nalpha_n = [0, 1]\n[fixed]\nmu_prime = 1\ntau = 2\n",
+        "best",
+        "best needs an axis of a gain and one of the delay",
+    ),
+    (
+        "best = true\n[axes]\nalpha_n = [1]\ntau = [1, 2]\n[fixed]\nmu_prime = 1\n",
+        "best",
+        "with two points or more",
+    ),
     ("[axes]\ntau = [nan]\n", "nan", "finite number"),
     ("[axes]\ntau = [1, inf]\n", "inf", "finite number"),
     ("[axes]\ntau = [1e999]\n", "1e999", "number"),

@@ -84,5 +84,25 @@ pub fn main(args: &Args) -> Result<(), Failure> {
             row("", curves)?;
         }
     }
+    let best = map.best()?;
+    if let Some(fastest) = best
+        .iter()
+        .filter_map(|b| b.relaxation_time)
+        .min_by(f64::total_cmp)
+    {
+        row(
+            "best",
+            format!(
+                "settings of {} planes, the shortest relaxation time is {fastest:.4}",
+                grouped(best.len() as u64)
+            ),
+        )?;
+    } else if map.best_plane().is_some() {
+        let planes = grouped(best.len() as u64);
+        row(
+            "best",
+            format!("settings of {planes} planes, none of them stable"),
+        )?;
+    }
     Ok(())
 }

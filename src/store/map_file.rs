@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use hdf5::{Dataset, File, H5Type, Hyperslab, SliceOrIndex};
+use hdf5::{Dataset, File, Group, H5Type, Hyperslab, SliceOrIndex};
 
 use super::attributes::text;
 use super::error::StoreError;
@@ -282,8 +282,17 @@ impl MapFile {
     /// The axes of the planes in which the map holds crossing curves; none where it holds no curves.
     #[must_use]
     pub fn boundary_plane(&self) -> Option<(usize, usize)> {
-        let group = self.file.group(BOUNDARIES).ok()?;
-        let plane = text(&group, PLANE).ok()?;
+        self.plane_of(BOUNDARIES)
+    }
+
+    /// A group of the file.
+    pub(super) fn group(&self, name: &str) -> hdf5::Result<Group> {
+        self.file.group(name)
+    }
+
+    /// The axes that a group names as spanning its planes.
+    pub(super) fn plane_of(&self, group: &str) -> Option<(usize, usize)> {
+        let plane = text(&*self.group(group).ok()?, PLANE).ok()?;
         let mut axes = plane
             .split_whitespace()
             .map(|name| self.axes.iter().position(|a| a.parameter.name() == name));

@@ -6,6 +6,8 @@
 //! - [`output`]: the temporary name, the lock, the final rename
 
 mod attributes;
+mod best_reader;
+mod best_writer;
 mod boundary_writer;
 mod codec;
 mod error;
@@ -15,6 +17,7 @@ mod netcdf;
 pub mod output;
 pub mod schema;
 
+pub use best_reader::MapBest;
 pub use error::StoreError;
 pub use map_file::MapFile;
 pub use map_writer::MapWriter;

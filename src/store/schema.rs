@@ -42,7 +42,29 @@ pub const STATUS: &str = "status";
 /// Name of the group of crossing curves.
 pub const BOUNDARIES: &str = "boundaries";
 
-/// Attribute of that group: the two axes that span the planes of the curves, the parameter and the delay.
+/// Name of the group of best settings.
+pub const BEST: &str = "best";
+
+/// Variables of that group, besides the gain and the delay.
+pub mod best {
+    /// The spectral abscissa.
+    pub const ABSCISSA: &str = "abscissa";
+    /// The lowest frequency among the rightmost roots.
+    pub const FREQUENCY: &str = "frequency";
+    /// −1/abscissa.
+    pub const RELAXATION_TIME: &str = "relaxation_time";
+    /// Number of the [`crate::linear::best::Kind`].
+    pub const KIND: &str = "kind";
+    /// Whether the argument principle confirms the abscissa.
+    pub const CERTIFIED: &str = "certified";
+    /// Number of stable regions of the plane.
+    pub const REGIONS: &str = "regions";
+}
+
+/// Value of the flags and counts of that group where nothing was found.
+pub const BEST_FLAG_FILL: i8 = -1;
+
+/// Attribute of both groups: the two axes that span the planes, the parameter and the delay.
 pub const PLANE: &str = "plane";
 
 /// σ of each curve: roots on it have Re λ = −σ. Absent before format version 2, where it is 0.

@@ -7,6 +7,7 @@ use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
 use rayon::prelude::*;
 use rayon::{ThreadPool, ThreadPoolBuilder};
 
+use super::best::{BestSettings, best_of_plane, best_planes};
 use super::boundaries::{BoundaryPlane, planes, trace_plane};
 use super::events::{Event, Observer};
 use super::field::Field;
@@ -40,6 +41,12 @@ pub trait Sink {
     /// # Errors
     /// Ends the sweep.
     fn write_boundaries(&mut self, planes: &[BoundaryPlane]) -> Result<(), Self::Error>;
+
+    /// Takes the best settings of the next planes, in order.
+    ///
+    /// # Errors
+    /// Ends the sweep.
+    fn write_best(&mut self, planes: &[Option<BestSettings>]) -> Result<(), Self::Error>;
 
     /// Takes a tile. Tiles come in no particular order.
     ///
@@ -144,6 +151,7 @@ pub fn run<S: Sink>(
         threads,
     });
     run_boundaries(plan, &pool, sink, observer, stop)?;
+    run_best(plan, &pool, sink, observer, stop)?;
     run_tiles(plan, &pool, sink, observer, stop)?;
     observer.event(&Event::Finished);
     Ok(())
@@ -186,6 +194,35 @@ fn run_boundaries<S: Sink>(
             pieces,
             corners,
             planes_left_out,
+        });
+    }
+    Ok(())
+}
+
+fn run_best<S: Sink>(
+    plan: &Plan,
+    pool: &ThreadPool,
+    sink: &mut S,
+    observer: &dyn Observer,
+    stop: &AtomicBool,
+) -> Result<(), RunError<S::Error>> {
+    let planes = best_planes(plan);
+    for batch in planes.chunks(PLANES_AT_ONCE) {
+        let found: Vec<Option<BestSettings>> = pool.install(|| {
+            batch
+                .par_iter()
+                .filter(|_| !stop.load(Ordering::Relaxed))
+                .map(|index| best_of_plane(plan, index))
+                .collect()
+        });
+        if found.len() < batch.len() {
+            return Err(RunError::Interrupted);
+        }
+        sink.write_best(&found).map_err(RunError::Sink)?;
+    }
+    if plan.best_plane().is_some() {
+        observer.event(&Event::BestFound {
+            planes: planes.len() as u64,
         });
     }
     Ok(())

@@ -9,6 +9,7 @@
 //! on the number of threads.
 
 pub mod axis;
+pub mod best;
 pub mod boundaries;
 pub mod engine;
 pub mod events;

@@ -3,6 +3,7 @@
 use sha2::{Digest, Sha256};
 
 use super::axis::plane_of_curves;
+use super::best::gain_plane;
 use super::parameter::{Parameter, Setting};
 use super::spec::{SpecError, SweepSpec};
 use super::tile::{Tile, TileGrid};
@@ -92,6 +93,12 @@ impl Plan {
         }
     }
 
+    /// The axes (gain, delay) of the planes whose best settings are looked for, if they are.
+    #[must_use]
+    pub fn best_plane(&self) -> Option<(usize, usize)> {
+        gain_plane(&self.spec.axes).filter(|_| self.spec.best)
+    }
+
     /// The parameters of the cell at `index`, one index per axis.
     #[must_use]
     pub fn setting(&self, index: &[usize]) -> Setting {
@@ -151,6 +158,9 @@ impl Plan {
         // Absent where there are none: maps of earlier versions stay equal.
         if !self.spec.degrees_of_stability.is_empty() {
             put("degree_of_stability", &self.spec.degrees_of_stability);
+        }
+        if self.spec.best {
+            put("best", &[]);
         }
         hash.finalize().iter().map(|b| format!("{b:02x}")).collect()
     }
