@@ -22,6 +22,7 @@ pub mod curves;
 pub mod gains;
 pub mod lobes;
 pub mod newton;
+pub mod rightmost;
 mod roots;
 pub mod row;
 pub mod sensitivity;

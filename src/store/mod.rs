@@ -10,6 +10,7 @@ mod boundary_writer;
 mod codec;
 mod error;
 pub mod map_file;
+mod map_summary;
 pub mod map_writer;
 mod netcdf;
 pub mod output;
@@ -17,5 +18,6 @@ pub mod schema;
 
 pub use error::StoreError;
 pub use map_file::MapFile;
+pub use map_summary::FieldSummary;
 pub use map_writer::MapWriter;
 pub use output::Output;

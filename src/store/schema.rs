@@ -1,7 +1,4 @@
-//! Names and meanings in a map file, and the version of its format.
-
-use crate::sweep::Field;
-use crate::sweep::parameter::Units;
+//! Names in a map file that are not those of a parameter or field, and the version of its format.
 
 /// Version of the layout described here. Readers refuse others.
 pub const FORMAT_VERSION: i32 = 1;
@@ -42,23 +39,3 @@ pub const BOUNDARIES: &str = "boundaries";
 
 /// Attribute of that group: the two axes that span the planes of the curves, the parameter and the delay.
 pub const PLANE: &str = "plane";
-
-/// What a field is, for `long_name`.
-#[must_use]
-pub fn long_name(field: Field) -> &'static str {
-    match field {
-        Field::NUnstable => "number of characteristic roots with positive real part",
-        Field::DelayMargin => {
-            "distance in delay to the nearest change of stability, positive where stable"
-        }
-    }
-}
-
-/// The unit of a field.
-#[must_use]
-pub fn unit(field: Field, units: &Units) -> String {
-    match field {
-        Field::NUnstable => "1".into(),
-        Field::DelayMargin => units.time(),
-    }
-}
