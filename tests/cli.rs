@@ -207,6 +207,10 @@ fn mistakes_in_sweep_files_are_shown_in_place() {
             "unknown.toml",
             "[axes]\nmu_prime = [-0.1]\ntau = [1]\n\n[fixed]\nalpha_w = 3\n",
         ),
+        (
+            "field.toml",
+            "fields = [\"n_unstable\", \"abscissa_9\"]\n\n[axes]\nmu_prime = [-0.1]\ntau = [1]\n",
+        ),
     ]);
     let reversed = folder.run(&["run", "reversed.toml"]);
     assert_eq!(reversed.status.code(), Some(2));
@@ -214,6 +218,9 @@ fn mistakes_in_sweep_files_are_shown_in_place() {
     let unknown = folder.run(&["run", "unknown.toml"]);
     assert_eq!(unknown.status.code(), Some(2));
     insta::assert_snapshot!("unknown_key", err(&unknown));
+    let field = folder.run(&["run", "field.toml"]);
+    assert_eq!(field.status.code(), Some(2));
+    insta::assert_snapshot!("unknown_field", err(&field));
     std::fs::write(folder.path().join("latin.toml"), b"# \xe9\n").unwrap();
     expect(&folder.run(&["run", "latin.toml"]), 2, "not UTF-8");
     expect(
@@ -229,7 +236,7 @@ fn mistakes_in_sweep_files_are_shown_in_place() {
     );
     assert_eq!(
         folder.files(),
-        ["latin.toml", "reversed.toml", "unknown.toml"]
+        ["field.toml", "latin.toml", "reversed.toml", "unknown.toml"]
     );
 }
 
@@ -250,6 +257,8 @@ fn usage_mistakes_have_exit_code_2() {
         &["point", "--mu-prime", "nan", "--tau", "1"],
         &["point", "--mu-prime", "inf", "--tau", "1"],
         &["point", "--mu-prime", "1", "--tau", "-1"],
+        &["point", "--mu-prime", "1", "--tau", "1", "--roots", "0"],
+        &["point", "--mu-prime", "1", "--tau", "1", "--roots", "65"],
         &["point", "--mu-prime", "1", "--tau", "1", "--mass", "0"],
         &["point", "--mu-prime", "1", "--tau", "1", "--v0", "1"],
         &[
@@ -353,6 +362,143 @@ fn point_says_everything_for_people_and_programs() {
     assert!(value["stable_delays"][0][1].is_null() && value["delay_margin"].is_null());
 }
 
+/// The roots of a point: as many as asked for, fewer where there are no more.
+#[test]
+fn point_lists_the_rightmost_roots() {
+    let folder = Folder::new();
+    let json = |args: &[&str]| -> serde_json::Value {
+        let output = folder.run(&[&["point", "--json", "--mu-prime", "-0.3"], args].concat());
+        assert_eq!(err(&output), "");
+        serde_json::from_slice(&output.stdout).unwrap()
+    };
+    for tau in ["1e-9", "0.5", "4", "60", "3000"] {
+        let value = json(&["--tau", tau, "--alpha-v", "-0.4", "--roots", "20"]);
+        let roots: Vec<[f64; 2]> = serde_json::from_value(value["roots"].clone()).unwrap();
+        assert_eq!(
+            (roots.len(), &value["certified"]),
+            (20, &true.into()),
+            "{tau}"
+        );
+        assert!(
+            roots.windows(2).all(|w| w[0][0] >= w[1][0]),
+            "{tau} {roots:?}"
+        );
+        assert!(roots.iter().all(|root| root[1] >= 0.0), "{tau} {roots:?}");
+        assert_eq!(value["abscissa"], roots[0][0]);
+        assert_eq!(value["frequency"], roots[0][1]);
+        let unstable = roots.iter().filter(|root| root[0] > 0.0).count() as u64;
+        assert!(unstable == 20 || 2 * unstable == value["n_unstable"].as_u64().unwrap());
+    }
+    for few in [&["--tau", "0", "--alpha-v", "-0.4"][..], &["--tau", "2"]] {
+        let value = json(&[few, &["--roots", "20"]].concat());
+        let roots: Vec<[f64; 2]> = serde_json::from_value(value["roots"].clone()).unwrap();
+        assert!(
+            roots.len() == 1 && (roots[0][0] - 0.15).abs() < 1e-15,
+            "{roots:?}"
+        );
+        assert_eq!(value["certified"], true);
+    }
+    let text = out(&folder.run(&[
+        "point",
+        "--mu-prime",
+        "-0.3",
+        "--tau",
+        "0",
+        "--alpha-v",
+        "1",
+    ]));
+    assert!(
+        text.contains("there are no others: the delay is 0"),
+        "{text}"
+    );
+}
+
+/// Every row of the reference: roots from elsewhere, to eleven digits behind the point.
+#[test]
+fn point_has_the_roots_of_the_reference() {
+    let folder = Folder::new();
+    let rows = include_str!("reference/linear_points.csv");
+    let mut checked = 0;
+    for row in rows.lines().skip(1) {
+        let cells: Vec<&str> = row.split(',').collect();
+        let flags = ["--mu-prime", "--alpha-v", "--alpha-n", "--tau"];
+        let given: Vec<&str> = flags
+            .into_iter()
+            .zip(cells.iter().copied())
+            .flat_map(|(f, c)| [f, c])
+            .collect();
+        let output = folder.run(&[&["point", "--json", "--roots", "1"], given.as_slice()].concat());
+        let value: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+        assert_eq!(value["n_unstable"].to_string(), cells[4], "{row}");
+        assert_eq!(value["certified"], true, "{row}");
+        for (name, cell) in [("abscissa", cells[5]), ("frequency", cells[6])] {
+            let expected: f64 = cell.parse().unwrap();
+            let found = value[name].as_f64().unwrap();
+            assert!((found - expected).abs() < 1e-11, "{name} {found} {row}");
+        }
+        checked += 1;
+    }
+    assert_eq!(checked, 150);
+}
+
+/// A map with decay rates: planned, run, drawn as such, and listed with the range of its values.
+#[test]
+fn decay_rates_go_through_every_command() {
+    let sweep = SMALL.replace(
+        "[axes]",
+        "fields = [\"n_unstable\", \"abscissa\", \"frequency\"]\n[axes]",
+    );
+    let folder = Folder::with(&[("decay.toml", &sweep)]);
+    let plan = folder.run(&["plan", "decay.toml"]);
+    expect(
+        &plan,
+        0,
+        "n_unstable, abscissa, frequency, certificate_margin, status",
+    );
+    // 2 + 3 × 8 + 1 bytes in 5002 cells.
+    expect(&plan, 0, "135 kB before compression");
+    expect(
+        &folder.run(&["run", "decay.toml"]),
+        0,
+        "decay.h5: 5 002 cells",
+    );
+    let info = folder.run(&["info", "decay.h5"]);
+    expect(&info, 0, "certified 5 002 cells");
+    let line = |name: &str| {
+        let text = out(&info);
+        let found = text.lines().find(|l| l.contains(name)).map(str::to_owned);
+        found.unwrap_or_else(|| panic!("{name}: {text}"))
+    };
+    assert!(line("abscissa").contains(", -") && line("frequency").contains(" to "));
+    let default = std::fs::read(folder.path().join("decay.png")).unwrap();
+    let draw = |args: &[&str]| {
+        let output = folder.run(&[&["plot", "decay.h5", "-o", "again.png"], args].concat());
+        assert_eq!(output.status.code(), Some(0), "{}", err(&output));
+        std::fs::read(folder.path().join("again.png")).unwrap()
+    };
+    assert!(
+        default == draw(&["--field", "abscissa"]),
+        "the abscissa is drawn by default"
+    );
+    for other in [
+        &["--field", "n_unstable"][..],
+        &["--field", "frequency"],
+        &["--kind", "boundaries"],
+    ] {
+        assert!(default != draw(other), "{other:?}");
+    }
+    expect(
+        &folder.run(&["plot", "decay.h5", "--field", "abscissa_9"]),
+        2,
+        "abscissa_2 … abscissa_8",
+    );
+    expect(
+        &folder.run(&["plot", "decay.h5", "--field", "relaxation_time"]),
+        2,
+        "does not hold relaxation_time",
+    );
+}
+
 /// Physical units: the same point at another mass, stiffness and load, and by its friction law.
 #[test]
 fn point_agrees_with_itself_in_other_units() {
@@ -395,6 +541,10 @@ fn point_agrees_with_itself_in_other_units() {
         (margins[0] * 2.0 / 3.0 - margins[1]).abs() < 1e-12,
         "{margins:?}"
     );
+    for name in ["abscissa", "frequency"] {
+        let rates = [&plain, &scaled].map(|v| v[name].as_f64().unwrap());
+        assert!((rates[0] * 1.5 - rates[1]).abs() < 1e-12, "{rates:?}");
+    }
     // The letter's Fig. 3(b).
     let law = json(&[
         "--friction",

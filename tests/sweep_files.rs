@@ -209,6 +209,16 @@ const BAD: &[(&str, &str, &str)] = &[
         "\"n_stable\"",
         "unknown field",
     ),
+    (
+        "fields = [\"abscissa_9\"]\n[axes]\ntau = [1]",
+        "\"abscissa_9\"",
+        "unknown field \"abscissa_9\"",
+    ),
+    (
+        "fields = [\"abscissa\", \"abscissa_1\"]\n[axes]\ntau = [1]",
+        "\"abscissa_1\"",
+        "unknown field",
+    ),
     ("fields = []\n[axes]\ntau = [1]", "[]", "the list is empty"),
     (
         "fields = [\"n_unstable\", \"n_unstable\"]\n[axes]\ntau = [1]",
@@ -373,6 +383,19 @@ fn every_mistake_is_pointed_at() {
             assert_eq!(&text[span], *place, "{text}\n {}", error.message);
         }
     }
+}
+
+#[test]
+fn a_certificate_comes_with_every_abscissa() {
+    let fields = |list: &str| -> Vec<&str> {
+        let text = format!("fields = [{list}]\n[axes]\ntau = [1]\n[fixed]\nmu_prime = 1\n");
+        let spec: SweepSpec = text.parse().unwrap();
+        spec.fields.iter().map(|f| f.name()).collect()
+    };
+    let both = ["abscissa", "certificate_margin"];
+    assert_eq!(fields("\"abscissa\""), both);
+    assert_eq!(fields("\"certificate_margin\", \"abscissa\""), both);
+    assert_eq!(fields("\"frequency_8\""), ["frequency_8"]);
 }
 
 #[test]

@@ -26,6 +26,7 @@ pub mod decay;
 pub mod gains;
 pub mod lobes;
 pub mod newton;
+pub mod rightmost;
 mod roots;
 pub mod row;
 pub mod sensitivity;

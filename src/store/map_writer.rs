@@ -216,16 +216,15 @@ struct Variables<'a> {
 
 impl Variables<'_> {
     fn field(&mut self, field: Field) -> hdf5::Result<Dataset> {
-        let dataset = match field {
-            Field::NUnstable => self.variable(field.name(), N_UNSTABLE_FILL)?,
-            Field::DelayMargin => self.variable(field.name(), f64::NAN)?,
+        let dataset = match field.is_count() {
+            true => self.variable(field.name(), N_UNSTABLE_FILL)?,
+            false => self.variable(field.name(), f64::NAN)?,
         };
-        put_text(&dataset, "long_name", schema::long_name(field))?;
-        put_text(
-            &dataset,
-            "units",
-            &schema::unit(field, &self.plan.spec.units),
-        )?;
+        put_text(&dataset, "long_name", &field.long_name())?;
+        put_text(&dataset, "units", &field.unit(&self.plan.spec.units))?;
+        if let Some(comment) = field.comment() {
+            put_text(&dataset, "comment", comment)?;
+        }
         put_text(&dataset, "ancillary_variables", STATUS)?;
         Ok(dataset)
     }
@@ -280,12 +279,12 @@ impl Encode for TileEncoder {
     type Encoded = EncodedTile;
 
     fn encode(&mut self, buffers: &TileBuffers) -> EncodedTile {
-        let mut chunks = Vec::with_capacity(3);
+        let mut chunks = Vec::with_capacity(2 + buffers.columns.len());
         if let Some(n) = &buffers.n_unstable {
             chunks.push(self.codec.encode(n));
         }
-        if let Some(margin) = &buffers.delay_margin {
-            chunks.push(self.codec.encode(margin));
+        for column in &buffers.columns {
+            chunks.push(self.codec.encode(&column.cells));
         }
         chunks.push(self.codec.encode(&buffers.status));
         EncodedTile(chunks)

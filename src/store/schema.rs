@@ -1,7 +1,4 @@
-//! Names and meanings in a map file, and the version of its format.
-
-use crate::sweep::Field;
-use crate::sweep::parameter::Units;
+//! Names in a map file that are not those of a parameter or field, and the version of its format.
 
 /// Version of the layout described here, which is written. 2: [`DEGREE_OF_STABILITY`] of every curve.
 pub const FORMAT_VERSION: i32 = 2;
@@ -71,23 +68,3 @@ pub const PLANE: &str = "plane";
 pub const DEGREE_OF_STABILITY: &str = "degree_of_stability";
 /// σ of the curves that meet in a corner.
 pub const CORNER_DEGREE_OF_STABILITY: &str = "corner_degree_of_stability";
-
-/// What a field is, for `long_name`.
-#[must_use]
-pub fn long_name(field: Field) -> &'static str {
-    match field {
-        Field::NUnstable => "number of characteristic roots with positive real part",
-        Field::DelayMargin => {
-            "distance in delay to the nearest change of stability, positive where stable"
-        }
-    }
-}
-
-/// The unit of a field.
-#[must_use]
-pub fn unit(field: Field, units: &Units) -> String {
-    match field {
-        Field::NUnstable => "1".into(),
-        Field::DelayMargin => units.time(),
-    }
-}

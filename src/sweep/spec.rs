@@ -2,7 +2,7 @@
 //!
 //! ```toml
 //! title = "Velocity control"              # optional
-//! fields = ["n_unstable", "delay_margin"] # optional, n_unstable by default; status is always there
+//! fields = ["n_unstable", "abscissa"]     # optional, n_unstable by default; status is always there
 //! boundaries = true                       # optional: the exact crossing curves as polylines
 //! degree_of_stability = [0.05, 0.1]       # optional: also the curves max Re λ = −σ for these σ, in 1/time
 //! best = true                             # optional: the gain and delay of fastest decay in every plane of the two
@@ -419,6 +419,10 @@ fn read_fields(entry: &Entry) -> Result<Vec<Field>, SpecError> {
         return Err(entry
             .error("the list is empty")
             .help(format!("known: {}", known_fields())));
+    }
+    // An abscissa without the distance that its certificate leaves open would say less than it seems to.
+    if fields.contains(&Field::ABSCISSA) && !fields.contains(&Field::CertificateMargin) {
+        fields.push(Field::CertificateMargin);
     }
     fields.sort_unstable();
     Ok(fields)
