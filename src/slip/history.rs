@@ -1,0 +1,178 @@
+//! The elongation over the last delay, as the polynomials of the steps that made it.
+
+use std::collections::VecDeque;
+
+use super::series::{Coefficients, MOST_ORDER, shift};
+
+/// One step's elongation.
+#[derive(Debug, Clone)]
+struct Piece {
+    from: f64,
+    to: f64,
+    /// How far beyond `from` the polynomial holds to the tolerance: at least to `to`.
+    valid_to: f64,
+    order: usize,
+    a: Coefficients,
+    /// Order of the lowest derivative of a that jumps at `from`.
+    kink: u32,
+}
+
+/// What the delayed elongation is from some time on.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Reach {
+    /// Until when its polynomial may be used.
+    pub until: f64,
+    /// The lowest derivative that jumps there; [`SMOOTH`] where none does that matters.
+    pub kink: u32,
+}
+
+/// Stands for: no jump worth a step of its own.
+pub(super) const SMOOTH: u32 = u32::MAX;
+
+/// The elongation over a window of time that moves along, of bounded length.
+#[derive(Debug, Clone)]
+pub(super) struct History {
+    pieces: VecDeque<Piece>,
+    /// The piece that was read last.
+    at: usize,
+    /// Jumps of this order and higher are not felt.
+    felt: u32,
+}
+
+impl History {
+    /// The history a = `a` for all times before `now`.
+    pub fn constant(a: f64, now: f64, felt: u32) -> Self {
+        let mut history = Self {
+            pieces: VecDeque::new(),
+            at: 0,
+            felt,
+        };
+        history.restart(a, now);
+        history
+    }
+
+    /// As after [`History::constant`].
+    pub fn restart(&mut self, a: f64, now: f64) {
+        let mut coefficients = [0.0; MOST_ORDER + 1];
+        coefficients[0] = a;
+        self.pieces.clear();
+        self.at = 0;
+        self.pieces.push_back(Piece {
+            from: f64::NEG_INFINITY,
+            to: now,
+            valid_to: now,
+            order: 0,
+            a: coefficients,
+            kink: SMOOTH,
+        });
+    }
+
+    /// Adds the step from the end of the last one to `to`; its polynomial holds up to `valid_to`.
+    pub fn push(&mut self, to: f64, valid_to: f64, a: &[f64], kink: u32) {
+        let from = self.pieces.back().map_or(to, |p| p.to);
+        let mut coefficients = [0.0; MOST_ORDER + 1];
+        coefficients[..a.len()].copy_from_slice(a);
+        self.pieces.push_back(Piece {
+            from,
+            to,
+            valid_to: valid_to.max(to),
+            order: a.len() - 1,
+            a: coefficients,
+            kink,
+        });
+    }
+
+    /// Forgets what ended before `time`.
+    pub fn forget_before(&mut self, time: f64) {
+        while self.pieces.len() > 1 && self.pieces[0].to < time {
+            self.pieces.pop_front();
+            self.at = self.at.saturating_sub(1);
+        }
+    }
+
+    /// Writes the polynomial of a from `time` on, as one of the time since then, to `out`; zero beyond its order.
+    pub fn read(&mut self, time: f64, out: &mut Coefficients) -> Reach {
+        let close = 8.0 * f64::EPSILON * time.abs().max(1.0);
+        while self.at + 1 < self.pieces.len() && time >= self.pieces[self.at].to - close {
+            self.at += 1;
+        }
+        while self.at > 0 && time < self.pieces[self.at].from - close {
+            self.at -= 1;
+        }
+        let piece = &self.pieces[self.at];
+        *out = piece.a;
+        let since = time - piece.from;
+        if since.is_finite() && since.abs() > close {
+            shift(&mut out[..=piece.order], since);
+        }
+        self.reach()
+    }
+
+    /// How far the piece at `at` may be used: over a boundary that is none but for the step's end, if it holds there.
+    fn reach(&self) -> Reach {
+        let piece = &self.pieces[self.at];
+        let mut reach = Reach {
+            until: piece.to,
+            kink: SMOOTH,
+        };
+        for next in self.pieces.range(self.at + 1..) {
+            if next.kink < self.felt {
+                reach.kink = next.kink;
+                return reach;
+            }
+            if piece.valid_to < next.to {
+                reach.until = piece.valid_to.max(reach.until);
+                return reach;
+            }
+            reach.until = next.to;
+        }
+        reach
+    }
+
+    /// The elongation at `time`, within the window.
+    pub fn value(&self, time: f64) -> f64 {
+        let index = self
+            .pieces
+            .partition_point(|p| p.to < time)
+            .min(self.pieces.len() - 1);
+        let piece = &self.pieces[index];
+        if piece.order == 0 {
+            return piece.a[0];
+        }
+        super::series::value(&piece.a[..=piece.order], time - piece.from)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn boundaries_are_kept_where_they_are_felt() {
+        let mut history = History::constant(2.0, 0.0, 10);
+        history.push(1.0, 3.0, &[2.0, 1.0], 1);
+        history.push(2.0, 3.0, &[3.0, 1.0], SMOOTH);
+        history.push(2.5, 2.5, &[4.0, -1.0], 2);
+        let mut a = [0.0; MOST_ORDER + 1];
+        assert_eq!(
+            history.read(-1.0, &mut a),
+            Reach {
+                until: 0.0,
+                kink: 1
+            }
+        );
+        assert_eq!(a[0], 2.0);
+        assert_eq!(
+            history.read(0.5, &mut a),
+            Reach {
+                until: 2.0,
+                kink: 2
+            }
+        );
+        assert_eq!((a[0], a[1]), (2.5, 1.0));
+        assert_eq!(history.read(2.0, &mut a).until, 2.5);
+        history.forget_before(1.5);
+        assert_eq!(history.pieces.len(), 2);
+        assert_eq!(history.value(1.75), 3.75);
+    }
+}

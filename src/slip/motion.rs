@@ -1,0 +1,474 @@
+//! The motion of the block: slip, stick and what lies between them.
+//!
+//! In units of √(M/κ) for times, N0/κ for lengths and N0 for forces the letter's Eqs. (1) and (2) read, with u = ẋ,
+//!
+//! ```text
+//! u̇ = a − sgn(u) μ_K(|u|) n    in slip,      u = 0 while |a| < μ_S n    in stick,               (1)
+//! ȧ = v − u,   v = v0 + α_v [a(t) − a(t−τ)],   n = 1 + α_n [a(t) − a(t−τ)]                    (2)
+//! ```
+//!
+//! A step is a Taylor series in the time since its start, whose coefficients follow from (1), (2) and the polynomial that
+//! the delayed elongation is there. So the solution between steps is known to the order of the method at no cost, and
+//! events are zeros of polynomials. A step ends where the delayed polynomial ends, if the next one is another by more than
+//! the tolerance: kinks are stepped on, one delay after the other, until they are too smooth to be felt.
+
+use super::friction_series::FrictionSeries;
+use super::history::{History, SMOOTH};
+use super::series::{Coefficients, MOST_ORDER, first_zero, product, value};
+use crate::model::FrictionLaw;
+
+/// What the block does.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Mode {
+    /// At rest.
+    Stick,
+    /// ẋ > 0.
+    Forwards,
+    /// ẋ < 0.
+    Backwards,
+}
+
+/// What ends a mode, or changes the equations.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Event {
+    /// From stick to slip.
+    Release,
+    /// From slip to stick.
+    Stick,
+    /// From slip to slip the other way.
+    Reversal,
+    /// N ≤ 0: the model ends.
+    LiftOff,
+    /// Control begins to act.
+    SwitchOn,
+}
+
+/// The parameters of a motion, dimensionless as in the module.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Parameters {
+    /// The friction law.
+    pub law: FrictionLaw,
+    /// N0/√(κM), the unit of velocity in which the law's speeds are given.
+    pub velocity_unit: f64,
+    /// α_v √(M/κ).
+    pub alpha_v: f64,
+    /// α_N/κ.
+    pub alpha_n: f64,
+    /// τ √(κ/M), greater than 0 where control acts.
+    pub tau: f64,
+    /// v0 √(κM)/N0.
+    pub v0: f64,
+    /// When control begins to act.
+    pub switch_on: f64,
+}
+
+/// How exact a motion is.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Accuracy {
+    /// Error allowed in a step, relative to the size of the motion; 1e-15 to 1e-3.
+    pub tolerance: f64,
+    /// Whether steps end on kinks of the delayed elongation.
+    pub step_on_kinks: bool,
+}
+
+impl Default for Accuracy {
+    fn default() -> Self {
+        Self {
+            tolerance: 1e-12,
+            step_on_kinks: true,
+        }
+    }
+}
+
+/// Speeds below this, in units of N0/√(κM), need no relative accuracy.
+const SLOWEST: f64 = 1e-3;
+
+/// A moving block.
+#[derive(Debug, Clone)]
+pub struct Motion {
+    parameters: Parameters,
+    tolerance: f64,
+    order: usize,
+    friction: FrictionSeries,
+    history: History,
+    mode: Mode,
+    /// Time, velocity, elongation, position.
+    pub t: f64,
+    /// ẋ.
+    pub u: f64,
+    /// Elongation.
+    pub a: f64,
+    /// Displacement since the start.
+    pub x: f64,
+    /// Order of the lowest derivative of a that jumps now.
+    kink: u32,
+    /// The last step's polynomials of u, a, n and the delayed elongation, and its length.
+    step: Step,
+}
+
+/// The polynomials of one step, of the time since its start.
+#[derive(Debug, Clone)]
+pub struct Step {
+    /// Length.
+    pub length: f64,
+    order: usize,
+    u: Coefficients,
+    a: Coefficients,
+    n: Coefficients,
+    delayed: Coefficients,
+}
+
+impl Motion {
+    /// A block that slides or sticks at t = 0 with velocity `u` and elongation `a`, which was `a` at all times before.
+    #[must_use]
+    pub fn new(parameters: Parameters, accuracy: Accuracy, u: f64, a: f64) -> Self {
+        let tolerance = accuracy.tolerance.clamp(1e-15, 1e-3);
+        // The order at which Taylor's method does least work per unit of time (Jorba and Zou 2005).
+        let order = ((2.0 - 0.5 * tolerance.ln()).ceil() as usize).clamp(4, MOST_ORDER);
+        let felt = if accuracy.step_on_kinks {
+            order as u32
+        } else {
+            0
+        };
+        let zero = [0.0; MOST_ORDER + 1];
+        let mut motion = Self {
+            parameters,
+            tolerance,
+            order,
+            friction: FrictionSeries::new(&parameters.law, parameters.velocity_unit),
+            history: History::constant(a, 0.0, felt),
+            mode: Mode::Stick,
+            t: 0.0,
+            u,
+            a,
+            x: 0.0,
+            kink: 1,
+            step: Step {
+                length: 0.0,
+                order: 0,
+                u: zero,
+                a: zero,
+                n: zero,
+                delayed: zero,
+            },
+        };
+        motion.mode = motion.mode_at(1.0);
+        motion
+    }
+
+    /// What the block does now.
+    #[must_use]
+    pub fn mode(&self) -> Mode {
+        self.mode
+    }
+
+    /// The last step.
+    #[must_use]
+    pub fn last_step(&self) -> &Step {
+        &self.step
+    }
+
+    /// The mode of the present state under the load `n`.
+    fn mode_at(&self, n: f64) -> Mode {
+        let moving = if self.u != 0.0 {
+            self.u
+        } else if self.a.abs() < self.parameters.law.mu_s() * n {
+            return Mode::Stick;
+        } else {
+            self.a
+        };
+        if moving > 0.0 {
+            Mode::Forwards
+        } else {
+            Mode::Backwards
+        }
+    }
+
+    /// One step, not beyond `horizon`, and the event that ends it, if one does.
+    pub fn advance(&mut self, horizon: f64) -> Option<Event> {
+        let controlled = self.t >= self.parameters.switch_on;
+        let delay_limit = self.read_delayed(controlled);
+        let mut limit = delay_limit.length.min(horizon - self.t);
+        let until_switch = self.parameters.switch_on - self.t;
+        if !controlled {
+            limit = limit.min(until_switch);
+        }
+        self.expand(controlled);
+        if self.step.n[0] <= 0.0 {
+            return Some(Event::LiftOff);
+        }
+        let free = self.free_length();
+        // Two halves rather than a long and a tiny step.
+        let length = match free / limit {
+            r if r >= 1.0 => limit,
+            r if r > 0.5 => 0.5 * limit,
+            _ => free,
+        };
+        let found = self.first_event(length);
+        let length = found.map_or(length, |(s, _)| s);
+        self.finish(length, free.min(delay_limit.length));
+        let mut event = found.map(|(_, event)| event);
+        self.kink = SMOOTH;
+        if event.is_some() {
+            self.kink = 2;
+        } else if !controlled && length == until_switch {
+            self.t = self.parameters.switch_on;
+            self.kink = if self.parameters.alpha_v == 0.0 { 2 } else { 1 };
+            event = Some(Event::SwitchOn);
+        } else if length == delay_limit.length && delay_limit.kink != SMOOTH {
+            self.kink = self.passed_on(delay_limit.kink);
+        }
+        match event {
+            Some(Event::SwitchOn) | None => event,
+            Some(event) => Some(self.change_mode(event)),
+        }
+    }
+
+    /// Fills the delayed polynomial. Tells how long a step may be for it, and the kink there.
+    fn read_delayed(&mut self, controlled: bool) -> DelayLimit {
+        if !controlled {
+            return DelayLimit {
+                length: f64::INFINITY,
+                kink: SMOOTH,
+            };
+        }
+        let time = self.t - self.parameters.tau;
+        self.history.forget_before(time - self.parameters.tau);
+        let reach = self.history.read(time, &mut self.step.delayed);
+        DelayLimit {
+            length: reach.until - time,
+            kink: reach.kink,
+        }
+    }
+
+    /// The order of a kink of the delayed elongation after it has passed into the motion.
+    fn passed_on(&self, kink: u32) -> u32 {
+        let smoother = match (self.mode, self.parameters.alpha_v != 0.0) {
+            (_, true) => 1,
+            // A stuck block feels the load only when it is released.
+            (Mode::Stick, false) => return SMOOTH,
+            (_, false) => 2,
+        };
+        kink + smoother
+    }
+
+    /// Works out the coefficients of the step, Eqs. (1) and (2) of the module.
+    fn expand(&mut self, controlled: bool) {
+        let Parameters {
+            alpha_v,
+            alpha_n,
+            v0,
+            ..
+        } = self.parameters;
+        let (alpha_v, alpha_n) = if controlled {
+            (alpha_v, alpha_n)
+        } else {
+            (0.0, 0.0)
+        };
+        let direction = match self.mode {
+            Mode::Stick => 0.0,
+            Mode::Forwards => 1.0,
+            Mode::Backwards => -1.0,
+        };
+        let step = &mut self.step;
+        let (mut v, mut load) = (v0, 1.0);
+        step.u[0] = self.u;
+        step.a[0] = self.a;
+        step.order = self.order;
+        for k in 0..self.order {
+            let difference = step.a[k] - step.delayed[k];
+            step.n[k] = load + alpha_n * difference;
+            let pull = v + alpha_v * difference;
+            (v, load) = (0.0, 0.0);
+            let per_next = 1.0 / (k + 1) as f64;
+            step.a[k + 1] = (pull - step.u[k]) * per_next;
+            step.u[k + 1] = 0.0;
+            if direction != 0.0 {
+                self.friction.extend(k, direction * step.u[k]);
+                let friction = if alpha_n == 0.0 {
+                    self.friction.coefficients[k]
+                } else if self.friction.is_constant() {
+                    self.friction.coefficients[0] * step.n[k]
+                } else {
+                    product(&self.friction.coefficients, &step.n, k)
+                };
+                step.u[k + 1] = (step.a[k] - direction * friction) * per_next;
+            }
+        }
+        let last = self.order;
+        step.n[last] = alpha_n * (step.a[last] - step.delayed[last]);
+    }
+
+    /// How long a step may be for its last terms to stay below the tolerance.
+    fn free_length(&self) -> f64 {
+        let step = &self.step;
+        let (u, a) = (&step.u, &step.a);
+        let speed = u[0].abs().max(self.parameters.v0.abs()).max(SLOWEST);
+        let stretch = a[0].abs().max(self.parameters.law.mu_s());
+        let mut length = f64::INFINITY;
+        for k in [self.order - 1, self.order] {
+            let ratio = (u[k].abs() / speed).max(a[k].abs() / stretch);
+            if ratio > 0.0 {
+                length = length.min((self.tolerance / ratio).powf(1.0 / k as f64));
+            }
+        }
+        length
+    }
+
+    /// The first event within `length`.
+    fn first_event(&self, length: f64) -> Option<(f64, Event)> {
+        let step = &self.step;
+        let range = ..=step.order;
+        let mut first: Option<(f64, Event)> = None;
+        let mut consider = |zero: Option<f64>, event: Event| {
+            if let Some(s) = zero
+                && first.is_none_or(|(earliest, _)| s < earliest)
+            {
+                first = Some((s, event));
+            }
+        };
+        if self.parameters.alpha_n != 0.0 {
+            consider(first_zero(&step.n[range], length), Event::LiftOff);
+        }
+        if self.mode == Mode::Stick {
+            for direction in [1.0, -1.0] {
+                let mut hold = [0.0; MOST_ORDER + 1];
+                for ((hold, n), a) in hold.iter_mut().zip(&step.n[range]).zip(&step.a[range]) {
+                    *hold = self.parameters.law.mu_s() * n - direction * a;
+                }
+                consider(first_zero(&hold[range], length), Event::Release);
+            }
+        } else {
+            let mut speed = step.u;
+            if self.mode == Mode::Backwards {
+                speed.iter_mut().for_each(|u| *u = -*u);
+            }
+            consider(first_zero(&speed[range], length), Event::Stick);
+        }
+        first
+    }
+
+    /// Moves on by `length`; the polynomials hold for `valid`.
+    fn finish(&mut self, length: f64, valid: f64) {
+        let order = self.step.order;
+        let (u, a) = (&self.step.u[..=order], &self.step.a[..=order]);
+        self.u = value(u, length);
+        self.a = value(a, length);
+        let travelled = u.iter().enumerate().rev();
+        self.x += length * travelled.fold(0.0, |sum, (k, u)| sum * length + u / (k + 1) as f64);
+        let from = self.t;
+        self.t += length;
+        self.history.push(self.t, from + valid, a, self.kink);
+        self.step.length = length;
+    }
+
+    /// The mode after `event`, which may turn out to be another one.
+    fn change_mode(&mut self, event: Event) -> Event {
+        let n = value(&self.step.n[..=self.step.order], self.step.length);
+        match event {
+            Event::Release => {
+                self.u = 0.0;
+                self.mode = if self.a > 0.0 {
+                    Mode::Forwards
+                } else {
+                    Mode::Backwards
+                };
+                Event::Release
+            }
+            Event::Stick => {
+                let before = self.mode;
+                self.u = 0.0;
+                self.mode = self.mode_at(n);
+                if self.mode == Mode::Stick || self.mode == before {
+                    Event::Stick
+                } else {
+                    Event::Reversal
+                }
+            }
+            other => other,
+        }
+    }
+}
+
+/// How long a step may be for the delayed elongation, and the order of the kink there.
+#[derive(Debug, Clone, Copy)]
+struct DelayLimit {
+    length: f64,
+    kink: u32,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Events of the letter's Fig. 3 (physics of the project, section 7): times of switch-on, and of what follows.
+    fn fig3(
+        v0: f64,
+        alpha_v: f64,
+        alpha_n: f64,
+        tau: f64,
+        accuracy: Accuracy,
+    ) -> Vec<(f64, Event, f64)> {
+        let law = FrictionLaw::weakening(0.5, 0.5, 1.0).unwrap();
+        let parameters = Parameters {
+            law,
+            velocity_unit: 1.0,
+            alpha_v,
+            alpha_n,
+            tau,
+            v0,
+            switch_on: 70.0,
+        };
+        let mut motion = Motion::new(parameters, accuracy, 1.01 * v0, law.mu_k(v0));
+        let mut events = Vec::new();
+        while motion.t < 150.0 {
+            if let Some(event) = motion.advance(150.0) {
+                events.push((motion.t, event, motion.a));
+            }
+        }
+        events
+    }
+
+    fn last_release(events: &[(f64, Event, f64)]) -> (f64, f64) {
+        let last = events
+            .iter()
+            .rev()
+            .find(|e| e.1 == Event::Release)
+            .expect("released");
+        (last.0, last.2)
+    }
+
+    #[test]
+    fn the_events_of_the_letters_figure_3() {
+        let accuracy = Accuracy::default();
+        let a = fig3(0.35, -0.33, 0.0, 4.15, accuracy);
+        let b = fig3(0.1, 0.0, -10.0, 0.5, accuracy);
+        for (events, slip, stick) in [(&a, 3.97549563, 4.92001175), (&b, 3.44600138, 15.85555061)] {
+            let before: Vec<_> = events.iter().filter(|e| e.0 < 70.0).collect();
+            let [release, stop, again] = before[before.len() - 3..] else {
+                panic!("three events");
+            };
+            let (release, stop, again) = if release.1 == Event::Release {
+                (release, stop, again)
+            } else {
+                (stop, again, before[before.len() - 4])
+            };
+            assert!(
+                (stop.0 - release.0 - slip).abs() < 1e-8,
+                "{}",
+                stop.0 - release.0
+            );
+            assert!(((again.0 - stop.0).abs() - stick).abs() < 1e-8 || again.0 < stop.0);
+        }
+        assert!(
+            (last_release(&a).0 - 97.029009396).abs() < 1e-8,
+            "{:?}",
+            last_release(&a)
+        );
+        let (t, elongation) = last_release(&b);
+        assert!(
+            (t - 76.277483031).abs() < 1e-8 && (elongation - 0.5).abs() < 1e-8,
+            "{t} {elongation}"
+        );
+    }
+}

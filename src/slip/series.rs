@@ -1,0 +1,149 @@
+//! Polynomials in the time since the start of a step: Taylor series of a solution, cut off.
+
+/// Highest order of a series.
+pub const MOST_ORDER: usize = 24;
+
+/// Coefficients c₀ … c_N of Σ c_k s^k; those beyond the order in use mean nothing.
+pub type Coefficients = [f64; MOST_ORDER + 1];
+
+/// Σ c_k s^k.
+#[inline]
+#[must_use]
+pub fn value(c: &[f64], s: f64) -> f64 {
+    c.iter().rev().fold(0.0, |sum, c| sum * s + c)
+}
+
+/// Value and derivative.
+#[inline]
+fn value_and_slope(c: &[f64], s: f64) -> (f64, f64) {
+    let (mut value, mut slope) = (0.0, 0.0);
+    for c in c.iter().rev() {
+        slope = slope * s + value;
+        value = value * s + c;
+    }
+    (value, slope)
+}
+
+/// The coefficients about s = `by`, in place: Horner's scheme, repeated.
+#[inline]
+pub fn shift(c: &mut [f64], by: f64) {
+    for first in 0..c.len() {
+        for k in (first..c.len() - 1).rev() {
+            c[k] += by * c[k + 1];
+        }
+    }
+}
+
+/// Coefficient k of the product of `p` and `q`.
+#[inline(always)]
+pub fn product(p: &[f64], q: &[f64], k: usize) -> f64 {
+    p[..=k]
+        .iter()
+        .zip(q[..=k].iter().rev())
+        .map(|(p, q)| p * q)
+        .sum()
+}
+
+/// The first zero in (0, `end`] of a polynomial that is positive just after 0; none if it stays positive.
+///
+/// No zero is stepped over: a parabola below the polynomial says how far it stays positive at least. Near a simple zero the
+/// steps are Newton's; a minimum within rounding of zero counts as one. Zeros at s = 0 itself are divided out.
+#[must_use]
+pub fn first_zero(c: &[f64], end: f64) -> Option<f64> {
+    let multiplicity = c.iter().position(|&c| c != 0.0)?;
+    let c = &c[multiplicity..];
+    let size = |from: usize, weight: fn(f64) -> f64| {
+        let mut power = 1.0;
+        let mut sum = 0.0;
+        for (k, c) in c.iter().enumerate().skip(from) {
+            sum += weight(k as f64) * c.abs() * power;
+            power *= end;
+        }
+        sum
+    };
+    // The rest of the series cannot outweigh its first term.
+    if c[0] > 0.0 && c[0] > end * size(1, |_| 1.0) {
+        return None;
+    }
+    let bend = size(2, |k| k * (k - 1.0));
+    let rounding = 4.0 * f64::EPSILON * size(0, |k| 1.0 + k);
+    let mut s = 0.0;
+    loop {
+        let (value, slope) = value_and_slope(c, s);
+        if value <= rounding {
+            // One more step of Newton's method, where there is a slope to follow.
+            let correction = value / slope;
+            let polished = if slope < 0.0 && correction.abs() < 1e-6 * end {
+                s - correction
+            } else {
+                s
+            };
+            return Some(polished.clamp(0.0, end));
+        }
+        // The first zero of value + slope δ − bend δ²/2, without cancellation.
+        let root = (slope * slope + 2.0 * bend * value).sqrt();
+        let step = if slope < 0.0 {
+            2.0 * value / (root - slope)
+        } else if bend > 0.0 {
+            (slope + root) / bend
+        } else {
+            f64::INFINITY
+        };
+        s += step.max(f64::EPSILON * end);
+        if s > end {
+            return None;
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    #[test]
+    fn grazes_are_told_apart() {
+        // (s − 1)² ± 1e-9.
+        assert_eq!(first_zero(&[1.0 + 1e-9, -2.0, 1.0], 3.0), None);
+        let zero = first_zero(&[1.0 - 1e-9, -2.0, 1.0], 3.0).expect("crosses twice");
+        assert!((zero - (1.0 - 1e-9_f64.sqrt())).abs() < 1e-10, "{zero}");
+        let touch = first_zero(&[1.0, -2.0, 1.0], 3.0).expect("touches");
+        assert!((touch - 1.0).abs() < 1e-6);
+    }
+
+    #[test]
+    fn a_zero_at_the_start_is_divided_out() {
+        // s (1 − s)(2 − s).
+        let zero = first_zero(&[0.0, 2.0, -3.0, 1.0], 5.0).expect("at one");
+        assert!((zero - 1.0).abs() < 1e-15);
+        assert_eq!(first_zero(&[0.0, 0.0, 1.0], 5.0), None);
+    }
+
+    proptest! {
+        /// Of a polynomial made of its zeros, the first one is found.
+        #[test]
+        fn the_first_zero_is_found(zeros in prop::collection::vec(0.05..3.0_f64, 1..7), end in 0.5..2.0_f64) {
+            let mut c = vec![1.0];
+            for zero in &zeros {
+                let mut next = vec![0.0; c.len() + 1];
+                for (k, c) in c.iter().enumerate() {
+                    next[k] += c;
+                    next[k + 1] -= c / zero;
+                }
+                c = next;
+            }
+            let first = zeros.iter().copied().fold(f64::INFINITY, f64::min);
+            match first_zero(&c, end) {
+                Some(s) => prop_assert!((s - first).abs() < 1e-3 && value(&c, s).abs() < 1e-11, "{s} {first}"),
+                None => prop_assert!(first > end - 1e-3),
+            }
+        }
+
+        #[test]
+        fn shifting_changes_nothing(c in prop::collection::vec(-1.0..1.0_f64, 1..20), by in -0.5..0.5_f64, s in -0.5..0.5_f64) {
+            let mut shifted = c.clone();
+            shift(&mut shifted, by);
+            prop_assert!((value(&shifted, s) - value(&c, s + by)).abs() < 1e-12);
+        }
+    }
+}
