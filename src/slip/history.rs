@@ -9,8 +9,8 @@ use super::series::{Coefficients, MOST_ORDER, shift};
 struct Piece {
     from: f64,
     to: f64,
-    /// How far beyond `from` the polynomial holds to the tolerance: at least to `to`.
-    valid_to: f64,
+    /// How far from `from` the polynomial holds to the tolerance, both ways, as far as no kink is in between.
+    radius: f64,
     order: usize,
     a: Coefficients,
     /// Order of the lowest derivative of a that jumps at `from`.
@@ -28,6 +28,9 @@ pub(super) struct Reach {
 
 /// Stands for: no jump worth a step of its own.
 pub(super) const SMOOTH: u32 = u32::MAX;
+
+/// The part of a polynomial's radius within which it stands in for its neighbours.
+const SHARE: f64 = 0.75;
 
 /// The elongation over a window of time that moves along, of bounded length.
 #[derive(Debug, Clone)]
@@ -60,22 +63,22 @@ impl History {
         self.pieces.push_back(Piece {
             from: f64::NEG_INFINITY,
             to: now,
-            valid_to: now,
+            radius: f64::INFINITY,
             order: 0,
             a: coefficients,
             kink: SMOOTH,
         });
     }
 
-    /// Adds the step from the end of the last one to `to`; its polynomial holds up to `valid_to`.
-    pub fn push(&mut self, to: f64, valid_to: f64, a: &[f64], kink: u32) {
+    /// Adds the step from the end of the last one to `to`; its polynomial holds for `radius` from its start.
+    pub fn push(&mut self, to: f64, radius: f64, a: &[f64], kink: u32) {
         let from = self.pieces.back().map_or(to, |p| p.to);
         let mut coefficients = [0.0; MOST_ORDER + 1];
         coefficients[..a.len()].copy_from_slice(a);
         self.pieces.push_back(Piece {
             from,
             to,
-            valid_to: valid_to.max(to),
+            radius: radius.max(to - from),
             order: a.len() - 1,
             a: coefficients,
             kink,
@@ -99,34 +102,42 @@ impl History {
         while self.at > 0 && time < self.pieces[self.at].from - close {
             self.at -= 1;
         }
-        let piece = &self.pieces[self.at];
+        let (index, reach) = self.farthest(time);
+        let piece = &self.pieces[index];
         *out = piece.a;
         let since = time - piece.from;
         if since.is_finite() && since.abs() > close {
             shift(&mut out[..=piece.order], since);
         }
-        self.reach()
+        reach
     }
 
-    /// How far the piece at `at` may be used: over a boundary that is none but for the step's end, if it holds there.
-    fn reach(&self) -> Reach {
-        let piece = &self.pieces[self.at];
-        let mut reach = Reach {
-            until: piece.to,
-            kink: SMOOTH,
-        };
-        for next in self.pieces.range(self.at + 1..) {
-            if next.kink < self.felt {
-                reach.kink = next.kink;
-                return reach;
+    /// The piece that may be used longest from `time` on, and until when. Over a boundary that is no more than a step's end
+    /// a polynomial may be used as far as it holds, forwards and backwards.
+    fn farthest(&self, time: f64) -> (usize, Reach) {
+        let mut best = (self.at, self.pieces[self.at].to);
+        let mut kink = SMOOTH;
+        let mut end = f64::INFINITY;
+        for (index, piece) in self.pieces.iter().enumerate().skip(self.at) {
+            if index > self.at {
+                if piece.kink < self.felt {
+                    (kink, end) = (piece.kink, piece.from);
+                    break;
+                }
+                if piece.from - time > SHARE * piece.radius {
+                    break;
+                }
             }
-            if piece.valid_to < next.to {
-                reach.until = piece.valid_to.max(reach.until);
-                return reach;
+            let until = piece.to.max(piece.from + SHARE * piece.radius);
+            if until > best.1 {
+                best = (index, until);
             }
-            reach.until = next.to;
+            end = piece.to;
         }
-        reach
+        // Nothing is known beyond the last piece, nor beyond a kink.
+        let until = best.1.min(end.max(self.pieces[self.at].to));
+        let kink = if until == end { kink } else { SMOOTH };
+        (best.0, Reach { until, kink })
     }
 
     /// The elongation at `time`, within the window.
@@ -150,9 +161,9 @@ mod tests {
     #[test]
     fn boundaries_are_kept_where_they_are_felt() {
         let mut history = History::constant(2.0, 0.0, 10);
-        history.push(1.0, 3.0, &[2.0, 1.0], 1);
-        history.push(2.0, 3.0, &[3.0, 1.0], SMOOTH);
-        history.push(2.5, 2.5, &[4.0, -1.0], 2);
+        history.push(1.0, 4.0, &[2.0, 1.0], 1);
+        history.push(2.0, 1.0, &[3.0, 1.0], SMOOTH);
+        history.push(2.5, 0.5, &[4.0, -1.0], 2);
         let mut a = [0.0; MOST_ORDER + 1];
         assert_eq!(
             history.read(-1.0, &mut a),

@@ -201,12 +201,12 @@ impl Motion {
         // Two halves rather than a long and a tiny step.
         let length = match free / limit {
             r if r >= 1.0 => limit,
-            r if r > 0.5 => 0.5 * limit,
+            r if r > 0.5 && delay_limit.kink != SMOOTH => 0.5 * limit,
             _ => free,
         };
         let found = self.first_event(length);
         let length = found.map_or(length, |(s, _)| s);
-        self.finish(length, free.min(delay_limit.length));
+        self.finish(length, free);
         let mut event = found.map(|(_, event)| event);
         self.kink = SMOOTH;
         if event.is_some() {
@@ -348,17 +348,16 @@ impl Motion {
         first
     }
 
-    /// Moves on by `length`; the polynomials hold for `valid`.
-    fn finish(&mut self, length: f64, valid: f64) {
+    /// Moves on by `length`; the polynomials hold for `radius`.
+    fn finish(&mut self, length: f64, radius: f64) {
         let order = self.step.order;
         let (u, a) = (&self.step.u[..=order], &self.step.a[..=order]);
         self.u = value(u, length);
         self.a = value(a, length);
         let travelled = u.iter().enumerate().rev();
         self.x += length * travelled.fold(0.0, |sum, (k, u)| sum * length + u / (k + 1) as f64);
-        let from = self.t;
         self.t += length;
-        self.history.push(self.t, from + valid, a, self.kink);
+        self.history.push(self.t, radius, a, self.kink);
         self.step.length = length;
     }
 
