@@ -207,6 +207,10 @@ fn mistakes_in_sweep_files_are_shown_in_place() {
             "unknown.toml",
             "[axes]\nmu_prime = [-0.1]\ntau = [1]\n\n[fixed]\nalpha_w = 3\n",
         ),
+        (
+            "field.toml",
+            "fields = [\"n_unstable\", \"abscissa_9\"]\n\n[axes]\nmu_prime = [-0.1]\ntau = [1]\n",
+        ),
     ]);
     let reversed = folder.run(&["run", "reversed.toml"]);
     assert_eq!(reversed.status.code(), Some(2));
@@ -214,6 +218,9 @@ fn mistakes_in_sweep_files_are_shown_in_place() {
     let unknown = folder.run(&["run", "unknown.toml"]);
     assert_eq!(unknown.status.code(), Some(2));
     insta::assert_snapshot!("unknown_key", err(&unknown));
+    let field = folder.run(&["run", "field.toml"]);
+    assert_eq!(field.status.code(), Some(2));
+    insta::assert_snapshot!("unknown_field", err(&field));
     std::fs::write(folder.path().join("latin.toml"), b"# \xe9\n").unwrap();
     expect(&folder.run(&["run", "latin.toml"]), 2, "not UTF-8");
     expect(
@@ -229,7 +236,7 @@ fn mistakes_in_sweep_files_are_shown_in_place() {
     );
     assert_eq!(
         folder.files(),
-        ["latin.toml", "reversed.toml", "unknown.toml"]
+        ["field.toml", "latin.toml", "reversed.toml", "unknown.toml"]
     );
 }
 
@@ -250,6 +257,8 @@ fn usage_mistakes_have_exit_code_2() {
         &["point", "--mu-prime", "nan", "--tau", "1"],
         &["point", "--mu-prime", "inf", "--tau", "1"],
         &["point", "--mu-prime", "1", "--tau", "-1"],
+        &["point", "--mu-prime", "1", "--tau", "1", "--roots", "0"],
+        &["point", "--mu-prime", "1", "--tau", "1", "--roots", "65"],
         &["point", "--mu-prime", "1", "--tau", "1", "--mass", "0"],
         &["point", "--mu-prime", "1", "--tau", "1", "--v0", "1"],
         &[
@@ -353,6 +362,143 @@ fn point_says_everything_for_people_and_programs() {
     assert!(value["stable_delays"][0][1].is_null() && value["delay_margin"].is_null());
 }
 
+/// The roots of a point: as many as asked for, fewer where there are no more.
+#[test]
+fn point_lists_the_rightmost_roots() {
+    let folder = Folder::new();
+    let json = |args: &[&str]| -> serde_json::Value {
+        let output = folder.run(&[&["point", "--json", "--mu-prime", "-0.3"], args].concat());
+        assert_eq!(err(&output), "");
+        serde_json::from_slice(&output.stdout).unwrap()
+    };
+    for tau in ["1e-9", "0.5", "4", "60", "3000"] {
+        let value = json(&["--tau", tau, "--alpha-v", "-0.4", "--roots", "20"]);
+        let roots: Vec<[f64; 2]> = serde_json::from_value(value["roots"].clone()).unwrap();
+        assert_eq!(
+            (roots.len(), &value["certified"]),
+            (20, &true.into()),
+            "{tau}"
+        );
+        assert!(
+            roots.windows(2).all(|w| w[0][0] >= w[1][0]),
+            "{tau} {roots:?}"
+        );
+        assert!(roots.iter().all(|root| root[1] >= 0.0), "{tau} {roots:?}");
+        assert_eq!(value["abscissa"], roots[0][0]);
+        assert_eq!(value["frequency"], roots[0][1]);
+        let unstable = roots.iter().filter(|root| root[0] > 0.0).count() as u64;
+        assert!(unstable == 20 || 2 * unstable == value["n_unstable"].as_u64().unwrap());
+    }
+    for few in [&["--tau", "0", "--alpha-v", "-0.4"][..], &["--tau", "2"]] {
+        let value = json(&[few, &["--roots", "20"]].concat());
+        let roots: Vec<[f64; 2]> = serde_json::from_value(value["roots"].clone()).unwrap();
+        assert!(
+            roots.len() == 1 && (roots[0][0] - 0.15).abs() < 1e-15,
+            "{roots:?}"
+        );
+        assert_eq!(value["certified"], true);
+    }
+    let text = out(&folder.run(&[
+        "point",
+        "--mu-prime",
+        "-0.3",
+        "--tau",
+        "0",
+        "--alpha-v",
+        "1",
+    ]));
+    assert!(
+        text.contains("there are no others: the delay is 0"),
+        "{text}"
+    );
+}
+
+/// Every row of the reference: roots from elsewhere, to eleven digits behind the point.
+#[test]
+fn point_has_the_roots_of_the_reference() {
+    let folder = Folder::new();
+    let rows = include_str!("reference/linear_points.csv");
+    let mut checked = 0;
+    for row in rows.lines().skip(1) {
+        let cells: Vec<&str> = row.split(',').collect();
+        let flags = ["--mu-prime", "--alpha-v", "--alpha-n", "--tau"];
+        let given: Vec<&str> = flags
+            .into_iter()
+            .zip(cells.iter().copied())
+            .flat_map(|(f, c)| [f, c])
+            .collect();
+        let output = folder.run(&[&["point", "--json", "--roots", "1"], given.as_slice()].concat());
+        let value: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+        assert_eq!(value["n_unstable"].to_string(), cells[4], "{row}");
+        assert_eq!(value["certified"], true, "{row}");
+        for (name, cell) in [("abscissa", cells[5]), ("frequency", cells[6])] {
+            let expected: f64 = cell.parse().unwrap();
+            let found = value[name].as_f64().unwrap();
+            assert!((found - expected).abs() < 1e-11, "{name} {found} {row}");
+        }
+        checked += 1;
+    }
+    assert_eq!(checked, 150);
+}
+
+/// A map with decay rates: planned, run, drawn as such, and listed with the range of its values.
+#[test]
+fn decay_rates_go_through_every_command() {
+    let sweep = SMALL.replace(
+        "[axes]",
+        "fields = [\"n_unstable\", \"abscissa\", \"frequency\"]\n[axes]",
+    );
+    let folder = Folder::with(&[("decay.toml", &sweep)]);
+    let plan = folder.run(&["plan", "decay.toml"]);
+    expect(
+        &plan,
+        0,
+        "n_unstable, abscissa, frequency, certificate_margin, status",
+    );
+    // 2 + 3 × 8 + 1 bytes in 5002 cells.
+    expect(&plan, 0, "135 kB before compression");
+    expect(
+        &folder.run(&["run", "decay.toml"]),
+        0,
+        "decay.h5: 5 002 cells",
+    );
+    let info = folder.run(&["info", "decay.h5"]);
+    expect(&info, 0, "certified 5 002 cells");
+    let line = |name: &str| {
+        let text = out(&info);
+        let found = text.lines().find(|l| l.contains(name)).map(str::to_owned);
+        found.unwrap_or_else(|| panic!("{name}: {text}"))
+    };
+    assert!(line("abscissa").contains(", -") && line("frequency").contains(" to "));
+    let default = std::fs::read(folder.path().join("decay.png")).unwrap();
+    let draw = |args: &[&str]| {
+        let output = folder.run(&[&["plot", "decay.h5", "-o", "again.png"], args].concat());
+        assert_eq!(output.status.code(), Some(0), "{}", err(&output));
+        std::fs::read(folder.path().join("again.png")).unwrap()
+    };
+    assert!(
+        default == draw(&["--field", "abscissa"]),
+        "the abscissa is drawn by default"
+    );
+    for other in [
+        &["--field", "n_unstable"][..],
+        &["--field", "frequency"],
+        &["--kind", "boundaries"],
+    ] {
+        assert!(default != draw(other), "{other:?}");
+    }
+    expect(
+        &folder.run(&["plot", "decay.h5", "--field", "abscissa_9"]),
+        2,
+        "abscissa_2 … abscissa_8",
+    );
+    expect(
+        &folder.run(&["plot", "decay.h5", "--field", "relaxation_time"]),
+        2,
+        "does not hold relaxation_time",
+    );
+}
+
 /// Physical units: the same point at another mass, stiffness and load, and by its friction law.
 #[test]
 fn point_agrees_with_itself_in_other_units() {
@@ -395,6 +541,10 @@ fn point_agrees_with_itself_in_other_units() {
         (margins[0] * 2.0 / 3.0 - margins[1]).abs() < 1e-12,
         "{margins:?}"
     );
+    for name in ["abscissa", "frequency"] {
+        let rates = [&plain, &scaled].map(|v| v[name].as_f64().unwrap());
+        assert!((rates[0] * 1.5 - rates[1]).abs() < 1e-12, "{rates:?}");
+    }
     // The letter's Fig. 3(b).
     let law = json(&[
         "--friction",
@@ -412,6 +562,141 @@ fn point_agrees_with_itself_in_other_units() {
     ]);
     assert_eq!(law["stable"].as_bool(), Some(true));
     assert!((law["mu_prime"].as_f64().unwrap() + 1.0 / 1.44).abs() < 1e-12);
+}
+
+#[test]
+fn best_says_where_decay_is_fastest() {
+    let folder = Folder::new();
+    let args = ["best", "--mu-prime", "-0.1"];
+    insta::assert_snapshot!("best", out(&folder.run(&args)));
+    let json = |args: &[&str]| -> serde_json::Value {
+        let output = folder.run(&[&["best", "--json"], args].concat());
+        assert_eq!(output.status.code(), Some(0), "{}", err(&output));
+        serde_json::from_slice(&output.stdout).unwrap()
+    };
+    let near = |value: &serde_json::Value, expected: f64| {
+        let value = value.as_f64().unwrap();
+        assert!((value / expected - 1.0).abs() < 1e-8, "{value} {expected}");
+    };
+    let load = json(&["--mu-prime", "-0.1", "--control", "load"]);
+    assert_eq!(load["best"]["kind"], "triple real root");
+    assert_eq!(load["best"]["certified"], true);
+    assert_eq!(load["regions"].as_array().unwrap().len(), 7);
+    near(&load["best"]["alpha"], -3.061_457_594);
+    // M = 4, κ = 9: time unit 2/3, b = μ′N0/6, a_n = μ_K α_N/9.
+    let scaled = json(&[
+        "--mu-prime",
+        "-0.2",
+        "--mass",
+        "4",
+        "--stiffness",
+        "9",
+        "--normal-load",
+        "3",
+        "--mu-k",
+        "0.5",
+        "--control",
+        "load",
+    ]);
+    for (name, unit) in [
+        ("alpha", 18.0),
+        ("tau", 2.0 / 3.0),
+        ("abscissa", 1.5),
+        ("relaxation_time", 2.0 / 3.0),
+    ] {
+        near(
+            &scaled["best"][name],
+            load["best"][name].as_f64().unwrap() * unit,
+        );
+    }
+    // Only a lobe of positive gain is left in these ranges.
+    let lobe = json(&[
+        "--mu-prime",
+        "-0.1",
+        "--control",
+        "load",
+        "--alpha-from",
+        "0",
+        "--alpha-to",
+        "1",
+        "--tau-from",
+        "4",
+        "--tau-to",
+        "7",
+    ]);
+    assert_eq!(lobe["regions"].as_array().unwrap().len(), 1);
+    near(
+        &lobe["best"]["alpha"],
+        load["regions"][1]["alpha"].as_f64().unwrap(),
+    );
+    assert_eq!(lobe["searched"]["tau"], serde_json::json!([4.0, 7.0]));
+    // The other gain acts as given.
+    let mixed = json(&["--mu-prime", "-0.1", "--alpha-n", "-0.5"]);
+    assert!(mixed["best"]["abscissa"].as_f64().unwrap() < 0.0);
+}
+
+#[test]
+fn best_without_a_stable_setting_says_so() {
+    let folder = Folder::new();
+    let args = ["best", "--mu-prime", "-0.8"];
+    expect(
+        &folder.run(&args),
+        0,
+        "no stable setting in the ranges; the least unstable one is",
+    );
+    let json = folder.run(&[&args[..], &["--json"]].concat());
+    let value: serde_json::Value = serde_json::from_slice(&json.stdout).unwrap();
+    assert!(value["best"]["relaxation_time"].is_null());
+    assert!(value["best"]["abscissa"].as_f64().unwrap() > 0.0);
+    assert_eq!(value["regions"].as_array().unwrap().len(), 0);
+}
+
+#[test]
+fn mistakes_in_the_flags_of_best_are_answered() {
+    let folder = Folder::new();
+    let with = |args: &[&str]| folder.run(&[&["best", "--mu-prime", "-0.1"], args].concat());
+    for (args, says) in [
+        (
+            &["--tau", "3"][..],
+            "--tau 3 would fix tau, which is searched",
+        ),
+        (
+            &["--alpha-v", "1"],
+            "--alpha-v 1 would fix alpha_v, which is searched",
+        ),
+        (
+            &["--control", "load", "--alpha-n", "1"],
+            "--alpha-n 1 would fix alpha_n, which is searched",
+        ),
+        (&["--control", "both"], "invalid value 'both'"),
+        (
+            &["--alpha-from", "nan"],
+            "--alpha-from NaN is outside its range: a finite number",
+        ),
+        (
+            &["--alpha-to", "inf"],
+            "--alpha-to inf is outside its range: a finite number",
+        ),
+        (
+            &["--tau-from", "-1"],
+            "--tau-from -1 is outside its range: 0 or more",
+        ),
+        (
+            &["--alpha-from", "2", "--alpha-to", "1"],
+            "--alpha-from 2 is above --alpha-to 1",
+        ),
+        (
+            &["--alpha-from", "9"],
+            "--alpha-from 9 is above --alpha-to 2, its default",
+        ),
+        (
+            &["--mass", "0"],
+            "--mass 0 is outside its range: greater than 0",
+        ),
+    ] {
+        expect(&with(args), 2, says);
+    }
+    expect(&folder.run(&["best"]), 2, "mu_prime is not given");
 }
 
 #[test]

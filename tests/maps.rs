@@ -11,6 +11,7 @@ use slipmap::linear::curves::StableSide;
 use slipmap::linear::status::MARGINAL;
 use slipmap::store::map_writer::Provenance;
 use slipmap::store::{MapFile, MapWriter, Output};
+use slipmap::sweep::best::{best_of_plane, best_planes};
 use slipmap::sweep::events::Silent;
 use slipmap::sweep::{Parameter, Plan, engine};
 
@@ -273,6 +274,61 @@ fn degrees_of_stability_are_part_of_the_plan() {
     let without = DEGREES.split_once('\n').unwrap().1;
     let hashes = [without, DEGREES, &DEGREES.replace("0.1]", "0.2]")].map(|t| plan(t).hash());
     assert!(hashes[0] != hashes[1] && hashes[1] != hashes[2]);
+}
+
+/// The best settings of every plane, in any order of the axes and of the gain's and the delay's among them.
+#[test]
+fn best_settings_are_those_of_the_library() {
+    let folder = tempfile::tempdir().unwrap();
+    for (number, text) in [
+        "best = true\n[axes]\nmu_prime = [-0.1, -0.5, -0.9]\nmu_k = [0.5, 1]\nalpha_v = [0.5, 0, -0.4, -1]\ntau = { from = 0, to = 12, points = 41 }\n",
+        "best = true\nboundaries = false\n[axes]\ntau = { from = 0, to = 12, points = 41 }\nmu_prime = [-0.1, -0.5]\nalpha_n = { from = -8, to = 1, points = 31 }\nmass = [1, 4]\n",
+        "best = true\n[axes]\nalpha_n = { from = -8, to = 1, points = 31 }\ntau = { from = 0, to = 12, points = 41 }\n[fixed]\nmu_prime = -0.3\n",
+    ]
+    .into_iter()
+    .enumerate()
+    {
+        let plan = plan(text);
+        let path = folder.path().join(format!("{number}.h5"));
+        write(&plan, 2, &path);
+        let map = MapFile::open(&path).unwrap();
+        let (gain, tau) = map.best_plane().unwrap();
+        assert_eq!(Some((gain, tau)), plan.best_plane());
+        let planes = best_planes(&plan);
+        let found = map.best().unwrap();
+        assert_eq!(found.len(), planes.len());
+        for (found, index) in found.iter().zip(&planes) {
+            let expected = best_of_plane(&plan, index).unwrap();
+            let best = &expected.overall;
+            assert_eq!((found.gain, found.tau, found.abscissa), (best.gain, best.tau, best.abscissa));
+            assert_eq!(found.relaxation_time, best.relaxation_time());
+            assert_eq!((found.kind, found.certified), (Some(best.kind), best.certified));
+            assert_eq!(found.regions, expected.regions.len() as u64);
+            let outer: Vec<f64> = (0..index.len())
+                .filter(|&axis| axis != gain && axis != tau)
+                .map(|axis| plan.spec.axes[axis].values[index[axis]])
+                .collect();
+            assert_eq!(found.outer, outer);
+        }
+        let group = hdf5::File::open(&path).unwrap().group("best").unwrap();
+        let shape: Vec<usize> = plan.shape().iter().enumerate().filter(|&(a, _)| a != gain && a != tau).map(|(_, &n)| n).collect();
+        for name in [plan.spec.axes[gain].parameter.name(), "tau", "abscissa", "frequency", "relaxation_time", "kind", "certified", "regions"] {
+            let dataset = group.dataset(name).unwrap();
+            assert_eq!(dataset.shape(), shape, "{name}");
+            for attribute in ["_FillValue", "long_name", "units"] {
+                assert!(dataset.attr(attribute).is_ok(), "{name} {attribute}");
+            }
+            assert_eq!(dataset.attr("DIMENSION_LIST").is_ok(), !shape.is_empty());
+        }
+    }
+    let without = plan("[axes]\nalpha_v = [-1, 0]\ntau = [0, 1]\n[fixed]\nmu_prime = 1\n");
+    let with =
+        plan("best = true\n[axes]\nalpha_v = [-1, 0]\ntau = [0, 1]\n[fixed]\nmu_prime = 1\n");
+    assert_ne!(without.hash(), with.hash());
+    let path = folder.path().join("without.h5");
+    write(&without, 1, &path);
+    let map = MapFile::open(&path).unwrap();
+    assert!(map.best_plane().is_none() && map.best().unwrap().is_empty());
 }
 
 #[test]

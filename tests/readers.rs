@@ -7,6 +7,7 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
 use serde_json::{Map, Value, json};
+use slipmap::linear::rightmost::Rightmost;
 use slipmap::linear::status::{FLAGS, MARGINAL};
 use slipmap::linear::{Crossings, MarginalTolerance};
 use slipmap::model::{FrictionLaw, Groups};
@@ -367,6 +368,69 @@ fn python_reads_friction_laws_with_units() {
     for reader in ["xarray", "h5py", "netcdf4"] {
         written.python(&format!("tests/readers/check_{reader}.py"), &[]);
     }
+}
+
+/// A map of roots in physical units, with lines without delay, where all but the rightmost root are at −∞.
+#[test]
+fn python_reads_roots() {
+    let folder = TempDir::new().unwrap();
+    let (mass, stiffness) = (4.0_f64, 9.0_f64);
+    let unit = (mass / stiffness).sqrt();
+    let gains = spaced(-9.0, 3.0, 7, Spacing::Linear).unwrap();
+    let delays = spaced(0.0, 4.0, 81, Spacing::Linear).unwrap();
+    let units = [
+        ("abscissa", "s-1"),
+        ("abscissa_2", "s-1"),
+        ("frequency", "rad s-1"),
+        ("frequency_2", "rad s-1"),
+        ("relaxation_time", "s"),
+    ];
+    let sweep = format!(
+        "fields = {:?}\n[axes]\nalpha_n = {{ from = -9, to = 3, points = 7 }}\n\
+         tau = {{ from = 0, to = 4, points = 81 }}\n[fixed]\nmu_prime = -0.6\nmass = {mass}\nstiffness = {stiffness}\n\
+         [units]\nforce = \"N\"\nlength = \"mm\"\ntime = \"s\"\n",
+        units.map(|(name, _)| name)
+    );
+    std::fs::write(folder.path().join("sweep.toml"), sweep).unwrap();
+    let arguments = ["run", "--quiet", "sweep.toml", "-o", "map.h5"];
+    let program = env!("CARGO_BIN_EXE_slipmap");
+    run(&mut command(program, folder.path(), arguments));
+    let mut columns: [Vec<u8>; 5] = Default::default();
+    for gain in &gains {
+        for delay in &delays {
+            let groups = Groups::new(-0.6 / (stiffness * mass).sqrt(), 0.0, gain / stiffness);
+            let count = Crossings::of(groups).count(delay / unit, MarginalTolerance::default());
+            let found = Rightmost::at(groups, delay / unit, 2, count);
+            let part = |i: usize| found.roots.get(i).map(|root| root.lambda / unit);
+            let (first, second) = (part(0).expect("a root"), part(1));
+            let relaxation = if first.re < 0.0 {
+                -1.0 / first.re
+            } else {
+                f64::INFINITY
+            };
+            let values = [
+                first.re,
+                second.map_or(f64::NEG_INFINITY, |z| z.re),
+                first.im,
+                second.map_or(f64::NAN, |z| z.im),
+                relaxation,
+            ];
+            for (column, value) in columns.iter_mut().zip(values) {
+                column.extend(value.to_le_bytes());
+            }
+        }
+    }
+    for ((name, _), column) in units.iter().zip(&columns) {
+        std::fs::write(folder.path().join(format!("{name}.f64")), column).unwrap();
+    }
+    let expected = json!({
+        "axes": { "alpha_n": gains, "tau": delays },
+        "units": units.into_iter().collect::<std::collections::BTreeMap<_, _>>(),
+        "stable": { "alpha_n": -9.0, "tau": 0.5 },
+    });
+    std::fs::write(folder.path().join("expected.json"), expected.to_string()).unwrap();
+    let checks = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/readers/check_roots.py");
+    run(python(folder.path()).arg(checks));
 }
 
 /// Numbers of the text, whatever stands between them.

@@ -105,6 +105,26 @@ const BAD: &[(&str, &str, &str)] = &[
         "-1",
         "tau = -1 is outside its range: 0 or more",
     ),
+    (
+        "best = 1\n[axes]\nalpha_v = [0, 1]\ntau = [1, 2]\n[fixed]\nmu_prime = 1\n",
+        "1",
+        "expected true or false, found a whole number",
+    ),
+    (
+        "best = true\n[axes]\nmu_prime = [0, 1]\ntau = [1, 2]\n[fixed]\nalpha_v = 1\n",
+        "best",
+        "best needs an axis of a gain and one of the delay",
+    ),
+    (
+        "best = true\n[axes]\nalpha_n = [0, 1]\n[fixed]\nmu_prime = 1\ntau = 2\n",
+        "best",
+        "best needs an axis of a gain and one of the delay",
+    ),
+    (
+        "best = true\n[axes]\nalpha_n = [1]\ntau = [1, 2]\n[fixed]\nmu_prime = 1\n",
+        "best",
+        "with two points or more",
+    ),
     ("[axes]\ntau = [nan]\n", "nan", "finite number"),
     ("[axes]\ntau = [1, inf]\n", "inf", "finite number"),
     ("[axes]\ntau = [1e999]\n", "1e999", "number"),
@@ -187,6 +207,16 @@ const BAD: &[(&str, &str, &str)] = &[
     (
         "fields = [\"n_stable\"]\n[axes]\ntau = [1]",
         "\"n_stable\"",
+        "unknown field",
+    ),
+    (
+        "fields = [\"abscissa_9\"]\n[axes]\ntau = [1]",
+        "\"abscissa_9\"",
+        "unknown field \"abscissa_9\"",
+    ),
+    (
+        "fields = [\"abscissa\", \"abscissa_1\"]\n[axes]\ntau = [1]",
+        "\"abscissa_1\"",
         "unknown field",
     ),
     ("fields = []\n[axes]\ntau = [1]", "[]", "the list is empty"),
@@ -353,6 +383,19 @@ fn every_mistake_is_pointed_at() {
             assert_eq!(&text[span], *place, "{text}\n {}", error.message);
         }
     }
+}
+
+#[test]
+fn a_certificate_comes_with_every_abscissa() {
+    let fields = |list: &str| -> Vec<&str> {
+        let text = format!("fields = [{list}]\n[axes]\ntau = [1]\n[fixed]\nmu_prime = 1\n");
+        let spec: SweepSpec = text.parse().unwrap();
+        spec.fields.iter().map(|f| f.name()).collect()
+    };
+    let both = ["abscissa", "certificate_margin"];
+    assert_eq!(fields("\"abscissa\""), both);
+    assert_eq!(fields("\"certificate_margin\", \"abscissa\""), both);
+    assert_eq!(fields("\"frequency_8\""), ["frequency_8"]);
 }
 
 #[test]

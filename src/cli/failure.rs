@@ -37,6 +37,14 @@ impl Failure {
         Self::BadInput(Report::new(MietteDiagnostic::new(message).with_help(help)))
     }
 
+    /// A flag with a value that its parameter does not take.
+    pub fn out_of_range(flag: &str, error: &ModelError) -> Self {
+        Self::bad_input(format!(
+            "{flag} {} is outside its range: {}",
+            error.value, error.allowed
+        ))
+    }
+
     /// Bad input at a place of a file.
     pub fn in_file(error: SpecError, name: &str, text: String) -> Self {
         let mut diagnostic = MietteDiagnostic::new(error.message);

@@ -5,9 +5,10 @@ use std::path::PathBuf;
 
 use slipmap::linear::curves::StableSide;
 use slipmap::linear::status::FLAGS;
-use slipmap::report::numbers::{bytes, grouped};
+use slipmap::report::numbers::{bytes, grouped, short};
 use slipmap::store::MapFile;
 use slipmap::store::schema::root;
+use slipmap::sweep::Field;
 
 use super::failure::Failure;
 
@@ -54,10 +55,12 @@ pub fn main(args: &Args) -> Result<(), Failure> {
     }
     row("cells", grouped(map.cells()))?;
     for (name, size, on_disk) in map.sizes()? {
-        row(
-            "field",
-            format!("{name:<12} {}, {} on disk", bytes(size), bytes(on_disk)),
-        )?;
+        let values = match Field::from_name(name) {
+            Some(field) => values(&map, field)?,
+            None => String::new(),
+        };
+        let sizes = format!("{}, {} on disk", bytes(size), bytes(on_disk));
+        row("field", format!("{name:<22} {sizes}{values}"))?;
     }
     for ((_, name), count) in FLAGS.iter().zip(map.status_counts()?) {
         if count > 0 {
@@ -84,5 +87,43 @@ pub fn main(args: &Args) -> Result<(), Failure> {
             row("", curves)?;
         }
     }
+    let best = map.best()?;
+    if let Some(fastest) = best
+        .iter()
+        .filter_map(|b| b.relaxation_time)
+        .min_by(f64::total_cmp)
+    {
+        row(
+            "best",
+            format!(
+                "settings of {} planes, the shortest relaxation time is {fastest:.4}",
+                grouped(best.len() as u64)
+            ),
+        )?;
+    } else if map.best_plane().is_some() {
+        let planes = grouped(best.len() as u64);
+        row(
+            "best",
+            format!("settings of {planes} planes, none of them stable"),
+        )?;
+    }
     Ok(())
+}
+
+/// ", −0.3 to 1.2, 12 infinite, 3 without a value".
+fn values(map: &MapFile, field: Field) -> Result<String, Failure> {
+    let summary = map.summary(field)?;
+    let mut text = String::new();
+    if let Some((low, high)) = summary.range {
+        text += &format!(", {} to {}", short(low), short(high));
+    }
+    for (cells, what) in [
+        (summary.infinite, "infinite"),
+        (summary.missing, "without a value"),
+    ] {
+        if cells > 0 {
+            text += &format!(", {} {what}", grouped(cells));
+        }
+    }
+    Ok(text)
 }

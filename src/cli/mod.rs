@@ -1,5 +1,6 @@
 //! The command line: one file per subcommand, each thin.
 
+mod best;
 mod failure;
 mod info;
 mod parameters;
@@ -33,6 +34,8 @@ enum Command {
     Plan(plan::Args),
     /// Everything about one point of parameter space
     Point(point::Args),
+    /// The gain and delay of fastest decay, for every stable region
+    Best(best::Args),
     /// Draw a map as PNG or SVG
     Plot(plot::Args),
     /// Say what a map holds
@@ -45,6 +48,7 @@ pub fn main() -> ExitCode {
         Command::Run(args) => run::main(&args),
         Command::Plan(args) => plan::main(&args),
         Command::Point(args) => point::main(&args),
+        Command::Best(args) => best::main(&args),
         Command::Plot(args) => plot::main(&args),
         Command::Info(args) => info::main(&args),
     };

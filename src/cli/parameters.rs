@@ -91,20 +91,31 @@ impl ParameterArgs {
 
     /// The setting that the flags describe.
     pub fn setting(&self) -> Result<Setting, Failure> {
+        self.setting_but(&[])
+    }
+
+    /// The setting that the flags describe but for the parameters `searched`, which must not be given.
+    pub fn setting_but(&self, searched: &[Parameter]) -> Result<Setting, Failure> {
         let law = self.friction.map(LawKind::from);
         let flag = |name: &str| format!("--{}", name.replace('_', "-"));
-        Setting::check_given(law, |p| self.given(p).is_some())
+        for parameter in searched {
+            if let Some(value) = self.given(*parameter) {
+                let name = parameter.name();
+                return Err(Failure::bad_input_with_help(
+                    format!("{} {value} would fix {name}, which is searched", flag(name)),
+                    "leave it out; --alpha-from, --alpha-to, --tau-from and --tau-to are the ranges of the search",
+                ));
+            }
+        }
+        let there = |p| searched.contains(&p) || self.given(p).is_some();
+        Setting::check_given(law, there)
             .map_err(|e| Failure::bad_input_with_help(e.message(law), e.help()))?;
         let mut setting = Setting::new(law);
         for parameter in Parameter::ALL {
             if let Some(value) = self.given(parameter) {
-                let value = parameter.check(value).map_err(|e| {
-                    let name = flag(e.parameter);
-                    Failure::bad_input(format!(
-                        "{name} {value} is outside its range: {}",
-                        e.allowed
-                    ))
-                })?;
+                let value = parameter
+                    .check(value)
+                    .map_err(|e| Failure::out_of_range(&flag(e.parameter), &e))?;
                 setting.set(parameter, value);
             }
         }

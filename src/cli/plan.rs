@@ -7,6 +7,7 @@ use std::time::{Duration, Instant};
 use slipmap::report::numbers::{bytes, grouped, prefixed, seconds};
 use slipmap::store::map_writer::TileEncoder;
 use slipmap::sweep::Plan;
+use slipmap::sweep::best::{best_of_plane, best_planes};
 use slipmap::sweep::boundaries::{planes, trace_plane};
 use slipmap::sweep::engine::{Encode, Worker};
 
@@ -56,12 +57,17 @@ pub fn main(args: &Args) -> Result<(), Failure> {
         "boundaries  in {} planes",
         grouped(plan.boundary_planes())
     )?;
+    let best = best_planes(&plan);
+    if plan.best_plane().is_some() {
+        writeln!(out, "best        in {} planes", grouped(best.len() as u64))?;
+    }
     let size = plan.cells() * plan.bytes_per_cell();
     writeln!(out, "bytes       {} before compression", bytes(size))?;
     let in_memory = cells * plan.bytes_per_cell() * 4 * threads as u64;
     writeln!(out, "memory      about {}", bytes(in_memory + (30 << 20)))?;
     let curves = per_plane * plan.boundary_planes() as f64 / threads as f64;
-    let total = per_cell * plan.cells() as f64 / threads as f64 + curves;
+    let searches = sample_best(&plan, &best) * best.len() as f64 / threads as f64;
+    let total = per_cell * plan.cells() as f64 / threads as f64 + curves + searches;
     writeln!(
         out,
         "time        about {} on {threads} threads ({} cells/s a thread in a timed sample)",
@@ -82,6 +88,18 @@ fn sample_planes(plan: &Plan) -> Result<f64, Failure> {
         done += 1;
     }
     Ok(start.elapsed().as_secs_f64() / done.max(1) as f64)
+}
+
+/// Seconds per plane whose best settings are looked for, on one thread.
+fn sample_best(plan: &Plan, planes: &[Vec<usize>]) -> f64 {
+    let start = Instant::now();
+    let mut done = 0;
+    while start.elapsed() < SAMPLE && done < planes.len() {
+        let index = (spread(done) * planes.len() as f64) as usize;
+        std::hint::black_box(best_of_plane(plan, &planes[index]));
+        done += 1;
+    }
+    start.elapsed().as_secs_f64() / done.max(1) as f64
 }
 
 /// A number in [0, 1) for each sample: multiples of the golden ratio fall evenly, wherever the sampling ends.

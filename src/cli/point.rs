@@ -3,12 +3,14 @@
 use std::io::Write;
 
 use serde::Serialize;
+use slipmap::linear::rightmost::Rightmost;
 use slipmap::linear::stable_delays::StableInterval;
 use slipmap::linear::{Crossings, MarginalTolerance};
-use slipmap::sweep::Parameter;
+use slipmap::sweep::{Parameter, Setting, relaxation_time};
 
 use super::failure::Failure;
 use super::parameters::ParameterArgs;
+use super::say;
 
 /// Stable intervals printed for people; the JSON output has them all, up to `MOST_INTERVALS`.
 const INTERVALS_SHOWN: usize = 12;
@@ -20,6 +22,9 @@ const MOST_INTERVALS: usize = 100_000;
 pub struct Args {
     #[command(flatten)]
     parameters: ParameterArgs,
+    /// How many characteristic roots to list, from the right; pairs count once
+    #[arg(long, value_name = "K", default_value_t = 4, value_parser = clap::value_parser!(u8).range(1..=64))]
+    roots: u8,
     /// One JSON object on standard output; infinities are null
     #[arg(long)]
     json: bool,
@@ -40,6 +45,93 @@ struct Point {
     stable_delays_truncated: bool,
     delay_margin: Option<f64>,
     crossings: Vec<CrossingOut>,
+    #[serde(flatten)]
+    spectrum: Spectrum,
+}
+
+/// The rightmost roots in physical units; null where nothing converged.
+#[derive(Debug, Serialize)]
+struct Spectrum {
+    abscissa: Option<f64>,
+    frequency: Option<f64>,
+    roots: Vec<[f64; 2]>,
+    certified: bool,
+    certificate_margin: Option<f64>,
+    /// Why there are fewer roots than asked for.
+    #[serde(skip)]
+    fewer: Option<String>,
+    /// Some were not found that are there.
+    #[serde(skip)]
+    incomplete: bool,
+}
+
+impl Spectrum {
+    /// The `wanted` rightmost roots, and a remark where some were not found.
+    fn new(setting: &Setting, wanted: u8) -> Result<Self, Failure> {
+        let (groups, time_unit) = setting.groups()?;
+        let tau = setting.get(Parameter::Tau) / time_unit;
+        let count = Crossings::of(groups).count(tau, MarginalTolerance::default());
+        let found = Rightmost::at(groups, tau, wanted.into(), count);
+        let incomplete = found.missing.is_some();
+        let roots: Vec<[f64; 2]> = found
+            .roots
+            .iter()
+            .map(|root| [root.lambda.re / time_unit, root.lambda.im / time_unit])
+            .collect();
+        let fewer = match found.missing {
+            Some(missing) => Some(missing.to_string()),
+            None if tau == 0.0 => Some("there are no others: the delay is 0".into()),
+            None if groups.uncontrolled() => Some("there are no others without control".into()),
+            None => Some("no others can be told from -infinity".into()),
+        };
+        Ok(Self {
+            abscissa: roots.first().map(|root| root[0]),
+            frequency: roots.first().map(|root| root[1]),
+            fewer: fewer.filter(|_| roots.len() < wanted.into()),
+            roots,
+            certified: found.certified,
+            certificate_margin: finite(found.margin),
+            incomplete,
+        })
+    }
+
+    fn print(
+        &self,
+        mut row: impl FnMut(&str, String) -> std::io::Result<()>,
+    ) -> std::io::Result<()> {
+        let certified = match (self.certified, self.certificate_margin) {
+            (true, Some(margin)) => format!(
+                "yes: no root farther right than abscissa + {margin:e} max(1/sqrt(M/kappa), |abscissa|)"
+            ),
+            _ => "no".into(),
+        };
+        row("certified", certified)?;
+        let head = ["re lambda", "im lambda", "relaxation time"];
+        row("roots", head.map(|title| format!("{title:>22}")).concat())?;
+        for [re, im] in &self.roots {
+            let pair = if *im == 0.0 { "" } else { "±" };
+            let cells = [
+                digits(*re),
+                format!("{pair}{}", digits(*im)),
+                digits(relaxation_time(*re)),
+            ];
+            row("", cells.map(|cell| format!("{cell:>22}")).concat())?;
+        }
+        match &self.fewer {
+            Some(why) => row("", why.clone()),
+            None => Ok(()),
+        }
+    }
+}
+
+/// A number with about twelve digits, for a table.
+fn digits(value: f64) -> String {
+    match value.abs() {
+        f64::INFINITY => "infinity".into(),
+        0.0 => "0".into(),
+        1e-4..1e6 => format!("{value:.12}"),
+        _ => format!("{value:.11e}"),
+    }
 }
 
 #[derive(Debug, Serialize)]
@@ -86,7 +178,12 @@ pub fn main(args: &Args) -> Result<(), Failure> {
                 },
             })
             .collect(),
+        spectrum: Spectrum::new(&setting, args.roots)?,
     };
+    let spectrum = &point.spectrum;
+    if let Some(why) = spectrum.fewer.as_ref().filter(|_| spectrum.incomplete) {
+        say::remark(format_args!("warning: {why}"));
+    }
     let mut out = std::io::stdout().lock();
     if args.json {
         let text = serde_json::to_string(&point).map_err(std::io::Error::from)?;
@@ -120,6 +217,10 @@ fn print(out: &mut impl Write, point: &Point) -> std::io::Result<()> {
         None => "infinite: no delay changes stability".into(),
     };
     row("delay_margin", margin)?;
+    let spectrum = &point.spectrum;
+    let or_unknown = |value: Option<f64>| value.map_or("unknown".into(), |v| v.to_string());
+    row("abscissa", or_unknown(spectrum.abscissa))?;
+    row("frequency", or_unknown(spectrum.frequency))?;
     for crossing in &point.crossings {
         let text = format!(
             "to the {} at omega = {}, tau = {} + k {}",
@@ -149,5 +250,5 @@ fn print(out: &mut impl Write, point: &Point) -> std::io::Result<()> {
             format!("and {more} further intervals (--json lists them)"),
         )?;
     }
-    Ok(())
+    point.spectrum.print(row)
 }

@@ -12,7 +12,9 @@
 //! - [`curves`]: crossing curves in a plane of a parameter and the delay, cut at their corners
 //! - [`decay`]: curves of a given degree of stability in such a plane: where max Re λ = −σ
 //! - [`lobes`]: where the stable regions of pure control end
+//! - [`best`]: the settings of fastest decay, for every stable region
 
+pub mod best;
 mod branches;
 pub mod certificate;
 pub mod characteristic;
@@ -24,6 +26,7 @@ pub mod decay;
 pub mod gains;
 pub mod lobes;
 pub mod newton;
+pub mod rightmost;
 mod roots;
 pub mod row;
 pub mod sensitivity;

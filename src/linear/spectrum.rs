@@ -50,13 +50,13 @@ impl RootFinder {
             self.starts.clear();
             self.starts.extend(quadratic_zeros(groups.b, 1.0));
             self.polish_starts(groups, 0.0, line);
-            self.complete(2);
+            self.complete(groups, 0.0, 2);
             return Ok(&self.roots);
         }
         let count = roots_right_of(groups, tau, line).ok_or(incomplete)?;
         starting_values(groups, tau, line, &mut self.starts);
         self.polish_starts(groups, tau, line);
-        if self.complete(count) {
+        if self.complete(groups, tau, count) {
             return Ok(&self.roots);
         }
         let mut nodes = nodes_for(tau, root_bound(groups, tau, line)).ok_or(incomplete)?;
@@ -64,7 +64,7 @@ impl RootFinder {
         for _ in 0..COLLOCATIONS {
             self.starts = eigenvalues(groups, tau, nodes).ok_or(incomplete)?;
             self.polish_starts(groups, tau, line);
-            if self.complete(count) {
+            if self.complete(groups, tau, count) {
                 return Ok(&self.roots);
             }
             nodes += nodes / 2;
@@ -93,10 +93,9 @@ impl RootFinder {
         for i in 0..self.starts.len() {
             let added = self.polish_start(groups, tau, line, self.starts[i]);
             if let Some(root) = added.filter(Root::nearly_multiple) {
-                // Two roots next to one another: D is nearly a parabola, which tells where the other one is.
-                let jet = Jet::at(groups, tau, root.lambda);
-                let twin = root.lambda - 2.0 * divide(jet.first, jet.second);
-                self.polish_start(groups, tau, line, twin);
+                for neighbour in neighbours(groups, tau, root.lambda) {
+                    self.polish_start(groups, tau, line, neighbour);
+                }
             }
         }
         self.roots.sort_by(|p, q| {
@@ -125,14 +124,11 @@ impl RootFinder {
         Some(root)
     }
 
-    /// Whether the roots are `count`; a root that is multiple to rounding is repeated as often as that takes.
-    fn complete(&mut self, count: u64) -> bool {
+    /// Whether the roots are `count`; a root that is multiple to rounding is repeated as often as it counts.
+    fn complete(&mut self, groups: Groups, tau: f64, count: u64) -> bool {
         let found: u64 = self.roots.iter().map(Root::count).sum();
-        let Some(missing) = count.checked_sub(found) else {
-            return false;
-        };
-        if missing == 0 {
-            return true;
+        if found >= count {
+            return found == count;
         }
         let mut multiple = self
             .roots
@@ -142,15 +138,34 @@ impl RootFinder {
         let (Some((place, &root)), None) = (multiple.next(), multiple.next()) else {
             return false;
         };
-        let times = missing / root.count();
-        if missing % root.count() != 0 || times > 2 {
+        // Two or three in one place: as many as lie between two lines as near as rounding allows.
+        let right_of = |distance: f64| roots_right_of(groups, tau, root.lambda.re + distance);
+        let near = 16.0 * root.error;
+        let (Some(right), Some(left)) = (right_of(near), right_of(-near)) else {
+            return false;
+        };
+        let together = left - right.min(left);
+        if together != root.count() + count - found || together % root.count() != 0 {
             return false;
         }
-        for _ in 0..times {
+        for _ in 1..together / root.count() {
             self.roots.insert(place, root);
         }
         true
     }
+}
+
+/// Where the roots next to the root `lambda` are, of the cubic that touches D there.
+fn neighbours(groups: Groups, tau: f64, lambda: Complex64) -> impl Iterator<Item = Complex64> {
+    let jet = Jet::at(groups, tau, lambda);
+    let third = tau * tau * jet.delayed * (3.0 * groups.a_v - tau * jet.feedback);
+    // D′ + D″ s/2 + D‴ s²/6 = 0.
+    let (half, sixth) = (0.5 * jet.second, third / 6.0);
+    let root = (half * half - 4.0 * sixth * jet.first).sqrt();
+    [half + root, half - root]
+        .into_iter()
+        .map(move |d| lambda - 2.0 * divide(jet.first, d))
+        .filter(|z| z.re.is_finite() && z.im.is_finite())
 }
 
 /// A line with at least `wanted` roots to its right and few more; at or a little right of `leftmost` where there are fewer.

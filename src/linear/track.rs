@@ -132,18 +132,14 @@ impl RootTracker {
         status: &mut [u8],
         mut visit: impl FnMut(usize, Cell),
     ) {
-        // Without control every delay is as none: e^(−λτ) must not overflow where nothing depends on it.
-        let per_unit = if groups.uncontrolled() {
-            0.0
-        } else {
-            1.0 / time_unit
-        };
+        let controlled = !groups.uncontrolled();
         let unstable = UnstableCount::new(groups);
         self.work.cells += delays.len() as u64;
         for (i, ((delay, &count), status)) in
             delays.iter().zip(counts).zip(status.iter_mut()).enumerate()
         {
-            let tau = delay * per_unit;
+            // Without control every delay is as none: e^(−λτ) must not overflow where nothing depends on it.
+            let tau = if controlled { delay / time_unit } else { 0.0 };
             // Where control begins to act there are more roots than before.
             let fresh = i == 0 || (first + i).is_multiple_of(BLOCK) || self.tau == 0.0;
             let tracked = if !fresh && self.advance(groups, tau) {
@@ -242,6 +238,10 @@ impl RootTracker {
             self.seed(groups, tau, 2 * self.wanted as u64, f64::NEG_INFINITY)?;
         }
         self.expected = self.wanted.min(self.followed);
+        // With control and delay there are infinitely many roots.
+        if self.expected < self.wanted && tau > 0.0 {
+            return Err(Doubt::Undecided);
+        }
         self.choose();
         Ok(())
     }

@@ -56,6 +56,17 @@ pub fn seconds(s: f64) -> String {
     }
 }
 
+/// A number in full if that is short, else with four digits.
+#[must_use]
+pub fn short(value: f64) -> String {
+    let plain = format!("{value}");
+    if plain.len() <= 8 {
+        plain
+    } else {
+        format!("{value:.3e}")
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -71,6 +82,8 @@ mod tests {
         assert_eq!(bytes(3_000_000_000), "3.00 GB");
         assert_eq!(seconds(0.123), "0.12 s");
         assert_eq!(seconds(200.0), "3 min 20 s");
+        assert_eq!(short(-0.25), "-0.25");
+        assert_eq!(short(1.0 / 3.0), "3.333e-1");
         assert_eq!(seconds(18_720.0), "5 h 12 min");
     }
 }

@@ -1,5 +1,6 @@
 //! A small picture of a map for the terminal.
 
+use super::numbers::short;
 use crate::store::map_file::{MapAxis, Plane};
 use crate::store::{MapFile, StoreError};
 use crate::sweep::{Field, Parameter};
@@ -16,20 +17,26 @@ const COLOURS: [u8; 5] = [37, 230, 180, 136, 250];
 /// The same without colours.
 const SHADES: [char; 5] = ['█', ' ', '░', '▒', '?'];
 
-/// What the map looks like, in text of at most 19 lines and `width` columns; none where the map holds no numbers of unstable
-/// roots or fewer than two axes with more than one value. `colour`: with ANSI escapes, two rows of cells in each line.
+/// What the map looks like, in text of at most 19 lines and `width` columns; none where the map does not tell what is stable,
+/// or has fewer than two axes with more than one value. `colour`: with ANSI escapes, two rows of cells in each line.
 ///
 /// Axes outside the plane are held at their middle value.
 ///
 /// # Errors
 /// When the map cannot be read.
 pub fn preview(map: &MapFile, width: usize, colour: bool) -> Result<Option<String>, StoreError> {
-    let Some((x, y)) = plane_axes(map).filter(|_| map.fields().contains(&Field::NUnstable)) else {
+    let (Some((x, y)), Some(field)) = (plane_axes(map), map.stability_field()) else {
         return Ok(None);
     };
     let index: Vec<usize> = map.axes().iter().map(|a| a.values.len() / 2).collect();
-    let plane = map.plane(Field::NUnstable, &index, (y, x), MOST_CELLS)?;
-    let captions = Captions::new(map, (x, y), &index);
+    let mut plane = map.plane(field, &index, (y, x), MOST_CELLS)?;
+    if !field.is_count() {
+        plane
+            .cells
+            .iter_mut()
+            .for_each(|v| *v = as_count(field, *v));
+    }
+    let captions = Captions::new(map, (x, y), &index, field);
     let Some(columns) = width.checked_sub(captions.margin + 2) else {
         return Ok(None);
     };
@@ -43,6 +50,14 @@ pub fn preview(map: &MapFile, width: usize, colour: bool) -> Result<Option<Strin
         shaded(&plane, columns)
     };
     Ok(Some(captions.around(&picture, columns, colour)))
+}
+
+/// The least number of unstable roots that goes with a value.
+fn as_count(field: Field, value: f64) -> f64 {
+    match field.tells_stable(value) {
+        Some(stable) if !value.is_nan() => f64::from(u8::from(!stable)),
+        _ => f64::NAN,
+    }
 }
 
 /// The axes from left to right and from bottom to top.
@@ -114,10 +129,12 @@ struct Captions {
     x: String,
     ends: (String, String),
     margin: usize,
+    /// What the shades mean.
+    kinds: &'static [&'static str],
 }
 
 impl Captions {
-    fn new(map: &MapFile, (x, y): (usize, usize), index: &[usize]) -> Self {
+    fn new(map: &MapFile, (x, y): (usize, usize), index: &[usize], field: Field) -> Self {
         let (x_axis, y_axis) = (&map.axes()[x], &map.axes()[y]);
         let (bottom, top) = ends(y_axis);
         let y_symbol = y_axis.parameter.symbol();
@@ -136,6 +153,11 @@ impl Captions {
             margin: margin.into_iter().max().unwrap_or(0),
             top,
             bottom,
+            kinds: if field.is_count() {
+                &["stable", "2", "4", "6 or more unstable roots"]
+            } else {
+                &["stable", "unstable"]
+            },
         }
     }
 
@@ -153,7 +175,7 @@ impl Captions {
         let (left, right) = &self.ends;
         let middle = columns.saturating_sub(left.chars().count() + right.chars().count());
         text += &format!("{:margin$} {left}{:^middle$}{right}\n", "", self.x);
-        text + &format!("{:margin$} {}\n", "", key(colour))
+        text + &format!("{:margin$} {}\n", "", key(self.kinds, colour))
     }
 }
 
@@ -167,17 +189,7 @@ fn ends(axis: &MapAxis) -> (String, String) {
     (short(low), short(high))
 }
 
-fn short(value: f64) -> String {
-    let plain = format!("{value}");
-    if plain.len() <= 8 {
-        plain
-    } else {
-        format!("{value:.3e}")
-    }
-}
-
-fn key(colour: bool) -> String {
-    let names = ["stable", "2", "4", "6 or more unstable roots"];
+fn key(names: &[&str], colour: bool) -> String {
     let entries = names.iter().zip(COLOURS).zip(SHADES);
     let entry = |((name, code), shade): ((&&str, u8), char)| match colour {
         true => format!("\x1b[38;5;{code}m██\x1b[0m {name}"),

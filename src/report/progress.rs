@@ -119,6 +119,10 @@ impl Observer for Progress {
                     ));
                 }
             }
+            Event::BestFound { planes: 1 } => self.line("the best setting"),
+            Event::BestFound { planes } => {
+                self.line(&format!("best settings in {} planes", grouped(*planes)));
+            }
             Event::TileDone { cells } => self.advanced(*cells),
             Event::Finished => self.clear(),
         }

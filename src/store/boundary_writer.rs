@@ -340,7 +340,7 @@ fn push_each<T: Copy>(columns: &mut [Column<T>], values: &[T]) {
     }
 }
 
-fn put_flags(dataset: &Dataset, values: &[i8], meanings: &str) -> hdf5::Result<()> {
+pub(super) fn put_flags(dataset: &Dataset, values: &[i8], meanings: &str) -> hdf5::Result<()> {
     put_numbers(dataset, "flag_values", values)?;
     put_text(dataset, "flag_meanings", meanings)
 }

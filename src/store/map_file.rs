@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use hdf5::{Dataset, File, H5Type, Hyperslab, SliceOrIndex};
+use hdf5::{Dataset, File, Group, H5Type, Hyperslab, SliceOrIndex};
 
 use super::attributes::text;
 use super::error::StoreError;
@@ -125,6 +125,13 @@ impl MapFile {
         &self.fields
     }
 
+    /// A field that says where sliding is stable; none where the map holds no such field.
+    #[must_use]
+    pub fn stability_field(&self) -> Option<Field> {
+        let mut fields = self.fields.iter().copied();
+        fields.find(|field| field.tells_stable(0.0).is_some())
+    }
+
     /// Number of cells.
     #[must_use]
     pub fn cells(&self) -> u64 {
@@ -176,7 +183,7 @@ impl MapFile {
             .collect()
     }
 
-    fn dataset(&self, name: &str) -> Result<Dataset, StoreError> {
+    pub(super) fn dataset(&self, name: &str) -> Result<Dataset, StoreError> {
         self.file
             .dataset(name)
             .map_err(StoreError::hdf5(format!("read {name} of"), &self.path))
@@ -223,17 +230,7 @@ impl MapFile {
             false => thinned(row_axis),
         };
         let dataset = self.dataset(field.name())?;
-        let cells: Vec<f64> = match field {
-            Field::NUnstable => self
-                .read::<u16>(&dataset, slab)?
-                .into_iter()
-                .map(|n| match n {
-                    N_UNSTABLE_FILL => f64::NAN,
-                    n => f64::from(n),
-                })
-                .collect(),
-            Field::DelayMargin => self.read::<f64>(&dataset, slab)?,
-        };
+        let cells = self.read_field(field, &dataset, slab)?;
         let cells = if row_axis > column_axis {
             transposed(&cells, columns.len(), rows.len())
         } else {
@@ -246,7 +243,26 @@ impl MapFile {
         })
     }
 
-    fn read<T: H5Type>(
+    /// Cells of a field as numbers: fill values are NaN.
+    pub(super) fn read_field(
+        &self,
+        field: Field,
+        dataset: &Dataset,
+        slab: Vec<SliceOrIndex>,
+    ) -> Result<Vec<f64>, StoreError> {
+        if !field.is_count() {
+            return self.read(dataset, slab);
+        }
+        let counts = self.read::<u16>(dataset, slab)?.into_iter();
+        Ok(counts
+            .map(|n| match n {
+                N_UNSTABLE_FILL => f64::NAN,
+                n => f64::from(n),
+            })
+            .collect())
+    }
+
+    pub(super) fn read<T: H5Type>(
         &self,
         dataset: &Dataset,
         slab: Vec<SliceOrIndex>,
@@ -257,33 +273,20 @@ impl MapFile {
         Ok(array.into_raw_vec_and_offset().0)
     }
 
-    /// Number of cells with each bit of the status, in the order of [`crate::linear::status::FLAGS`], read piece by piece.
-    ///
-    /// # Errors
-    /// When the file is damaged.
-    pub fn status_counts(&self) -> Result<[u64; 6], StoreError> {
-        let dataset = self.dataset(STATUS)?;
-        let mut counts = [0; 6];
-        let chunk = dataset.chunk().unwrap_or_else(|| dataset.shape());
-        let shape = dataset.shape();
-        for_each_chunk(&shape, &chunk, |slab| {
-            let cells = dataset
-                .read_slice::<u8, _, _>(Hyperslab::from(slab))
-                .map(|array: ndarray::ArrayD<u8>| array.into_raw_vec_and_offset().0)
-                .map_err(StoreError::hdf5("read", &self.path))?;
-            for (count, (mask, _)) in counts.iter_mut().zip(crate::linear::status::FLAGS) {
-                *count += cells.iter().filter(|&&s| s & mask != 0).count() as u64;
-            }
-            Ok(())
-        })?;
-        Ok(counts)
-    }
-
     /// The axes of the planes in which the map holds crossing curves; none where it holds no curves.
     #[must_use]
     pub fn boundary_plane(&self) -> Option<(usize, usize)> {
-        let group = self.file.group(BOUNDARIES).ok()?;
-        let plane = text(&group, PLANE).ok()?;
+        self.plane_of(BOUNDARIES)
+    }
+
+    /// A group of the file.
+    pub(super) fn group(&self, name: &str) -> hdf5::Result<Group> {
+        self.file.group(name)
+    }
+
+    /// The axes that a group names as spanning its planes.
+    pub(super) fn plane_of(&self, group: &str) -> Option<(usize, usize)> {
+        let plane = text(&*self.group(group).ok()?, PLANE).ok()?;
         let mut axes = plane
             .split_whitespace()
             .map(|name| self.axes.iter().position(|a| a.parameter.name() == name));
@@ -392,39 +395,4 @@ fn transposed(cells: &[f64], rows: usize, columns: usize) -> Vec<f64> {
     (0..columns)
         .flat_map(|c| (0..rows).map(move |r| cells[r * columns + c]))
         .collect()
-}
-
-/// Every chunk of a dataset as a hyperslab, cut at the dataset's edges.
-fn for_each_chunk<E>(
-    shape: &[usize],
-    chunk: &[usize],
-    mut visit: impl FnMut(Vec<SliceOrIndex>) -> Result<(), E>,
-) -> Result<(), E> {
-    let mut offset = vec![0; shape.len()];
-    loop {
-        let slab = offset
-            .iter()
-            .zip(chunk)
-            .zip(shape)
-            .map(|((&start, &length), &end)| SliceOrIndex::SliceTo {
-                start,
-                step: 1,
-                end: (start + length).min(end),
-                block: 1,
-            })
-            .collect();
-        visit(slab)?;
-        let mut axis = shape.len();
-        loop {
-            if axis == 0 {
-                return Ok(());
-            }
-            axis -= 1;
-            offset[axis] += chunk[axis];
-            if offset[axis] < shape[axis] {
-                break;
-            }
-            offset[axis] = 0;
-        }
-    }
 }

@@ -8,6 +8,7 @@ use hdf5_sys::h5d::H5Dwrite_chunk;
 use hdf5_sys::h5p::H5P_DEFAULT;
 
 use super::attributes::{put_numbers, put_text};
+use super::best_writer::BestWriter;
 use super::boundary_writer::BoundaryWriter;
 use super::codec::{Chunk, ChunkCodec, DEFLATE_LEVEL};
 use super::error::StoreError;
@@ -15,6 +16,7 @@ use super::netcdf::{DimensionId, Dimensions, named};
 use super::output::Output;
 use super::schema::{self, STATUS, root};
 use crate::linear::status::FLAGS;
+use crate::sweep::best::BestSettings;
 use crate::sweep::boundaries::BoundaryPlane;
 use crate::sweep::engine::{Encode, N_UNSTABLE_FILL, STATUS_FILL, Sink, TileBuffers};
 use crate::sweep::tile::Tile;
@@ -38,6 +40,7 @@ pub struct MapWriter<'p> {
     file: File,
     dimensions: Dimensions,
     boundaries: Option<BoundaryWriter>,
+    best: Option<BestWriter>,
     /// The datasets in the order in which encoders give their chunks.
     datasets: Vec<Dataset>,
     output: Output,
@@ -56,13 +59,14 @@ impl<'p> MapWriter<'p> {
         let failed = |error| StoreError::hdf5("write", output.path())(error);
         let file = create_file(output.part()).map_err(failed)?;
         let mut dimensions = Dimensions::default();
-        let (datasets, boundaries) =
+        let (datasets, boundaries, best) =
             fill_file(&file, plan, provenance, &mut dimensions).map_err(failed)?;
         Ok(Self {
             plan,
             file,
             dimensions,
             boundaries,
+            best,
             datasets,
             output,
         })
@@ -78,12 +82,15 @@ impl<'p> MapWriter<'p> {
             if let Some(boundaries) = &self.boundaries {
                 boundaries.finish(&self.dimensions)?;
             }
+            if let Some(best) = &self.best {
+                best.finish()?;
+            }
             self.dimensions.finish()?;
             self.file.flush()
         };
         close().map_err(StoreError::hdf5("write", &path))?;
         // All handles, so that the file is closed before it is renamed.
-        drop((self.datasets, self.boundaries, self.dimensions));
+        drop((self.datasets, self.boundaries, self.best, self.dimensions));
         self.file
             .close()
             .map_err(StoreError::hdf5("close", &path))?;
@@ -101,7 +108,7 @@ fn create_file(path: &Path) -> hdf5::Result<File> {
         .create(path)
 }
 
-type Contents = (Vec<Dataset>, Option<BoundaryWriter>);
+type Contents = (Vec<Dataset>, Option<BoundaryWriter>, Option<BestWriter>);
 
 fn fill_file(
     file: &File,
@@ -127,7 +134,7 @@ fn fill_file(
         file,
         plan,
         dimensions,
-        axes,
+        axes: axes.clone(),
         scalars,
     };
     let mut datasets = Vec::new();
@@ -139,7 +146,11 @@ fn fill_file(
         .boundary_plane
         .map(|plane| BoundaryWriter::create(file, dimensions, plan, plane))
         .transpose()?;
-    Ok((datasets, boundaries))
+    let best = plan
+        .best_plane()
+        .map(|plane| BestWriter::create(file, dimensions, &axes, plan, plane))
+        .transpose()?;
+    Ok((datasets, boundaries, best))
 }
 
 fn put_root(file: &File, plan: &Plan, provenance: &Provenance) -> hdf5::Result<()> {
@@ -185,7 +196,11 @@ fn put_scalars(file: &File, plan: &Plan) -> hdf5::Result<String> {
     Ok(names.join(" "))
 }
 
-fn describe_parameter(dataset: &Dataset, parameter: Parameter, plan: &Plan) -> hdf5::Result<()> {
+pub(super) fn describe_parameter(
+    dataset: &Dataset,
+    parameter: Parameter,
+    plan: &Plan,
+) -> hdf5::Result<()> {
     put_text(dataset, "long_name", parameter.long_name())?;
     put_text(dataset, "units", &plan.spec.units.of_parameter(parameter))
 }
@@ -201,16 +216,15 @@ struct Variables<'a> {
 
 impl Variables<'_> {
     fn field(&mut self, field: Field) -> hdf5::Result<Dataset> {
-        let dataset = match field {
-            Field::NUnstable => self.variable(field.name(), N_UNSTABLE_FILL)?,
-            Field::DelayMargin => self.variable(field.name(), f64::NAN)?,
+        let dataset = match field.is_count() {
+            true => self.variable(field.name(), N_UNSTABLE_FILL)?,
+            false => self.variable(field.name(), f64::NAN)?,
         };
-        put_text(&dataset, "long_name", schema::long_name(field))?;
-        put_text(
-            &dataset,
-            "units",
-            &schema::unit(field, &self.plan.spec.units),
-        )?;
+        put_text(&dataset, "long_name", &field.long_name())?;
+        put_text(&dataset, "units", &field.unit(&self.plan.spec.units))?;
+        if let Some(comment) = field.comment() {
+            put_text(&dataset, "comment", comment)?;
+        }
         put_text(&dataset, "ancillary_variables", STATUS)?;
         Ok(dataset)
     }
@@ -265,12 +279,12 @@ impl Encode for TileEncoder {
     type Encoded = EncodedTile;
 
     fn encode(&mut self, buffers: &TileBuffers) -> EncodedTile {
-        let mut chunks = Vec::with_capacity(3);
+        let mut chunks = Vec::with_capacity(2 + buffers.columns.len());
         if let Some(n) = &buffers.n_unstable {
             chunks.push(self.codec.encode(n));
         }
-        if let Some(margin) = &buffers.delay_margin {
-            chunks.push(self.codec.encode(margin));
+        for column in &buffers.columns {
+            chunks.push(self.codec.encode(&column.cells));
         }
         chunks.push(self.codec.encode(&buffers.status));
         EncodedTile(chunks)
@@ -293,6 +307,13 @@ impl Sink for MapWriter<'_> {
                 .map_err(StoreError::hdf5("write", self.output.path())),
             None => Ok(()),
         }
+    }
+
+    fn write_best(&mut self, planes: &[Option<BestSettings>]) -> Result<(), StoreError> {
+        if let Some(best) = &mut self.best {
+            best.append(planes);
+        }
+        Ok(())
     }
 
     fn write_tile(&mut self, tile: &Tile, encoded: EncodedTile) -> Result<(), StoreError> {

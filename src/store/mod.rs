@@ -6,16 +6,21 @@
 //! - [`output`]: the temporary name, the lock, the final rename
 
 mod attributes;
+mod best_reader;
+mod best_writer;
 mod boundary_writer;
 mod codec;
 mod error;
 pub mod map_file;
+mod map_summary;
 pub mod map_writer;
 mod netcdf;
 pub mod output;
 pub mod schema;
 
+pub use best_reader::MapBest;
 pub use error::StoreError;
 pub use map_file::MapFile;
+pub use map_summary::FieldSummary;
 pub use map_writer::MapWriter;
 pub use output::Output;

@@ -1,7 +1,4 @@
-//! Names and meanings in a map file, and the version of its format.
-
-use crate::sweep::Field;
-use crate::sweep::parameter::Units;
+//! Names in a map file that are not those of a parameter or field, and the version of its format.
 
 /// Version of the layout described here, which is written. 2: [`DEGREE_OF_STABILITY`] of every curve.
 pub const FORMAT_VERSION: i32 = 2;
@@ -42,30 +39,32 @@ pub const STATUS: &str = "status";
 /// Name of the group of crossing curves.
 pub const BOUNDARIES: &str = "boundaries";
 
-/// Attribute of that group: the two axes that span the planes of the curves, the parameter and the delay.
+/// Name of the group of best settings.
+pub const BEST: &str = "best";
+
+/// Variables of that group, besides the gain and the delay.
+pub mod best {
+    /// The spectral abscissa.
+    pub const ABSCISSA: &str = "abscissa";
+    /// The lowest frequency among the rightmost roots.
+    pub const FREQUENCY: &str = "frequency";
+    /// −1/abscissa.
+    pub const RELAXATION_TIME: &str = "relaxation_time";
+    /// Number of the [`crate::linear::best::Kind`].
+    pub const KIND: &str = "kind";
+    /// Whether the argument principle confirms the abscissa.
+    pub const CERTIFIED: &str = "certified";
+    /// Number of stable regions of the plane.
+    pub const REGIONS: &str = "regions";
+}
+
+/// Value of the flags and counts of that group where nothing was found.
+pub const BEST_FLAG_FILL: i8 = -1;
+
+/// Attribute of both groups: the two axes that span the planes, the parameter and the delay.
 pub const PLANE: &str = "plane";
 
 /// σ of each curve: roots on it have Re λ = −σ. Absent before format version 2, where it is 0.
 pub const DEGREE_OF_STABILITY: &str = "degree_of_stability";
 /// σ of the curves that meet in a corner.
 pub const CORNER_DEGREE_OF_STABILITY: &str = "corner_degree_of_stability";
-
-/// What a field is, for `long_name`.
-#[must_use]
-pub fn long_name(field: Field) -> &'static str {
-    match field {
-        Field::NUnstable => "number of characteristic roots with positive real part",
-        Field::DelayMargin => {
-            "distance in delay to the nearest change of stability, positive where stable"
-        }
-    }
-}
-
-/// The unit of a field.
-#[must_use]
-pub fn unit(field: Field, units: &Units) -> String {
-    match field {
-        Field::NUnstable => "1".into(),
-        Field::DelayMargin => units.time(),
-    }
-}

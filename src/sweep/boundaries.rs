@@ -34,7 +34,12 @@ pub struct DegreeCurves {
 /// The planes of a plan in order, as indices along every axis. Empty where none are traced.
 #[must_use]
 pub fn planes(plan: &Plan) -> Vec<Vec<usize>> {
-    let Some((p, tau)) = plan.boundary_plane else {
+    planes_spanned(plan, plan.boundary_plane)
+}
+
+/// Every setting of the axes outside a plane, as indices along every axis; none without a plane.
+pub(super) fn planes_spanned(plan: &Plan, plane: Option<(usize, usize)>) -> Vec<Vec<usize>> {
+    let Some((p, tau)) = plane else {
         return Vec::new();
     };
     let mut extent = plan.shape().to_vec();

@@ -1,22 +1,18 @@
 //! The sweep engine: tiles computed over threads, handed one by one to a sink.
 
-use std::ops::Range;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
 
 use rayon::prelude::*;
 use rayon::{ThreadPool, ThreadPoolBuilder};
 
+use super::best::{BestSettings, best_of_plane, best_planes};
 use super::boundaries::{BoundaryPlane, planes, trace_plane};
 use super::events::{Event, Observer};
-use super::field::Field;
-use super::parameter::{Parameter, Setting};
 use super::plan::Plan;
-use super::tile::{Tile, for_each_index};
-use crate::linear::Crossings;
-use crate::linear::row::Delays;
-use crate::linear::status::NOT_CONVERGED;
-use crate::model::{Groups, ModelError, Oscillator, SlidingPoint};
+use super::tile::Tile;
+pub use super::worker::{Column, N_UNSTABLE_FILL, STATUS_FILL, TileBuffers, Worker};
+use crate::model::ModelError;
 
 /// Planes of crossing curves that are held in memory at a time.
 const PLANES_AT_ONCE: usize = 16;
@@ -41,6 +37,12 @@ pub trait Sink {
     /// Ends the sweep.
     fn write_boundaries(&mut self, planes: &[BoundaryPlane]) -> Result<(), Self::Error>;
 
+    /// Takes the best settings of the next planes, in order.
+    ///
+    /// # Errors
+    /// Ends the sweep.
+    fn write_best(&mut self, planes: &[Option<BestSettings>]) -> Result<(), Self::Error>;
+
     /// Takes a tile. Tiles come in no particular order.
     ///
     /// # Errors
@@ -55,46 +57,6 @@ pub trait Encode: Send {
 
     /// Encodes the buffers of a tile.
     fn encode(&mut self, buffers: &TileBuffers) -> Self::Encoded;
-}
-
-/// The cells of one tile, in memory in the order of its strides. Cells beyond the map hold fill values.
-#[derive(Debug, Clone)]
-pub struct TileBuffers {
-    /// Status of each cell, see [`crate::linear::status`].
-    pub status: Vec<u8>,
-    /// Number of unstable roots, if asked for.
-    pub n_unstable: Option<Vec<u16>>,
-    /// Distance to the nearest change of stability, if asked for.
-    pub delay_margin: Option<Vec<f64>>,
-}
-
-/// Value of `n_unstable` in cells that are not computed.
-pub const N_UNSTABLE_FILL: u16 = u16::MAX;
-/// Value of `status` in cells that are not computed.
-pub const STATUS_FILL: u8 = u8::MAX;
-
-impl TileBuffers {
-    /// Buffers for tiles of `plan`, all fill values.
-    #[must_use]
-    pub fn new(plan: &Plan) -> Self {
-        let cells = plan.tiles.tile_cells();
-        let wants = |field| plan.spec.fields.contains(&field);
-        Self {
-            status: vec![STATUS_FILL; cells],
-            n_unstable: wants(Field::NUnstable).then(|| vec![N_UNSTABLE_FILL; cells]),
-            delay_margin: wants(Field::DelayMargin).then(|| vec![f64::NAN; cells]),
-        }
-    }
-
-    fn clear(&mut self) {
-        self.status.fill(STATUS_FILL);
-        if let Some(n) = &mut self.n_unstable {
-            n.fill(N_UNSTABLE_FILL);
-        }
-        if let Some(margin) = &mut self.delay_margin {
-            margin.fill(f64::NAN);
-        }
-    }
 }
 
 /// Why a sweep ended before its last tile.
@@ -144,6 +106,7 @@ pub fn run<S: Sink>(
         threads,
     });
     run_boundaries(plan, &pool, sink, observer, stop)?;
+    run_best(plan, &pool, sink, observer, stop)?;
     run_tiles(plan, &pool, sink, observer, stop)?;
     observer.event(&Event::Finished);
     Ok(())
@@ -186,6 +149,35 @@ fn run_boundaries<S: Sink>(
             pieces,
             corners,
             planes_left_out,
+        });
+    }
+    Ok(())
+}
+
+fn run_best<S: Sink>(
+    plan: &Plan,
+    pool: &ThreadPool,
+    sink: &mut S,
+    observer: &dyn Observer,
+    stop: &AtomicBool,
+) -> Result<(), RunError<S::Error>> {
+    let planes = best_planes(plan);
+    for batch in planes.chunks(PLANES_AT_ONCE) {
+        let found: Vec<Option<BestSettings>> = pool.install(|| {
+            batch
+                .par_iter()
+                .filter(|_| !stop.load(Ordering::Relaxed))
+                .map(|index| best_of_plane(plan, index))
+                .collect()
+        });
+        if found.len() < batch.len() {
+            return Err(RunError::Interrupted);
+        }
+        sink.write_best(&found).map_err(RunError::Sink)?;
+    }
+    if plan.best_plane().is_some() {
+        observer.event(&Event::BestFound {
+            planes: planes.len() as u64,
         });
     }
     Ok(())
@@ -253,199 +245,4 @@ fn write_all<S: Sink>(
         });
     }
     Ok(())
-}
-
-/// Computes tiles into buffers of its own, which it reuses.
-pub struct Worker<'p> {
-    plan: &'p Plan,
-    lines: Lines<'p>,
-    /// The delays of the tile computed last, and which of the plan's they are.
-    delays: Delays,
-    delay_range: Range<usize>,
-    strides: Vec<usize>,
-    /// Cells between neighbouring delays.
-    stride: usize,
-    /// The cells of the tile computed last.
-    pub buffers: TileBuffers,
-    /// Every status in the buffers is zero.
-    unflagged: bool,
-    row: RowBuffers,
-}
-
-/// The groups of one line after the other. What does not change from line to line is not computed again.
-struct Lines<'p> {
-    plan: &'p Plan,
-    setting: Setting,
-    /// Index of the setting along each axis.
-    index: Vec<usize>,
-    /// What the gains do not change.
-    uncontrolled: Option<Result<(Oscillator, SlidingPoint), ModelError>>,
-}
-
-impl<'p> Lines<'p> {
-    fn new(plan: &'p Plan) -> Self {
-        let index = vec![0; plan.spec.axes.len()];
-        Self {
-            plan,
-            setting: plan.setting(&index),
-            index,
-            uncontrolled: None,
-        }
-    }
-
-    /// The groups of the line at `offset` + `inside`, and its unit of time.
-    #[inline(always)]
-    fn groups(&mut self, offset: &[usize], inside: &[usize]) -> Result<(Groups, f64), ModelError> {
-        for (axis, known) in self.index.iter_mut().enumerate() {
-            let index = offset[axis] + inside[axis];
-            if *known != index {
-                *known = index;
-                let axis = &self.plan.spec.axes[axis];
-                self.setting.set(axis.parameter, axis.values[index]);
-                if !matches!(
-                    axis.parameter,
-                    Parameter::AlphaV | Parameter::AlphaN | Parameter::Tau
-                ) {
-                    self.uncontrolled = None;
-                }
-            }
-        }
-        let setting = &self.setting;
-        let uncontrolled = self
-            .uncontrolled
-            .get_or_insert_with(|| Ok((setting.oscillator()?, setting.sliding_point()?)));
-        let (oscillator, sliding) = uncontrolled.as_ref().map_err(Clone::clone)?;
-        let groups = oscillator.groups(*sliding, setting.control());
-        Ok((groups, oscillator.time_unit()))
-    }
-}
-
-/// One row on its way to a tile whose delays are not next to one another in memory.
-struct RowBuffers {
-    status: Vec<u8>,
-    n_unstable: Vec<u16>,
-    delay_margin: Vec<f64>,
-}
-
-impl<'p> Worker<'p> {
-    /// A worker with buffers for the tiles of `plan`.
-    #[must_use]
-    pub fn new(plan: &'p Plan) -> Self {
-        let delay_range = plan.delay_range(&plan.tiles.tile(0));
-        let longest = delay_range.len();
-        let strides = plan.tiles.strides();
-        Self {
-            plan,
-            lines: Lines::new(plan),
-            delays: Delays::new(&plan.delays(delay_range.clone())),
-            delay_range,
-            stride: plan.tau_axis.map_or(1, |axis| strides[axis]),
-            strides,
-            buffers: TileBuffers::new(plan),
-            unflagged: false,
-            row: RowBuffers {
-                status: vec![0; longest],
-                n_unstable: vec![0; longest],
-                delay_margin: vec![0.0; longest],
-            },
-        }
-    }
-
-    /// Computes every cell of `tile`.
-    pub fn compute(&mut self, tile: &Tile) {
-        let range = self.plan.delay_range(tile);
-        if range != self.delay_range {
-            self.delays = Delays::new(&self.plan.delays(range.clone()));
-            self.delay_range = range;
-        }
-        let whole = tile.cells() == self.plan.tiles.tile_cells() as u64;
-        if !whole {
-            self.buffers.clear();
-        } else if !self.unflagged {
-            self.buffers.status.fill(0);
-        }
-        self.unflagged = whole;
-        for_each_index(&tile.extent, self.plan.tau_axis, |inside| {
-            let at: usize = inside.iter().zip(&self.strides).map(|(i, s)| i * s).sum();
-            match self.lines.groups(&tile.offset, inside) {
-                Ok((groups, time_unit)) => self.fill_line(groups, time_unit, at),
-                Err(_) => self.refuse_line(at),
-            }
-        });
-    }
-
-    /// Computes the cells of a line into the buffers from place `at` on.
-    #[inline]
-    fn fill_line(&mut self, groups: Groups, time_unit: f64, at: usize) {
-        let mut crossings = Crossings::of(groups);
-        // Dimensionless sweeps, the most common ones, need no scaling.
-        if time_unit != 1.0 {
-            crossings = crossings.in_physical_time(time_unit);
-        }
-        match self.stride {
-            1 => self.fill_in_place(&crossings, at),
-            stride => self.fill_by_row(&crossings, at, stride),
-        }
-    }
-
-    fn fill_in_place(&mut self, crossings: &Crossings, at: usize) {
-        let delays = &self.delays;
-        let to = at + delays.values().len();
-        let tolerance = self.plan.spec.tolerance;
-        let status = &mut self.buffers.status[at..to];
-        let n = match &mut self.buffers.n_unstable {
-            Some(n) => &mut n[at..to],
-            None => &mut self.row.n_unstable[..to - at],
-        };
-        if !self.unflagged {
-            status.fill(0);
-        }
-        let flagged = crossings.fill_counts(delays, tolerance, n, status);
-        self.unflagged &= !flagged;
-        if let Some(margin) = &mut self.buffers.delay_margin {
-            crossings.fill_delay_margins(delays, &mut margin[at..to]);
-        }
-    }
-
-    fn fill_by_row(&mut self, crossings: &Crossings, at: usize, stride: usize) {
-        let delays = &self.delays;
-        let len = delays.values().len();
-        let row = &mut self.row;
-        let tolerance = self.plan.spec.tolerance;
-        let (n, status) = (&mut row.n_unstable[..len], &mut row.status[..len]);
-        status.fill(0);
-        let flagged = crossings.fill_counts(delays, tolerance, n, status);
-        if flagged || !self.unflagged {
-            scatter(status, &mut self.buffers.status[at..], stride);
-        }
-        self.unflagged &= !flagged;
-        if let Some(out) = &mut self.buffers.n_unstable {
-            scatter(n, &mut out[at..], stride);
-        }
-        if let Some(out) = &mut self.buffers.delay_margin {
-            crossings.fill_delay_margins(delays, &mut row.delay_margin[..len]);
-            scatter(&row.delay_margin[..len], &mut out[at..], stride);
-        }
-    }
-
-    /// A line outside the model's range: its cells keep fill values and say that nothing converged there.
-    fn refuse_line(&mut self, at: usize) {
-        let len = self.delays.values().len();
-        self.unflagged = false;
-        for place in (at..).step_by(self.stride).take(len) {
-            self.buffers.status[place] = NOT_CONVERGED;
-            if let Some(n) = &mut self.buffers.n_unstable {
-                n[place] = N_UNSTABLE_FILL;
-            }
-            if let Some(margin) = &mut self.buffers.delay_margin {
-                margin[place] = f64::NAN;
-            }
-        }
-    }
-}
-
-fn scatter<T: Copy>(row: &[T], out: &mut [T], stride: usize) {
-    for (value, place) in row.iter().zip(out.iter_mut().step_by(stride)) {
-        *place = *value;
-    }
 }

@@ -19,6 +19,11 @@ pub enum Event {
         /// Planes without the curves of one degree of stability or more, because too many cross them to be traced.
         planes_left_out: u64,
     },
+    /// The best settings are found.
+    BestFound {
+        /// In so many planes.
+        planes: u64,
+    },
     /// A tile is computed and handed over.
     TileDone {
         /// Its cells.

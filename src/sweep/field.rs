@@ -1,4 +1,81 @@
-//! What a map can hold for each cell.
+//! What a map can hold for each cell: every field's one name, meaning, unit and type.
+
+use super::parameter::{Parameter, Units};
+use crate::linear::track::MOST_ROOTS;
+
+/// Names of the real and imaginary parts of the roots, by their rank from the right, and the rank in words.
+const ABSCISSAE: [&str; MOST_ROOTS] = [
+    "abscissa",
+    "abscissa_2",
+    "abscissa_3",
+    "abscissa_4",
+    "abscissa_5",
+    "abscissa_6",
+    "abscissa_7",
+    "abscissa_8",
+];
+const FREQUENCIES: [&str; MOST_ROOTS] = [
+    "frequency",
+    "frequency_2",
+    "frequency_3",
+    "frequency_4",
+    "frequency_5",
+    "frequency_6",
+    "frequency_7",
+    "frequency_8",
+];
+const ORDINALS: [&str; MOST_ROOTS] = [
+    "rightmost",
+    "second",
+    "third",
+    "fourth",
+    "fifth",
+    "sixth",
+    "seventh",
+    "eighth",
+];
+
+/// The place of a characteristic root from the right, conjugate pairs counted once.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct Rank(usize);
+
+impl Rank {
+    /// The rightmost root.
+    pub const FIRST: Self = Self(0);
+
+    /// 0 for the rightmost root, less than [`MOST_ROOTS`].
+    #[inline]
+    #[must_use]
+    pub const fn index(self) -> usize {
+        self.0
+    }
+}
+
+/// A parameter with respect to which the spectral abscissa is differentiated.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum Slope {
+    /// τ.
+    Tau,
+    /// α_v.
+    AlphaV,
+    /// α_N.
+    AlphaN,
+    /// μ_K′, at fixed μ_K.
+    MuPrime,
+}
+
+impl Slope {
+    /// The parameter.
+    #[must_use]
+    pub const fn parameter(self) -> Parameter {
+        match self {
+            Self::Tau => Parameter::Tau,
+            Self::AlphaV => Parameter::AlphaV,
+            Self::AlphaN => Parameter::AlphaN,
+            Self::MuPrime => Parameter::MuPrime,
+        }
+    }
+}
 
 /// A quantity computed for every cell. `status` comes with every map and is not listed here.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -7,11 +84,45 @@ pub enum Field {
     NUnstable,
     /// Signed distance in τ to the nearest change of stability.
     DelayMargin,
+    /// Re λ of the root of that rank; −∞ where there are fewer roots. Of the first: the spectral abscissa.
+    Abscissa(Rank),
+    /// |Im λ| of the root of that rank, 0 for a real one; NaN where there are fewer roots.
+    Frequency(Rank),
+    /// −1/abscissa where the abscissa is negative, else +∞.
+    RelaxationTime,
+    /// Derivative of the spectral abscissa.
+    AbscissaSlope(Slope),
+    /// How far right of the spectral abscissa a line lies that no root is right of.
+    CertificateMargin,
 }
 
 impl Field {
+    const COUNT: usize = 8 + 2 * MOST_ROOTS;
+
     /// All fields, in the order in which maps hold them.
-    pub const ALL: [Self; 2] = [Self::NUnstable, Self::DelayMargin];
+    pub const ALL: [Self; Self::COUNT] = Self::all();
+
+    const fn all() -> [Self; Self::COUNT] {
+        let mut all = [Self::NUnstable; Self::COUNT];
+        all[1] = Self::DelayMargin;
+        let mut rank = 0;
+        while rank < MOST_ROOTS {
+            all[2 + rank] = Self::Abscissa(Rank(rank));
+            all[2 + MOST_ROOTS + rank] = Self::Frequency(Rank(rank));
+            rank += 1;
+        }
+        let rest = 2 + 2 * MOST_ROOTS;
+        all[rest] = Self::RelaxationTime;
+        all[rest + 1] = Self::AbscissaSlope(Slope::Tau);
+        all[rest + 2] = Self::AbscissaSlope(Slope::AlphaV);
+        all[rest + 3] = Self::AbscissaSlope(Slope::AlphaN);
+        all[rest + 4] = Self::AbscissaSlope(Slope::MuPrime);
+        all[rest + 5] = Self::CertificateMargin;
+        all
+    }
+
+    /// The spectral abscissa.
+    pub const ABSCISSA: Self = Self::Abscissa(Rank::FIRST);
 
     /// The name in sweep files and maps.
     #[must_use]
@@ -19,6 +130,14 @@ impl Field {
         match self {
             Self::NUnstable => "n_unstable",
             Self::DelayMargin => "delay_margin",
+            Self::Abscissa(rank) => ABSCISSAE[rank.0],
+            Self::Frequency(rank) => FREQUENCIES[rank.0],
+            Self::RelaxationTime => "relaxation_time",
+            Self::AbscissaSlope(Slope::Tau) => "d_abscissa_d_tau",
+            Self::AbscissaSlope(Slope::AlphaV) => "d_abscissa_d_alpha_v",
+            Self::AbscissaSlope(Slope::AlphaN) => "d_abscissa_d_alpha_n",
+            Self::AbscissaSlope(Slope::MuPrime) => "d_abscissa_d_mu_prime",
+            Self::CertificateMargin => "certificate_margin",
         }
     }
 
@@ -28,18 +147,190 @@ impl Field {
         Self::ALL.into_iter().find(|f| f.name() == name)
     }
 
+    /// What it is, for `long_name` in maps and notes in pictures.
+    #[must_use]
+    pub fn long_name(self) -> String {
+        match self {
+            Self::NUnstable => "number of characteristic roots with positive real part".into(),
+            Self::DelayMargin => {
+                "distance in delay to the nearest change of stability, positive where stable".into()
+            }
+            Self::ABSCISSA => {
+                "spectral abscissa, the largest real part of the characteristic roots".into()
+            }
+            Self::Abscissa(rank) => format!(
+                "real part of the {} characteristic root from the right, pairs counted once",
+                ORDINALS[rank.0]
+            ),
+            Self::Frequency(Rank::FIRST) => {
+                "angular frequency of the rightmost characteristic root".into()
+            }
+            Self::Frequency(rank) => format!(
+                "angular frequency of the {} characteristic root from the right, pairs counted once",
+                ORDINALS[rank.0]
+            ),
+            Self::RelaxationTime => "time in which a small disturbance decays by a factor e".into(),
+            Self::AbscissaSlope(slope) => format!(
+                "derivative of the spectral abscissa with respect to the {}",
+                slope.parameter().long_name()
+            ),
+            Self::CertificateMargin => {
+                "certified distance: no characteristic root lies farther right of the abscissa"
+                    .into()
+            }
+        }
+    }
+
+    /// What it is in a few words, for titles of axes and colour bars.
+    #[must_use]
+    pub fn short_name(self) -> String {
+        match self {
+            Self::NUnstable => "number of unstable roots".into(),
+            Self::DelayMargin => "delay margin".into(),
+            Self::ABSCISSA => "spectral abscissa".into(),
+            Self::Abscissa(rank) => format!("Re λ, {} root", ORDINALS[rank.0]),
+            Self::Frequency(Rank::FIRST) => "frequency".into(),
+            Self::Frequency(rank) => format!("|Im λ|, {} root", ORDINALS[rank.0]),
+            Self::RelaxationTime => "relaxation time".into(),
+            Self::AbscissaSlope(slope) => {
+                format!("∂ abscissa / ∂ {}", slope.parameter().symbol())
+            }
+            Self::CertificateMargin => "certificate margin".into(),
+        }
+    }
+
+    /// What a reader of the map should know besides, if anything.
+    #[must_use]
+    pub const fn comment(self) -> Option<&'static str> {
+        match self {
+            Self::ABSCISSA => Some(
+                "certified in status: the argument principle, which shares nothing with the computation of the roots, \
+                 finds no root with Re lambda > abscissa + certificate_margin * max(1/t, |abscissa|), \
+                 t = sqrt(mass/stiffness)",
+            ),
+            Self::Abscissa(_) => Some("-infinity where there are fewer roots"),
+            Self::RelaxationTime => {
+                Some("-1/abscissa; infinity where the abscissa is not negative")
+            }
+            Self::AbscissaSlope(Slope::MuPrime) => Some("at fixed mu_k"),
+            Self::CertificateMargin => {
+                Some("in units of max(1/t, |abscissa|), t = sqrt(mass/stiffness)")
+            }
+            _ => None,
+        }
+    }
+
+    /// The unit, as UDUNITS writes it; "1" if dimensionless.
+    #[must_use]
+    pub fn unit(self, units: &Units) -> String {
+        match self {
+            Self::NUnstable | Self::CertificateMargin => units.of([0; 3]),
+            Self::DelayMargin | Self::RelaxationTime => units.time(),
+            Self::Abscissa(_) => units.of([0, 0, -1]),
+            Self::Frequency(_) => units.angular_frequency(),
+            Self::AbscissaSlope(slope) => {
+                let [force, length, time] = slope.parameter().dimension();
+                units.of([-force, -length, -1 - time])
+            }
+        }
+    }
+
+    /// True for counts, stored as u16; all other fields are stored as f64 with NaN for no value.
+    #[must_use]
+    pub const fn is_count(self) -> bool {
+        matches!(self, Self::NUnstable)
+    }
+
+    /// Number of roots from the right, pairs counted once, that the field needs; 0 if the closed form gives it.
+    #[must_use]
+    pub const fn roots_needed(self) -> usize {
+        match self {
+            Self::NUnstable | Self::DelayMargin => 0,
+            Self::Abscissa(rank) | Self::Frequency(rank) => rank.0 + 1,
+            Self::RelaxationTime | Self::AbscissaSlope(_) | Self::CertificateMargin => 1,
+        }
+    }
+
+    /// Whether sliding is stable in a cell with this value; none for fields that do not tell.
+    #[must_use]
+    pub fn tells_stable(self, value: f64) -> Option<bool> {
+        match self {
+            Self::NUnstable => Some(value == 0.0),
+            Self::DelayMargin => Some(value > 0.0),
+            Self::ABSCISSA => Some(value < 0.0),
+            Self::RelaxationTime => Some(value < f64::INFINITY),
+            _ => None,
+        }
+    }
+
     /// Bytes per cell, uncompressed.
     #[must_use]
     pub const fn bytes(self) -> usize {
-        match self {
-            Self::NUnstable => size_of::<u16>(),
-            Self::DelayMargin => size_of::<f64>(),
+        if self.is_count() {
+            size_of::<u16>()
+        } else {
+            size_of::<f64>()
         }
     }
 }
 
-/// The names of all fields, for messages.
+/// The names of all fields, for messages; numbered ones as a range.
 #[must_use]
 pub fn known_fields() -> String {
-    Field::ALL.map(Field::name).join(", ")
+    let last = MOST_ROOTS - 1;
+    let names = Field::ALL.into_iter().filter_map(|field| match field {
+        Field::Abscissa(Rank(1)) => Some(format!("{} … {}", ABSCISSAE[1], ABSCISSAE[last])),
+        Field::Frequency(Rank(1)) => Some(format!("{} … {}", FREQUENCIES[1], FREQUENCIES[last])),
+        Field::Abscissa(Rank(2..)) | Field::Frequency(Rank(2..)) => None,
+        field => Some(field.name().to_owned()),
+    });
+    names.collect::<Vec<_>>().join(", ")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn all_are_in_order_and_have_names_of_their_own() {
+        assert!(Field::ALL.windows(2).all(|w| w[0] < w[1]));
+        for field in Field::ALL {
+            assert_eq!(Field::from_name(field.name()), Some(field));
+            assert!(field.roots_needed() <= MOST_ROOTS);
+        }
+    }
+
+    #[test]
+    fn units_follow_from_what_is_divided_by_what() {
+        let names = ["N", "mm", "s"].map(String::from);
+        let units = Units {
+            force_length_time: Some(names),
+        };
+        for (name, unit) in [
+            ("n_unstable", "1"),
+            ("delay_margin", "s"),
+            ("abscissa_3", "s-1"),
+            ("frequency", "rad s-1"),
+            ("relaxation_time", "s"),
+            ("d_abscissa_d_tau", "s-2"),
+            ("d_abscissa_d_alpha_v", "1"),
+            ("d_abscissa_d_alpha_n", "N-1 mm s-1"),
+            ("d_abscissa_d_mu_prime", "mm s-2"),
+            ("certificate_margin", "1"),
+        ] {
+            let field = Field::from_name(name).expect("a field");
+            assert_eq!(field.unit(&units), unit, "{name}");
+            assert_eq!(field.unit(&Units::default()), "1");
+        }
+    }
+
+    #[test]
+    fn numbered_names_are_listed_as_ranges() {
+        assert_eq!(
+            known_fields(),
+            "n_unstable, delay_margin, abscissa, abscissa_2 … abscissa_8, frequency, \
+             frequency_2 … frequency_8, relaxation_time, d_abscissa_d_tau, d_abscissa_d_alpha_v, \
+             d_abscissa_d_alpha_n, d_abscissa_d_mu_prime, certificate_margin"
+        );
+    }
 }

@@ -9,15 +9,18 @@
 //! on the number of threads.
 
 pub mod axis;
+pub mod best;
 pub mod boundaries;
 pub mod engine;
 pub mod events;
 pub mod field;
 pub mod parameter;
 pub mod plan;
+mod root_columns;
 pub mod spec;
 pub mod tile;
 mod toml_reader;
+mod worker;
 
 pub use axis::Axis;
 pub use engine::{RunError, Sink};
@@ -25,4 +28,5 @@ pub use events::{Event, Observer};
 pub use field::Field;
 pub use parameter::{Parameter, Setting};
 pub use plan::Plan;
+pub use root_columns::relaxation_time;
 pub use spec::{SpecError, SweepSpec};

@@ -124,7 +124,7 @@ impl Parameter {
     }
 
     /// Powers of force, length and time in its unit.
-    const fn dimension(self) -> [i32; 3] {
+    pub(super) const fn dimension(self) -> [i32; 3] {
         match self {
             Self::MuPrime => [0, -1, 1],
             Self::AlphaV => [0, 0, -1],

@@ -3,14 +3,20 @@
 use sha2::{Digest, Sha256};
 
 use super::axis::plane_of_curves;
+use super::best::gain_plane;
 use super::parameter::{Parameter, Setting};
 use super::spec::{SpecError, SweepSpec};
 use super::tile::{Tile, TileGrid};
 
 /// Cells in a tile, about: small enough for a processor's cache, large enough to compress and write well.
 const CELLS_PER_TILE: usize = 1 << 18;
+/// The same where roots are followed from cell to cell: each cell costs thousands of times as much, and tiles of about the
+/// same time keep all threads busy to the end and a run quick to stop.
+const CELLS_PER_ROOT_TILE: usize = 1 << 14;
 /// Delays in a tile at most, so that memory stays bounded on the longest line.
 const DELAYS_PER_TILE: usize = 1 << 17;
+/// Lines of delays are cut at multiples of this only: there tracking starts anew, and no value depends on the tiles.
+pub const BLOCK_OF_DELAYS: usize = crate::linear::track::BLOCK;
 /// More cells than this are refused.
 const MOST_CELLS: u64 = 10_000_000_000_000;
 /// Planes up to which crossing curves are traced without being asked for.
@@ -35,6 +41,20 @@ impl Plan {
     /// # Errors
     /// When there are more cells than any machine could hold.
     pub fn new(spec: SweepSpec) -> Result<Self, SpecError> {
+        let roots = spec.fields.iter().any(|f| f.roots_needed() > 0);
+        let cells = if roots {
+            CELLS_PER_ROOT_TILE
+        } else {
+            CELLS_PER_TILE
+        };
+        Self::with_tiles_of(cells, spec)
+    }
+
+    /// Plans a sweep with tiles of about `cells_per_tile` cells; no value in the map depends on it.
+    ///
+    /// # Errors
+    /// As [`Plan::new`].
+    pub fn with_tiles_of(cells_per_tile: usize, spec: SweepSpec) -> Result<Self, SpecError> {
         let shape: Vec<usize> = spec.axes.iter().map(|axis| axis.len()).collect();
         let cells = shape
             .iter()
@@ -51,7 +71,7 @@ impl Plan {
             .axes
             .iter()
             .position(|axis| axis.parameter == Parameter::Tau);
-        let tile_shape = tile_shape(&shape, tau_axis);
+        let tile_shape = tile_shape(&shape, tau_axis, cells_per_tile);
         let boundary_plane = boundary_plane(&spec);
         Ok(Self {
             tiles: TileGrid::new(shape, tile_shape),
@@ -90,6 +110,12 @@ impl Plan {
             }
             None => 0,
         }
+    }
+
+    /// The axes (gain, delay) of the planes whose best settings are looked for, if they are.
+    #[must_use]
+    pub fn best_plane(&self) -> Option<(usize, usize)> {
+        gain_plane(&self.spec.axes).filter(|_| self.spec.best)
     }
 
     /// The parameters of the cell at `index`, one index per axis.
@@ -152,28 +178,33 @@ impl Plan {
         if !self.spec.degrees_of_stability.is_empty() {
             put("degree_of_stability", &self.spec.degrees_of_stability);
         }
+        if self.spec.best {
+            put("best", &[]);
+        }
         hash.finalize().iter().map(|b| format!("{b:02x}")).collect()
     }
 }
 
-/// Whole lines as far as they go, then as many neighbouring lines as fit.
-fn tile_shape(shape: &[usize], tau_axis: Option<usize>) -> Vec<usize> {
+/// Whole lines as far as they go, else whole blocks of delays; then as many neighbouring lines as fit into `cells`.
+fn tile_shape(shape: &[usize], tau_axis: Option<usize>, cells: usize) -> Vec<usize> {
     let mut tile = vec![1; shape.len()];
-    let mut left = CELLS_PER_TILE;
-    let mut fill = |axis: usize, most: usize| {
-        let parts = shape[axis].div_ceil(most.max(1));
-        tile[axis] = shape[axis].div_ceil(parts);
-        left /= tile[axis];
-        left
-    };
-    let mut room = CELLS_PER_TILE;
+    let mut room = cells;
     if let Some(axis) = tau_axis {
-        room = fill(axis, DELAYS_PER_TILE);
+        let blocks = (cells.min(DELAYS_PER_TILE) / BLOCK_OF_DELAYS).max(1);
+        let delays = part(shape[axis].div_ceil(BLOCK_OF_DELAYS), blocks) * BLOCK_OF_DELAYS;
+        tile[axis] = delays.min(shape[axis]);
+        room /= tile[axis];
     }
     for axis in (0..shape.len()).rev().filter(|&a| Some(a) != tau_axis) {
-        room = fill(axis, room);
+        tile[axis] = part(shape[axis], room);
+        room /= tile[axis];
     }
     tile
+}
+
+/// The size of about equal parts of `length`, each at most `most` (or 1).
+fn part(length: usize, most: usize) -> usize {
+    length.div_ceil(length.div_ceil(most.max(1)))
 }
 
 /// The plane of crossing curves; none where there is no such plane, or where it is not wanted.
@@ -191,4 +222,36 @@ fn boundary_plane(spec: &SweepSpec) -> Option<(usize, usize)> {
         .or((!spec.degrees_of_stability.is_empty()).then_some(true));
     let wanted = asked.unwrap_or(planes <= PLANES_TRACED_UNASKED);
     wanted.then_some((p, tau))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    proptest! {
+        /// However long the axes and small the tiles, lines are cut between blocks only, and tiles stay within their room.
+        #[test]
+        fn delays_are_cut_between_blocks(
+            delays in prop_oneof![1_usize..10_000, 1_usize..10_000_000],
+            lines in 1_usize..3000,
+            place in 0_usize..3,
+            cells in prop_oneof![1_usize..100_000, Just(CELLS_PER_TILE), Just(CELLS_PER_ROOT_TILE)],
+        ) {
+            let mut shape = vec![lines, 7];
+            shape.insert(place, delays);
+            let tile = tile_shape(&shape, Some(place), cells);
+            prop_assert!(tile[place] == delays || tile[place].is_multiple_of(BLOCK_OF_DELAYS));
+            prop_assert!(tile.iter().zip(&shape).all(|(t, n)| (1..=*n).contains(t)));
+            let block = delays.min(BLOCK_OF_DELAYS);
+            prop_assert!(tile.iter().product::<usize>() <= cells.max(block));
+        }
+    }
+
+    #[test]
+    fn tiles_without_delays_hold_as_many_cells() {
+        assert_eq!(tile_shape(&[600, 700], None, 1 << 14), [23, 700]);
+        assert_eq!(tile_shape(&[5, 1001, 4097], Some(2), 1 << 14), [1, 3, 4097]);
+        assert_eq!(tile_shape(&[1001, 20_000], Some(1), 1 << 14), [1, 12_288]);
+    }
 }

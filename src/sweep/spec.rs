@@ -2,9 +2,10 @@
 //!
 //! ```toml
 //! title = "Velocity control"              # optional
-//! fields = ["n_unstable", "delay_margin"] # optional, n_unstable by default; status is always there
+//! fields = ["n_unstable", "abscissa"]     # optional, n_unstable by default; status is always there
 //! boundaries = true                       # optional: the exact crossing curves as polylines
 //! degree_of_stability = [0.05, 0.1]       # optional: also the curves max Re λ = −σ for these σ, in 1/time
+//! best = true                             # optional: the gain and delay of fastest decay in every plane of the two
 //!
 //! [axes]                                  # in this order they are the dimensions of the map
 //! mu_prime = [-0.1, -0.2, -0.5]
@@ -31,6 +32,7 @@
 use std::ops::Range;
 
 use super::axis::{Axis, Spacing, plane_of_curves, spaced};
+use super::best::gain_plane;
 use super::field::{Field, known_fields};
 use super::parameter::{GivenError, LawKind, Parameter, Setting, Units};
 pub use super::toml_reader::SpecError;
@@ -57,6 +59,8 @@ pub struct SweepSpec {
     pub boundaries: Option<bool>,
     /// Degrees of stability σ > 0, in 1/time and increasing, whose curves max Re λ = −σ are traced beside the boundaries.
     pub degrees_of_stability: Vec<f64>,
+    /// Whether to look for the best setting of every plane (gain, delay).
+    pub best: bool,
     /// How near to a crossing a cell is marginal.
     pub tolerance: MarginalTolerance,
     /// Units of the parameters.
@@ -81,6 +85,7 @@ impl std::str::FromStr for SweepSpec {
                 "fields" => draft.fields = Some(read_fields(&entry)?),
                 "boundaries" => draft.boundaries = Some(entry.boolean()?),
                 "degree_of_stability" => draft.read_degrees(&entry)?,
+                "best" => draft.best = entry.boolean()?.then(|| entry.key_span.clone()),
                 "axes" => draft.read_axes(&entry)?,
                 "fixed" => draft.read_fixed(&entry)?,
                 "friction" => draft.read_friction(&entry)?,
@@ -92,6 +97,7 @@ impl std::str::FromStr for SweepSpec {
                         "fields",
                         "boundaries",
                         "degree_of_stability",
+                        "best",
                         "axes",
                         "fixed",
                         "friction",
@@ -118,6 +124,8 @@ struct Draft {
     boundaries: Option<bool>,
     degrees: Vec<f64>,
     degrees_place: Option<Range<usize>>,
+    /// Where the best settings are asked for, if they are.
+    best: Option<Range<usize>>,
     axes: Vec<Axis>,
     axes_place: Option<Range<usize>>,
     fixed: Vec<(Parameter, f64)>,
@@ -228,6 +236,7 @@ impl Draft {
         }
         self.check_what_is_given()?;
         self.check_degrees()?;
+        self.check_best()?;
         let mut fixed = Setting::new(self.law.as_ref().map(|(law, _)| *law));
         for (parameter, value) in &self.fixed {
             fixed.set(*parameter, *value);
@@ -240,6 +249,7 @@ impl Draft {
             fields: self.fields.unwrap_or_else(|| vec![Field::NUnstable]),
             boundaries: self.boundaries,
             degrees_of_stability: self.degrees,
+            best: self.best.is_some(),
             tolerance: self.tolerance,
             units: self.units,
             text: text.to_owned(),
@@ -267,6 +277,19 @@ impl Draft {
             );
         }
         Ok(())
+    }
+
+    /// Best settings are looked for in planes of a gain and the delay: both must be axes.
+    fn check_best(&self) -> Result<(), SpecError> {
+        match &self.best {
+            Some(place) if gain_plane(&self.axes).is_none() => {
+                let message =
+                    "best needs an axis of a gain and one of the delay, with two points or more";
+                Err(SpecError::at(place.clone(), message)
+                    .help("alpha_v or alpha_n, and tau, in [axes]; the best setting is looked for within their ranges"))
+            }
+            _ => Ok(()),
+        }
     }
 
     /// Every parameter that is needed is there, none that would be ignored.
@@ -396,6 +419,10 @@ fn read_fields(entry: &Entry) -> Result<Vec<Field>, SpecError> {
         return Err(entry
             .error("the list is empty")
             .help(format!("known: {}", known_fields())));
+    }
+    // An abscissa without the distance that its certificate leaves open would say less than it seems to.
+    if fields.contains(&Field::ABSCISSA) && !fields.contains(&Field::CertificateMargin) {
+        fields.push(Field::CertificateMargin);
     }
     fields.sort_unstable();
     Ok(fields)

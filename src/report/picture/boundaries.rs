@@ -130,9 +130,17 @@ fn shade(
     panel: &Panel,
     scene: &mut Scene,
 ) -> Result<(), PictureError> {
-    let field = stability_field(map);
-    let plane = map.plane(field, family.index, (y, view.x), MOST_CELLS)?;
-    let stable = |p: f64| stable_throughout(&plane, field, p);
+    let told = match map.stability_field() {
+        Some(field) => Some((
+            field,
+            map.plane(field, family.index, (y, view.x), MOST_CELLS)?,
+        )),
+        None => None,
+    };
+    let stable = |p: f64| {
+        told.as_ref()
+            .is_some_and(|(field, plane)| stable_throughout(plane, *field, p))
+    };
     for slices in regions(panel, &family.bounding, stable) {
         scene.marks.push(Mark::Band {
             slices,
@@ -143,24 +151,6 @@ fn shade(
     Ok(())
 }
 
-/// A field that says where sliding is stable: every map holds one.
-pub fn stability_field(map: &MapFile) -> Field {
-    let first = map
-        .fields()
-        .iter()
-        .copied()
-        .find(|f| *f == Field::NUnstable);
-    first.unwrap_or(Field::DelayMargin)
-}
-
-/// Whether a cell of [`stability_field`] is stable.
-pub fn is_stable(field: Field, value: f64) -> bool {
-    match field {
-        Field::NUnstable => value == 0.0,
-        Field::DelayMargin => value > 0.0,
-    }
-}
-
 /// Whether the column of cells nearest to `p`, in which no curve lies, is stable: most of its cells say so.
 fn stable_throughout(plane: &Plane, field: Field, p: f64) -> bool {
     let distances = plane.columns.iter().map(|c| (c - p).abs()).enumerate();
@@ -168,7 +158,9 @@ fn stable_throughout(plane: &Plane, field: Field, p: f64) -> bool {
         return false;
     };
     let cells = plane.cells.iter().skip(column).step_by(plane.columns.len());
-    let stable = cells.filter(|&&v| is_stable(field, v)).count();
+    let stable = cells
+        .filter(|&&v| field.tells_stable(v) == Some(true))
+        .count();
     2 * stable > plane.rows.len()
 }
 

@@ -56,6 +56,11 @@ const BROWN_TEAL: [Rgb; 9] = [
 /// Steps of [`diverging`] on each side of zero: finer than the eye tells apart, coarse enough for cells to merge.
 const STEPS: f64 = 32.0;
 
+/// The weakest colour of [`diverging`] on either side of zero, as a part of the strongest.
+const TINT: f64 = 0.1;
+/// Steps of [`of_size`], for the same reasons.
+const SIZE_STEPS: f64 = 64.0;
+
 /// The colour of line `i` of `n`, from dark to light.
 pub fn of_line(i: usize, n: usize) -> Rgb {
     let part = if n > 1 {
@@ -76,14 +81,25 @@ pub fn of_count(n: f64) -> Rgb {
 }
 
 /// The colour of `value` where ±`range` are the ends: brown below zero, teal above.
+///
+/// Colours go with the square root, and both sides begin with a tint: stable cells with little to spare are the most common
+/// ones, and must not look like unstable ones.
 pub fn diverging(value: f64, range: f64) -> Rgb {
     if value.is_nan() {
         return NO_VALUE;
     }
     let part = (value / range).clamp(-1.0, 1.0);
-    // A value of either sign never rounds to the white of zero: the sign says which side is stable.
-    let step = (part * STEPS).abs().ceil().copysign(part);
-    sample(&BROWN_TEAL, 0.5 + 0.5 * step / STEPS)
+    if part == 0.0 {
+        return sample(&BROWN_TEAL, 0.5);
+    }
+    let step = (part.abs().sqrt() * STEPS).ceil() / STEPS;
+    let strength = TINT + (1.0 - TINT) * step;
+    sample(&BROWN_TEAL, 0.5 + 0.5 * strength.copysign(part))
+}
+
+/// The colour of a size at a part of the way from small to large: from dark to light.
+pub fn of_size(part: f64) -> Rgb {
+    sample(&VIRIDIS, (part * SIZE_STEPS).round() / SIZE_STEPS)
 }
 
 /// `colour` mixed with paper; 0: paper.

@@ -1,7 +1,6 @@
 //! A field along the one axis that is left.
 
 use super::PictureError;
-use super::boundaries::{is_stable, stability_field};
 use super::colour::{self, PAPER, SOFT_INK, STABLE};
 use super::legend::{Legend, Swatch};
 use super::page;
@@ -54,8 +53,8 @@ pub fn draw(
     let Some(panel) = panels.panels.first() else {
         return Ok(());
     };
-    if let [_] = view.panels.as_slice() {
-        let stable = stability_field(map);
+    let shown = map.stability_field().filter(|_| view.panels.len() == 1);
+    if let Some(stable) = shown {
         for line in read(stable)? {
             shade(panel, &line, stable, scene);
         }
@@ -106,16 +105,12 @@ fn value_scale(field: Field, lines: &[Line]) -> Scale {
     };
     let low = finite().fold(0.0, f64::min);
     let high = finite().fold(0.0, f64::max);
-    match field {
-        Field::NUnstable => {
-            let high = f64::max(high, 2.0);
-            Scale::linear(-0.04 * high, 1.06 * high).with_smallest_step(2.0)
-        }
-        Field::DelayMargin => {
-            let span = if high > low { high - low } else { 1.0 };
-            Scale::linear(low - 0.05 * span, high + 0.05 * span)
-        }
+    if field.is_count() {
+        let high = f64::max(high, 2.0);
+        return Scale::linear(-0.04 * high, 1.06 * high).with_smallest_step(2.0);
     }
+    let span = if high > low { high - low } else { 1.0 };
+    Scale::linear(low - 0.05 * span, high + 0.05 * span)
 }
 
 /// The line in pixels, broken where there is no finite value: steps for counts, straight lines otherwise.
@@ -128,11 +123,10 @@ fn stretches(panel: &Panel, line: &Line, field: Field) -> Vec<Vec<Point>> {
             done.push(std::mem::take(&mut open));
             continue;
         }
-        match field {
-            Field::NUnstable => {
-                open.extend([panel.at(edges[i], value), panel.at(edges[i + 1], value)])
-            }
-            Field::DelayMargin => open.push(panel.at(x, value)),
+        if field.is_count() {
+            open.extend([panel.at(edges[i], value), panel.at(edges[i + 1], value)]);
+        } else {
+            open.push(panel.at(x, value));
         }
     }
     done.push(open);
@@ -142,7 +136,10 @@ fn stretches(panel: &Panel, line: &Line, field: Field) -> Vec<Vec<Point>> {
 /// Shades the cells in which sliding is stable.
 fn shade(panel: &Panel, line: &Line, field: Field, scene: &mut Scene) {
     let tint = colour::pale(STABLE, 2.0 * SHADE);
-    let colour = |&value: &f64| if is_stable(field, value) { tint } else { PAPER };
+    let colour = |&value: &f64| match field.tells_stable(value) {
+        Some(true) => tint,
+        _ => PAPER,
+    };
     let edges = panel.x.filling_edges(&line.at);
     scene.marks.push(Mark::Cells {
         columns: edges.into_iter().map(|x| panel.across(x)).collect(),

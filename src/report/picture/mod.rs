@@ -4,6 +4,7 @@
 //! map → [view] what is shown → [boundaries], [heat] or [line] → [scene] marks in pixels → [render] PNG or SVG
 //! ```
 //!
+//! - `key`: which colour a value of a field has in a heat map
 //! - `page`, `panels`, `legend`: where things stand; `scale`, `ticks`: from values to places
 //! - `stable_area`, `curve_labels`: the region between curves, and free places on curves
 //! - `degrees`: dashed curves of degrees of stability
@@ -16,6 +17,7 @@ mod degrees;
 mod error;
 mod font;
 mod heat;
+mod key;
 mod legend;
 mod line;
 mod page;
@@ -61,10 +63,10 @@ pub enum PictureKind {
 /// How a map is drawn.
 #[derive(Debug, Clone, PartialEq)]
 pub struct PictureOptions {
-    /// The field to show; by default the number of unstable roots.
+    /// The field to show; by default the spectral abscissa where the map holds it, else the number of unstable roots.
     pub field: Option<Field>,
-    /// The kind; by default boundaries where the map holds them for 2 to 12 values of one axis outside their plane and no field
-    /// is asked for, otherwise a heat map.
+    /// The kind; by default boundaries where the map holds them for 2 to 12 values of one axis outside their plane, holds no
+    /// abscissa and no field is asked for, otherwise a heat map.
     pub kind: Option<PictureKind>,
     /// Values at which axes are held: the nearest on the axis. Several for one axis make as many panels or colours.
     pub at: Vec<(Parameter, f64)>,
@@ -161,9 +163,7 @@ fn compose(map: &MapFile, options: &PictureOptions, most: usize) -> Result<Scene
             allowed: format!("{} to {} pixels", SIZES.start(), SIZES.end()),
         });
     }
-    let field = options
-        .field
-        .unwrap_or_else(|| boundaries::stability_field(map));
+    let field = options.field.unwrap_or_else(|| default_field(map));
     if !map.fields().contains(&field) {
         let held: Vec<&str> = map.fields().iter().map(|f| f.name()).collect();
         return Err(PictureError::NoSuchField {
@@ -183,7 +183,7 @@ fn compose(map: &MapFile, options: &PictureOptions, most: usize) -> Result<Scene
     let in_plane = view.is_boundary_plane(map);
     let curves = if in_plane { map.curves()? } else { Vec::new() };
     let fits = view.along.is_some() && view.of <= MOST_PANELS && view.outer_axes(map) == 1;
-    let by_default = fits && options.field.is_none() && !curves.is_empty();
+    let by_default = fits && options.field.is_none() && !decays(map) && !curves.is_empty();
     match options.kind {
         Some(PictureKind::Boundaries) if !in_plane => {
             return Err(no_curves(match map.boundary_plane() {
@@ -196,6 +196,20 @@ fn compose(map: &MapFile, options: &PictureOptions, most: usize) -> Result<Scene
         _ => heat::draw(map, &view, y, field, &curves, most, &mut scene)?,
     }
     Ok(scene)
+}
+
+/// The map holds the rate at which disturbances decay.
+fn decays(map: &MapFile) -> bool {
+    map.fields().contains(&Field::ABSCISSA)
+}
+
+/// What says most about the map.
+fn default_field(map: &MapFile) -> Field {
+    let abscissa = decays(map).then_some(Field::ABSCISSA);
+    abscissa
+        .or_else(|| map.stability_field())
+        .or_else(|| map.fields().first().copied())
+        .unwrap_or(Field::NUnstable)
 }
 
 fn no_curves(why: &'static str) -> PictureError {
@@ -353,6 +367,39 @@ mod tests {
                 case.draw(name, &PictureOptions::default()).unwrap();
             }
         }
+    }
+
+    /// As a heat map and along a line, with cells without delay or control among them.
+    #[test]
+    fn every_field_is_drawn() {
+        let names: Vec<String> = Field::ALL
+            .iter()
+            .map(|f| format!("{:?}", f.name()))
+            .collect();
+        let case = Case::new(&format!(
+            "fields = [{}]\n[axes]\nalpha_n = [-1.5, -1.0, -0.5, 0.0]\ntau = [0.0, 0.3, 0.6, 0.9, 6.0]\n[fixed]\nmu_prime = -0.1",
+            names.join(", ")
+        ));
+        let mut pictures = HashSet::new();
+        for field in Field::ALL {
+            for at in [
+                vec![],
+                vec![(Parameter::AlphaN, -1.0)],
+                vec![(Parameter::AlphaN, 0.0)],
+            ] {
+                let options = PictureOptions {
+                    field: Some(field),
+                    at,
+                    size: (300, 300),
+                    kind: None,
+                };
+                pictures.insert(case.draw("map.png", &options).unwrap());
+            }
+        }
+        assert!(pictures.len() > 2 * Field::ALL.len());
+        let bytes = case.draw("map.svg", &PictureOptions::default()).unwrap();
+        let text = String::from_utf8(bytes).unwrap();
+        assert!(text.contains("spectral abscissa") && text.contains("stable below 0"));
     }
 
     #[test]

@@ -84,7 +84,13 @@ impl Panels {
         let left = outside.left + 1.4 * LABEL * u + widest + (TICK + 8.0) * u;
         // Half of the last label of the x axis stands out to the right.
         let end = 1.1 * SMALL * u;
-        let gap = if columns > 1 { 1.8 * SMALL * u } else { 0.0 };
+        // Beside it stand the last label of one panel and the first of the next.
+        let x_ticks = x.ticks(MOST_TICKS);
+        let labels = x_ticks.iter().filter_map(|t| t.label.as_deref());
+        let room = labels
+            .map(|l| Rich::plain(l).width(SMALL * u) + 0.5 * SMALL * u)
+            .fold(1.8 * SMALL * u, f64::max);
+        let gap = if columns > 1 { room } else { 0.0 };
         let width = (outside.right - end - left - gap * (columns - 1) as f64) / columns as f64;
         let label_width = |l: &str| Rich::plain(l).width(SMALL * u) + 0.9 * SMALL * u;
         let x_ticks = fitting(&x, label_width, width);

@@ -46,6 +46,14 @@ impl Scale {
         }
     }
 
+    /// A logarithmic scale between two different positive values.
+    pub fn logarithmic(from: f64, to: f64) -> Self {
+        Self {
+            log: true,
+            ..Self::linear(from, to)
+        }
+    }
+
     /// The same scale with ticks at least this far apart.
     pub fn with_smallest_step(self, smallest_step: f64) -> Self {
         Self {

@@ -2,7 +2,6 @@
 
 use super::font;
 use crate::store::map_file::MapAxis;
-use crate::store::schema;
 use crate::sweep::{Field, Parameter};
 
 /// Subscripts relative to the text.
@@ -108,16 +107,24 @@ pub fn axis_title(axis: &MapAxis) -> Rich {
 
 /// What a field is, in full.
 pub fn field_note(field: Field, unit: &str) -> Rich {
-    Rich::plain(schema::long_name(field)).and(&suffix(unit, "  (", ")"))
+    Rich::plain(&field.long_name()).and(&suffix(unit, "  (", ")"))
 }
 
 /// What a field is, in short.
 pub fn field_title(field: Field, unit: &str) -> Rich {
-    let name = match field {
-        Field::NUnstable => "number of unstable roots",
-        Field::DelayMargin => "delay margin",
-    };
-    Rich::plain(name).and(&suffix(unit, "  (", ")"))
+    field_name(field).and(&suffix(unit, "  (", ")"))
+}
+
+/// The short name of a field.
+pub fn field_name(field: Field) -> Rich {
+    let name = field.short_name();
+    match field {
+        Field::AbscissaSlope(slope) => {
+            let parameter = slope.parameter();
+            Rich::plain(name.trim_end_matches(parameter.symbol())).and_symbol(parameter)
+        }
+        _ => Rich::plain(&name),
+    }
 }
 
 /// The unit between brackets; nothing for dimensionless quantities.

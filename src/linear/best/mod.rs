@@ -1,0 +1,379 @@
+//! Settings of fastest decay: the gain and the delay with the smallest spectral abscissa, for every stable region.
+//!
+//! Three stages. **Regions**: the stable regions of a box are found from the closed form of the stable delays; only the
+//! gain is sampled. **Descent**: from the best places of a lattice in each region a direct search goes down; the abscissa
+//! has kinks where roots trade places and cusps where they meet, so no gradient is used. **Polish**: near an optimum, what
+//! makes it one is a pair of smooth equations ([`Kind`]), solved by Newton's method; the result is accepted where the
+//! argument principle confirms that no root lies farther right, and where no place around it is better.
+//!
+//! A region is a connected set of stable settings *inside the box*, at the resolution of the gains sampled: 193 evenly over
+//! the box, and ever more densely towards gains at which the crossings change their number. A lobe between two neighbouring
+//! samples is missed; lobes that end in a point at such a gain are not, however small, down to 1e-16 of the box.
+
+mod condition;
+mod descend;
+mod polish;
+mod regions;
+mod search;
+
+pub use search::{Search, SearchedGain};
+
+use descend::{Frame, descend, follow_valley};
+use polish::{polished, unpolished};
+use regions::{Stretches, stable_regions};
+use search::{Evaluator, Place};
+
+/// Regions whose optimum is looked for; the others are counted.
+pub const MOST_REGIONS: usize = 64;
+/// Lines of a region's lattice, and places on each of its stretches.
+const LATTICE_LINES: usize = 24;
+const LATTICE_PLACES: usize = 10;
+/// Places of the lattice from which the search goes down.
+const STARTS: usize = 3;
+/// Cells each way of the grid over a box without stable regions.
+const GRID: usize = 48;
+/// Radii around a polished optimum at which nothing may be better, in units of the frame, and directions.
+const CHECK_RADII: [f64; 4] = [0.3, 0.03, 3e-3, 3e-4];
+const CHECK_DIRECTIONS: u32 = 16;
+/// Radii, in units of the frame, to which the descent goes before what it found is polished, and where that fails.
+const COARSE: f64 = 1e-4;
+const FINE: f64 = 1e-9;
+/// How often the search goes on from a better place found by that check.
+const MOST_RESTARTS: u32 = 4;
+
+/// What makes a setting an optimum.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Kind {
+    /// A complex pair is double: D = D′ = 0.
+    DoublePair,
+    /// A real root is triple: D = D′ = D″ = 0.
+    TripleReal,
+    /// A real root is double, and as far left as along its curve it gets.
+    DoubleReal,
+    /// A double real root and a pair have the same real part.
+    DoubleRealAndPair,
+    /// Three pairs have the same real part.
+    ThreePairs,
+    /// A real root and two pairs have the same real part.
+    RealAndTwoPairs,
+    /// Two pairs have the same real part, as far left as they get together.
+    TwoPairs,
+    /// A real root and a pair have the same real part, as far left as they get together.
+    RealAndPair,
+    /// One root or pair, as far left as it gets.
+    OneRoot,
+    /// The optimum lies on an edge of the box: beyond it there is a better one.
+    Edge,
+    /// None of these could be confirmed; the place is as good as the direct search found it.
+    Descent,
+}
+
+impl Kind {
+    /// All kinds, in the order of their numbers in maps.
+    pub const ALL: [Self; 11] = [
+        Self::DoublePair,
+        Self::TripleReal,
+        Self::DoubleReal,
+        Self::DoubleRealAndPair,
+        Self::ThreePairs,
+        Self::RealAndTwoPairs,
+        Self::TwoPairs,
+        Self::RealAndPair,
+        Self::OneRoot,
+        Self::Edge,
+        Self::Descent,
+    ];
+
+    /// In words.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::DoublePair => "double pair",
+            Self::TripleReal => "triple real root",
+            Self::DoubleReal => "double real root",
+            Self::DoubleRealAndPair => "double real root and pair",
+            Self::ThreePairs => "three pairs",
+            Self::RealAndTwoPairs => "real root and two pairs",
+            Self::TwoPairs => "two pairs",
+            Self::RealAndPair => "real root and pair",
+            Self::OneRoot => "one root",
+            Self::Edge => "edge of the range",
+            Self::Descent => "direct search",
+        }
+    }
+}
+
+/// A setting at which the abscissa is smallest, dimensionless.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Optimum {
+    /// The searched gain.
+    pub gain: f64,
+    /// The delay.
+    pub tau: f64,
+    /// The spectral abscissa max Re λ; negative where sliding is stable.
+    pub abscissa: f64,
+    /// |Im λ| of the roots that share this real part, rising; 0 for a real one. A double root stands once.
+    pub frequencies: Vec<f64>,
+    /// What makes it an optimum.
+    pub kind: Kind,
+    /// The argument principle confirms that no root lies right of `abscissa` + `margin`: to the right of a line a little
+    /// farther left there are no roots but those of `kind`.
+    pub certified: bool,
+    /// What rounding can do to the abscissa: about 1e-15 at simple roots, 1e-7 at double and 1e-4 at triple ones.
+    pub margin: f64,
+}
+
+impl Optimum {
+    /// The lowest frequency among the rightmost roots.
+    #[must_use]
+    pub fn frequency(&self) -> f64 {
+        self.frequencies.first().copied().unwrap_or(f64::NAN)
+    }
+
+    /// The relaxation time −1/abscissa; none where the setting is not stable.
+    #[must_use]
+    pub fn relaxation_time(&self) -> Option<f64> {
+        (self.abscissa < 0.0).then(|| -1.0 / self.abscissa)
+    }
+}
+
+/// A stable region of the box.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Region {
+    /// The smallest and the largest sampled gain with stable delays in it.
+    pub gains: (f64, f64),
+    /// Its shortest and longest stable delay at the sampled gains.
+    pub delays: (f64, f64),
+    /// The setting of fastest decay in it.
+    pub best: Optimum,
+}
+
+/// What [`best`] finds.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Best {
+    /// The setting of fastest decay in the box; where nothing is stable, of slowest growth.
+    pub overall: Optimum,
+    /// Every stable region with its own best setting, by their shortest delays.
+    pub regions: Vec<Region>,
+    /// Regions beyond the first [`MOST_REGIONS`], which were not searched.
+    pub regions_left_out: usize,
+}
+
+/// The settings of fastest decay in the box of `search`.
+///
+/// The box must be finite, its ranges ordered and the delays not negative.
+#[must_use]
+pub fn best(search: &Search) -> Best {
+    let mut evaluator = Evaluator::default();
+    let mut found = stable_regions(search);
+    let regions_left_out = found.len().saturating_sub(MOST_REGIONS);
+    found.truncate(MOST_REGIONS);
+    let regions: Vec<Region> = found
+        .iter()
+        .map(|stretches| region(&mut evaluator, search, stretches))
+        .collect();
+    let overall = regions
+        .iter()
+        .map(|region| &region.best)
+        .min_by(|p, q| p.abscissa.total_cmp(&q.abscissa))
+        .cloned()
+        .unwrap_or_else(|| least_unstable(&mut evaluator, search));
+    Best {
+        overall,
+        regions,
+        regions_left_out,
+    }
+}
+
+/// A place from which to go down, the abscissa there and the length scales around it.
+type Start = (f64, Place, Frame);
+
+fn region(evaluator: &mut Evaluator, search: &Search, stretches: &Stretches) -> Region {
+    let hull = |values: &dyn Fn(usize) -> (f64, f64)| {
+        (0..stretches.len()).map(values).fold(
+            (f64::INFINITY, f64::NEG_INFINITY),
+            |(low, high), (from, to)| (low.min(from), high.max(to)),
+        )
+    };
+    let gains = hull(&|i| (stretches[i].gain, stretches[i].gain));
+    let delays = hull(&|i| (stretches[i].from, stretches[i].to));
+    let starts = lattice(evaluator, search, stretches, gains);
+    Region {
+        gains,
+        delays,
+        best: lowest(evaluator, search, starts),
+    }
+}
+
+/// The abscissa on a lattice of the region: over its gains as [`chosen_gains`] has them, evenly over the stable delays of each.
+fn lattice(
+    evaluator: &mut Evaluator,
+    search: &Search,
+    stretches: &Stretches,
+    gains: (f64, f64),
+) -> Vec<Start> {
+    let chosen = chosen_gains(stretches, gains);
+    let middle = |gain: f64| {
+        let there = stretches.iter().find(|s| s.gain == gain);
+        there.map_or(f64::NAN, |s| s.at(0.5).tau)
+    };
+    let mut starts = Vec::new();
+    for (i, &(gain, _)) in chosen.iter().enumerate() {
+        let (before, after) = (
+            chosen[i.saturating_sub(1)].0,
+            chosen[(i + 1).min(chosen.len() - 1)].0,
+        );
+        let step = (gain - before).max(after - gain);
+        let slope = (middle(after) - middle(before)) / (after - before);
+        for stretch in stretches.iter().filter(|s| s.gain == gain) {
+            let frame = Frame {
+                gain: positive(step, gain),
+                slope: if slope.is_finite() { slope } else { 0.0 },
+                tau: positive(
+                    (stretch.to - stretch.from) / LATTICE_PLACES as f64,
+                    stretch.to,
+                ),
+            };
+            for j in 0..=LATTICE_PLACES {
+                let place = stretch.at(j as f64 / LATTICE_PLACES as f64);
+                starts.push((evaluator.abscissa(search, place), place, frame));
+            }
+        }
+    }
+    starts
+}
+
+/// Gains of a region, rising: about [`LATTICE_LINES`] evenly over it, and as many evenly among those that were sampled, which
+/// are denser towards its ends. With the number of each among the sampled ones.
+fn chosen_gains(stretches: &Stretches, (low, high): (f64, f64)) -> Vec<(f64, usize)> {
+    let mut sampled: Vec<f64> = stretches.iter().map(|s| s.gain).collect();
+    sampled.dedup();
+    let spacing = (high - low) / LATTICE_LINES as f64;
+    let stride = sampled.len().div_ceil(LATTICE_LINES);
+    let mut chosen: Vec<(f64, usize)> = Vec::new();
+    for (number, gain) in sampled.into_iter().enumerate() {
+        let wanted =
+            |&(last, at): &(f64, usize)| gain - last >= 0.7 * spacing || number - at >= stride;
+        if chosen.last().is_none_or(wanted) {
+            chosen.push((gain, number));
+        }
+    }
+    chosen
+}
+
+/// `length`, or something small on the scale of `value` where it vanishes.
+fn positive(length: f64, value: f64) -> f64 {
+    if length > 0.0 {
+        length
+    } else {
+        1e-6 * value.abs().max(1e-6)
+    }
+}
+
+/// The lowest place to which descents from the best of `starts` lead.
+fn lowest(evaluator: &mut Evaluator, search: &Search, mut starts: Vec<Start>) -> Optimum {
+    starts.sort_by(|p, q| p.0.total_cmp(&q.0));
+    let mut chosen: Vec<Start> = Vec::new();
+    for start in starts {
+        let near = |(_, place, frame): &Start| {
+            (place.gain - start.1.gain).abs() < 2.5 * frame.gain
+                && (place.tau - start.1.tau).abs() < 2.5 * frame.tau
+        };
+        if !chosen.iter().any(near) {
+            chosen.push(start);
+        }
+        if chosen.len() == STARTS {
+            break;
+        }
+    }
+    let mut best: Option<Optimum> = None;
+    for (_, place, frame) in chosen {
+        let found = optimum_near(evaluator, search, place, &frame);
+        if best.as_ref().is_none_or(|b| found.abscissa < b.abscissa) {
+            best = Some(found);
+        }
+    }
+    best.expect("a region or a grid has at least one place")
+}
+
+/// The optimum to which the descent from `start` leads: polished, and with nothing better around it.
+fn optimum_near(
+    evaluator: &mut Evaluator,
+    search: &Search,
+    mut start: Place,
+    frame: &Frame,
+) -> Optimum {
+    let mut restarts = 0;
+    loop {
+        let coarse = descend(evaluator, search, start, frame, (1.0, COARSE));
+        let found = polished(evaluator, search, coarse, frame).unwrap_or_else(|| {
+            let along = follow_valley(evaluator, search, coarse.0, frame);
+            let near = if along.1 < coarse.1 {
+                along.0
+            } else {
+                coarse.0
+            };
+            let fine = descend(evaluator, search, near, frame, (10.0 * COARSE, FINE));
+            let edge = search.nearest_edge(fine.0, (frame.gain, frame.tau));
+            polished(evaluator, search, fine, frame)
+                .or_else(|| polished(evaluator, search, (edge, fine.1), frame))
+                .unwrap_or_else(|| unpolished(evaluator, search, fine))
+        });
+        match better_nearby(evaluator, search, &found, frame) {
+            Some(place) if restarts < MOST_RESTARTS => {
+                start = place;
+                restarts += 1;
+            }
+            _ => return found,
+        }
+    }
+}
+
+fn better_nearby(
+    evaluator: &mut Evaluator,
+    search: &Search,
+    found: &Optimum,
+    frame: &Frame,
+) -> Option<Place> {
+    let centre = Place {
+        gain: found.gain,
+        tau: found.tau,
+    };
+    let better = found.abscissa - found.margin - 1e-9 * (1.0 + found.abscissa.abs());
+    CHECK_RADII.into_iter().find_map(|radius| {
+        (0..CHECK_DIRECTIONS)
+            .map(|i| f64::from(i) * std::f64::consts::TAU / f64::from(CHECK_DIRECTIONS))
+            .map(|angle| search.clamp(frame.around(centre, radius, angle)))
+            .find(|&place| evaluator.abscissa(search, place) < better)
+    })
+}
+
+/// The setting of slowest growth in a box without stable ones.
+fn least_unstable(evaluator: &mut Evaluator, search: &Search) -> Optimum {
+    let spread = |(from, to): (f64, f64), i: usize| from + (to - from) * (i as f64 / GRID as f64);
+    let frame = Frame {
+        gain: positive(
+            (search.gains.1 - search.gains.0) / GRID as f64,
+            search.gains.0,
+        ),
+        slope: 0.0,
+        tau: positive(
+            (search.delays.1 - search.delays.0) / GRID as f64,
+            search.delays.0,
+        ),
+    };
+    let mut starts = Vec::new();
+    for i in 0..=GRID {
+        for j in 0..=GRID {
+            let place = Place {
+                gain: spread(search.gains, i),
+                tau: spread(search.delays, j),
+            };
+            starts.push((evaluator.abscissa(search, place), place, frame));
+        }
+    }
+    lowest(evaluator, search, starts)
+}
+
+#[cfg(test)]
+mod tests;

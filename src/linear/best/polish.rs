@@ -1,0 +1,234 @@
+//! From a place near an optimum to the optimum itself: Newton's method on the conditions that can hold there.
+
+use super::condition::{Condition, Followed};
+use super::descend::Frame;
+use super::search::{Evaluator, Place, Search};
+use super::{Kind, Optimum};
+use crate::linear::certificate::roots_right_of;
+use crate::linear::newton::Root;
+
+/// Steps of Newton's method.
+const MOST_STEPS: u32 = 30;
+/// Step of a difference quotient, in units of the frame; what it is taken of is known nearly to rounding.
+const DIFFERENCE: f64 = 1e-4;
+/// A polished place farther away than this many frames belongs to something else.
+const FARTHEST: f64 = 4.0;
+/// Roots among which those that share the largest real part are looked for.
+const CANDIDATES: u64 = 12;
+/// Distances from the abscissa at which the certificate is asked for: this many, each four times the one before, from four
+/// times what rounding can do to the abscissa. Near a multiple root the argument principle needs a line farther away than
+/// the root is blurred.
+const DISTANCES: i32 = 9;
+/// What is left undecided of an abscissa that the descent alone has found.
+const DESCENT_ERROR: f64 = 1e-8;
+
+/// The optimum near `place`, where the descent came to `abscissa`: the first condition that can be satisfied there with an
+/// abscissa that is certified and no worse.
+pub(super) fn polished(
+    evaluator: &mut Evaluator,
+    search: &Search,
+    (place, abscissa): (Place, f64),
+    frame: &Frame,
+) -> Option<Optimum> {
+    let edge = search.on_edge(place);
+    conditions(evaluator.roots(search, place, CANDIDATES), edge)
+        .into_iter()
+        .filter_map(|condition| solve(&condition, search, place, frame, edge))
+        .map(|(at, solved)| optimum(&solved, search, at, edge))
+        .find(|found| found.certified && found.abscissa <= abscissa + 1e-9 * (1.0 + abscissa.abs()))
+}
+
+/// What the descent found, with as much certainty as that has.
+pub(super) fn unpolished(
+    evaluator: &mut Evaluator,
+    search: &Search,
+    (place, abscissa): (Place, f64),
+) -> Optimum {
+    let rightmost = evaluator.roots(search, place, 1).first();
+    let frequencies = rightmost.map(|root| vec![root.lambda.im]);
+    let margin = decided(search, place, abscissa, DESCENT_ERROR, (1.0, 0));
+    Optimum {
+        gain: place.gain,
+        tau: place.tau,
+        abscissa,
+        frequencies: frequencies.unwrap_or_default(),
+        kind: match search.on_edge(place) {
+            (false, false) => Kind::Descent,
+            _ => Kind::Edge,
+        },
+        certified: margin.is_some(),
+        margin: margin.unwrap_or(DESCENT_ERROR),
+    }
+}
+
+/// The number of roots right of `abscissa` + distance times `side`, at growing distances until one decides: those at which
+/// it is `expected`. The smallest such distance.
+fn decided(
+    search: &Search,
+    place: Place,
+    abscissa: f64,
+    blur: f64,
+    (side, expected): (f64, u64),
+) -> Option<f64> {
+    let groups = search.groups(place.gain);
+    let least = blur + 1e-13 * (1.0 + abscissa.abs());
+    (1..=DISTANCES)
+        .map(|i| least * 4.0_f64.powi(i))
+        .find(|d| roots_right_of(groups, place.tau, abscissa + side * d) == Some(expected))
+}
+
+fn optimum(condition: &Condition, search: &Search, place: Place, edge: (bool, bool)) -> Optimum {
+    let abscissa = condition.abscissa();
+    let imaginary = condition.followed.iter().map(|f| f.lambda().im.abs());
+    let mut frequencies: Vec<f64> = imaginary.collect();
+    frequencies.sort_by(f64::total_cmp);
+    // All roots right of a line to the left are those that are followed: none of them lies farther right than rounding puts it.
+    let blur = condition.blur(search, place);
+    let alone = decided(search, place, abscissa, blur, (-1.0, condition.roots()));
+    Optimum {
+        gain: place.gain,
+        tau: place.tau,
+        abscissa,
+        frequencies,
+        kind: match edge {
+            (false, false) => kind(&condition.followed),
+            _ => Kind::Edge,
+        },
+        certified: alone.is_some(),
+        margin: 4.0 * (blur + f64::EPSILON * (1.0 + abscissa.abs())),
+    }
+}
+
+fn kind(followed: &[Followed]) -> Kind {
+    let real = |f: &Followed| f.lambda().im == 0.0;
+    match (followed[0], followed.len()) {
+        (Followed::DoublePair(_), _) => Kind::DoublePair,
+        (Followed::TripleReal(_), _) => Kind::TripleReal,
+        (Followed::DoubleReal(_), 1) => Kind::DoubleReal,
+        (Followed::DoubleReal(_), _) => Kind::DoubleRealAndPair,
+        (Followed::Root(_), 3) if followed.iter().any(real) => Kind::RealAndTwoPairs,
+        (Followed::Root(_), 3) => Kind::ThreePairs,
+        (Followed::Root(_), 2) if followed.iter().any(real) => Kind::RealAndPair,
+        (Followed::Root(_), 2) => Kind::TwoPairs,
+        _ => Kind::OneRoot,
+    }
+}
+
+/// The conditions to try, those on more roots first: where one of them holds, one on fewer roots may be singular.
+fn conditions(roots: &[Root], edge: (bool, bool)) -> Vec<Condition> {
+    let simple: Vec<Followed> = roots
+        .iter()
+        .map(|r| Followed::Root(r.lambda))
+        .take(4)
+        .collect();
+    let starts: Vec<_> = roots.iter().map(|r| r.lambda).take(3).collect();
+    let of = |followed: &[Followed]| Condition {
+        followed: followed.to_vec(),
+    };
+    let mut list = Vec::new();
+    if edge == (false, false) {
+        list.extend(starts.iter().map(|l| of(&[Followed::TripleReal(l.re)])));
+        list.extend(starts.iter().map(|&l| of(&[Followed::DoublePair(l)])));
+        for start in &starts {
+            let pairs = simple.iter().filter(|f| f.lambda().im != 0.0);
+            list.extend(pairs.map(|&pair| of(&[Followed::DoubleReal(start.re), pair])));
+        }
+        for last in (2..simple.len()).rev() {
+            list.push(of(&[simple[0], simple[1], simple[last]]));
+        }
+    }
+    list.extend(starts.iter().map(|l| of(&[Followed::DoubleReal(l.re)])));
+    for (i, &p) in simple.iter().enumerate() {
+        list.extend(simple[i + 1..].iter().map(|&q| of(&[p, q])));
+    }
+    list.extend(simple.iter().map(|&p| of(&[p])));
+    list
+}
+
+/// The place where `condition` holds, and what is followed there.
+fn solve(
+    condition: &Condition,
+    search: &Search,
+    start: Place,
+    frame: &Frame,
+    edge: (bool, bool),
+) -> Option<(Place, Condition)> {
+    let mut state = condition.moved(search, start)?;
+    let mut place = start;
+    if edge.0 && edge.1 {
+        // A corner: nothing is free.
+        return (state.followed.len() == 1 && matches!(state.followed[0], Followed::Root(_)))
+            .then_some((place, state));
+    }
+    let mut last_size = f64::INFINITY;
+    for _ in 0..MOST_STEPS {
+        let step = newton_step(&state, search, place, frame, edge)?;
+        // In units of the frame.
+        let size = (step[0] / frame.gain).hypot(step[1] / frame.tau);
+        let shortened = (0.5 / size).min(1.0);
+        let next = Place {
+            gain: place.gain - shortened * step[0],
+            tau: place.tau - shortened * step[1],
+        };
+        if !size.is_finite() || search.clamp(next) != next {
+            return None;
+        }
+        let away =
+            ((next.gain - start.gain) / frame.gain).hypot((next.tau - start.tau) / frame.tau);
+        if away > FARTHEST {
+            return None;
+        }
+        place = next;
+        state = state.moved(search, place)?;
+        let rounding = 1e-13 * (place.gain.abs() / frame.gain + place.tau / frame.tau);
+        if size <= rounding || (size < 1e-7 && size >= 0.5 * last_size) {
+            return Some((place, state));
+        }
+        last_size = size;
+    }
+    None
+}
+
+/// The step of Newton's method, with derivatives by central differences; zero along what an edge holds.
+fn newton_step(
+    state: &Condition,
+    search: &Search,
+    place: Place,
+    frame: &Frame,
+    edge: (bool, bool),
+) -> Option<[f64; 2]> {
+    let moved = |gain: f64, tau: f64| Place {
+        gain: place.gain + gain,
+        tau: place.tau + tau,
+    };
+    let (h_gain, h_tau) = (DIFFERENCE * frame.gain, DIFFERENCE * frame.tau);
+    if edge.0 || edge.1 {
+        let along_gain = edge.1;
+        let at = |by: f64| {
+            let place = if along_gain {
+                moved(by, 0.0)
+            } else {
+                moved(0.0, by)
+            };
+            state
+                .moved(search, place)?
+                .on_edge(search, place, along_gain)
+        };
+        let h = if along_gain { h_gain } else { h_tau };
+        let slope = (at(h)? - at(-h)?) / (2.0 * h);
+        let step = at(0.0)? / slope;
+        return Some(if along_gain { [step, 0.0] } else { [0.0, step] });
+    }
+    let at = |place: Place| state.moved(search, place)?.inside(search, place);
+    let quotient = |ahead: [f64; 2], behind: [f64; 2], h: f64| {
+        [0, 1].map(|i| (ahead[i] - behind[i]) / (2.0 * h))
+    };
+    let here = at(place)?;
+    let by_gain = quotient(at(moved(h_gain, 0.0))?, at(moved(-h_gain, 0.0))?, h_gain);
+    let by_tau = quotient(at(moved(0.0, h_tau))?, at(moved(0.0, -h_tau))?, h_tau);
+    let determinant = by_gain[0] * by_tau[1] - by_gain[1] * by_tau[0];
+    Some([
+        (here[0] * by_tau[1] - here[1] * by_tau[0]) / determinant,
+        (by_gain[0] * here[1] - by_gain[1] * here[0]) / determinant,
+    ])
+}

@@ -1,0 +1,149 @@
+//! The stable regions of a box in the plane of gain and delay: lobes.
+//!
+//! The stable delays of a gain are known in closed form ([`Crossings::stable_delays`]), so only the gain is sampled: evenly,
+//! and ever more densely towards each gain at which the crossings change their number, where lobes end in a point. Stretches
+//! of neighbouring gains belong to the same region where they overlap or lie between the same two crossing curves.
+
+use super::search::{Place, Search};
+use crate::linear::Crossings;
+
+/// Gains sampled evenly over the box.
+const EVEN_LINES: usize = 192;
+/// Gains on either side of a breakpoint, each nearer to it than the one before by `CLOSER`.
+const LINES_AT_BREAKPOINT: i32 = 72;
+const CLOSER: f64 = 0.6;
+/// Stable intervals looked at on one line.
+const MOST_STRETCHES: usize = 1024;
+
+/// Stable delays of one sampled gain, cut at the edges of the box.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Stretch {
+    pub gain: f64,
+    pub from: f64,
+    pub to: f64,
+    /// Branches of the two crossings that bound the interval, none where it is open.
+    bounds: (Option<u64>, Option<u64>),
+}
+
+impl Stretch {
+    fn touches(&self, other: &Self) -> bool {
+        let overlap = self.from < other.to && other.from < self.to;
+        overlap || (self.bounds == other.bounds && self.bounds.0.is_some())
+    }
+
+    /// The place at the fraction `s` of the stretch.
+    pub fn at(&self, s: f64) -> Place {
+        Place {
+            gain: self.gain,
+            tau: self.from + s * (self.to - self.from),
+        }
+    }
+}
+
+/// The stretches of one region, by rising gain and delay. Never empty.
+pub(super) type Stretches = Vec<Stretch>;
+
+/// All regions of the box that a sampled gain crosses, by their shortest delay.
+pub(super) fn stable_regions(search: &Search) -> Vec<Stretches> {
+    let lines: Vec<Stretches> = sampled_gains(search)
+        .into_iter()
+        .map(|gain| stretches_of_line(search, gain))
+        .collect();
+    let offsets: Vec<usize> = lines
+        .iter()
+        .scan(0, |next, line| {
+            Some(std::mem::replace(next, *next + line.len()))
+        })
+        .collect();
+    let mut groups = Sets::new(lines.iter().map(Vec::len).sum());
+    for (i, pair) in lines.windows(2).enumerate() {
+        for (p, here) in pair[0].iter().enumerate() {
+            for (q, there) in pair[1].iter().enumerate() {
+                if here.touches(there) {
+                    groups.join(offsets[i] + p, offsets[i + 1] + q);
+                }
+            }
+        }
+    }
+    let all: Vec<Stretch> = lines.into_iter().flatten().collect();
+    let mut regions: Vec<(usize, Stretches)> = Vec::new();
+    for (i, &stretch) in all.iter().enumerate() {
+        let name = groups.name(i);
+        match regions.iter_mut().find(|(n, _)| *n == name) {
+            Some((_, region)) => region.push(stretch),
+            None => regions.push((name, vec![stretch])),
+        }
+    }
+    let mut regions: Vec<Stretches> = regions.into_iter().map(|(_, r)| r).collect();
+    let shortest = |r: &Stretches| r.iter().map(|s| s.from).fold(f64::INFINITY, f64::min);
+    regions.sort_by(|p, q| shortest(p).total_cmp(&shortest(q)));
+    regions
+}
+
+/// The gains at which stable delays are asked for, rising.
+fn sampled_gains(search: &Search) -> Vec<f64> {
+    let (from, to) = search.gains;
+    let width = to - from;
+    if width == 0.0 {
+        return vec![from];
+    }
+    let mut gains: Vec<f64> = (0..=EVEN_LINES)
+        .map(|i| from + width * (i as f64 / EVEN_LINES as f64))
+        .collect();
+    for breakpoint in search.breakpoints() {
+        for step in 1..=LINES_AT_BREAKPOINT {
+            let by = width * CLOSER.powi(step);
+            gains.extend([breakpoint - by, breakpoint + by]);
+        }
+    }
+    gains.retain(|gain| (from..=to).contains(gain));
+    gains.sort_by(f64::total_cmp);
+    gains.dedup();
+    gains
+}
+
+fn stretches_of_line(search: &Search, gain: f64) -> Stretches {
+    let crossings = Crossings::of(search.groups(gain));
+    let (shortest, longest) = search.delays;
+    crossings
+        .stable_delays()
+        .take_while(|interval| interval.from <= longest)
+        .take(MOST_STRETCHES)
+        .filter(|interval| interval.to >= shortest)
+        .map(|interval| Stretch {
+            gain,
+            from: interval.from.max(shortest),
+            to: interval.to.min(longest),
+            bounds: (
+                crossings.lower.map(|c| c.branch_at(interval.from)),
+                crossings.upper.map(|c| c.branch_at(interval.to)),
+            ),
+        })
+        .collect()
+}
+
+/// Sets that are joined one by one.
+struct Sets {
+    parent: Vec<usize>,
+}
+
+impl Sets {
+    fn new(len: usize) -> Self {
+        Self {
+            parent: (0..len).collect(),
+        }
+    }
+
+    fn name(&mut self, mut i: usize) -> usize {
+        while self.parent[i] != i {
+            self.parent[i] = self.parent[self.parent[i]];
+            i = self.parent[i];
+        }
+        i
+    }
+
+    fn join(&mut self, i: usize, j: usize) {
+        let (i, j) = (self.name(i), self.name(j));
+        self.parent[i.max(j)] = i.min(j);
+    }
+}

@@ -1,0 +1,102 @@
+//! The rightmost roots at one point, with the certificate that a map's cell there has.
+
+use super::count::Count;
+use super::newton::Root;
+use super::spectrum::{Incomplete, RootFinder};
+use super::status::{CERTIFIED, DISAGREE, MARGINAL, MOST_COUNTED, NOT_CONVERGED, SATURATED};
+use super::track::RootTracker;
+use crate::model::Groups;
+
+/// The rightmost roots of a point. Dimensionless.
+#[derive(Debug, Clone)]
+pub struct Rightmost {
+    /// By falling real part, pairs counted once. Fewer than asked for where there are no more: without control or delay.
+    pub roots: Vec<Root>,
+    /// No root lies right of Re λ + margin·max(1, |Re λ|), λ being the first of `roots`; NaN where nothing converged.
+    pub margin: f64,
+    /// The argument principle confirms that, and the number of unstable roots.
+    pub certified: bool,
+    /// What was not found, if anything.
+    pub missing: Option<Incomplete>,
+}
+
+impl Rightmost {
+    /// The `wanted` rightmost roots, at least one, at the delay `tau` ≥ 0; `count` is what the closed form says there.
+    #[must_use]
+    pub fn at(groups: Groups, tau: f64, wanted: usize, count: Count) -> Self {
+        let counted = count.n_unstable.min(u64::from(MOST_COUNTED));
+        let mut status = 0;
+        if counted < count.n_unstable {
+            status |= SATURATED;
+        }
+        if count.marginal {
+            status |= MARGINAL;
+        }
+        let (mut first, mut margin) = (None, f64::NAN);
+        let mut tracker = RootTracker::new(1);
+        let (counts, flags) = ([counted as u16], std::slice::from_mut(&mut status));
+        tracker.follow(groups, (&[tau], 1.0), 0, &counts, flags, |_, cell| {
+            first = cell.roots.first().copied();
+            margin = cell.margin;
+        });
+        let wanted = wanted.max(1);
+        let mut finder = RootFinder::default();
+        // A pair is two roots.
+        let found = finder.rightmost(groups, tau, 2 * wanted as u64, f64::NEG_INFINITY);
+        let (roots, missing) = match found {
+            Ok(roots) => (roots[..roots.len().min(wanted)].to_vec(), None),
+            Err(error) => (first.into_iter().collect(), Some(error)),
+        };
+        let agree = match (first, roots.first()) {
+            (Some(tracked), Some(found)) => {
+                let scale = tracked.lambda.re.abs().max(1.0);
+                (tracked.lambda.re - found.lambda.re).abs() <= margin * scale
+            }
+            _ => false,
+        };
+        let flags = status & (CERTIFIED | DISAGREE | NOT_CONVERGED);
+        Self {
+            roots,
+            margin,
+            certified: flags == CERTIFIED && agree && missing.is_none(),
+            missing,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::linear::{Crossings, MarginalTolerance};
+    use crate::model::known_cases;
+
+    fn at(groups: Groups, tau: f64, wanted: usize) -> Rightmost {
+        let count = Crossings::of(groups).count(tau, MarginalTolerance::default());
+        Rightmost::at(groups, tau, wanted, count)
+    }
+
+    #[test]
+    fn as_many_as_asked_for_and_certified() {
+        let case = known_cases::beyond_the_letters_limit();
+        for wanted in [1, 4, 20, 64] {
+            let found = at(case.groups, case.tau, wanted);
+            assert!(found.certified && found.missing.is_none());
+            assert_eq!(found.roots.len(), wanted);
+            assert!((found.roots[0].lambda.re + 0.0075).abs() < 1e-4);
+            let falls = |w: &[Root]| w[0].lambda.re >= w[1].lambda.re;
+            assert!(found.roots.windows(2).all(falls));
+        }
+    }
+
+    #[test]
+    fn without_control_or_delay_there_is_one_pair() {
+        for (groups, tau) in [
+            (Groups::new(-0.3, 0.0, 0.0), 2.0),
+            (Groups::new(-0.3, 0.4, -1.0), 0.0),
+        ] {
+            let found = at(groups, tau, 20);
+            assert!(found.certified && found.roots.len() == 1, "{found:?}");
+            assert!((found.roots[0].lambda.re - 0.15).abs() < 1e-14);
+        }
+    }
+}

@@ -1,0 +1,316 @@
+//! What the colours of a heat map mean: the colour of every value of a field, and the bar or list that says so.
+
+use super::colour::{self, INK, NO_VALUE, Rgb, STABLE, UNSTABLE};
+use super::legend::{Bar, Legend, Swatch};
+use super::page::Area;
+use super::scale::Scale;
+use super::scene::Scene;
+use super::text::{Rich, decimal_exponent, field_name, number, suffix};
+use crate::store::map_file::Plane;
+use crate::sweep::Field;
+
+/// Width of boundary lines.
+pub const BOUNDARY_WIDTH: f64 = 1.8;
+/// The part of all slopes and further roots that the colours tell apart. Near double roots some slopes are beyond any scale,
+/// and as the delay vanishes all roots but the rightmost go to −∞.
+const TOLD_APART: f64 = 0.96;
+/// The longest relaxation time that has a colour of its own, in units of the shortest one.
+const LONGEST_RELAXATION: f64 = 100.0;
+
+/// How values become colours.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Paint {
+    /// A colour for each number of unstable roots.
+    Counts,
+    /// Two colours that meet at zero and are full at ±`range`; `stable` is the sign of the values on the stable side.
+    Signed { range: f64, stable: f64 },
+    /// From dark to light along a scale; infinite values are those of unstable cells.
+    Sized(Scale),
+}
+
+impl Paint {
+    fn of(field: Field, values: &[f64]) -> Self {
+        let finite = || values.iter().copied().filter(|v| v.is_finite());
+        let largest = finite().fold(0.0, f64::max);
+        match field {
+            Field::NUnstable => Self::Counts,
+            Field::DelayMargin => Self::Signed {
+                range: symmetric_range(finite()),
+                stable: 1.0,
+            },
+            Field::ABSCISSA => Self::Signed {
+                range: symmetric_range(finite().map(|v| -v)),
+                stable: -1.0,
+            },
+            Field::Abscissa(_) | Field::AbscissaSlope(_) => Self::Signed {
+                range: rounded_up(quantile(finite().map(f64::abs), TOLD_APART)),
+                stable: -1.0,
+            },
+            Field::RelaxationTime => {
+                let positive = finite().filter(|v| *v > 0.0);
+                let shortest = positive.fold(f64::INFINITY, f64::min);
+                if !shortest.is_finite() {
+                    return Self::Sized(Scale::linear(0.0, 1.0));
+                }
+                let longest = largest.clamp(1.5 * shortest, LONGEST_RELAXATION * shortest);
+                Self::Sized(Scale::logarithmic(shortest, rounded_up(longest)))
+            }
+            Field::Frequency(_) | Field::CertificateMargin => {
+                Self::Sized(Scale::linear(0.0, rounded_up(largest)))
+            }
+        }
+    }
+
+    fn colour(&self, value: f64) -> Rgb {
+        match *self {
+            Self::Counts => colour::of_count(value),
+            Self::Signed { range, stable } => colour::diverging(stable * value, range),
+            Self::Sized(_) if value.is_nan() => NO_VALUE,
+            Self::Sized(_) if value.is_infinite() => UNSTABLE[0],
+            Self::Sized(scale) => colour::of_size(scale.part(value)),
+        }
+    }
+
+    /// The scale of the bar; none where a list says everything.
+    fn scale(&self) -> Option<Scale> {
+        match *self {
+            Self::Counts => None,
+            Self::Signed { range, .. } => Some(Scale::linear(-range, range)),
+            Self::Sized(scale) => Some(scale),
+        }
+    }
+
+    /// What is beyond the ends of the bar.
+    fn beyond(&self, values: &[f64]) -> Vec<(Swatch, Rich)> {
+        let mut entries = Vec::new();
+        let mut entry = |value: f64, text: String| {
+            entries.push((Swatch::Box(self.colour(value)), Rich::plain(&text)));
+        };
+        let (low, high) = match *self {
+            Self::Counts => return entries,
+            Self::Signed { range, .. } => (-range, range),
+            Self::Sized(scale) => (f64::NEG_INFINITY, scale.value(1.0)),
+        };
+        if values.iter().any(|&v| v > high && v.is_finite()) {
+            entry(high, format!("{} or more", number(high)));
+        }
+        if values.iter().any(|&v| v < low && v.is_finite()) {
+            entry(low, format!("{} or less", number(low)));
+        }
+        for infinite in [f64::INFINITY, f64::NEG_INFINITY] {
+            if values.contains(&infinite) {
+                let meaning = match self {
+                    Self::Sized(_) => ", unstable",
+                    _ => "",
+                };
+                entry(infinite, format!("{}{meaning}", number(infinite)));
+            }
+        }
+        entries
+    }
+}
+
+/// What the colours of a field mean, in the panels and beside them.
+pub struct Key {
+    paint: Paint,
+    /// Lines above the bar.
+    heading: Vec<Rich>,
+    /// What stands below the bar, or alone where there is none.
+    legend: Legend,
+}
+
+impl Key {
+    /// The key to all cells of `planes`; `curves`: boundaries are drawn as well.
+    pub fn new(field: Field, unit: &str, planes: &[Plane], curves: bool) -> Self {
+        let cells = planes.iter().flat_map(|plane| plane.cells.iter().copied());
+        let values: Vec<f64> = cells.collect();
+        let paint = Paint::of(field, &values);
+        let mut legend = match paint {
+            Paint::Counts => counts(&values),
+            _ => Legend::default(),
+        };
+        legend.entries.extend(paint.beyond(&values));
+        if values.iter().any(|v| v.is_nan()) {
+            let swatch = Swatch::Box(NO_VALUE);
+            legend.entries.push((swatch, Rich::plain("no value")));
+        }
+        if curves {
+            let swatch = Swatch::Line(INK, BOUNDARY_WIDTH, None);
+            legend.entries.push((swatch, Rich::plain("boundary")));
+        }
+        Self {
+            paint,
+            heading: heading(field, unit),
+            legend,
+        }
+    }
+
+    /// The key with more entries at the end of its list.
+    pub fn with(mut self, more: Vec<(Swatch, Rich)>) -> Self {
+        self.legend.entries.extend(more);
+        self
+    }
+
+    /// The colour of a value.
+    pub fn colour(&self, value: f64) -> Rgb {
+        self.paint.colour(value)
+    }
+
+    /// Width in pixels.
+    pub fn width(&self, u: f64) -> f64 {
+        let colour = |value| self.colour(value);
+        let bar = self.bar(&colour).map_or(0.0, |bar| bar.width(u));
+        bar.max(self.legend.width(u))
+    }
+
+    /// Draws the key into `area`.
+    pub fn draw(&self, scene: &mut Scene, area: Area) {
+        let colour = |value| self.colour(value);
+        let Some(bar) = self.bar(&colour) else {
+            return self.legend.draw(scene, area);
+        };
+        let split = area.bottom - self.legend.height(scene.unit());
+        let upper = Area {
+            bottom: split,
+            ..area
+        };
+        bar.draw(scene, upper);
+        self.legend.draw(scene, Area { top: split, ..area });
+    }
+
+    fn bar<'a>(&self, colour: &'a dyn Fn(f64) -> Rgb) -> Option<Bar<'a>> {
+        Some(Bar {
+            heading: self.heading.clone(),
+            scale: self.paint.scale()?,
+            colour,
+        })
+    }
+}
+
+/// The field's name and, where it has two sides, which of them is the stable one.
+fn heading(field: Field, unit: &str) -> Vec<Rich> {
+    let mut lines = vec![field_name(field).and(&suffix(unit, " (", ")"))];
+    let side = match field {
+        Field::AbscissaSlope(_) => Some("faster decay below 0"),
+        _ if field.tells_stable(1.0) == Some(false) => Some("stable below 0"),
+        _ if field.tells_stable(-1.0) == Some(false) => Some("stable above 0"),
+        _ => None,
+    };
+    lines.extend(side.map(Rich::plain));
+    lines
+}
+
+fn counts(values: &[f64]) -> Legend {
+    let finite = values.iter().copied().filter(|v| v.is_finite());
+    let most = finite.fold(0.0, f64::max);
+    let mut entries = vec![(Swatch::Box(STABLE), Rich::plain("0, stable"))];
+    for (i, colour) in UNSTABLE.into_iter().enumerate() {
+        let n = 2 * (i + 1);
+        let open = i + 1 == UNSTABLE.len() && most > n as f64;
+        let text = if open {
+            format!("{n} or more")
+        } else {
+            n.to_string()
+        };
+        if n as f64 <= most {
+            entries.push((Swatch::Box(colour), Rich::plain(&text)));
+        }
+    }
+    Legend {
+        heading: vec![Rich::plain("unstable roots")],
+        entries,
+    }
+}
+
+/// The range of colours: the largest finite value of a stable cell, stable being positive, since far outside the stable
+/// region the distance to it matters less; but not so small that most of the others lie beyond. 1 where there is no value.
+fn symmetric_range(values: impl Iterator<Item = f64>) -> f64 {
+    let (mut stable, mut largest) = (0.0, 0.0);
+    for value in values {
+        stable = f64::max(stable, value);
+        largest = f64::max(largest, value.abs());
+    }
+    rounded_up(f64::max(stable, 0.5 * largest))
+}
+
+/// The value below which `part` of the values lie; 0 where there are none.
+fn quantile(values: impl Iterator<Item = f64>, part: f64) -> f64 {
+    let mut values: Vec<f64> = values.collect();
+    let place = (part * values.len() as f64) as usize;
+    if place >= values.len() {
+        return 0.0;
+    }
+    *values.select_nth_unstable_by(place, f64::total_cmp).1
+}
+
+/// A positive value rounded up to two digits; 1 for 0.
+fn rounded_up(value: f64) -> f64 {
+    if value == 0.0 {
+        return 1.0;
+    }
+    let unit = 10f64.powi(decimal_exponent(value) - 1);
+    (value / unit - 1e-9).ceil() * unit
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn plane(cells: &[f64]) -> Plane {
+        Plane {
+            rows: vec![0.0],
+            columns: (0..cells.len()).map(|i| i as f64).collect(),
+            cells: cells.to_vec(),
+        }
+    }
+
+    fn texts(key: Key) -> Vec<Rich> {
+        key.legend.entries.into_iter().map(|e| e.1).collect()
+    }
+
+    #[test]
+    fn far_values_do_not_stretch_the_range() {
+        assert_eq!(symmetric_range([1.5, -2.0].into_iter()), 1.5);
+        assert_eq!(symmetric_range([0.001, -2.0].into_iter()), 1.0);
+        assert!((rounded_up(2.412) - 2.5).abs() < 1e-12);
+        assert_eq!(symmetric_range(std::iter::empty()), 1.0);
+        assert_eq!(quantile((0..100).map(f64::from), 0.96), 96.0);
+        assert_eq!(quantile(std::iter::empty(), 0.96), 0.0);
+    }
+
+    #[test]
+    fn the_legend_lists_what_is_there() {
+        let key = Key::new(Field::NUnstable, "1", &[plane(&[0.0, 4.0, f64::NAN])], true);
+        let expected = ["0, stable", "2", "4", "no value", "boundary"];
+        assert_eq!(texts(key), expected.map(Rich::plain));
+        let cells = [-0.1, 0.9, f64::NEG_INFINITY];
+        let key = Key::new(Field::ABSCISSA, "1", &[plane(&cells)], false);
+        assert_eq!(texts(key), ["0.45 or more", "−∞"].map(Rich::plain));
+        let cells = [2.0, 900.0, f64::INFINITY];
+        let key = Key::new(Field::RelaxationTime, "s", &[plane(&cells)], false);
+        assert_eq!(texts(key), ["200 or more", "∞, unstable"].map(Rich::plain));
+    }
+
+    /// Teal is stable, whichever sign that is.
+    #[test]
+    fn every_field_has_its_stable_colour() {
+        let stable = colour::diverging(1.0, 1.0);
+        for (field, value) in [(Field::DelayMargin, 1.0), (Field::ABSCISSA, -1.0)] {
+            let key = Key::new(field, "1", &[plane(&[value])], false);
+            assert_eq!(key.colour(value), stable);
+            assert_ne!(key.colour(-value), stable);
+        }
+    }
+
+    /// Every field makes a key, even of cells that hold nothing.
+    #[test]
+    fn every_field_has_a_key() {
+        for field in Field::ALL {
+            for cells in [&[f64::NAN][..], &[0.0], &[f64::INFINITY], &[1.0, 2.0]] {
+                let key = Key::new(field, "1", &[plane(cells)], false);
+                assert!(key.width(1.0) > 0.0, "{field:?} {cells:?}");
+                key.colour(cells[0]);
+            }
+        }
+    }
+}

@@ -1,0 +1,115 @@
+//! Reads the best settings of a map.
+
+use hdf5::{Group, H5Type};
+
+use super::error::StoreError;
+use super::map_file::MapFile;
+use super::schema::{BEST, best as names};
+use crate::linear::best::Kind;
+use crate::sweep::Parameter;
+
+/// The best setting of one plane of a map, in the units of the map.
+#[derive(Debug, Clone, PartialEq)]
+pub struct MapBest {
+    /// Values of the axes outside the plane, in the order of the map's axes.
+    pub outer: Vec<f64>,
+    /// The gain.
+    pub gain: f64,
+    /// The delay.
+    pub tau: f64,
+    /// The spectral abscissa.
+    pub abscissa: f64,
+    /// The lowest frequency among the rightmost roots.
+    pub frequency: f64,
+    /// −1/abscissa; none where the setting is not stable.
+    pub relaxation_time: Option<f64>,
+    /// What makes it the best; none where nothing was looked for, and all numbers are NaN.
+    pub kind: Option<Kind>,
+    /// The argument principle confirms the abscissa.
+    pub certified: bool,
+    /// Number of stable regions of the plane.
+    pub regions: u64,
+}
+
+impl MapFile {
+    /// The axes (gain, delay) of the planes whose best settings the map holds; none where it holds none.
+    #[must_use]
+    pub fn best_plane(&self) -> Option<(usize, usize)> {
+        self.plane_of(BEST)
+    }
+
+    /// The best setting of every plane, in the order of the axes outside of it. Empty where the map holds none.
+    ///
+    /// # Errors
+    /// When the file is damaged.
+    pub fn best(&self) -> Result<Vec<MapBest>, StoreError> {
+        let Some((gain, tau)) = self.best_plane() else {
+            return Ok(Vec::new());
+        };
+        let outer: Vec<&[f64]> = (0..self.axes().len())
+            .filter(|&axis| axis != gain && axis != tau)
+            .map(|axis| self.axes()[axis].values.as_slice())
+            .collect();
+        let planes = outer.iter().map(|values| values.len()).product();
+        let read = || -> hdf5::Result<Vec<MapBest>> {
+            let group = Columns {
+                group: self.group(BEST)?,
+                planes,
+            };
+            let gains = group.read::<f64>(self.axes()[gain].parameter.name())?;
+            let taus = group.read::<f64>(Parameter::Tau.name())?;
+            let abscissas = group.read::<f64>(names::ABSCISSA)?;
+            let frequencies = group.read::<f64>(names::FREQUENCY)?;
+            let times = group.read::<f64>(names::RELAXATION_TIME)?;
+            let kinds = group.read::<i8>(names::KIND)?;
+            let certified = group.read::<i8>(names::CERTIFIED)?;
+            let regions = group.read::<i32>(names::REGIONS)?;
+            let best = |i: usize| MapBest {
+                outer: outer_values(&outer, i),
+                gain: gains[i],
+                tau: taus[i],
+                abscissa: abscissas[i],
+                frequency: frequencies[i],
+                relaxation_time: Some(times[i]).filter(|time| !time.is_nan()),
+                kind: kind(kinds[i]),
+                certified: certified[i] == 1,
+                regions: regions[i].max(0) as u64,
+            };
+            Ok((0..planes).map(best).collect())
+        };
+        read().map_err(StoreError::hdf5("read the best settings of", self.path()))
+    }
+}
+
+/// The group, with one value per plane in each variable.
+struct Columns {
+    group: Group,
+    planes: usize,
+}
+
+impl Columns {
+    fn read<T: H5Type>(&self, name: &str) -> hdf5::Result<Vec<T>> {
+        let values = self.group.dataset(name)?.read_raw::<T>()?;
+        if values.len() == self.planes {
+            Ok(values)
+        } else {
+            Err(format!("{name} has not one value for each plane").into())
+        }
+    }
+}
+
+/// The kind of that number; none for the fill value.
+fn kind(number: i8) -> Option<Kind> {
+    let place = usize::try_from(number).ok()?;
+    Kind::ALL.get(place).copied()
+}
+
+/// The values of the axes at the plane `number`, the last axis fastest.
+fn outer_values(axes: &[&[f64]], mut number: usize) -> Vec<f64> {
+    let mut values = vec![0.0; axes.len()];
+    for (value, axis) in values.iter_mut().zip(axes).rev() {
+        *value = axis[number % axis.len()];
+        number /= axis.len();
+    }
+    values
+}

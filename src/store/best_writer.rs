@@ -1,0 +1,221 @@
+//! The best settings in a map: one value per plane (gain, delay), over the axes outside of it.
+//!
+//! The group shares the dimensions of the map. The axes outside the planes stand in it once more, as variables of the same
+//! names, so that readers which open one group alone have coordinates.
+
+use hdf5::plist::group_create::LinkCreationOrder;
+use hdf5::types::OwnedDynValue;
+use hdf5::{Dataset, Group, H5Type};
+
+use super::attributes::{put_numbers, put_text};
+use super::boundary_writer::put_flags;
+use super::map_writer::describe_parameter;
+use super::netcdf::{DimensionId, Dimensions, named};
+use super::schema::{BEST, BEST_FLAG_FILL, PLANE, best as names};
+use crate::linear::best::Kind;
+use crate::sweep::best::BestSettings;
+use crate::sweep::{Parameter, Plan};
+
+/// A variable with the values of the planes so far.
+struct Column<T> {
+    dataset: Dataset,
+    fill: T,
+    of: fn(&BestSettings) -> T,
+    values: Vec<T>,
+}
+
+impl<T: H5Type + Copy> Column<T> {
+    fn push(&mut self, found: Option<&BestSettings>) {
+        self.values.push(found.map_or(self.fill, self.of));
+    }
+
+    fn write(&self) -> hdf5::Result<()> {
+        match self.values[..] {
+            [value] if self.dataset.ndim() == 0 => self.dataset.write_scalar(&value),
+            _ => self.dataset.write_raw(&self.values),
+        }
+    }
+}
+
+/// The group of best settings of a map that is being written.
+pub(super) struct BestWriter {
+    numbers: Vec<Column<f64>>,
+    flags: Vec<Column<i8>>,
+    regions: Column<i32>,
+}
+
+/// Makes the variables of the group.
+struct Variables<'a> {
+    group: &'a Group,
+    dimensions: &'a mut Dimensions,
+    outer: &'a [DimensionId],
+    shape: Vec<usize>,
+}
+
+impl Variables<'_> {
+    fn make<T>(
+        &mut self,
+        name: &str,
+        (long_name, unit): (&str, &str),
+        fill: T,
+        of: fn(&BestSettings) -> T,
+    ) -> hdf5::Result<Column<T>>
+    where
+        T: H5Type + Copy + Into<OwnedDynValue>,
+    {
+        let builder = named(self.group.new_dataset_builder())
+            .fill_value(fill)
+            .empty::<T>();
+        let dataset = if self.outer.is_empty() {
+            builder.create(name)?
+        } else {
+            let dataset = builder.shape(self.shape.clone()).create(name)?;
+            self.dimensions.attach(&dataset, self.outer)?;
+            dataset
+        };
+        put_numbers(&dataset, "_FillValue", &[fill])?;
+        put_text(&dataset, "long_name", long_name)?;
+        put_text(&dataset, "units", unit)?;
+        Ok(Column {
+            dataset,
+            fill,
+            of,
+            values: Vec::new(),
+        })
+    }
+
+    fn numbers(&mut self, plan: &Plan, gain: Parameter) -> hdf5::Result<Vec<Column<f64>>> {
+        let units = &plan.spec.units;
+        let rate = units.of([0, 0, -1]);
+        let (time, frequency) = (units.time(), units.angular_frequency());
+        let of_gain = units.of_parameter(gain);
+        let tau = Parameter::Tau;
+        let mut make = |name, about, of| self.make(name, about, f64::NAN, of);
+        Ok(vec![
+            make(gain.name(), (gain.long_name(), &of_gain), |f| {
+                f.overall.gain
+            })?,
+            make(tau.name(), (tau.long_name(), &time), |f| f.overall.tau)?,
+            make(
+                names::ABSCISSA,
+                ("largest real part of a characteristic root", &rate),
+                |f| f.overall.abscissa,
+            )?,
+            make(
+                names::FREQUENCY,
+                ("lowest frequency among the rightmost roots", &frequency),
+                |f| f.overall.frequency(),
+            )?,
+            make(
+                names::RELAXATION_TIME,
+                ("relaxation time, where sliding is stable", &time),
+                |f| f.overall.relaxation_time().unwrap_or(f64::NAN),
+            )?,
+        ])
+    }
+
+    fn flags(&mut self) -> hdf5::Result<Vec<Column<i8>>> {
+        let kind = self.make(
+            names::KIND,
+            ("what makes the setting the best", "1"),
+            BEST_FLAG_FILL,
+            |f| {
+                Kind::ALL
+                    .iter()
+                    .position(|&k| k == f.overall.kind)
+                    .map_or(BEST_FLAG_FILL, |k| k as i8)
+            },
+        )?;
+        let numbers: Vec<i8> = (0..).take(Kind::ALL.len()).collect();
+        let meanings = Kind::ALL
+            .map(|kind| kind.name().replace(' ', "_"))
+            .join(" ");
+        put_flags(&kind.dataset, &numbers, &meanings)?;
+        let certified = self.make(
+            names::CERTIFIED,
+            ("the argument principle confirms the abscissa", "1"),
+            BEST_FLAG_FILL,
+            |f| i8::from(f.overall.certified),
+        )?;
+        put_flags(&certified.dataset, &[0, 1], "no yes")?;
+        Ok(vec![kind, certified])
+    }
+}
+
+impl BestWriter {
+    /// Creates the group, for the planes of `plan` spanned by the axes `gain` and delay; `axes` are the map's dimensions.
+    pub fn create(
+        parent: &Group,
+        dimensions: &mut Dimensions,
+        axes: &[DimensionId],
+        plan: &Plan,
+        (gain, tau): (usize, usize),
+    ) -> hdf5::Result<Self> {
+        let group = parent
+            .create_group_builder()
+            .with_gcpl(|gcpl| gcpl.link_creation_order(LinkCreationOrder::Indexed))
+            .create(BEST)?;
+        let parameter = plan.spec.axes[gain].parameter;
+        let title = "settings of fastest decay within the ranges of the gain and the delay";
+        put_text(&group, "title", title)?;
+        let plane = format!("{} {}", parameter.name(), Parameter::Tau.name());
+        put_text(&group, PLANE, &plane)?;
+        let outer: Vec<usize> = (0..axes.len()).filter(|&a| a != gain && a != tau).collect();
+        put_coordinates(&group, dimensions, axes, plan, &outer)?;
+        let scales: Vec<DimensionId> = outer.iter().map(|&axis| axes[axis]).collect();
+        let mut variables = Variables {
+            group: &group,
+            dimensions,
+            outer: &scales,
+            shape: outer.iter().map(|&axis| plan.shape()[axis]).collect(),
+        };
+        Ok(Self {
+            numbers: variables.numbers(plan, parameter)?,
+            flags: variables.flags()?,
+            regions: variables.make(
+                names::REGIONS,
+                ("number of stable regions", "1"),
+                i32::from(BEST_FLAG_FILL),
+                |f| (f.regions.len() + f.regions_left_out) as i32,
+            )?,
+        })
+    }
+
+    /// Takes the best settings of the next planes, in order.
+    pub fn append(&mut self, planes: &[Option<BestSettings>]) {
+        for found in planes {
+            let found = found.as_ref();
+            self.numbers
+                .iter_mut()
+                .for_each(|column| column.push(found));
+            self.flags.iter_mut().for_each(|column| column.push(found));
+            self.regions.push(found);
+        }
+    }
+
+    /// Writes what was taken. To be called once, when all planes are there.
+    pub fn finish(&self) -> hdf5::Result<()> {
+        self.numbers.iter().try_for_each(Column::write)?;
+        self.flags.iter().try_for_each(Column::write)?;
+        self.regions.write()
+    }
+}
+
+/// The axes `outer` of the map once more in `group`, with the map's dimensions.
+fn put_coordinates(
+    group: &Group,
+    dimensions: &mut Dimensions,
+    axes: &[DimensionId],
+    plan: &Plan,
+    outer: &[usize],
+) -> hdf5::Result<()> {
+    for &axis in outer {
+        let values = &plan.spec.axes[axis];
+        let dataset = named(group.new_dataset_builder())
+            .with_data(&values.values)
+            .create(values.parameter.name())?;
+        describe_parameter(&dataset, values.parameter, plan)?;
+        dimensions.attach(&dataset, &[axes[axis]])?;
+    }
+    Ok(())
+}

@@ -1,0 +1,104 @@
+//! What values a map holds, all cells of it, read piece by piece.
+
+use hdf5::{Dataset, SliceOrIndex};
+
+use super::error::StoreError;
+use super::map_file::MapFile;
+use super::schema::STATUS;
+use crate::linear::status::FLAGS;
+use crate::sweep::Field;
+
+/// What values a field has in a map.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct FieldSummary {
+    /// The smallest and largest finite value; none where there is none.
+    pub range: Option<(f64, f64)>,
+    /// Number of infinite values.
+    pub infinite: u64,
+    /// Number of cells without a value.
+    pub missing: u64,
+}
+
+impl FieldSummary {
+    fn add(&mut self, cells: &[f64]) {
+        for &value in cells {
+            if value.is_finite() {
+                let (low, high) = self.range.unwrap_or((value, value));
+                self.range = Some((low.min(value), high.max(value)));
+            } else if value.is_nan() {
+                self.missing += 1;
+            } else {
+                self.infinite += 1;
+            }
+        }
+    }
+}
+
+impl MapFile {
+    /// What values a field has, read piece by piece.
+    ///
+    /// # Errors
+    /// When the file is damaged.
+    pub fn summary(&self, field: Field) -> Result<FieldSummary, StoreError> {
+        let dataset = self.dataset(field.name())?;
+        let mut summary = FieldSummary::default();
+        for_each_chunk(&dataset, |slab| {
+            summary.add(&self.read_field(field, &dataset, slab)?);
+            Ok(())
+        })?;
+        Ok(summary)
+    }
+
+    /// Number of cells with each bit of the status, in the order of [`crate::linear::status::FLAGS`], read piece by piece.
+    ///
+    /// # Errors
+    /// When the file is damaged.
+    pub fn status_counts(&self) -> Result<[u64; 6], StoreError> {
+        let dataset = self.dataset(STATUS)?;
+        let mut counts = [0; 6];
+        for_each_chunk(&dataset, |slab| {
+            let cells = self.read::<u8>(&dataset, slab)?;
+            for (count, (mask, _)) in counts.iter_mut().zip(FLAGS) {
+                *count += cells.iter().filter(|&&s| s & mask != 0).count() as u64;
+            }
+            Ok(())
+        })?;
+        Ok(counts)
+    }
+}
+
+/// Every chunk of a dataset as a hyperslab, cut at the dataset's edges.
+fn for_each_chunk<E>(
+    dataset: &Dataset,
+    mut visit: impl FnMut(Vec<SliceOrIndex>) -> Result<(), E>,
+) -> Result<(), E> {
+    let shape = dataset.shape();
+    let chunk = dataset.chunk().unwrap_or_else(|| shape.clone());
+    let mut offset = vec![0; shape.len()];
+    loop {
+        let slab = offset
+            .iter()
+            .zip(&chunk)
+            .zip(&shape)
+            .map(|((&start, &length), &end)| SliceOrIndex::SliceTo {
+                start,
+                step: 1,
+                end: (start + length).min(end),
+                block: 1,
+            })
+            .collect();
+        visit(slab)?;
+        let mut axis = shape.len();
+        loop {
+            if axis == 0 {
+                return Ok(());
+            }
+            axis -= 1;
+            offset[axis] += chunk[axis];
+            if offset[axis] < shape[axis] {
+                break;
+            }
+            offset[axis] = 0;
+        }
+    }
+}

@@ -1,0 +1,187 @@
+//! Settings of fastest decay in physical units, for a point of parameter space and for the planes of a sweep.
+
+use super::axis::Axis;
+use super::boundaries::planes_spanned;
+use super::parameter::{Parameter, Setting};
+use super::plan::Plan;
+use crate::linear::best::{self, Optimum, Search, SearchedGain};
+use crate::linear::lobes::minimal_negative_load_gain;
+use crate::model::ModelError;
+
+/// Delays searched unless others are asked for: so many periods 2π√(M/κ) of the free oscillator.
+const PERIODS: f64 = 4.0;
+/// Gains of velocity control searched unless others are asked for: so far in units of the larger of 1 and |b|. Its best
+/// settings are far inside, at −0.16 to −0.32 for −0.73 < b < 0.
+const FARTHEST_VELOCITY: f64 = 2.0;
+/// Load gains searched unless others are asked for: so far beyond 0 and the weakest negative gain that stabilises, in units of
+/// 1 + |b|. The triple real root is at half of that or less.
+const BEYOND_FOLD: f64 = 4.0;
+
+/// What [`best_settings`] searches.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Ranges {
+    /// Gains, from ≤ to.
+    pub gain: (f64, f64),
+    /// Delays, 0 ≤ from ≤ to.
+    pub tau: (f64, f64),
+}
+
+/// A stable region of the plane of gain and delay, with its own best setting.
+#[derive(Debug, Clone, PartialEq)]
+pub struct BestRegion {
+    /// Where it lies, at the resolution of [`crate::linear::best`].
+    pub ranges: Ranges,
+    /// The setting of fastest decay in it.
+    pub best: Optimum,
+}
+
+/// The best settings of a plane (gain, delay); everything in the units of the parameters.
+#[derive(Debug, Clone, PartialEq)]
+pub struct BestSettings {
+    /// The setting of fastest decay; where none is stable, of slowest growth.
+    pub overall: Optimum,
+    /// Every stable region, by shortest delay.
+    pub regions: Vec<BestRegion>,
+    /// Further regions, which were not searched.
+    pub regions_left_out: usize,
+}
+
+/// Which gain a parameter is; none for those that are no gain.
+#[must_use]
+pub fn searched_gain(parameter: Parameter) -> Option<SearchedGain> {
+    match parameter {
+        Parameter::AlphaV => Some(SearchedGain::Velocity),
+        Parameter::AlphaN => Some(SearchedGain::Load),
+        _ => None,
+    }
+}
+
+/// What turns dimensionless gains and delays into physical ones.
+struct Scales {
+    gain: f64,
+    time: f64,
+}
+
+impl Scales {
+    fn of(setting: &Setting, gain: SearchedGain) -> Result<Self, ModelError> {
+        let oscillator = setting.oscillator()?;
+        let time = oscillator.time_unit();
+        Ok(Self {
+            gain: match gain {
+                SearchedGain::Velocity => 1.0 / time,
+                SearchedGain::Load => oscillator.stiffness() / setting.sliding_point()?.mu_k,
+            },
+            time,
+        })
+    }
+
+    /// Inside `ranges`, which scaling could leave by rounding.
+    fn optimum(&self, found: Optimum, ranges: &Ranges) -> Optimum {
+        let (gain, tau) = (ranges.gain, ranges.tau);
+        Optimum {
+            gain: (found.gain * self.gain).clamp(gain.0, gain.1),
+            tau: (found.tau * self.time).clamp(tau.0, tau.1),
+            abscissa: found.abscissa / self.time,
+            margin: found.margin / self.time,
+            frequencies: found.frequencies.iter().map(|f| f / self.time).collect(),
+            ..found
+        }
+    }
+}
+
+fn scaled((from, to): (f64, f64), by: f64) -> (f64, f64) {
+    (from * by, to * by)
+}
+
+/// The ranges that are searched at `setting` where none are given. Delays: up to four periods of the free oscillator.
+/// Dimensionless gains: for velocity control ±2 max(1, |b|); for load control from 4(1 + |b|) below the weakest negative gain
+/// that stabilises, −(b²/2 + |b|), to 4(1 + |b|).
+///
+/// # Errors
+/// When a parameter of `setting` is outside the model's range.
+pub fn default_ranges(setting: &Setting, gain: SearchedGain) -> Result<Ranges, ModelError> {
+    let scales = Scales::of(setting, gain)?;
+    let (groups, _) = setting.groups()?;
+    let slope = groups.b.abs();
+    let gains = match gain {
+        SearchedGain::Velocity => {
+            let farthest = FARTHEST_VELOCITY * slope.max(1.0);
+            (-farthest, farthest)
+        }
+        SearchedGain::Load => {
+            let beyond = BEYOND_FOLD * (1.0 + slope);
+            (minimal_negative_load_gain(slope) - beyond, beyond)
+        }
+    };
+    Ok(Ranges {
+        gain: scaled(gains, scales.gain),
+        tau: (0.0, PERIODS * std::f64::consts::TAU * scales.time),
+    })
+}
+
+/// The settings of fastest decay for every stable region within `ranges`, all parameters but `gain` and the delay being those
+/// of `setting`.
+///
+/// # Errors
+/// When a parameter of `setting` is outside the model's range.
+pub fn best_settings(
+    setting: &Setting,
+    gain: SearchedGain,
+    ranges: &Ranges,
+) -> Result<BestSettings, ModelError> {
+    let scales = Scales::of(setting, gain)?;
+    let (fixed, _) = setting.groups()?;
+    let found = best::best(&Search {
+        fixed,
+        gain,
+        gains: scaled(ranges.gain, 1.0 / scales.gain),
+        delays: scaled(ranges.tau, 1.0 / scales.time),
+    });
+    Ok(BestSettings {
+        overall: scales.optimum(found.overall, ranges),
+        regions: found
+            .regions
+            .into_iter()
+            .map(|region| BestRegion {
+                ranges: Ranges {
+                    gain: scaled(region.gains, scales.gain),
+                    tau: scaled(region.delays, scales.time),
+                },
+                best: scales.optimum(region.best, ranges),
+            })
+            .collect(),
+        regions_left_out: found.regions_left_out,
+    })
+}
+
+/// The axes (gain, delay) of the planes whose best settings are looked for: the last gain axis and the delay, if both have
+/// more points than one.
+#[must_use]
+pub fn gain_plane(axes: &[Axis]) -> Option<(usize, usize)> {
+    let gain = axes
+        .iter()
+        .rposition(|axis| axis.len() > 1 && searched_gain(axis.parameter).is_some())?;
+    let tau = axes
+        .iter()
+        .position(|axis| axis.len() > 1 && axis.parameter == Parameter::Tau)?;
+    Some((gain, tau))
+}
+
+/// The planes of a plan whose best settings are looked for, in order, as indices along every axis. Empty where none are.
+#[must_use]
+pub fn best_planes(plan: &Plan) -> Vec<Vec<usize>> {
+    planes_spanned(plan, plan.best_plane())
+}
+
+/// The best settings of the plane of a plan that lies at `index`; none where a parameter is outside the model's range.
+#[must_use]
+pub fn best_of_plane(plan: &Plan, index: &[usize]) -> Option<BestSettings> {
+    let (p, tau) = plan.best_plane()?;
+    let axes = &plan.spec.axes;
+    let ranges = Ranges {
+        gain: axes[p].range(),
+        tau: axes[tau].range(),
+    };
+    let gain = searched_gain(axes[p].parameter)?;
+    best_settings(&plan.setting(index), gain, &ranges).ok()
+}

@@ -1,0 +1,122 @@
+//! The fields that come from characteristic roots: from the dimensionless roots of a cell to physical values.
+
+use super::field::{Field, Slope};
+use super::worker::Column;
+use crate::linear::sensitivity::Sensitivity;
+use crate::linear::track::{Cell, RootTracker};
+use crate::model::Groups;
+
+/// A line of cells, or a part of it.
+pub(super) struct Line<'a> {
+    pub groups: Groups,
+    /// √(M/κ).
+    pub time_unit: f64,
+    /// How much each group grows with its parameter: b per μ_K′, a_v per α_v, a_n per α_N.
+    pub per_parameter: Groups,
+    /// The delays, increasing, in the units of the sweep.
+    pub delays: &'a [f64],
+    /// The index of the first of them on the whole line.
+    pub first: usize,
+}
+
+/// Fills the columns of one thread's tiles.
+pub(super) struct RootColumns {
+    tracker: RootTracker,
+    sensitive: bool,
+}
+
+impl RootColumns {
+    /// For these fields; none where none of them needs roots.
+    pub fn new(fields: &[Field]) -> Option<Self> {
+        let wanted = fields.iter().map(|f| f.roots_needed()).max()?;
+        let slope = |f: &Field| matches!(f, Field::AbscissaSlope(_));
+        (wanted > 0).then(|| Self {
+            tracker: RootTracker::new(wanted),
+            sensitive: fields.iter().any(slope),
+        })
+    }
+
+    /// Computes the cells of a line into `columns`, from place `at` on with `stride` places from delay to delay.
+    ///
+    /// `counts` are the numbers of unstable roots; `status` gains what following the roots has to say.
+    pub fn fill(
+        &mut self,
+        line: &Line,
+        counts: &[u16],
+        status: &mut [u8],
+        columns: &mut [Column],
+        (at, stride): (usize, usize),
+    ) {
+        let sensitive = self.sensitive;
+        let delays = (line.delays, line.time_unit);
+        let visit = |i: usize, cell: Cell| {
+            let slopes = match cell.roots.first() {
+                Some(root) if sensitive => {
+                    let tau = line.delays[i] / line.time_unit;
+                    slopes(line, &Sensitivity::of(line.groups, tau, root.lambda))
+                }
+                _ => [f64::NAN; 4],
+            };
+            for column in columns.iter_mut() {
+                if let Some(value) = value(column.field, &cell, &slopes, line.time_unit) {
+                    column.cells[at + i * stride] = value;
+                }
+            }
+        };
+        let first = line.first;
+        self.tracker
+            .follow(line.groups, delays, first, counts, status, visit);
+    }
+}
+
+/// The value of a field in a cell, in units of the sweep; none for fields that do not come from roots.
+///
+/// NaN where nothing converged; roots that are not there have the real part −∞.
+#[inline]
+fn value(field: Field, cell: &Cell, slopes: &[f64; 4], time_unit: f64) -> Option<f64> {
+    let converged = !cell.roots.is_empty();
+    let real_part = |rank: usize| match cell.roots.get(rank) {
+        Some(root) => root.lambda.re / time_unit,
+        None if converged => f64::NEG_INFINITY,
+        None => f64::NAN,
+    };
+    Some(match field {
+        Field::NUnstable | Field::DelayMargin => return None,
+        Field::Abscissa(rank) => real_part(rank.index()),
+        Field::Frequency(rank) => match cell.roots.get(rank.index()) {
+            Some(root) => root.lambda.im / time_unit,
+            None => f64::NAN,
+        },
+        Field::RelaxationTime if !converged => f64::NAN,
+        Field::RelaxationTime => relaxation_time(real_part(0)),
+        Field::AbscissaSlope(slope) => slopes[slope as usize],
+        Field::CertificateMargin => cell.margin,
+    })
+}
+
+/// The time in which a disturbance decays by a factor e: −1/`abscissa`, +∞ where it does not decay.
+#[must_use]
+pub fn relaxation_time(abscissa: f64) -> f64 {
+    if abscissa < 0.0 {
+        -1.0 / abscissa
+    } else {
+        f64::INFINITY
+    }
+}
+
+/// The derivatives of the abscissa in units of the sweep, in the order of [`Slope`]: Re λ/T with T = √(M/κ), by the chain
+/// rule over τ/T and the groups, each proportional to its parameter.
+#[inline]
+fn slopes(line: &Line, sensitivity: &Sensitivity) -> [f64; 4] {
+    let (unit, per) = (line.time_unit, line.per_parameter);
+    let mut slopes = [0.0; 4];
+    for (slope, derivative) in [
+        (Slope::Tau, sensitivity.tau.re / unit),
+        (Slope::AlphaV, sensitivity.a_v.re * per.a_v),
+        (Slope::AlphaN, sensitivity.a_n.re * per.a_n),
+        (Slope::MuPrime, sensitivity.b.re * per.b),
+    ] {
+        slopes[slope as usize] = derivative / unit;
+    }
+    slopes
+}

@@ -1,0 +1,327 @@
+//! One thread's work: the cells of a tile, line by line, into buffers that are used again.
+
+use std::ops::Range;
+
+use super::field::Field;
+use super::parameter::{Parameter, Setting};
+use super::plan::Plan;
+use super::root_columns::{Line, RootColumns};
+use super::tile::{Tile, for_each_index};
+use crate::linear::Crossings;
+use crate::linear::row::Delays;
+use crate::linear::status::NOT_CONVERGED;
+use crate::model::{Control, Groups, ModelError, Oscillator, SlidingPoint};
+
+/// The cells of one tile, in memory in the order of its strides. Cells beyond the map hold fill values.
+#[derive(Debug, Clone)]
+pub struct TileBuffers {
+    /// Status of each cell, see [`crate::linear::status`].
+    pub status: Vec<u8>,
+    /// Number of unstable roots, if asked for.
+    pub n_unstable: Option<Vec<u16>>,
+    /// The other fields that are asked for, in their order.
+    pub columns: Vec<Column>,
+}
+
+/// The cells of one field.
+#[derive(Debug, Clone)]
+pub struct Column {
+    /// The field.
+    pub field: Field,
+    /// Its value in each cell; NaN where there is none.
+    pub cells: Vec<f64>,
+}
+
+/// Value of `n_unstable` in cells that are not computed.
+pub const N_UNSTABLE_FILL: u16 = u16::MAX;
+/// Value of `status` in cells that are not computed.
+pub const STATUS_FILL: u8 = u8::MAX;
+
+impl TileBuffers {
+    /// Buffers for tiles of `plan`, all fill values.
+    #[must_use]
+    pub fn new(plan: &Plan) -> Self {
+        let cells = plan.tiles.tile_cells();
+        let fields = &plan.spec.fields;
+        let column = |&field: &Field| Column {
+            field,
+            cells: vec![f64::NAN; cells],
+        };
+        Self {
+            status: vec![STATUS_FILL; cells],
+            n_unstable: fields
+                .contains(&Field::NUnstable)
+                .then(|| vec![N_UNSTABLE_FILL; cells]),
+            columns: fields
+                .iter()
+                .filter(|f| !f.is_count())
+                .map(column)
+                .collect(),
+        }
+    }
+
+    fn clear(&mut self) {
+        self.status.fill(STATUS_FILL);
+        if let Some(n) = &mut self.n_unstable {
+            n.fill(N_UNSTABLE_FILL);
+        }
+        for column in &mut self.columns {
+            column.cells.fill(f64::NAN);
+        }
+    }
+}
+
+/// The column of delay margins.
+fn delay_margins(columns: &mut [Column]) -> Option<&mut Vec<f64>> {
+    let column = columns.iter_mut().find(|c| c.field == Field::DelayMargin);
+    column.map(|c| &mut c.cells)
+}
+
+/// Computes tiles into buffers of its own, which it reuses.
+pub struct Worker<'p> {
+    plan: &'p Plan,
+    lines: Lines<'p>,
+    /// The delays of the tile computed last, and which of the plan's they are.
+    delays: Delays,
+    delay_range: Range<usize>,
+    strides: Vec<usize>,
+    /// Cells between neighbouring delays.
+    stride: usize,
+    /// The cells of the tile computed last.
+    pub buffers: TileBuffers,
+    /// Every status in the buffers is zero.
+    unflagged: bool,
+    row: RowBuffers,
+    /// Follows roots, where a field needs them.
+    roots: Option<RootColumns>,
+}
+
+/// The groups of one line after the other. What does not change from line to line is not computed again.
+struct Lines<'p> {
+    plan: &'p Plan,
+    setting: Setting,
+    /// Index of the setting along each axis.
+    index: Vec<usize>,
+    /// What the gains do not change.
+    uncontrolled: Option<Result<(Oscillator, SlidingPoint), ModelError>>,
+}
+
+impl<'p> Lines<'p> {
+    fn new(plan: &'p Plan) -> Self {
+        let index = vec![0; plan.spec.axes.len()];
+        Self {
+            plan,
+            setting: plan.setting(&index),
+            index,
+            uncontrolled: None,
+        }
+    }
+
+    /// The groups of the line at `offset` + `inside`, and its unit of time.
+    #[inline(always)]
+    fn groups(&mut self, offset: &[usize], inside: &[usize]) -> Result<(Groups, f64), ModelError> {
+        for (axis, known) in self.index.iter_mut().enumerate() {
+            let index = offset[axis] + inside[axis];
+            if *known != index {
+                *known = index;
+                let axis = &self.plan.spec.axes[axis];
+                self.setting.set(axis.parameter, axis.values[index]);
+                if !matches!(
+                    axis.parameter,
+                    Parameter::AlphaV | Parameter::AlphaN | Parameter::Tau
+                ) {
+                    self.uncontrolled = None;
+                }
+            }
+        }
+        let setting = &self.setting;
+        let uncontrolled = self
+            .uncontrolled
+            .get_or_insert_with(|| Ok((setting.oscillator()?, setting.sliding_point()?)));
+        let (oscillator, sliding) = uncontrolled.as_ref().map_err(Clone::clone)?;
+        let groups = oscillator.groups(*sliding, setting.control());
+        Ok((groups, oscillator.time_unit()))
+    }
+
+    /// How much each group grows with its parameter on the current line: b per μ_K′, a_v per α_v, a_n per α_N.
+    fn groups_per_parameter(&self) -> Groups {
+        match &self.uncontrolled {
+            Some(Ok((oscillator, sliding))) => {
+                // Every group is proportional to its parameter.
+                let one_each = SlidingPoint {
+                    mu_prime: 1.0,
+                    ..*sliding
+                };
+                let control = Control {
+                    alpha_v: 1.0,
+                    alpha_n: 1.0,
+                };
+                oscillator.groups(one_each, control)
+            }
+            _ => Groups::new(f64::NAN, f64::NAN, f64::NAN),
+        }
+    }
+}
+
+/// One row on its way to a tile whose delays are not next to one another in memory.
+struct RowBuffers {
+    status: Vec<u8>,
+    n_unstable: Vec<u16>,
+    delay_margin: Vec<f64>,
+}
+
+impl<'p> Worker<'p> {
+    /// A worker with buffers for the tiles of `plan`.
+    #[must_use]
+    pub fn new(plan: &'p Plan) -> Self {
+        let delay_range = plan.delay_range(&plan.tiles.tile(0));
+        let longest = delay_range.len();
+        let strides = plan.tiles.strides();
+        Self {
+            plan,
+            lines: Lines::new(plan),
+            delays: Delays::new(&plan.delays(delay_range.clone())),
+            delay_range,
+            stride: plan.tau_axis.map_or(1, |axis| strides[axis]),
+            strides,
+            buffers: TileBuffers::new(plan),
+            unflagged: false,
+            row: RowBuffers {
+                status: vec![0; longest],
+                n_unstable: vec![0; longest],
+                delay_margin: vec![0.0; longest],
+            },
+            roots: RootColumns::new(&plan.spec.fields),
+        }
+    }
+
+    /// Computes every cell of `tile`.
+    pub fn compute(&mut self, tile: &Tile) {
+        let range = self.plan.delay_range(tile);
+        if range != self.delay_range {
+            self.delays = Delays::new(&self.plan.delays(range.clone()));
+            self.delay_range = range;
+        }
+        let whole = tile.cells() == self.plan.tiles.tile_cells() as u64;
+        if !whole {
+            self.buffers.clear();
+        } else if !self.unflagged {
+            self.buffers.status.fill(0);
+        }
+        self.unflagged = whole;
+        for_each_index(&tile.extent, self.plan.tau_axis, |inside| {
+            let at: usize = inside.iter().zip(&self.strides).map(|(i, s)| i * s).sum();
+            match self.lines.groups(&tile.offset, inside) {
+                Ok((groups, time_unit)) => self.fill_line(groups, time_unit, at),
+                Err(_) => self.refuse_line(at),
+            }
+        });
+    }
+
+    /// Computes the cells of a line into the buffers from place `at` on.
+    #[inline]
+    fn fill_line(&mut self, groups: Groups, time_unit: f64, at: usize) {
+        let mut crossings = Crossings::of(groups);
+        // Dimensionless sweeps, the most common ones, need no scaling.
+        if time_unit != 1.0 {
+            crossings = crossings.in_physical_time(time_unit);
+        }
+        match self.stride {
+            1 => self.fill_in_place(&crossings, at),
+            stride => self.fill_by_row(&crossings, at, stride),
+        }
+        if self.roots.is_some() {
+            self.fill_roots(groups, time_unit, at);
+        }
+    }
+
+    fn fill_in_place(&mut self, crossings: &Crossings, at: usize) {
+        let delays = &self.delays;
+        let to = at + delays.values().len();
+        let tolerance = self.plan.spec.tolerance;
+        let status = &mut self.buffers.status[at..to];
+        let n = match &mut self.buffers.n_unstable {
+            Some(n) => &mut n[at..to],
+            None => &mut self.row.n_unstable[..to - at],
+        };
+        if !self.unflagged {
+            status.fill(0);
+        }
+        let flagged = crossings.fill_counts(delays, tolerance, n, status);
+        self.unflagged &= !flagged;
+        if let Some(margin) = delay_margins(&mut self.buffers.columns) {
+            crossings.fill_delay_margins(delays, &mut margin[at..to]);
+        }
+    }
+
+    fn fill_by_row(&mut self, crossings: &Crossings, at: usize, stride: usize) {
+        let delays = &self.delays;
+        let len = delays.values().len();
+        let row = &mut self.row;
+        let tolerance = self.plan.spec.tolerance;
+        let (n, status) = (&mut row.n_unstable[..len], &mut row.status[..len]);
+        status.fill(0);
+        let flagged = crossings.fill_counts(delays, tolerance, n, status);
+        if flagged || !self.unflagged {
+            scatter(status, &mut self.buffers.status[at..], stride);
+        }
+        self.unflagged &= !flagged;
+        if let Some(out) = &mut self.buffers.n_unstable {
+            scatter(n, &mut out[at..], stride);
+        }
+        if let Some(out) = delay_margins(&mut self.buffers.columns) {
+            crossings.fill_delay_margins(delays, &mut row.delay_margin[..len]);
+            scatter(&row.delay_margin[..len], &mut out[at..], stride);
+        }
+    }
+
+    /// Computes the fields that need roots, in a line whose counts and status are there.
+    fn fill_roots(&mut self, groups: Groups, time_unit: f64, at: usize) {
+        let Some(roots) = &mut self.roots else { return };
+        let len = self.delays.values().len();
+        let (row, buffers) = (&mut self.row, &mut self.buffers);
+        let in_place = self.stride == 1;
+        let counts = match &buffers.n_unstable {
+            Some(n) if in_place => &n[at..at + len],
+            _ => &row.n_unstable[..len],
+        };
+        let status = match in_place {
+            true => &mut buffers.status[at..at + len],
+            false => &mut row.status[..len],
+        };
+        let line = Line {
+            groups,
+            time_unit,
+            per_parameter: self.lines.groups_per_parameter(),
+            delays: self.delays.values(),
+            first: self.delay_range.start,
+        };
+        let columns = &mut buffers.columns;
+        roots.fill(&line, counts, status, columns, (at, self.stride));
+        if !in_place {
+            scatter(&row.status[..len], &mut buffers.status[at..], self.stride);
+        }
+        self.unflagged = false;
+    }
+
+    /// A line outside the model's range: its cells keep fill values and say that nothing converged there.
+    fn refuse_line(&mut self, at: usize) {
+        let len = self.delays.values().len();
+        self.unflagged = false;
+        for place in (at..).step_by(self.stride).take(len) {
+            self.buffers.status[place] = NOT_CONVERGED;
+            if let Some(n) = &mut self.buffers.n_unstable {
+                n[place] = N_UNSTABLE_FILL;
+            }
+            for column in &mut self.buffers.columns {
+                column.cells[place] = f64::NAN;
+            }
+        }
+    }
+}
+
+fn scatter<T: Copy>(row: &[T], out: &mut [T], stride: usize) {
+    for (value, place) in row.iter().zip(out.iter_mut().step_by(stride)) {
+        *place = *value;
+    }
+}
