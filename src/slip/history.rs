@@ -139,19 +139,6 @@ impl History {
         let kink = if until == end { kink } else { SMOOTH };
         (best.0, Reach { until, kink })
     }
-
-    /// The elongation at `time`, within the window.
-    pub fn value(&self, time: f64) -> f64 {
-        let index = self
-            .pieces
-            .partition_point(|p| p.to < time)
-            .min(self.pieces.len() - 1);
-        let piece = &self.pieces[index];
-        if piece.order == 0 {
-            return piece.a[0];
-        }
-        super::series::value(&piece.a[..=piece.order], time - piece.from)
-    }
 }
 
 #[cfg(test)]
@@ -184,6 +171,5 @@ mod tests {
         assert_eq!(history.read(2.0, &mut a).until, 2.5);
         history.forget_before(1.5);
         assert_eq!(history.pieces.len(), 2);
-        assert_eq!(history.value(1.75), 3.75);
     }
 }

@@ -14,7 +14,7 @@
 
 use super::friction_series::FrictionSeries;
 use super::history::{History, SMOOTH};
-use super::series::{Coefficients, MOST_ORDER, first_zero, product, value};
+use super::series::{Coefficients, MOST_ORDER, first_zero, largest, product, value};
 use crate::model::FrictionLaw;
 
 /// What the block does.
@@ -118,6 +118,92 @@ pub struct Step {
     delayed: Coefficients,
 }
 
+impl Step {
+    fn range(c: &Coefficients, order: usize) -> &[f64] {
+        &c[..=order]
+    }
+
+    /// `c` times `factor`, with `shift` added to it.
+    fn scaled(c: &Coefficients, factor: f64, shift: f64) -> Coefficients {
+        let mut scaled = c.map(|c| factor * c);
+        scaled[0] += shift;
+        scaled
+    }
+
+    /// ẋ, a and N at `s` since the start of the step.
+    #[must_use]
+    pub fn state(&self, s: f64) -> (f64, f64, f64) {
+        let at = |c| value(Self::range(c, self.order), s);
+        (at(&self.u), at(&self.a), at(&self.n))
+    }
+
+    /// The displacement since the start of the step at `s`.
+    #[must_use]
+    pub fn displacement(&self, s: f64) -> f64 {
+        let u = Self::range(&self.u, self.order).iter().enumerate().rev();
+        s * u.fold(0.0, |sum, (k, u)| sum * s + u / (k + 1) as f64)
+    }
+
+    /// The smaller one of `known` and the smallest load of the step.
+    #[must_use]
+    pub fn smallest_load(&self, known: f64) -> f64 {
+        let flipped = Self::scaled(&self.n, -1.0, 0.0);
+        -largest(Self::range(&flipped, self.order), self.length, -known)
+    }
+
+    /// The larger one of `known` and the largest |a| of the step.
+    #[must_use]
+    pub fn largest_elongation(&self, known: f64) -> f64 {
+        let flipped = Self::scaled(&self.a, -1.0, 0.0);
+        let one_way = largest(Self::range(&self.a, self.order), self.length, known);
+        largest(Self::range(&flipped, self.order), self.length, one_way)
+    }
+
+    /// The largest |ẋ − `v0`| or |a − `rest`| of the step.
+    #[must_use]
+    pub fn deviation(&self, v0: f64, rest: f64) -> f64 {
+        let mut found = 0.0;
+        for (c, centre) in [(&self.u, v0), (&self.a, rest)] {
+            for factor in [1.0, -1.0] {
+                let c = Self::scaled(c, factor, -factor * centre);
+                found = largest(Self::range(&c, self.order), self.length, found);
+            }
+        }
+        found
+    }
+
+    /// The last time in the step at which |ẋ − `v0`| exceeds `band`; none if it never does.
+    #[must_use]
+    pub fn last_outside(&self, v0: f64, band: f64) -> Option<f64> {
+        let u = Self::range(&self.u, self.order);
+        let spread = u[1..]
+            .iter()
+            .rev()
+            .fold(0.0, |sum, c| (sum + c.abs()) * self.length);
+        if (u[0] - v0).abs() + spread <= band {
+            return None;
+        }
+        // Backwards from the end.
+        let mut reversed = self.u;
+        super::series::shift(&mut reversed[..=self.order], self.length);
+        reversed
+            .iter_mut()
+            .skip(1)
+            .step_by(2)
+            .for_each(|c| *c = -*c);
+        if (reversed[0] - v0).abs() > band {
+            return Some(self.length);
+        }
+        let crossing = |factor: f64| {
+            let room = Self::scaled(&reversed, -factor, band + factor * v0);
+            first_zero(Self::range(&room, self.order), self.length)
+        };
+        let back = [crossing(1.0), crossing(-1.0)].into_iter().flatten();
+        let back = back.fold(f64::INFINITY, f64::min);
+        back.is_finite().then_some(self.length - back)
+    }
+}
+
 impl Motion {
     /// A block that slides or sticks at t = 0 with velocity `u` and elongation `a`, which was `a` at all times before.
     #[must_use]
@@ -154,6 +240,19 @@ impl Motion {
         };
         motion.mode = motion.mode_at(1.0);
         motion
+    }
+
+    /// The parameters.
+    #[must_use]
+    pub fn parameters(&self) -> &Parameters {
+        &self.parameters
+    }
+
+    /// The elongation of continuous sliding at v0.
+    #[must_use]
+    pub fn sliding_elongation(&self) -> f64 {
+        let p = &self.parameters;
+        p.law.mu_k(p.v0 * p.velocity_unit)
     }
 
     /// What the block does now.
@@ -195,6 +294,7 @@ impl Motion {
         }
         self.expand(controlled);
         if self.step.n[0] <= 0.0 {
+            self.step.length = 0.0;
             return Some(Event::LiftOff);
         }
         let free = self.free_length();
@@ -354,8 +454,7 @@ impl Motion {
         let (u, a) = (&self.step.u[..=order], &self.step.a[..=order]);
         self.u = value(u, length);
         self.a = value(a, length);
-        let travelled = u.iter().enumerate().rev();
-        self.x += length * travelled.fold(0.0, |sum, (k, u)| sum * length + u / (k + 1) as f64);
+        self.x += self.step.displacement(length);
         self.t += length;
         self.history.push(self.t, radius, a, self.kink);
         self.step.length = length;

@@ -96,6 +96,41 @@ pub fn first_zero(c: &[f64], end: f64) -> Option<f64> {
     }
 }
 
+/// The largest value on [0, `end`], or `known` if that is larger.
+///
+/// Extrema are looked for in eighths of the range; a step of an integrator holds one at most.
+#[must_use]
+pub fn largest(c: &[f64], end: f64, known: f64) -> f64 {
+    let bound = c[1..]
+        .iter()
+        .rev()
+        .fold(0.0, |sum, c| (sum + c.abs()) * end);
+    if c[0] + bound <= known {
+        return known;
+    }
+    let mut found = known.max(c[0]).max(value(c, end));
+    let at = |i: u32| end * f64::from(i) / 8.0;
+    let mut slope_before = value_and_slope(c, 0.0).1;
+    for i in 1..=8 {
+        let slope = value_and_slope(c, at(i)).1;
+        if slope_before > 0.0 && slope < 0.0 {
+            let (mut from, mut to) = (at(i - 1), at(i));
+            // Quadratic at its top: half the digits of the place are all of the value.
+            for _ in 0..27 {
+                let middle = 0.5 * (from + to);
+                if value_and_slope(c, middle).1 > 0.0 {
+                    from = middle;
+                } else {
+                    to = middle;
+                }
+            }
+            found = found.max(value(c, from));
+        }
+        slope_before = slope;
+    }
+    found
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
