@@ -216,6 +216,68 @@ fn refining_a_line_changes_nothing() {
     }
 }
 
+/// Where hundreds of roots crowd within 1e-9 of the axis, the rightmost one is still the rightmost one.
+#[test]
+fn crowded_roots_are_told_apart() {
+    for (groups, to) in [
+        (
+            Groups::new(0.0, -1.7783250925984304, -2.317224734333381),
+            500.0,
+        ),
+        (Groups::new(0.0, -2.8733669155000525, 0.0), 1920.0),
+    ] {
+        let coarse = follow(groups, &even(0.0, to, 751), 0, 1);
+        let fine = follow(groups, &even(0.0, to, 7501), 0, 1);
+        for i in 1..751 {
+            if coarse.status[i] & fine.status[10 * i] & CERTIFIED != 0 {
+                let (p, q) = (coarse.roots[i][0], fine.roots[10 * i][0]);
+                assert!((p.re - q.re).abs() < 1e-11, "{groups:?} {i}: {p} {q}");
+            }
+        }
+        let certified = coarse
+            .status
+            .iter()
+            .filter(|&&s| s & CERTIFIED != 0)
+            .count();
+        assert!(certified > 700, "{certified}");
+    }
+}
+
+/// With gains at rounding level the further roots are far away: a cell has them, or says that it has not.
+#[test]
+fn roots_that_are_not_found_are_not_certified() {
+    for gain in [-1.1102230246251565e-16, 1.5641393157423528e-12, 1e-300] {
+        let line = follow(Groups::new(-0.3, gain, 0.0), &even(0.0, 10.0, 101), 0, 3);
+        for (roots, status) in line.roots.iter().zip(&line.status).skip(1) {
+            assert!((roots[0].re - 0.15).abs() < 1e-9);
+            assert_eq!(
+                status & CERTIFIED != 0,
+                roots.len() == 3,
+                "{gain} {roots:?}"
+            );
+            assert_eq!(status & NOT_CONVERGED != 0, roots.len() < 3);
+        }
+    }
+}
+
+/// The optima of both controls are a double pair and a triple real root: found, and certified with a wider margin.
+#[test]
+fn multiple_roots_are_found() {
+    for (groups, tau, abscissa) in [
+        (
+            Groups::new(-0.3, 0.0, -3.6525473882693595),
+            0.46473703404347766,
+            -2.00177,
+        ),
+        (Groups::new(-0.1, -0.174838541, 0.0), 3.42844561, -0.30506),
+    ] {
+        let line = follow(groups, &[tau], 0, 2);
+        assert_eq!(line.status, [CERTIFIED], "{groups:?}");
+        assert!((line.roots[0][0].re - abscissa).abs() < 1e-4);
+        assert!(line.margins[0] > MARGIN && line.margins[0] < 0.03);
+    }
+}
+
 /// Cut at blocks and followed in any order, a line gives the same bits.
 #[test]
 fn blocks_are_independent() {

@@ -16,7 +16,7 @@ use crate::model::Groups;
 /// Newton steps on the logarithmic equation before a start is handed over.
 const STEPS: u32 = 4;
 /// Most branches looked at; beyond this the line was set too far left.
-const MOST_BRANCHES: usize = 1 << 15;
+const MOST_BRANCHES: usize = 1 << 20;
 /// The first of them are followed in any case.
 const ALWAYS_FOLLOWED: usize = 4;
 /// Parts into which the real axis is cut to find real roots.

@@ -20,7 +20,7 @@ use num_complex::Complex64;
 use crate::model::Groups;
 
 /// Most nodes N: beyond this an eigenvalue problem takes a good part of a second.
-const MOST_NODES: usize = 384;
+pub const MOST_NODES: usize = 384;
 
 /// How many nodes resolve every root λ with |λ| ≤ `radius`.
 ///

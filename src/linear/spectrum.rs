@@ -9,7 +9,7 @@ use num_complex::Complex64;
 use super::branches::{quadratic_zeros, starting_values};
 use super::certificate::roots_right_of;
 use super::characteristic::{Jet, root_bound, unstable_root_bound};
-use super::collocation::{eigenvalues, nodes_for};
+use super::collocation::{MOST_NODES, eigenvalues, nodes_for};
 use super::newton::{Root, divide, polish};
 use crate::model::Groups;
 
@@ -17,6 +17,12 @@ use crate::model::Groups;
 const COLLOCATIONS: u32 = 3;
 /// |στ| up to which e^(−στ) and what is made of it neither overflow nor lose all meaning.
 const FARTHEST_LEFT: f64 = 700.0;
+
+/// Between roots that crowd together a line is looked for down to this distance (relative), in so many halvings.
+const CROWDED: f64 = 1e-12;
+const MOST_HALVINGS: u32 = 64;
+/// How far from a cluster of nearly equal roots its number may be counted.
+const FARTHEST_COUNT: f64 = 0.03;
 
 /// Finds roots, keeping its memory from one point to the next.
 #[derive(Debug, Clone, Default)]
@@ -68,6 +74,9 @@ impl RootFinder {
                 return Ok(&self.roots);
             }
             nodes += nodes / 2;
+            if nodes > MOST_NODES {
+                break;
+            }
         }
         Err(incomplete)
     }
@@ -124,35 +133,74 @@ impl RootFinder {
         Some(root)
     }
 
-    /// Whether the roots are `count`; a root that is multiple to rounding is repeated as often as it counts.
+    /// Whether the roots are `count`. Roots that rounding hardly tells apart are as many as are counted where they are.
     fn complete(&mut self, groups: Groups, tau: f64, count: u64) -> bool {
-        let found: u64 = self.roots.iter().map(Root::count).sum();
-        if found >= count {
-            return found == count;
+        let number = |roots: &[Root]| roots.iter().map(Root::count).sum::<u64>();
+        if number(&self.roots) == count {
+            return true;
         }
-        let mut multiple = self
+        let cluster: Vec<Root> = self
             .roots
             .iter()
-            .enumerate()
-            .filter(|(_, r)| r.nearly_multiple());
-        let (Some((place, &root)), None) = (multiple.next(), multiple.next()) else {
+            .copied()
+            .filter(Root::nearly_multiple)
+            .collect();
+        let (Some(first), Some(last)) = (cluster.first(), cluster.last()) else {
             return false;
         };
-        // Two or three in one place: as many as lie between two lines as near as rounding allows.
-        let right_of = |distance: f64| roots_right_of(groups, tau, root.lambda.re + distance);
-        let near = 16.0 * root.error;
-        let (Some(right), Some(left)) = (right_of(near), right_of(-near)) else {
+        let error = cluster.iter().map(|r| r.error).fold(0.0, f64::max);
+        let Some(together) = count_between(groups, tau, (last.lambda.re, first.lambda.re), error)
+        else {
             return false;
         };
-        let together = left - right.min(left);
-        if together != root.count() + count - found || together % root.count() != 0 {
+        if number(&self.roots) + together != count + number(&cluster) {
             return false;
         }
-        for _ in 1..together / root.count() {
-            self.roots.insert(place, root);
+        let extent = (first.lambda - last.lambda).norm();
+        let place = self
+            .roots
+            .iter()
+            .position(Root::nearly_multiple)
+            .unwrap_or(0);
+        self.roots.retain(|r| !r.nearly_multiple());
+        for (i, root) in some_of(&cluster, together).enumerate() {
+            let error = root.error.max(extent);
+            self.roots.insert(place + i, Root { error, ..root });
         }
         true
     }
+}
+
+/// The number of roots with real part in a range and a little around it, as little as rounding (`error`) allows.
+fn count_between(groups: Groups, tau: f64, (from, to): (f64, f64), error: f64) -> Option<u64> {
+    let mut near = 16.0 * error;
+    while near <= FARTHEST_COUNT {
+        let right = roots_right_of(groups, tau, to + near);
+        let left = roots_right_of(groups, tau, from - near);
+        if let (Some(right), Some(left)) = (right, left) {
+            return left.checked_sub(right);
+        }
+        near *= 4.0;
+    }
+    None
+}
+
+/// Roots of `cluster` that stand for `number` roots: its own, repeated or cut off, the last one real if that is needed.
+fn some_of(cluster: &[Root], number: u64) -> impl Iterator<Item = Root> {
+    let mut left = number;
+    cluster
+        .iter()
+        .cycle()
+        .map_while(move |root| {
+            let mut root = *root;
+            if left == 1 {
+                root.lambda.im = 0.0;
+            }
+            left = left.checked_sub(root.count())?;
+            Some(root)
+        })
+        .collect::<Vec<_>>()
+        .into_iter()
 }
 
 /// Where the roots next to the root `lambda` are, of the cubic that touches D there.
@@ -201,8 +249,8 @@ fn line_left_of(groups: Groups, tau: f64, wanted: u64, leftmost: f64) -> f64 {
     let Some((mut line, mut n)) = enough else {
         return count(right).map_or(right, |(line, _)| line);
     };
-    for _ in 0..40 {
-        if n <= wanted + 2 || right - line <= 1e-6 * (1.0 + line.abs()) {
+    for _ in 0..MOST_HALVINGS {
+        if n <= wanted + 2 || right - line <= CROWDED * (1.0 + line.abs()) {
             break;
         }
         match count(0.5 * (line + right)) {

@@ -14,7 +14,7 @@ use super::characteristic::Jet;
 use super::newton::{Root, divide, halley_step};
 use super::sensitivity::Sensitivity;
 use super::spectrum::RootFinder;
-use super::status::{CERTIFIED, DISAGREE, MARGINAL, NOT_CONVERGED, SATURATED};
+use super::status::{CERTIFIED, DISAGREE, MARGINAL, MOST_COUNTED, NOT_CONVERGED};
 use crate::model::Groups;
 
 /// Most roots that can be reported for a cell, pairs counted once.
@@ -22,7 +22,7 @@ pub const MOST_ROOTS: usize = 8;
 /// Tracking starts anew at delays whose index on the line is a multiple of this.
 pub const BLOCK: usize = 4096;
 /// The margin of the certificate, but for nearly multiple roots.
-pub const MARGIN: f64 = 1e-10;
+pub const MARGIN: f64 = 1e-12;
 
 /// Roots followed beyond those reported.
 const COMPANIONS: usize = 2;
@@ -30,7 +30,7 @@ const MOST_TRACKS: usize = MOST_ROOTS + COMPANIONS;
 /// Evaluations of D after which a root is lost.
 const MOST_EVALUATIONS: u32 = 4;
 /// How far the margin may be widened where a root is nearly multiple.
-const WIDEST_MARGIN: f64 = 1e-3;
+const WIDEST_MARGIN: f64 = 0.03;
 /// What a step may leave of the error, relative.
 const SETTLED: f64 = 2e-16;
 /// Steps longer than this part of the distance at which D bends lead no one knows where.
@@ -42,7 +42,8 @@ const NEARLY_REAL: f64 = 1e-9;
 #[derive(Debug, Clone, Copy)]
 pub struct Cell<'t> {
     /// The rightmost roots by falling real part, as many as the tracker was asked for; fewer where there are no more
-    /// (without control or delay), none where nothing converged. Dimensionless.
+    /// (without control or delay) or, in a cell that says it has not converged, where the others were not found.
+    /// Dimensionless.
     pub roots: &'t [Root],
     /// No root lies right of Re λ + margin·max(1, |Re λ|), λ being the first of `roots`.
     pub margin: f64,
@@ -92,6 +93,8 @@ pub struct RootTracker {
     /// How many of `roots` are reported, and how many should be.
     reported: usize,
     expected: usize,
+    /// Fewer roots were found than there are.
+    short: bool,
     /// The delay at which `tracks` stand, and the step that led there.
     tau: f64,
     step: f64,
@@ -111,6 +114,7 @@ impl RootTracker {
             roots: [NO_ROOT; MOST_ROOTS],
             reported: 0,
             expected: 0,
+            short: false,
             tau: 0.0,
             step: 0.0,
             work: Work::default(),
@@ -141,7 +145,8 @@ impl RootTracker {
             // Without control every delay is as none: e^(−λτ) must not overflow where nothing depends on it.
             let tau = if controlled { delay / time_unit } else { 0.0 };
             // Where control begins to act there are more roots than before.
-            let fresh = i == 0 || (first + i).is_multiple_of(BLOCK) || self.tau == 0.0;
+            let fresh =
+                i == 0 || (first + i).is_multiple_of(BLOCK) || self.tau == 0.0 || self.short;
             let tracked = if !fresh && self.advance(groups, tau) {
                 self.judge(groups, tau, unstable.at(tau), (count, *status))
             } else {
@@ -152,6 +157,7 @@ impl RootTracker {
                 self.judge(groups, tau, unstable.at(tau), (count, *status))
             });
             let (margin, flag) = match found {
+                Ok((margin, _)) if self.short => (margin, NOT_CONVERGED),
                 Ok(found) => found,
                 Err(doubt) => (f64::NAN, doubt.flag()),
             };
@@ -230,18 +236,21 @@ impl RootTracker {
         (self.tau, self.step) = (tau, 0.0);
         self.followed = 0;
         self.reported = 0;
+        self.short = true;
         // Roots farther left than this are far from being the rightmost for many delays to come.
         let horizon = -0.5 - 3.0 / tau;
         let all = 2 * (self.wanted + COMPANIONS) as u64;
         self.seed(groups, tau, all, horizon)?;
-        if self.followed < self.wanted {
-            self.seed(groups, tau, 2 * self.wanted as u64, f64::NEG_INFINITY)?;
+        if self.followed < self.wanted
+            && self
+                .seed(groups, tau, 2 * self.wanted as u64, f64::NEG_INFINITY)
+                .is_err()
+        {
+            self.seed(groups, tau, all, horizon)?;
         }
         self.expected = self.wanted.min(self.followed);
         // With control and delay there are infinitely many roots.
-        if self.expected < self.wanted && tau > 0.0 {
-            return Err(Doubt::Undecided);
-        }
+        self.short = self.expected < self.wanted && tau > 0.0;
         self.choose();
         Ok(())
     }
@@ -310,7 +319,7 @@ impl RootTracker {
         if !sign_is_right {
             return Err(Doubt::Missed);
         }
-        if status & SATURATED != 0 || unstable == u64::from(count) {
+        if unstable.min(u64::from(MOST_COUNTED)) == u64::from(count) {
             Ok((margin, CERTIFIED))
         } else if status & MARGINAL != 0 {
             Ok((margin, 0))

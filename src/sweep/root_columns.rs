@@ -57,8 +57,15 @@ impl RootColumns {
                 }
                 _ => [f64::NAN; 4],
             };
+            // Without control or delay there is one pair; else a root that is not there was not found.
+            let beyond = if line.groups.uncontrolled() || line.delays[i] == 0.0 {
+                f64::NEG_INFINITY
+            } else {
+                f64::NAN
+            };
             for column in columns.iter_mut() {
-                if let Some(value) = value(column.field, &cell, &slopes, line.time_unit) {
+                let value = value(column.field, &cell, &slopes, (line.time_unit, beyond));
+                if let Some(value) = value {
                     column.cells[at + i * stride] = value;
                 }
             }
@@ -71,13 +78,18 @@ impl RootColumns {
 
 /// The value of a field in a cell, in units of the sweep; none for fields that do not come from roots.
 ///
-/// NaN where nothing converged; roots that are not there have the real part −∞.
+/// NaN where nothing converged; a root beyond the last one has the real part `beyond`.
 #[inline]
-fn value(field: Field, cell: &Cell, slopes: &[f64; 4], time_unit: f64) -> Option<f64> {
+fn value(
+    field: Field,
+    cell: &Cell,
+    slopes: &[f64; 4],
+    (time_unit, beyond): (f64, f64),
+) -> Option<f64> {
     let converged = !cell.roots.is_empty();
     let real_part = |rank: usize| match cell.roots.get(rank) {
         Some(root) => root.lambda.re / time_unit,
-        None if converged => f64::NEG_INFINITY,
+        None if converged => beyond,
         None => f64::NAN,
     };
     Some(match field {

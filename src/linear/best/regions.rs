@@ -13,6 +13,8 @@ const EVEN_LINES: usize = 192;
 const LINES_AT_BREAKPOINT: i32 = 72;
 const CLOSER: f64 = 0.6;
 /// Stable intervals looked at on one line.
+/// The width of the narrowest stretch, relative: rounding is below it.
+const NARROWEST: f64 = 1e-12;
 const MOST_STRETCHES: usize = 1024;
 
 /// Stable delays of one sampled gain, cut at the edges of the box.
@@ -118,6 +120,10 @@ fn stretches_of_line(search: &Search, gain: f64) -> Stretches {
                 crossings.lower.map(|c| c.branch_at(interval.from)),
                 crossings.upper.map(|c| c.branch_at(interval.to)),
             ),
+        })
+        // What the box only touches is no part of it, but for a box that is a line itself.
+        .filter(|stretch| {
+            shortest == longest || stretch.to - stretch.from > NARROWEST * (1.0 + stretch.to)
         })
         .collect()
 }
