@@ -2,7 +2,7 @@
 
 use std::collections::VecDeque;
 
-use super::series::{Coefficients, MOST_ORDER, shift};
+use super::series::{Coefficients, MOST_ORDER, shifted};
 
 /// One step's elongation.
 #[derive(Debug, Clone)]
@@ -93,8 +93,9 @@ impl History {
         }
     }
 
-    /// Writes the polynomial of a from `time` on, as one of the time since then, to `out`; zero beyond its order.
-    pub fn read(&mut self, time: f64, out: &mut Coefficients) -> Reach {
+    /// Writes the polynomial of a from `time` on, as one of the time since then, to `out`; zero beyond its order. `latest` is
+    /// the order of the kink at the end of the last step.
+    pub fn read(&mut self, time: f64, latest: u32, out: &mut Coefficients) -> Reach {
         let close = 8.0 * f64::EPSILON * time.abs().max(1.0);
         while self.at + 1 < self.pieces.len() && time >= self.pieces[self.at].to - close {
             self.at += 1;
@@ -102,21 +103,22 @@ impl History {
         while self.at > 0 && time < self.pieces[self.at].from - close {
             self.at -= 1;
         }
-        let (index, reach) = self.farthest(time);
+        let (index, reach) = self.farthest(time, latest);
         let piece = &self.pieces[index];
-        *out = piece.a;
         let since = time - piece.from;
-        if since.is_finite() && since.abs() > close {
-            shift(&mut out[..=piece.order], since);
-        }
+        *out = if since.is_finite() && since.abs() > close {
+            shifted(&piece.a[..=piece.order], since)
+        } else {
+            piece.a
+        };
         reach
     }
 
     /// The piece that may be used longest from `time` on, and until when. Over a boundary that is no more than a step's end
     /// a polynomial may be used as far as it holds, forwards and backwards.
-    fn farthest(&self, time: f64) -> (usize, Reach) {
+    fn farthest(&self, time: f64, latest: u32) -> (usize, Reach) {
         let mut best = (self.at, self.pieces[self.at].to);
-        let mut kink = SMOOTH;
+        let mut kink = if latest < self.felt { latest } else { SMOOTH };
         let mut end = f64::INFINITY;
         for (index, piece) in self.pieces.iter().enumerate().skip(self.at) {
             if index > self.at {
@@ -125,6 +127,7 @@ impl History {
                     break;
                 }
                 if piece.from - time > SHARE * piece.radius {
+                    kink = SMOOTH;
                     break;
                 }
             }
@@ -153,7 +156,7 @@ mod tests {
         history.push(2.5, 0.5, &[4.0, -1.0], 2);
         let mut a = [0.0; MOST_ORDER + 1];
         assert_eq!(
-            history.read(-1.0, &mut a),
+            history.read(-1.0, 3, &mut a),
             Reach {
                 until: 0.0,
                 kink: 1
@@ -161,14 +164,17 @@ mod tests {
         );
         assert_eq!(a[0], 2.0);
         assert_eq!(
-            history.read(0.5, &mut a),
+            history.read(0.5, 3, &mut a),
             Reach {
                 until: 2.0,
                 kink: 2
             }
         );
         assert_eq!((a[0], a[1]), (2.5, 1.0));
-        assert_eq!(history.read(2.0, &mut a).until, 2.5);
+        // The end of the last step is a kink as well, unless nothing happens there.
+        let reach = |kink| Reach { until: 2.5, kink };
+        assert_eq!(history.read(2.0, 3, &mut a), reach(3));
+        assert_eq!(history.read(2.0, SMOOTH, &mut a), reach(SMOOTH));
         history.forget_before(1.5);
         assert_eq!(history.pieces.len(), 2);
     }

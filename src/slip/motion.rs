@@ -12,9 +12,9 @@
 //! events are zeros of polynomials. A step ends where the delayed polynomial ends, if the next one is another by more than
 //! the tolerance: kinks are stepped on, one delay after the other, until they are too smooth to be felt.
 
-use super::friction_series::FrictionSeries;
+use super::friction_series::{FrictionSeries, Series};
 use super::history::{History, SMOOTH};
-use super::series::{Coefficients, MOST_ORDER, first_zero, largest, product, value};
+use super::series::{Coefficients, MOST_ORDER, PER_NEXT, first_zero, largest, shifted, value};
 use crate::model::FrictionLaw;
 
 /// What the block does.
@@ -83,6 +83,9 @@ impl Default for Accuracy {
 /// Speeds below this, in units of N0/√(κM), need no relative accuracy.
 const SLOWEST: f64 = 1e-3;
 
+/// Rounding of a force, relative.
+const ROUNDING: f64 = 64.0 * f64::EPSILON;
+
 /// A moving block.
 #[derive(Debug, Clone)]
 pub struct Motion {
@@ -140,8 +143,11 @@ impl Step {
     /// The displacement since the start of the step at `s`.
     #[must_use]
     pub fn displacement(&self, s: f64) -> f64 {
-        let u = Self::range(&self.u, self.order).iter().enumerate().rev();
-        s * u.fold(0.0, |sum, (k, u)| sum * s + u / (k + 1) as f64)
+        let mut mean = [0.0; MOST_ORDER + 1];
+        for (mean, (u, per_next)) in mean.iter_mut().zip(self.u.iter().zip(&PER_NEXT)) {
+            *mean = u * per_next;
+        }
+        s * value(Self::range(&mean, self.order), s)
     }
 
     /// The smaller one of `known` and the smallest load of the step.
@@ -184,8 +190,7 @@ impl Step {
             return None;
         }
         // Backwards from the end.
-        let mut reversed = self.u;
-        super::series::shift(&mut reversed[..=self.order], self.length);
+        let mut reversed = shifted(u, self.length);
         reversed
             .iter_mut()
             .skip(1)
@@ -201,6 +206,51 @@ impl Step {
         let back = [crossing(1.0), crossing(-1.0)].into_iter().flatten();
         let back = back.fold(f64::INFINITY, f64::min);
         back.is_finite().then_some(self.length - back)
+    }
+}
+
+/// v0 and the gains that act in a step.
+#[derive(Debug, Clone, Copy)]
+struct Control {
+    v0: f64,
+    alpha_v: f64,
+    alpha_n: f64,
+}
+
+impl Step {
+    /// Coefficients k of the load, and of v.
+    #[inline(always)]
+    fn controlled(&mut self, control: Control, k: usize) -> f64 {
+        let difference = self.a[k] - self.delayed[k];
+        let (v0, load) = if k == 0 {
+            (control.v0, 1.0)
+        } else {
+            (0.0, 0.0)
+        };
+        self.n[k] = load + control.alpha_n * difference;
+        v0 + control.alpha_v * difference
+    }
+
+    /// Coefficients of the order 1 and higher at rest.
+    fn stick(&mut self, control: Control) {
+        let order = self.order.min(MOST_ORDER);
+        for (k, per_next) in PER_NEXT.iter().enumerate().take(order) {
+            self.a[k + 1] = self.controlled(control, k) * per_next;
+            self.u[k + 1] = 0.0;
+        }
+        self.controlled(control, order);
+    }
+
+    /// Those in slip.
+    fn slip(&mut self, control: Control, direction: f64, series: &mut impl Series) {
+        let order = self.order.min(MOST_ORDER);
+        for (k, per_next) in PER_NEXT.iter().enumerate().take(order) {
+            let pull = self.controlled(control, k);
+            let friction = series.extend(k, direction * self.u[k], &self.n);
+            self.a[k + 1] = (pull - self.u[k]) * per_next;
+            self.u[k + 1] = (self.a[k] - direction * friction) * per_next;
+        }
+        self.controlled(control, order);
     }
 }
 
@@ -271,7 +321,8 @@ impl Motion {
     fn mode_at(&self, n: f64) -> Mode {
         let moving = if self.u != 0.0 {
             self.u
-        } else if self.a.abs() < self.parameters.law.mu_s() * n {
+        } else if self.a.abs() <= self.parameters.law.mu_s() * n + self.force_noise() {
+            // At the limit stick comes first: whether it lasts is seen from how the forces change.
             return Mode::Stick;
         } else {
             self.a
@@ -326,6 +377,9 @@ impl Motion {
 
     /// Fills the delayed polynomial. Tells how long a step may be for it, and the kink there.
     fn read_delayed(&mut self, controlled: bool) -> DelayLimit {
+        // Also before control acts, so that memory does not grow with time.
+        self.history
+            .forget_before(self.t - 2.0 * self.parameters.tau);
         if !controlled {
             return DelayLimit {
                 length: f64::INFINITY,
@@ -333,8 +387,7 @@ impl Motion {
             };
         }
         let time = self.t - self.parameters.tau;
-        self.history.forget_before(time - self.parameters.tau);
-        let reach = self.history.read(time, &mut self.step.delayed);
+        let reach = self.history.read(time, self.kink, &mut self.step.delayed);
         DelayLimit {
             length: reach.until - time,
             kink: reach.kink,
@@ -354,49 +407,26 @@ impl Motion {
 
     /// Works out the coefficients of the step, Eqs. (1) and (2) of the module.
     fn expand(&mut self, controlled: bool) {
-        let Parameters {
-            alpha_v,
-            alpha_n,
-            v0,
-            ..
-        } = self.parameters;
-        let (alpha_v, alpha_n) = if controlled {
-            (alpha_v, alpha_n)
-        } else {
-            (0.0, 0.0)
-        };
-        let direction = match self.mode {
-            Mode::Stick => 0.0,
-            Mode::Forwards => 1.0,
-            Mode::Backwards => -1.0,
+        let p = &self.parameters;
+        let control = Control {
+            v0: p.v0,
+            alpha_v: if controlled { p.alpha_v } else { 0.0 },
+            alpha_n: if controlled { p.alpha_n } else { 0.0 },
         };
         let step = &mut self.step;
-        let (mut v, mut load) = (v0, 1.0);
         step.u[0] = self.u;
         step.a[0] = self.a;
         step.order = self.order;
-        for k in 0..self.order {
-            let difference = step.a[k] - step.delayed[k];
-            step.n[k] = load + alpha_n * difference;
-            let pull = v + alpha_v * difference;
-            (v, load) = (0.0, 0.0);
-            let per_next = 1.0 / (k + 1) as f64;
-            step.a[k + 1] = (pull - step.u[k]) * per_next;
-            step.u[k + 1] = 0.0;
-            if direction != 0.0 {
-                self.friction.extend(k, direction * step.u[k]);
-                let friction = if alpha_n == 0.0 {
-                    self.friction.coefficients[k]
-                } else if self.friction.is_constant() {
-                    self.friction.coefficients[0] * step.n[k]
-                } else {
-                    product(&self.friction.coefficients, &step.n, k)
-                };
-                step.u[k + 1] = (step.a[k] - direction * friction) * per_next;
-            }
+        let direction = match self.mode {
+            Mode::Stick => return step.stick(control),
+            Mode::Forwards => 1.0,
+            Mode::Backwards => -1.0,
+        };
+        match &mut self.friction {
+            FrictionSeries::Coulomb(series) => step.slip(control, direction, series),
+            FrictionSeries::Weakening(series) => step.slip(control, direction, series),
+            FrictionSeries::Stribeck(series) => step.slip(control, direction, series),
         }
-        let last = self.order;
-        step.n[last] = alpha_n * (step.a[last] - step.delayed[last]);
     }
 
     /// How long a step may be for its last terms to stay below the tolerance.
@@ -405,14 +435,17 @@ impl Motion {
         let (u, a) = (&step.u, &step.a);
         let speed = u[0].abs().max(self.parameters.v0.abs()).max(SLOWEST);
         let stretch = a[0].abs().max(self.parameters.law.mu_s());
-        let mut length = f64::INFINITY;
-        for k in [self.order - 1, self.order] {
-            let ratio = (u[k].abs() / speed).max(a[k].abs() / stretch);
-            if ratio > 0.0 {
-                length = length.min((self.tolerance / ratio).powf(1.0 / k as f64));
-            }
-        }
-        length
+        // log₂ to 0.1: enough to tell which of the last two terms asks for the shorter step.
+        let rough_log2 = |x: f64| (x.to_bits() >> 42) as f64 / 1024.0 - 1023.0;
+        let asked = [self.order - 1, self.order].map(|k| {
+            // What is not a number ends the motion elsewhere, not here.
+            let ratio = (u[k].abs() / speed).max(a[k].abs() / stretch).max(0.0);
+            let room = self.tolerance / ratio;
+            (rough_log2(room) / k as f64, room, k)
+        });
+        let shorter = if asked[0].0 < asked[1].0 { 0 } else { 1 };
+        let (_, room, k) = asked[shorter];
+        room.powf(1.0 / k as f64)
     }
 
     /// The first event within `length`.
@@ -432,20 +465,58 @@ impl Motion {
         }
         if self.mode == Mode::Stick {
             for direction in [1.0, -1.0] {
-                let mut hold = [0.0; MOST_ORDER + 1];
-                for ((hold, n), a) in hold.iter_mut().zip(&step.n[range]).zip(&step.a[range]) {
-                    *hold = self.parameters.law.mu_s() * n - direction * a;
-                }
+                let hold = self.hold(direction);
                 consider(first_zero(&hold[range], length), Event::Release);
             }
+        } else if self.mode == Mode::Forwards && step.u[0] != 0.0 {
+            consider(first_zero(&step.u[range], length), Event::Stick);
         } else {
-            let mut speed = step.u;
-            if self.mode == Mode::Backwards {
-                speed.iter_mut().for_each(|u| *u = -*u);
-            }
-            consider(first_zero(&speed[range], length), Event::Stick);
+            consider(first_zero(&self.speed()[range], length), Event::Stick);
         }
         first
+    }
+
+    /// What holds the block against a pull in `direction`: μ_S n − a in stick.
+    fn hold(&self, direction: f64) -> Coefficients {
+        let mu_s = self.parameters.law.mu_s();
+        let mut hold = [0.0; MOST_ORDER + 1];
+        let terms = self.step.n.iter().zip(&self.step.a);
+        for (hold, (n, a)) in hold.iter_mut().zip(terms).take(self.step.order + 1) {
+            *hold = mu_s * n - direction * a;
+        }
+        hold[0] = self.without_noise(hold[0]);
+        hold
+    }
+
+    /// |ẋ| in slip. A block that was just released does not accelerate backwards: μ_K(0⁺) ≤ μ_S.
+    fn speed(&self) -> Coefficients {
+        let mut speed = self.step.u;
+        if self.mode == Mode::Backwards {
+            speed.iter_mut().for_each(|u| *u = -*u);
+        }
+        if speed[0] == 0.0 {
+            speed[1] = self.without_noise(speed[1]);
+        }
+        speed
+    }
+
+    /// `force` at the start of a mode, which cannot be negative there: zero where it is so by no more than noise.
+    fn without_noise(&self, force: f64) -> f64 {
+        let noise = self.force_noise();
+        let rounding = noise * ROUNDING / (ROUNDING + self.tolerance);
+        if (-noise..=rounding).contains(&force) {
+            0.0
+        } else {
+            force
+        }
+    }
+
+    /// Noise of forces: rounding, and two polynomials of the past, which agree to the tolerance, taking turns. Without it a
+    /// block with μ_K(0⁺) = μ_S would stick and slip again and again at the moment of its release.
+    fn force_noise(&self) -> f64 {
+        let (a, delayed) = (self.step.a[0].abs(), self.step.delayed[0].abs());
+        let load = 1.0 + self.parameters.alpha_n.abs() * (a + delayed);
+        (ROUNDING + self.tolerance) * (a + self.parameters.law.mu_s() * load)
     }
 
     /// Moves on by `length`; the polynomials hold for `radius`.

@@ -224,7 +224,7 @@ impl Watch {
     fn see(&mut self, motion: &Motion, event: Option<Event>) {
         let step = motion.last_step();
         let size = motion.a.abs().max(motion.u.abs());
-        if !(size <= BEYOND * self.scale) {
+        if !(motion.a + motion.u).is_finite() || size > BEYOND * self.scale {
             self.outcome = Some(Outcome::Diverged);
             return;
         }

@@ -6,11 +6,45 @@ pub const MOST_ORDER: usize = 24;
 /// Coefficients c₀ … c_N of Σ c_k s^k; those beyond the order in use mean nothing.
 pub type Coefficients = [f64; MOST_ORDER + 1];
 
-/// Σ c_k s^k.
+/// 1/(k + 1).
+pub const PER_NEXT: Coefficients = {
+    let mut inverse = [1.0; MOST_ORDER + 1];
+    let mut k = 1;
+    while k <= MOST_ORDER {
+        inverse[k] = 1.0 / (k + 1) as f64;
+        k += 1;
+    }
+    inverse
+};
+
+/// Binomial coefficients: row m, column j hold j + m over j; zero where j + m > [`MOST_ORDER`].
+const BINOMIAL: [Coefficients; MOST_ORDER + 1] = {
+    let mut rows = [[0.0; MOST_ORDER + 1]; MOST_ORDER + 1];
+    rows[0] = [1.0; MOST_ORDER + 1];
+    let mut m = 1;
+    while m <= MOST_ORDER {
+        rows[m][0] = 1.0;
+        let mut j = 1;
+        while j + m <= MOST_ORDER {
+            rows[m][j] = rows[m][j - 1] + rows[m - 1][j];
+            j += 1;
+        }
+        m += 1;
+    }
+    rows
+};
+
+/// Σ c_k s^k, by Horner's scheme for even and for odd powers: half as long a chain of operations.
 #[inline]
 #[must_use]
 pub fn value(c: &[f64], s: f64) -> f64 {
-    c.iter().rev().fold(0.0, |sum, c| sum * s + c)
+    let square = s * s;
+    let pairs = c.chunks_exact(2);
+    let last = pairs.remainder().first().copied().unwrap_or(0.0);
+    let (even, odd) = pairs.rev().fold((last, 0.0), |(even, odd), pair| {
+        (even * square + pair[0], odd * square + pair[1])
+    });
+    even + s * odd
 }
 
 /// Value and derivative.
@@ -24,24 +58,39 @@ fn value_and_slope(c: &[f64], s: f64) -> (f64, f64) {
     (value, slope)
 }
 
-/// The coefficients about s = `by`, in place: Horner's scheme, repeated.
+/// The coefficients about s = `by` of those in `c`, Σ_m (j + m over j) c_{j+m} by^m.
+///
+/// Horner's scheme takes as many operations, but each waits for the one before.
 #[inline]
-pub fn shift(c: &mut [f64], by: f64) {
-    for first in 0..c.len() {
-        for k in (first..c.len() - 1).rev() {
-            c[k] += by * c[k + 1];
+#[must_use]
+pub fn shifted(c: &[f64], by: f64) -> Coefficients {
+    let mut about = [0.0; MOST_ORDER + 1];
+    about[..c.len()].copy_from_slice(c);
+    let mut power = 1.0;
+    for (m, row) in BINOMIAL.iter().enumerate().take(c.len()).skip(1) {
+        power *= by;
+        let terms = row.iter().zip(&c[m..]);
+        for (sum, (binomial, c)) in about.iter_mut().zip(terms) {
+            *sum += power * (binomial * c);
         }
     }
+    about
 }
 
-/// Coefficient k of the product of `p` and `q`.
+/// Coefficient k of the product of `p` and `q`, from the middle to both ends: what was found last is waited for last.
 #[inline(always)]
-pub fn product(p: &[f64], q: &[f64], k: usize) -> f64 {
-    p[..=k]
-        .iter()
-        .zip(q[..=k].iter().rev())
-        .map(|(p, q)| p * q)
-        .sum()
+#[must_use]
+pub fn product(p: &Coefficients, q: &Coefficients, k: usize) -> f64 {
+    let k = k.min(MOST_ORDER);
+    let middle = k / 2;
+    let (mut low, mut high) = (0.0, 0.0);
+    for i in 0..=middle {
+        low += p[middle - i] * q[k - middle + i];
+    }
+    for i in middle + 1..=k {
+        high += p[i] * q[k - i];
+    }
+    low + high
 }
 
 /// The first zero in (0, `end`] of a polynomial that is positive just after 0; none if it stays positive.
@@ -66,6 +115,9 @@ pub fn first_zero(c: &[f64], end: f64) -> Option<f64> {
         return None;
     }
     let bend = size(2, |k| k * (k - 1.0));
+    if !bend.is_finite() {
+        return None;
+    }
     let rounding = 4.0 * f64::EPSILON * size(0, |k| 1.0 + k);
     let mut s = 0.0;
     loop {
@@ -90,7 +142,8 @@ pub fn first_zero(c: &[f64], end: f64) -> Option<f64> {
             f64::INFINITY
         };
         s += step.max(f64::EPSILON * end);
-        if s > end {
+        // Also where something is not a number.
+        if s.is_nan() || s > end {
             return None;
         }
     }
@@ -175,10 +228,17 @@ mod tests {
         }
 
         #[test]
+        fn products_are_those_of_the_polynomials(p in prop::collection::vec(-1.0..1.0_f64, 9), q in prop::collection::vec(-1.0..1.0_f64, 9), s in -0.5..0.5_f64) {
+            let (mut long_p, mut long_q) = ([0.0; MOST_ORDER + 1], [0.0; MOST_ORDER + 1]);
+            long_p[..9].copy_from_slice(&p);
+            long_q[..9].copy_from_slice(&q);
+            let c: Vec<_> = (0..17).map(|k| product(&long_p, &long_q, k)).collect();
+            prop_assert!((value(&c, s) - value(&p, s) * value(&q, s)).abs() < 1e-13);
+        }
+
+        #[test]
         fn shifting_changes_nothing(c in prop::collection::vec(-1.0..1.0_f64, 1..20), by in -0.5..0.5_f64, s in -0.5..0.5_f64) {
-            let mut shifted = c.clone();
-            shift(&mut shifted, by);
-            prop_assert!((value(&shifted, s) - value(&c, s + by)).abs() < 1e-12);
+            prop_assert!((value(&shifted(&c, by), s) - value(&c, s + by)).abs() < 1e-12);
         }
     }
 }
