@@ -105,7 +105,9 @@ impl Case {
             delayed,
         )?;
         let switch_on = self.switch_on;
-        ModelError::check("switch_on", switch_on, "at least 0", switch_on >= 0.0)?;
+        if switch_on != f64::INFINITY {
+            ModelError::check("switch_on", switch_on, "at least 0", switch_on >= 0.0)?;
+        }
         ModelError::positive("horizon", self.horizon)?;
         let tolerance = self.accuracy.tolerance;
         let range = (1e-15..=1e-3).contains(&tolerance);

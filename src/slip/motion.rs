@@ -140,6 +140,12 @@ impl Step {
         (at(&self.u), at(&self.a), at(&self.n))
     }
 
+    /// The elongation one delay before `s`; means nothing before control acts.
+    #[must_use]
+    pub fn delayed_elongation(&self, s: f64) -> f64 {
+        value(Self::range(&self.delayed, self.order), s)
+    }
+
     /// The displacement since the start of the step at `s`.
     #[must_use]
     pub fn displacement(&self, s: f64) -> f64 {
