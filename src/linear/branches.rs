@@ -17,6 +17,8 @@ use crate::model::Groups;
 const STEPS: u32 = 4;
 /// Most branches looked at; beyond this the line was set too far left.
 const MOST_BRANCHES: usize = 1 << 20;
+/// Most of them followed: more roots than that right of the line are not wanted.
+const MOST_STARTS: usize = 4096;
 /// The first of them are followed in any case.
 const ALWAYS_FOLLOWED: usize = 4;
 /// Parts into which the real axis is cut to find real roots.
@@ -74,6 +76,9 @@ pub fn starting_values(groups: Groups, tau: f64, line: f64, starts: &mut Vec<Com
             && let Some(start) = follow_branch(&pair, tau, place(j))
         {
             starts.push(start);
+        }
+        if starts.len() >= MOST_STARTS {
+            break;
         }
         (before, here) = (here, after);
     }

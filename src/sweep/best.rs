@@ -6,7 +6,10 @@ use super::parameter::{Parameter, Setting};
 use super::plan::Plan;
 use crate::linear::best::{self, Optimum, Search, SearchedGain};
 use crate::linear::lobes::minimal_negative_load_gain;
-use crate::model::ModelError;
+use crate::model::{Groups, ModelError};
+
+/// Largest |b| for which best settings are searched.
+const STEEPEST: f64 = 1e4;
 
 /// Delays searched unless others are asked for: so many periods 2π√(M/κ) of the free oscillator.
 const PERIODS: f64 = 4.0;
@@ -101,8 +104,7 @@ fn scaled((from, to): (f64, f64), by: f64) -> (f64, f64) {
 /// When a parameter of `setting` is outside the model's range.
 pub fn default_ranges(setting: &Setting, gain: SearchedGain) -> Result<Ranges, ModelError> {
     let scales = Scales::of(setting, gain)?;
-    let (groups, _) = setting.groups()?;
-    let slope = groups.b.abs();
+    let slope = moderate_slope(setting)?.b.abs();
     let gains = match gain {
         SearchedGain::Velocity => {
             let farthest = FARTHEST_VELOCITY * slope.max(1.0);
@@ -119,6 +121,19 @@ pub fn default_ranges(setting: &Setting, gain: SearchedGain) -> Result<Ranges, M
     })
 }
 
+/// The groups of `setting`, if |b| is not so large that its optima lie at delays which no search resolves.
+fn moderate_slope(setting: &Setting) -> Result<Groups, ModelError> {
+    let (groups, _) = setting.groups()?;
+    let mu_prime = setting.sliding_point()?.mu_prime;
+    ModelError::check(
+        "mu_prime",
+        mu_prime,
+        "such that |mu_prime| N0/sqrt(kappa M) is at most 1e4 where best settings are searched",
+        groups.b.abs() <= STEEPEST,
+    )?;
+    Ok(groups)
+}
+
 /// The settings of fastest decay for every stable region within `ranges`, all parameters but `gain` and the delay being those
 /// of `setting`.
 ///
@@ -130,7 +145,7 @@ pub fn best_settings(
     ranges: &Ranges,
 ) -> Result<BestSettings, ModelError> {
     let scales = Scales::of(setting, gain)?;
-    let (fixed, _) = setting.groups()?;
+    let fixed = moderate_slope(setting)?;
     let found = best::best(&Search {
         fixed,
         gain,
