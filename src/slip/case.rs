@@ -19,7 +19,7 @@ pub struct Case {
     pub tau: f64,
     /// Pulling velocity.
     pub v0: f64,
-    /// When control is switched on; +∞ for never.
+    /// When control is switched on; +∞ for never. Without gains it never is.
     pub switch_on: f64,
     /// ẋ at t = 0.
     pub x_dot0: f64,
@@ -75,7 +75,11 @@ impl Case {
             alpha_n: self.control.alpha_n / self.oscillator.stiffness(),
             tau: self.tau / units.time,
             v0: self.v0 / units.velocity,
-            switch_on: self.switch_on / units.time,
+            switch_on: if self.control == Control::default() {
+                f64::INFINITY
+            } else {
+                self.switch_on / units.time
+            },
         };
         Ok(Motion::new(
             parameters,
