@@ -39,5 +39,6 @@
 pub mod linear;
 pub mod model;
 pub mod report;
+pub mod slip;
 pub mod store;
 pub mod sweep;

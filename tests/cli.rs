@@ -1,82 +1,16 @@
 //! The real program by its command line: what users type, read and find on disk.
 
-use std::path::Path;
-use std::process::{Command, Output, Stdio};
+use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
+
+#[path = "common/program.rs"]
+mod program;
+
+use program::{Folder, err, expect, out};
 
 const SMALL: &str = "title = \"small\"\n[axes]\nmu_prime = [-0.1, -0.3]\nalpha_n = { from = -3, to = 1, points = 41 }\ntau = { from = 0, to = 12, points = 61 }\n";
 /// Large enough to be interrupted on any machine.
 const LARGE: &str = "boundaries = false\n[axes]\nmu_prime = { from = -1, to = 1, points = 5000 }\nalpha_n = { from = -3, to = 1, points = 5000 }\ntau = { from = 0, to = 12, points = 2000 }\n";
-
-struct Folder(tempfile::TempDir);
-
-impl Folder {
-    fn new() -> Self {
-        Self(tempfile::tempdir().unwrap())
-    }
-
-    fn with(files: &[(&str, &str)]) -> Self {
-        let folder = Self::new();
-        for (name, text) in files {
-            std::fs::write(folder.path().join(name), text).unwrap();
-        }
-        folder
-    }
-
-    fn path(&self) -> &Path {
-        self.0.path()
-    }
-
-    fn command(&self, args: &[&str]) -> Command {
-        let mut command = Command::new(env!("CARGO_BIN_EXE_slipmap"));
-        command
-            .args(args)
-            .current_dir(self.path())
-            .env("NO_COLOR", "1")
-            .env("COLUMNS", "100");
-        command
-    }
-
-    fn run(&self, args: &[&str]) -> Output {
-        self.command(args).output().unwrap()
-    }
-
-    /// Names of all files, sorted.
-    fn files(&self) -> Vec<String> {
-        let mut names: Vec<String> = std::fs::read_dir(self.path())
-            .unwrap()
-            .map(|e| e.unwrap().file_name().into_string().unwrap())
-            .collect();
-        names.sort();
-        names
-    }
-}
-
-fn out(output: &Output) -> String {
-    String::from_utf8(output.stdout.clone()).unwrap()
-}
-
-fn err(output: &Output) -> String {
-    String::from_utf8(output.stderr.clone()).unwrap()
-}
-
-#[track_caller]
-fn expect(output: &Output, code: i32, says: &str) {
-    let text = format!("{}{}", out(output), err(output));
-    assert_eq!(output.status.code(), Some(code), "{text}");
-    // Messages are wrapped to the terminal: compare words.
-    let words = |text: &str| {
-        text.split(|c: char| c.is_whitespace() || c == '│')
-            .filter(|w| !w.is_empty())
-            .collect::<Vec<_>>()
-            .join(" ")
-    };
-    assert!(
-        words(&text).contains(&words(says)),
-        "expected {says:?} in\n{text}"
-    );
-    assert!(!text.contains("panicked"), "{text}");
-}
 
 #[test]
 fn run_makes_a_map_and_a_picture_and_goes_on_from_there() {

@@ -613,3 +613,37 @@ fn the_figure_refuses_what_is_no_such_map() {
         assert!(!written.file("figure.png").exists());
     }
 }
+
+/// Traces in xarray, netCDF4 and ncdump, and the publication figure from them.
+#[test]
+fn python_reads_traces_and_draws_figure_3() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let slipmap = env!("CARGO_BIN_EXE_slipmap");
+    for name in ["fig3a", "fig3b"] {
+        let case = root.join(format!("sweeps/{name}.toml"));
+        let said = run(command(slipmap, folder.path(), ["simulate", "--json"]).arg(case));
+        std::fs::write(folder.path().join(format!("{name}.json")), said.stdout).unwrap();
+        run(python(folder.path())
+            .arg(root.join("tests/readers/check_trace.py"))
+            .arg(name));
+        let header = run(&mut command(
+            "ncdump",
+            folder.path(),
+            ["-h", &format!("{name}.h5")],
+        ));
+        assert!(text(&header.stdout).contains("double x_dot(t)"));
+    }
+    let script = root.join("scripts/plot_fig3.py");
+    let figure = |arguments: [&str; 4]| {
+        let mut python = python(folder.path());
+        python.arg(&script).args(arguments).output().unwrap()
+    };
+    let drawn = figure(["fig3a.h5", "fig3b.h5", "-o", "fig3.png"]);
+    assert!(drawn.status.success(), "{}", text(&drawn.stderr));
+    let bytes = std::fs::read(folder.path().join("fig3.png")).unwrap();
+    assert!(bytes.starts_with(b"\x89PNG") && bytes.len() > 50_000);
+    let refused = figure(["fig3a.h5", "fig3a.json", "-o", "no.png"]);
+    assert_eq!(refused.status.code(), Some(2));
+    assert!(text(&refused.stderr).contains("fig3a.json"));
+}

@@ -27,6 +27,11 @@ pub enum Failure {
 }
 
 impl Failure {
+    /// What could not be done, in words.
+    pub fn failed(message: impl Into<String>) -> Self {
+        Self::Failed(Report::new(MietteDiagnostic::new(message)))
+    }
+
     /// Bad input, in words.
     pub fn bad_input(message: impl Into<String>) -> Self {
         Self::BadInput(Report::new(MietteDiagnostic::new(message)))
@@ -80,9 +85,9 @@ impl From<StoreError> for Failure {
     fn from(error: StoreError) -> Self {
         let report = Report::new(MietteDiagnostic::new(error.to_string()));
         match error {
-            StoreError::NotAMap { .. } | StoreError::Io { action: "open", .. } => {
-                Self::BadInput(report)
-            }
+            StoreError::NotAMap { .. }
+            | StoreError::NotATrace { .. }
+            | StoreError::Io { action: "open", .. } => Self::BadInput(report),
             _ => Self::Failed(report),
         }
     }

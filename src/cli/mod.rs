@@ -3,12 +3,14 @@
 mod best;
 mod failure;
 mod info;
+mod output;
 mod parameters;
 mod plan;
 mod plot;
 mod point;
 mod run;
 mod say;
+mod simulate;
 mod sweep_file;
 
 use std::process::ExitCode;
@@ -36,6 +38,8 @@ enum Command {
     Point(point::Args),
     /// The gain and delay of fastest decay, for every stable region
     Best(best::Args),
+    /// One motion in time: from a case file to HDF5 and a picture, with its events and outcome
+    Simulate(simulate::Args),
     /// Draw a map as PNG or SVG
     Plot(plot::Args),
     /// Say what a map holds
@@ -49,6 +53,7 @@ pub fn main() -> ExitCode {
         Command::Plan(args) => plan::main(&args),
         Command::Point(args) => point::main(&args),
         Command::Best(args) => best::main(&args),
+        Command::Simulate(args) => simulate::main(&args),
         Command::Plot(args) => plot::main(&args),
         Command::Info(args) => info::main(&args),
     };

@@ -3,7 +3,6 @@
 use std::path::{Path, PathBuf};
 
 use clap::ValueEnum;
-use miette::{MietteDiagnostic, Report};
 use slipmap::report::picture::{self, PictureError, PictureKind, PictureOptions};
 use slipmap::store::MapFile;
 use slipmap::sweep::field::known_fields;
@@ -90,9 +89,7 @@ fn failure(error: PictureError, args: &Args) -> Failure {
     };
     match error {
         PictureError::Store(error) => error.into(),
-        PictureError::Render(_) => {
-            Failure::Failed(Report::new(MietteDiagnostic::new(error.to_string())))
-        }
+        PictureError::Render(_) => Failure::failed(error.to_string()),
         PictureError::Extension { .. } => {
             let help = "name the picture like fig.png or fig.svg";
             bad("--output: ", error, help.into())

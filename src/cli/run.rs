@@ -4,19 +4,17 @@ use std::io::IsTerminal;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
-use std::time::SystemTime;
 
-use miette::{MietteDiagnostic, Report};
 use slipmap::report::numbers::{bytes, grouped, prefixed, seconds};
 use slipmap::report::picture::{self, PictureError, PictureOptions};
 use slipmap::report::preview::preview;
 use slipmap::report::progress::Progress;
-use slipmap::store::map_writer::Provenance;
 use slipmap::store::schema::root;
 use slipmap::store::{MapFile, MapWriter, Output, StoreError};
 use slipmap::sweep::{Plan, RunError, engine};
 
 use super::failure::Failure;
+use super::output::{output_path, provenance};
 use super::plot;
 use super::say;
 use super::sweep_file::read_plan;
@@ -61,7 +59,7 @@ pub fn default_threads() -> usize {
 
 pub fn main(args: &Args) -> Result<(), Failure> {
     let plan = read_plan(&args.sweep)?;
-    let path = output_path(args)?;
+    let path = output_path(args.output.as_deref(), &args.sweep, "map")?;
     if let Some(remark) = already_there(&path, &plan, args.fresh)? {
         if !plot::beside(&path).exists() {
             show(&path, args.quiet);
@@ -75,7 +73,7 @@ pub fn main(args: &Args) -> Result<(), Failure> {
     let progress = Progress::new(args.quiet);
     let threads = args.threads.unwrap_or_else(default_threads);
     let output = Output::claim(&path)?;
-    let mut writer = MapWriter::create(&plan, output, &provenance(args))?;
+    let mut writer = MapWriter::create(&plan, output, &provenance("run", &args.sweep))?;
     if let Err(error) = engine::run(&plan, threads, &mut writer, &progress, &signals.stop) {
         progress.clear();
         drop(writer);
@@ -128,35 +126,6 @@ fn show(path: &Path, quiet: bool) {
     }
 }
 
-fn output_path(args: &Args) -> Result<PathBuf, Failure> {
-    let path = match &args.output {
-        Some(path) => path.clone(),
-        None => {
-            let stem = args.sweep.file_stem().unwrap_or(args.sweep.as_os_str());
-            let mut name = stem.to_owned();
-            name.push(".h5");
-            PathBuf::from(name)
-        }
-    };
-    if path.file_name().is_none() {
-        return Err(Failure::bad_input(format!(
-            "--output {} does not name a file",
-            path.display()
-        )));
-    }
-    let extension = path.extension().map(|e| e.to_string_lossy().to_lowercase());
-    if let Some(kind @ ("png" | "svg")) = extension.as_deref() {
-        return Err(Failure::bad_input_with_help(
-            format!(
-                "--output {} would be a map with the name of a {kind} picture",
-                path.display()
-            ),
-            "maps end in .h5; the picture is drawn beside",
-        ));
-    }
-    Ok(path)
-}
-
 /// A remark if the map of this plan is there and `fresh` is not set; an error if what is there must not be replaced.
 ///
 /// `fresh` replaces maps only: another file under that name is more likely a slip than a wish.
@@ -200,15 +169,6 @@ fn what_differs(map: &MapFile, plan: &Plan) -> String {
     }
 }
 
-fn provenance(args: &Args) -> Provenance {
-    let now = humantime::format_rfc3339_seconds(SystemTime::now());
-    Provenance {
-        program_version: env!("CARGO_PKG_VERSION").into(),
-        git_revision: env!("SLIPMAP_GIT_REVISION").into(),
-        history: format!("{now} slipmap run {}", args.sweep.display()),
-    }
-}
-
 fn failure(error: RunError<StoreError>, path: &Path, signals: &Signals) -> Failure {
     match error {
         RunError::Interrupted => Failure::Interrupted {
@@ -220,9 +180,7 @@ fn failure(error: RunError<StoreError>, path: &Path, signals: &Signals) -> Failu
         },
         RunError::Sink(error) => error.into(),
         RunError::Model(error) => error.into(),
-        RunError::Threads { .. } => {
-            Failure::Failed(Report::new(MietteDiagnostic::new(error.to_string())))
-        }
+        RunError::Threads { .. } => Failure::failed(error.to_string()),
     }
 }
 
@@ -242,7 +200,7 @@ impl Signals {
         );
         let refused = |error| {
             let message = format!("cannot catch signals: {error}");
-            Failure::Failed(Report::new(MietteDiagnostic::new(message)))
+            Failure::failed(message)
         };
         // Caught and not looked at: a limit on file sizes then fails the write instead of ending the process.
         flag::register(SIGXFSZ, Arc::new(AtomicBool::new(false))).map_err(refused)?;

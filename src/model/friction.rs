@@ -12,11 +12,30 @@ pub struct FrictionLaw {
     mu_s: f64,
 }
 
+/// The form of a law, with its parameters in the symbols of the constructors of [`FrictionLaw`].
 #[derive(Debug, Clone, Copy, PartialEq)]
-enum Kind {
-    Coulomb { mu0: f64 },
-    Weakening { mu0: f64, v_s: f64 },
-    Stribeck { mu0: f64, v_s: f64, mu_s: f64 },
+pub enum Kind {
+    /// μ_K = μ0.
+    Coulomb {
+        /// μ0.
+        mu0: f64,
+    },
+    /// μ_K = μ0/(1 + v/v_s).
+    Weakening {
+        /// μ0.
+        mu0: f64,
+        /// v_s, length/time.
+        v_s: f64,
+    },
+    /// μ_K = μ0 + (μ_S − μ0) exp(−(v/v_s)²).
+    Stribeck {
+        /// μ0.
+        mu0: f64,
+        /// v_s, length/time.
+        v_s: f64,
+        /// μ_S.
+        mu_s: f64,
+    },
 }
 
 impl FrictionLaw {
@@ -60,6 +79,12 @@ impl FrictionLaw {
             kind: Kind::Stribeck { mu0, v_s, mu_s },
             mu_s,
         })
+    }
+
+    /// The form of the law and its parameters.
+    #[must_use]
+    pub fn kind(&self) -> Kind {
+        self.kind
     }
 
     /// μ_S.

@@ -214,7 +214,7 @@ fn put_coordinates(
         let dataset = named(group.new_dataset_builder())
             .with_data(&values.values)
             .create(values.parameter.name())?;
-        describe_parameter(&dataset, values.parameter, plan)?;
+        describe_parameter(&dataset, values.parameter, &plan.spec.units)?;
         dimensions.attach(&dataset, &[axes[axis]])?;
     }
     Ok(())

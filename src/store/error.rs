@@ -1,4 +1,4 @@
-//! Why a map could not be written or read, with the file's name and the cause.
+//! Why a map or trace could not be written or read, with the file's name and the cause.
 
 use std::io;
 use std::path::{Path, PathBuf};
@@ -34,6 +34,14 @@ pub enum StoreError {
         /// What is missing or different.
         why: String,
     },
+    /// The file is no trace, or one of another format.
+    #[error("{} is not a slipmap trace: {why}", path.display())]
+    NotATrace {
+        /// Which file.
+        path: PathBuf,
+        /// What is missing or different.
+        why: String,
+    },
     /// Another run writes the same map.
     #[error("another run is writing {}", path.display())]
     Locked {
@@ -56,6 +64,13 @@ impl StoreError {
             action: action.into(),
             path: path.to_owned(),
             cause: cause(&error),
+        }
+    }
+
+    pub(super) fn not_a_trace(path: &Path, why: impl Into<String>) -> Self {
+        Self::NotATrace {
+            path: path.to_owned(),
+            why: why.into(),
         }
     }
 

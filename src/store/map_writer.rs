@@ -19,8 +19,9 @@ use crate::linear::status::FLAGS;
 use crate::sweep::best::BestSettings;
 use crate::sweep::boundaries::BoundaryPlane;
 use crate::sweep::engine::{Encode, N_UNSTABLE_FILL, STATUS_FILL, Sink, TileBuffers};
+use crate::sweep::parameter::Units;
 use crate::sweep::tile::Tile;
-use crate::sweep::{Field, Parameter, Plan};
+use crate::sweep::{Field, Parameter, Plan, Setting};
 
 /// Who made a map, for its root attributes.
 #[derive(Debug, Clone, Default)]
@@ -98,7 +99,8 @@ impl<'p> MapWriter<'p> {
     }
 }
 
-fn create_file(path: &Path) -> hdf5::Result<File> {
+/// A new file, with all orders kept.
+pub(super) fn create_file(path: &Path) -> hdf5::Result<File> {
     hdf5::FileBuilder::new()
         .with_fcpl(|fcpl| {
             fcpl.obj_track_times(false)
@@ -125,11 +127,14 @@ fn fill_file(
             let dataset = named(file.new_dataset_builder())
                 .with_data(&axis.values)
                 .create(axis.parameter.name())?;
-            describe_parameter(&dataset, axis.parameter, plan)?;
+            describe_parameter(&dataset, axis.parameter, &plan.spec.units)?;
             dimensions.add(dataset, None)
         })
         .collect::<hdf5::Result<Vec<_>>>()?;
-    let scalars = put_scalars(file, plan)?;
+    let spec = &plan.spec;
+    let scalars = put_scalars(file, &spec.fixed, &spec.units, |p| {
+        spec.axes.iter().any(|axis| axis.parameter == p)
+    })?;
     let mut variables = Variables {
         file,
         plan,
@@ -153,10 +158,14 @@ fn fill_file(
     Ok((datasets, boundaries, best))
 }
 
-fn put_root(file: &File, plan: &Plan, provenance: &Provenance) -> hdf5::Result<()> {
-    let names: Vec<&str> = plan.spec.axes.iter().map(|a| a.parameter.name()).collect();
+/// The root attributes of every file: title and who made it.
+pub(super) fn put_provenance(
+    file: &File,
+    title: &str,
+    provenance: &Provenance,
+) -> hdf5::Result<()> {
     put_text(file, "Conventions", schema::CONVENTIONS)?;
-    put_text(file, root::TITLE, &plan.spec.title)?;
+    put_text(file, root::TITLE, title)?;
     let source = format!("slipmap {}", provenance.program_version);
     put_text(file, root::SOURCE, &source)?;
     put_text(file, root::HISTORY, &provenance.history)?;
@@ -166,7 +175,12 @@ fn put_root(file: &File, plan: &Plan, provenance: &Provenance) -> hdf5::Result<(
         "F.-J. Elmer, Controlling friction (1997)",
     )?;
     put_text(file, root::PROGRAM_VERSION, &provenance.program_version)?;
-    put_text(file, root::GIT_REVISION, &provenance.git_revision)?;
+    put_text(file, root::GIT_REVISION, &provenance.git_revision)
+}
+
+fn put_root(file: &File, plan: &Plan, provenance: &Provenance) -> hdf5::Result<()> {
+    let names: Vec<&str> = plan.spec.axes.iter().map(|a| a.parameter.name()).collect();
+    put_provenance(file, &plan.spec.title, provenance)?;
     put_numbers(file, root::FORMAT_VERSION, &[schema::FORMAT_VERSION])?;
     put_text(file, root::AXES, &names.join(" "))?;
     put_text(file, root::PLAN_HASH, &plan.hash())?;
@@ -178,19 +192,23 @@ fn put_root(file: &File, plan: &Plan, provenance: &Provenance) -> hdf5::Result<(
     Ok(())
 }
 
-/// The parameters that are no axes, as scalar coordinates. Returns their names.
-fn put_scalars(file: &File, plan: &Plan) -> hdf5::Result<String> {
-    let on_axis = |p| plan.spec.axes.iter().any(|a| a.parameter == p);
+/// The parameters that `setting` uses and that are no axes, as scalar coordinates. Returns their names.
+pub(super) fn put_scalars(
+    file: &File,
+    setting: &Setting,
+    units: &Units,
+    on_axis: impl Fn(Parameter) -> bool,
+) -> hdf5::Result<String> {
     let mut names = Vec::new();
     for parameter in Parameter::ALL {
-        if !plan.spec.fixed.uses(parameter) || on_axis(parameter) {
+        if !setting.uses(parameter) || on_axis(parameter) {
             continue;
         }
         let dataset = named(file.new_dataset_builder())
             .empty::<f64>()
             .create(parameter.name())?;
-        dataset.write_scalar(&plan.spec.fixed.get(parameter))?;
-        describe_parameter(&dataset, parameter, plan)?;
+        dataset.write_scalar(&setting.get(parameter))?;
+        describe_parameter(&dataset, parameter, units)?;
         names.push(parameter.name());
     }
     Ok(names.join(" "))
@@ -199,10 +217,10 @@ fn put_scalars(file: &File, plan: &Plan) -> hdf5::Result<String> {
 pub(super) fn describe_parameter(
     dataset: &Dataset,
     parameter: Parameter,
-    plan: &Plan,
+    units: &Units,
 ) -> hdf5::Result<()> {
     put_text(dataset, "long_name", parameter.long_name())?;
-    put_text(dataset, "units", &plan.spec.units.of_parameter(parameter))
+    put_text(dataset, "units", &units.of_parameter(parameter))
 }
 
 /// Creates the datasets of the cells.

@@ -1,8 +1,9 @@
-//! Maps on disk: HDF5 files that netCDF-4 readers open with named coordinates. The only place that knows HDF5.
+//! Maps and traces on disk: HDF5 files that netCDF-4 readers open with named coordinates. The only place that knows HDF5.
 //!
 //! - [`schema`]: names, meanings and format version
 //! - [`map_writer`]: writes a map as its tiles come, under a temporary name until it is complete
 //! - [`map_file`]: reads maps
+//! - [`trace_file`]: writes motions sampled over time, and recognises them
 //! - [`output`]: the temporary name, the lock, the final rename
 
 mod attributes;
@@ -17,6 +18,7 @@ pub mod map_writer;
 mod netcdf;
 pub mod output;
 pub mod schema;
+pub mod trace_file;
 
 pub use best_reader::MapBest;
 pub use error::StoreError;

@@ -1,4 +1,4 @@
-//! Names in a map file that are not those of a parameter or field, and the version of its format.
+//! Names in a map or trace file that are not those of a parameter or field, and the version of its format.
 
 /// Version of the layout described here, which is written. 2: [`DEGREE_OF_STABILITY`] of every curve.
 pub const FORMAT_VERSION: i32 = 2;
@@ -7,6 +7,23 @@ pub const OLDEST_FORMAT_VERSION: i32 = 1;
 
 /// Conventions that a map follows.
 pub const CONVENTIONS: &str = "CF-1.11";
+
+/// Version of the layout of a trace.
+pub const TRACE_FORMAT_VERSION: i32 = 1;
+
+/// Names in a trace file besides those of parameters.
+pub mod trace {
+    /// Root attribute: [`super::TRACE_FORMAT_VERSION`]; marks a file as a trace.
+    pub const FORMAT_VERSION: &str = "slipmap_trace_format_version";
+    /// Root attribute: the case file's text.
+    pub const CASE: &str = "case";
+    /// Root attribute: name of the outcome.
+    pub const OUTCOME: &str = "outcome";
+    /// Group and dimension of the events.
+    pub const EVENT: &str = "event";
+    /// The dimension: time.
+    pub const TIME: &str = "t";
+}
 
 /// Root attributes.
 pub mod root {

@@ -4,6 +4,8 @@
 //! TOML text → [spec] what the user wrote → [plan] axes, lines, tiles → [engine] lines analysed over threads → a sink
 //! ```
 //!
+//! A case file is one motion of the block: [case_file] reads it, [trace] follows and samples it.
+//!
 //! A **line** is all delays at fixed other parameters: the closed form gives all crossings of a line at once. A **tile** is
 //! a block of lines: the unit of parallel work and of storing. Nothing passes from tile to tile, so a map does not depend
 //! on the number of threads.
@@ -11,18 +13,22 @@
 pub mod axis;
 pub mod best;
 pub mod boundaries;
+pub mod case_file;
 pub mod engine;
 pub mod events;
 pub mod field;
+mod given;
 pub mod parameter;
 pub mod plan;
 mod root_columns;
 pub mod spec;
 pub mod tile;
 mod toml_reader;
+pub mod trace;
 mod worker;
 
 pub use axis::Axis;
+pub use case_file::CaseSpec;
 pub use engine::{RunError, Sink};
 pub use events::{Event, Observer};
 pub use field::Field;
@@ -30,3 +36,4 @@ pub use parameter::{Parameter, Setting};
 pub use plan::Plan;
 pub use root_columns::relaxation_time;
 pub use spec::{SpecError, SweepSpec};
+pub use trace::Trace;

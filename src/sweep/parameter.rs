@@ -4,7 +4,7 @@ use crate::model::{Control, FrictionLaw, Groups, ModelError, Oscillator, Sliding
 
 /// The largest size of any parameter, and one over the smallest of those that must be positive: far beyond any
 /// experiment, and small enough that no dimensionless group overflows.
-const LARGEST: f64 = 1e12;
+pub(super) const LARGEST: f64 = 1e12;
 
 /// A parameter of the model, of the friction law or of the control.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]

@@ -34,7 +34,8 @@ use std::ops::Range;
 use super::axis::{Axis, Spacing, plane_of_curves, spaced};
 use super::best::gain_plane;
 use super::field::{Field, known_fields};
-use super::parameter::{GivenError, LawKind, Parameter, Setting, Units};
+use super::given::{GivenParameters, read_units};
+use super::parameter::{Parameter, Setting, Units};
 pub use super::toml_reader::SpecError;
 use super::toml_reader::{Entry, entries, parse};
 use crate::linear::MarginalTolerance;
@@ -87,8 +88,8 @@ impl std::str::FromStr for SweepSpec {
                 "degree_of_stability" => draft.read_degrees(&entry)?,
                 "best" => draft.best = entry.boolean()?.then(|| entry.key_span.clone()),
                 "axes" => draft.read_axes(&entry)?,
-                "fixed" => draft.read_fixed(&entry)?,
-                "friction" => draft.read_friction(&entry)?,
+                "fixed" => draft.given.read_fixed(&entry)?,
+                "friction" => draft.given.read_friction(&entry)?,
                 "units" => draft.units = read_units(&entry)?,
                 "tolerance" => draft.tolerance = read_tolerance(&entry)?,
                 _ => {
@@ -111,12 +112,6 @@ impl std::str::FromStr for SweepSpec {
     }
 }
 
-/// A parameter that the file gives, with the place of its key.
-struct Given {
-    parameter: Parameter,
-    place: Range<usize>,
-}
-
 #[derive(Default)]
 struct Draft {
     title: String,
@@ -128,27 +123,12 @@ struct Draft {
     best: Option<Range<usize>>,
     axes: Vec<Axis>,
     axes_place: Option<Range<usize>>,
-    fixed: Vec<(Parameter, f64)>,
-    law: Option<(LawKind, Range<usize>)>,
+    given: GivenParameters,
     units: Units,
     tolerance: MarginalTolerance,
-    given: Vec<Given>,
 }
 
 impl Draft {
-    fn give(&mut self, entry: &Entry, parameter: Parameter) -> Result<(), SpecError> {
-        if self.given.iter().any(|g| g.parameter == parameter) {
-            let message = format!("{} is given twice", parameter.name());
-            return Err(SpecError::at(entry.key_span.clone(), message)
-                .help("a parameter is either an axis or a fixed value"));
-        }
-        self.given.push(Given {
-            parameter,
-            place: entry.key_span.clone(),
-        });
-        Ok(())
-    }
-
     fn read_degrees(&mut self, degrees: &Entry) -> Result<(), SpecError> {
         self.degrees = read_degrees(degrees)?;
         self.degrees_place = Some(degrees.key_span.clone());
@@ -160,7 +140,7 @@ impl Draft {
         for entry in axes.table()? {
             let parameter = Parameter::from_name(entry.key)
                 .ok_or_else(|| entry.unknown(&Parameter::ALL.map(Parameter::name)))?;
-            self.give(&entry, parameter)?;
+            self.given.give(&entry, parameter)?;
             let values = if entry.is_table() {
                 read_range(&entry)?
             } else {
@@ -168,59 +148,6 @@ impl Draft {
             };
             let axis = Axis::new(parameter, values).map_err(|e| entry.error(e.0))?;
             self.axes.push(axis);
-        }
-        Ok(())
-    }
-
-    fn read_fixed(&mut self, fixed: &Entry) -> Result<(), SpecError> {
-        for entry in fixed.table()? {
-            let known = Parameter::ALL.into_iter().filter(|p| !p.of_friction_law());
-            let names: Vec<_> = known.clone().map(Parameter::name).collect();
-            let parameter = known
-                .into_iter()
-                .find(|p| p.name() == entry.key)
-                .ok_or_else(|| entry.unknown(&names))?;
-            self.read_value(&entry, parameter)?;
-        }
-        Ok(())
-    }
-
-    fn read_value(&mut self, entry: &Entry, parameter: Parameter) -> Result<(), SpecError> {
-        self.give(entry, parameter)?;
-        let value = entry.number()?;
-        parameter
-            .check(value)
-            .map_err(|e| SpecError::at(entry.span.clone(), e.to_string()))?;
-        self.fixed.push((parameter, value));
-        Ok(())
-    }
-
-    fn read_friction(&mut self, friction: &Entry) -> Result<(), SpecError> {
-        let names = ["law", "mu0", "v_s", "mu_s"];
-        for entry in friction.table()? {
-            match Parameter::from_name(entry.key).filter(|p| p.of_friction_law()) {
-                Some(parameter) => self.read_value(&entry, parameter)?,
-                None if entry.key == "law" => {
-                    let name = entry.string()?;
-                    let law = LawKind::ALL
-                        .into_iter()
-                        .find(|law| law.name() == name)
-                        .ok_or_else(|| {
-                            let laws = LawKind::ALL.map(LawKind::name).join(", ");
-                            entry
-                                .error(format!("unknown friction law \"{name}\""))
-                                .help(format!("known: {laws}"))
-                        })?;
-                    self.law = Some((law, entry.span.clone()));
-                }
-                None => return Err(entry.unknown(&names)),
-            }
-        }
-        if self.law.is_none() {
-            return Err(SpecError::at(
-                friction.key_span.clone(),
-                "[friction] needs a law",
-            ));
         }
         Ok(())
     }
@@ -234,13 +161,10 @@ impl Draft {
                     .help("for example: [axes] tau = { from = 0, to = 12, points = 1201 }")
             });
         }
-        self.check_what_is_given()?;
+        self.given.check(None, self.axes_place.as_ref())?;
         self.check_degrees()?;
         self.check_best()?;
-        let mut fixed = Setting::new(self.law.as_ref().map(|(law, _)| *law));
-        for (parameter, value) in &self.fixed {
-            fixed.set(*parameter, *value);
-        }
+        let fixed = self.given.setting();
         self.check_law(&fixed)?;
         Ok(SweepSpec {
             title: self.title,
@@ -292,29 +216,9 @@ impl Draft {
         }
     }
 
-    /// Every parameter that is needed is there, none that would be ignored.
-    fn check_what_is_given(&self) -> Result<(), SpecError> {
-        let law = self.law.as_ref().map(|(law, _)| *law);
-        let place = |p: Parameter| self.given.iter().find(|g| g.parameter == p);
-        Setting::check_given(law, |p| place(p).is_some()).map_err(|error| {
-            let span = match error {
-                GivenError::Unused(p) => place(p).map(|g| g.place.clone()),
-                GivenError::Missing(Parameter::Mu0 | Parameter::VS | Parameter::V0) => {
-                    self.law.as_ref().map(|(_, place)| place.clone())
-                }
-                GivenError::Missing(_) => self.axes_place.clone(),
-            };
-            SpecError {
-                message: error.message(law),
-                span,
-                help: Some(error.help()),
-            }
-        })
-    }
-
     /// The law is well posed in every cell: μ0 at its largest against μ_S at its smallest.
     fn check_law(&self, fixed: &Setting) -> Result<(), SpecError> {
-        let Some((_, place)) = &self.law else {
+        let Some(place) = self.given.law_place() else {
             return Ok(());
         };
         let mut worst = *fixed;
@@ -428,45 +332,12 @@ fn read_fields(entry: &Entry) -> Result<Vec<Field>, SpecError> {
     Ok(fields)
 }
 
-fn read_units(units: &Entry) -> Result<Units, SpecError> {
-    let [mut force, mut length, mut time] = [None, None, None];
-    for entry in units.table()? {
-        let slot = match entry.key {
-            "force" => &mut force,
-            "length" => &mut length,
-            "time" => &mut time,
-            _ => return Err(entry.unknown(&["force", "length", "time"])),
-        };
-        let name = entry.string()?;
-        if name.is_empty() || !name.chars().all(|c| c.is_alphabetic() || c == '%') {
-            return Err(entry.error("a unit is one word of letters, like \"N\" or \"mm\""));
-        }
-        *slot = Some(name.to_owned());
-    }
-    match (force, length, time) {
-        (Some(force), Some(length), Some(time)) => Ok(Units {
-            force_length_time: Some([force, length, time]),
-        }),
-        _ => Err(SpecError::at(
-            units.key_span.clone(),
-            "units: force, length and time are needed, all three",
-        )),
-    }
-}
-
 fn read_tolerance(tolerance: &Entry) -> Result<MarginalTolerance, SpecError> {
     let mut result = MarginalTolerance::default();
     for entry in tolerance.table()? {
         match entry.key {
             "marginal" => {
-                let value = entry.number()?;
-                if !(f64::EPSILON..=0.01).contains(&value) {
-                    return Err(entry.error(format!(
-                        "{value} is outside its range: {:e} to 0.01",
-                        f64::EPSILON
-                    )));
-                }
-                result = MarginalTolerance(value);
+                result = MarginalTolerance(entry.number_within(f64::EPSILON..=0.01)?);
             }
             _ => return Err(entry.unknown(&["marginal"])),
         }

@@ -1,6 +1,6 @@
 //! Reading TOML with the place of every key and value at hand, so that each error can point at it.
 
-use std::ops::Range;
+use std::ops::{Range, RangeInclusive};
 
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
@@ -142,6 +142,16 @@ impl<'t> Entry<'t> {
         } else {
             Err(self.error("expected a finite number"))
         }
+    }
+
+    /// A number of a range.
+    pub fn number_within(&self, range: RangeInclusive<f64>) -> Result<f64, SpecError> {
+        let value = self.number()?;
+        if range.contains(&value) {
+            return Ok(value);
+        }
+        let (from, to) = (range.start(), range.end());
+        Err(self.error(format!("{value} is outside its range: {from:e} to {to:e}")))
     }
 
     /// A whole number, not negative.

@@ -1,4 +1,4 @@
-//! Pictures of maps.
+//! Pictures of maps and traces.
 //!
 //! ```text
 //! map → [view] what is shown → [boundaries], [heat] or [line] → [scene] marks in pixels → [render] PNG or SVG
@@ -7,6 +7,7 @@
 //! - `key`: which colour a value of a field has in a heat map
 //! - `page`, `panels`, `legend`: where things stand; `scale`, `ticks`: from values to places
 //! - `stable_area`, `curve_labels`: the region between curves, and free places on curves
+//! - `trace`, `stack`: a motion over time, in panels above one another
 //! - `degrees`: dashed curves of degrees of stability
 //! - `colour`, `text`, `font`: how things look
 
@@ -26,8 +27,10 @@ mod render;
 mod scale;
 mod scene;
 mod stable_area;
+mod stack;
 mod text;
 mod ticks;
+mod trace;
 mod view;
 
 use std::fs;
@@ -37,7 +40,7 @@ use std::path::Path;
 
 use crate::store::schema::root;
 use crate::store::{MapFile, Output, StoreError};
-use crate::sweep::{Field, Parameter};
+use crate::sweep::{CaseSpec, Field, Parameter, Trace};
 pub use error::PictureError;
 use scene::Scene;
 use view::{MOST_PANELS, View};
@@ -102,10 +105,31 @@ pub fn draw(map: &MapFile, path: &Path, options: &PictureOptions) -> Result<(), 
         Format::Png => MOST_CELLS,
         Format::Svg => MOST_SVG_CELLS,
     };
-    let scene = compose(map, options, most)?;
+    save(&compose(map, options, most)?, &format, path)
+}
+
+/// Draws a trace to the file `path`, as [`draw`] does a map: velocities, elongation and the quantity that is controlled over
+/// time, and the velocity over the elongation.
+///
+/// # Errors
+/// When the name of the file is no picture's, or it cannot be written.
+pub fn draw_trace(spec: &CaseSpec, trace: &Trace, path: &Path) -> Result<(), PictureError> {
+    let format = Format::of(path)?;
+    let mut scene = Scene::new(PictureOptions::default().size);
+    trace::draw(spec, trace, &mut scene);
+    save(&scene, &format, path)
+}
+
+/// True for a file name that a picture can have.
+#[must_use]
+pub fn is_name(path: &Path) -> bool {
+    Format::of(path).is_ok()
+}
+
+fn save(scene: &Scene, format: &Format, path: &Path) -> Result<(), PictureError> {
     let bytes = match format {
-        Format::Png => render::png(&scene),
-        Format::Svg => render::svg(&scene),
+        Format::Png => render::png(scene),
+        Format::Svg => render::svg(scene),
     }?;
     let output = Output::claim(path)?;
     fs::write(output.part(), bytes).map_err(|source| StoreError::Io {

@@ -42,6 +42,65 @@ impl Panel {
     }
 }
 
+/// How a panel looks, with ticks from left to right and from bottom to top.
+impl Panel {
+    /// Draws a line at every tick with a label.
+    pub fn draw_grid(&self, scene: &mut Scene, across: &[Tick], up: &[Tick]) {
+        let width = 1.2 * scene.unit();
+        let Area {
+            left,
+            top,
+            right,
+            bottom,
+        } = self.area;
+        for tick in across.iter().filter(|t| t.label.is_some()) {
+            let x = self.across(tick.value);
+            scene.ruler((x, top), (x, bottom), GRID, width);
+        }
+        for tick in up.iter().filter(|t| t.label.is_some()) {
+            let y = self.up(tick.value);
+            scene.ruler((left, y), (right, y), GRID, width);
+        }
+    }
+
+    /// Draws the frame.
+    pub fn draw_frame(&self, scene: &mut Scene) {
+        let area = self.area;
+        let width = FRAME_WIDTH * scene.unit();
+        scene.outline((area.left, area.top), (area.right, area.bottom), INK, width);
+    }
+
+    /// Draws ticks below the panel, with their labels or without.
+    pub fn draw_x_ticks(&self, scene: &mut Scene, ticks: &[Tick], labels: bool) {
+        let u = scene.unit();
+        let bottom = self.area.bottom;
+        for tick in ticks {
+            let x = self.across(tick.value);
+            let length = length(tick) * u;
+            scene.ruler((x, bottom), (x, bottom + length), INK, FRAME_WIDTH * u);
+            if let Some(label) = tick.label.as_ref().filter(|_| labels) {
+                let at = (x, bottom + TICK * u + 1.1 * SMALL * u);
+                scene.text(at, Align::Middle, &Rich::plain(label), SMALL * u, INK);
+            }
+        }
+    }
+
+    /// Draws ticks to the left of the panel, with their labels or without.
+    pub fn draw_y_ticks(&self, scene: &mut Scene, ticks: &[Tick], labels: bool) {
+        let u = scene.unit();
+        let left = self.area.left;
+        for tick in ticks {
+            let y = self.up(tick.value);
+            let length = length(tick) * u;
+            scene.ruler((left - length, y), (left, y), INK, FRAME_WIDTH * u);
+            if let Some(label) = tick.label.as_ref().filter(|_| labels) {
+                let at = (left - (TICK + 6.0) * u, y + 0.31 * SMALL * u);
+                scene.text(at, Align::End, &Rich::plain(label), SMALL * u, INK);
+            }
+        }
+    }
+}
+
 /// What is written at the panels.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Words {
@@ -76,12 +135,9 @@ impl Panels {
             0.5 * SMALL * u
         };
         let height = (outside.height() - (2.1 * SMALL + 1.1 * LABEL) * u) / rows as f64 - heading;
-        let y_ticks = fitting(&y, |_| 1.7 * SMALL * u, height);
+        let y_ticks = fitting_up(&y, height, u);
         let labels = y_ticks.iter().filter_map(|t| t.label.as_deref());
-        let widest = labels
-            .map(|l| Rich::plain(l).width(SMALL * u))
-            .fold(0.0, f64::max);
-        let left = outside.left + 1.4 * LABEL * u + widest + (TICK + 8.0) * u;
+        let left = outside.left + left_margin(labels, u);
         // Half of the last label of the x axis stands out to the right.
         let end = 1.1 * SMALL * u;
         // Beside it stand the last label of one panel and the first of the next.
@@ -92,8 +148,7 @@ impl Panels {
             .fold(1.8 * SMALL * u, f64::max);
         let gap = if columns > 1 { room } else { 0.0 };
         let width = (outside.right - end - left - gap * (columns - 1) as f64) / columns as f64;
-        let label_width = |l: &str| Rich::plain(l).width(SMALL * u) + 0.9 * SMALL * u;
-        let x_ticks = fitting(&x, label_width, width);
+        let x_ticks = fitting_across(&x, width, u);
         let panel = |i: usize| {
             let (row, column) = (i / columns, i % columns);
             let left = left + column as f64 * (width + gap);
@@ -120,22 +175,8 @@ impl Panels {
 
     /// Draws grid lines, before the contents.
     pub fn draw_grid(&self, scene: &mut Scene) {
-        let width = 1.2 * scene.unit();
         for panel in &self.panels {
-            let Area {
-                left,
-                top,
-                right,
-                bottom,
-            } = panel.area;
-            for tick in self.ticks.0.iter().filter(|t| t.label.is_some()) {
-                let x = panel.across(tick.value);
-                scene.ruler((x, top), (x, bottom), GRID, width);
-            }
-            for tick in self.ticks.1.iter().filter(|t| t.label.is_some()) {
-                let y = panel.up(tick.value);
-                scene.ruler((left, y), (right, y), GRID, width);
-            }
+            panel.draw_grid(scene, &self.ticks.0, &self.ticks.1);
         }
     }
 
@@ -144,10 +185,10 @@ impl Panels {
         let u = scene.unit();
         for (i, panel) in self.panels.iter().enumerate() {
             let area = panel.area;
-            let corners = ((area.left, area.top), (area.right, area.bottom));
-            scene.outline(corners.0, corners.1, INK, FRAME_WIDTH * u);
-            self.draw_x_ticks(scene, panel, i + self.columns >= self.panels.len());
-            self.draw_y_ticks(scene, panel, i % self.columns == 0);
+            let lowest = i + self.columns >= self.panels.len();
+            panel.draw_frame(scene);
+            panel.draw_x_ticks(scene, &self.ticks.0, lowest);
+            panel.draw_y_ticks(scene, &self.ticks.1, i % self.columns == 0);
             if let Some(Some(heading)) = self.words.headings.get(i) {
                 let at = (0.5 * (area.left + area.right), area.top - 0.38 * SMALL * u);
                 let size = heading.fitting(SMALL * u, area.width());
@@ -155,34 +196,6 @@ impl Panels {
             }
         }
         self.draw_titles(scene);
-    }
-
-    fn draw_x_ticks(&self, scene: &mut Scene, panel: &Panel, labels: bool) {
-        let u = scene.unit();
-        let bottom = panel.area.bottom;
-        for tick in &self.ticks.0 {
-            let x = panel.across(tick.value);
-            let length = length(tick) * u;
-            scene.ruler((x, bottom), (x, bottom + length), INK, FRAME_WIDTH * u);
-            if let Some(label) = tick.label.as_ref().filter(|_| labels) {
-                let at = (x, bottom + TICK * u + 1.1 * SMALL * u);
-                scene.text(at, Align::Middle, &Rich::plain(label), SMALL * u, INK);
-            }
-        }
-    }
-
-    fn draw_y_ticks(&self, scene: &mut Scene, panel: &Panel, labels: bool) {
-        let u = scene.unit();
-        let left = panel.area.left;
-        for tick in &self.ticks.1 {
-            let y = panel.up(tick.value);
-            let length = length(tick) * u;
-            scene.ruler((left - length, y), (left, y), INK, FRAME_WIDTH * u);
-            if let Some(label) = tick.label.as_ref().filter(|_| labels) {
-                let at = (left - (TICK + 6.0) * u, y + 0.31 * SMALL * u);
-                scene.text(at, Align::End, &Rich::plain(label), SMALL * u, INK);
-            }
-        }
     }
 
     fn draw_titles(&self, scene: &mut Scene) {
@@ -209,7 +222,7 @@ impl Panels {
 }
 
 /// The middle nearest to `middle` at which this width stays between two edges.
-fn inside(middle: f64, width: f64, from: f64, to: f64) -> f64 {
+pub fn inside(middle: f64, width: f64, from: f64, to: f64) -> f64 {
     middle.min(to - 0.5 * width).max(from + 0.5 * width)
 }
 
@@ -233,6 +246,23 @@ fn shape(n: usize, area: f64) -> (usize, usize) {
         .min_by(|&a, &b| mismatch(a).total_cmp(&mismatch(b)))
         .unwrap_or(1);
     (columns, n.div_ceil(columns))
+}
+
+/// Room for the title of an axis, these labels and ticks to the left of a panel.
+pub fn left_margin<'a>(labels: impl Iterator<Item = &'a str>, u: f64) -> f64 {
+    let widths = labels.map(|l| Rich::plain(l).width(SMALL * u));
+    1.4 * LABEL * u + widths.fold(0.0, f64::max) + (TICK + 8.0) * u
+}
+
+/// As many ticks as fit beside one another over a width.
+pub fn fitting_across(scale: &Scale, width: f64, u: f64) -> Vec<Tick> {
+    let label_width = |l: &str| Rich::plain(l).width(SMALL * u) + 0.9 * SMALL * u;
+    fitting(scale, label_width, width)
+}
+
+/// As many ticks as fit above one another over a height.
+pub fn fitting_up(scale: &Scale, height: f64, u: f64) -> Vec<Tick> {
+    fitting(scale, |_| 1.7 * SMALL * u, height)
 }
 
 /// As many ticks as have room for labels of the sizes that `size` gives.

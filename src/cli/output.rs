@@ -1,0 +1,48 @@
+//! What all commands that write a file share: its name, and who made it.
+
+use std::path::{Path, PathBuf};
+use std::time::SystemTime;
+
+use slipmap::store::map_writer::Provenance;
+
+use super::failure::Failure;
+
+/// The file to write: `given`, or the name of `input` with .h5 in the current folder. `kind`: map or trace.
+pub fn output_path(given: Option<&Path>, input: &Path, kind: &str) -> Result<PathBuf, Failure> {
+    let path = match given {
+        Some(path) => path.to_owned(),
+        None => {
+            let stem = input.file_stem().unwrap_or(input.as_os_str());
+            let mut name = stem.to_owned();
+            name.push(".h5");
+            PathBuf::from(name)
+        }
+    };
+    if path.file_name().is_none() {
+        return Err(Failure::bad_input(format!(
+            "--output {} does not name a file",
+            path.display()
+        )));
+    }
+    let extension = path.extension().map(|e| e.to_string_lossy().to_lowercase());
+    if let Some(picture @ ("png" | "svg")) = extension.as_deref() {
+        return Err(Failure::bad_input_with_help(
+            format!(
+                "--output {} would be a {kind} with the name of a {picture} picture",
+                path.display()
+            ),
+            format!("{kind}s end in .h5; the picture is drawn beside"),
+        ));
+    }
+    Ok(path)
+}
+
+/// This program, now, running `command` on `input`.
+pub fn provenance(command: &str, input: &Path) -> Provenance {
+    let now = humantime::format_rfc3339_seconds(SystemTime::now());
+    Provenance {
+        program_version: env!("CARGO_PKG_VERSION").into(),
+        git_revision: env!("SLIPMAP_GIT_REVISION").into(),
+        history: format!("{now} slipmap {command} {}", input.display()),
+    }
+}

@@ -1,0 +1,252 @@
+//! `slipmap simulate`: one motion in time, from a case file to its events, a trace and a picture.
+
+use std::io::Write;
+use std::path::{Path, PathBuf};
+
+use serde::Serialize;
+use slipmap::report::numbers::grouped;
+use slipmap::report::picture;
+use slipmap::slip::outcome::{Outcome, Summary};
+use slipmap::store::{Output, StoreError, trace_file};
+use slipmap::sweep::trace::{TraceError, TraceEvent};
+use slipmap::sweep::{CaseSpec, Trace};
+
+use super::failure::Failure;
+use super::output::{output_path, provenance};
+use super::plot;
+use super::say;
+use super::sweep_file::read_case;
+
+/// Events printed for people, the last ones; the JSON output and the trace have them all.
+const EVENTS_SHOWN: usize = 12;
+
+#[derive(Debug, clap::Args)]
+#[command(after_help = "Example: slipmap simulate sweeps/fig3a.toml")]
+pub struct Args {
+    /// The case file
+    #[arg(value_name = "CASE.toml")]
+    case: PathBuf,
+    /// The trace to write [default: the case file's name with .h5, in the current folder]
+    #[arg(short, long, value_name = "TRACE.h5")]
+    output: Option<PathBuf>,
+    /// The picture to draw, .png or .svg [default: the trace's name with .png, beside it]
+    #[arg(long, value_name = "PICTURE")]
+    picture: Option<PathBuf>,
+    /// Replace the trace of another case
+    #[arg(long)]
+    fresh: bool,
+    /// One JSON object on standard output; what there is none of is null
+    #[arg(long)]
+    json: bool,
+}
+
+/// The JSON of a motion. NaN and infinity are written as null.
+#[derive(Debug, Serialize)]
+struct MotionOut {
+    outcome: &'static str,
+    decided: f64,
+    settle_time: f64,
+    n_min: f64,
+    peak_force: f64,
+    period: f64,
+    stick_time: f64,
+    slip_time: f64,
+    last_release: f64,
+    steps: u64,
+    events: Vec<EventOut>,
+    trace: String,
+}
+
+#[derive(Debug, Serialize)]
+struct EventOut {
+    t: f64,
+    kind: &'static str,
+    a: f64,
+}
+
+impl MotionOut {
+    fn new(trace: &Trace, path: &Path) -> Self {
+        let summary = &trace.summary;
+        let event = |e: &TraceEvent| EventOut {
+            t: e.t,
+            kind: e.name(),
+            a: e.a,
+        };
+        Self {
+            outcome: summary.outcome.name(),
+            decided: summary.decided,
+            settle_time: summary.settle_time,
+            // Not −0.
+            n_min: summary.n_min + 0.0,
+            peak_force: summary.peak,
+            period: summary.period,
+            stick_time: summary.stick_time,
+            slip_time: summary.slip_time,
+            last_release: summary.last_release,
+            steps: summary.steps,
+            events: trace.events.iter().map(event).collect(),
+            trace: path.display().to_string(),
+        }
+    }
+}
+
+pub fn main(args: &Args) -> Result<(), Failure> {
+    let spec = read_case(&args.case)?;
+    let path = output_path(args.output.as_deref(), &args.case, "trace")?;
+    check_picture(args, &path)?;
+    check_replaced(&path, &spec, args.fresh)?;
+    let trace = Trace::of(&spec).map_err(failure)?;
+    let output = Output::claim(&path)?;
+    trace_file::write(&spec, &trace, output, &provenance("simulate", &args.case))?;
+    let mut out = std::io::stdout().lock();
+    if args.json {
+        let text = serde_json::to_string(&MotionOut::new(&trace, &path));
+        writeln!(out, "{}", text.map_err(std::io::Error::from)?)?;
+    } else {
+        print(&mut out, &spec, &trace)?;
+        let samples = grouped(trace.samples.len() as u64);
+        writeln!(out, "{}: {samples} samples", path.display())?;
+    }
+    drop(out);
+    let drawn = draw(args, &spec, &trace, &path)?;
+    match drawn.filter(|_| !args.json) {
+        Some(picture) => say::result(picture.display()),
+        None => Ok(()),
+    }
+}
+
+/// The name of the picture that is asked for is one, and another one than the trace's.
+fn check_picture(args: &Args, trace: &Path) -> Result<(), Failure> {
+    match &args.picture {
+        Some(picture) if !picture::is_name(picture) => Err(Failure::bad_input_with_help(
+            format!("--picture {} is no name for a picture", picture.display()),
+            "name it like fig.png or fig.svg",
+        )),
+        Some(picture) if picture == trace => Err(Failure::bad_input(format!(
+            "--picture {} would replace the trace",
+            picture.display()
+        ))),
+        _ => Ok(()),
+    }
+}
+
+/// An error if what stands at `path` must not be replaced: only traces are, those of other cases only with `fresh`.
+fn check_replaced(path: &Path, spec: &CaseSpec, fresh: bool) -> Result<(), Failure> {
+    if !path.exists() {
+        return Ok(());
+    }
+    let name = path.display();
+    match trace_file::case_of(path) {
+        Ok(text) if fresh || text == spec.text => Ok(()),
+        Ok(_) => Err(Failure::bad_input_with_help(
+            format!(
+                "{name} is already there: the trace of another case, or of this one before it changed"
+            ),
+            "--fresh replaces it; -o writes elsewhere",
+        )),
+        Err(StoreError::NotATrace { why, .. }) => Err(Failure::bad_input_with_help(
+            format!("{name} is already there and no trace of slipmap: {why}"),
+            "it is left as it is; remove it first, or write elsewhere with -o",
+        )),
+        Err(error) => Err(error.into()),
+    }
+}
+
+/// Draws the picture. One that is not asked for by name does not replace what is not slipmap's; what fails then is a warning.
+fn draw(
+    args: &Args,
+    spec: &CaseSpec,
+    trace: &Trace,
+    path: &Path,
+) -> Result<Option<PathBuf>, Failure> {
+    if let Some(asked) = &args.picture {
+        picture::draw_trace(spec, trace, asked).map_err(|e| Failure::failed(e.to_string()))?;
+        return Ok(Some(asked.clone()));
+    }
+    let beside = plot::beside(path);
+    let name = beside.display();
+    if !picture::may_replace(&beside) {
+        say::remark(format_args!(
+            "warning: no picture: {name} is there and not by slipmap; --picture draws elsewhere"
+        ));
+        return Ok(None);
+    }
+    match picture::draw_trace(spec, trace, &beside) {
+        Ok(()) => Ok(Some(beside)),
+        Err(error) => {
+            say::remark(format_args!("warning: no picture: {error}"));
+            Ok(None)
+        }
+    }
+}
+
+fn failure(error: TraceError) -> Failure {
+    match error {
+        TraceError::Model(error) => error.into(),
+        TraceError::TooLong => Failure::bad_input_with_help(
+            error.to_string(),
+            "[trace] until = … ends it earlier, interval = … makes it coarser",
+        ),
+    }
+}
+
+fn print(out: &mut impl Write, spec: &CaseSpec, trace: &Trace) -> std::io::Result<()> {
+    let summary = &trace.summary;
+    writeln!(out, "{}", verdict(summary, spec))?;
+    for (name, value) in [
+        ("decided at", summary.decided),
+        ("settle_time", summary.settle_time),
+        ("n_min", summary.n_min),
+        ("peak_force", summary.peak),
+        ("period", summary.period),
+        ("stick_time", summary.stick_time),
+        ("slip_time", summary.slip_time),
+        ("last_release", summary.last_release),
+    ] {
+        if value.is_finite() {
+            writeln!(out, "  {name:<16} {}", digits(value))?;
+        }
+    }
+    writeln!(out, "  {:<16} {}", "steps", summary.steps)?;
+    let events = &trace.events;
+    let hidden = events.len().saturating_sub(EVENTS_SHOWN);
+    if events.is_empty() {
+        return Ok(());
+    }
+    writeln!(out, "{:>18}{:>18}  event", "t", "a")?;
+    if hidden > 0 {
+        writeln!(
+            out,
+            "{hidden:>18} earlier ones, in the trace and with --json"
+        )?;
+    }
+    for event in &events[hidden..] {
+        let (t, a) = (digits(event.t), digits(event.a));
+        writeln!(out, "{t:>18}{a:>18}  {}", event.name())?;
+    }
+    Ok(())
+}
+
+/// A number with nine digits behind the point where it is of common size.
+fn digits(value: f64) -> String {
+    match value.abs() {
+        0.0 => "0".into(),
+        1e-4..1e6 => format!("{value:.9}"),
+        _ => format!("{value:.9e}"),
+    }
+}
+
+/// What became of the motion, in words.
+fn verdict(summary: &Summary, spec: &CaseSpec) -> String {
+    match summary.outcome {
+        Outcome::Sliding => "the block comes to slide continuously".into(),
+        Outcome::StickSlip => "the block sticks and slips periodically".into(),
+        Outcome::Oscillation => "the block oscillates periodically without sticking".into(),
+        Outcome::LiftOff => "the block lifts off: the load reaches 0, where the model ends".into(),
+        Outcome::Diverged => "the motion grows beyond all bounds".into(),
+        Outcome::Undecided if summary.steps >= spec.case.steps => {
+            format!("undecided after {} steps", grouped(summary.steps))
+        }
+        Outcome::Undecided => format!("undecided at the horizon, t = {}", spec.case.horizon),
+    }
+}

@@ -1,0 +1,354 @@
+//! A motion over time, and its velocity over the elongation.
+
+use super::colour::{self, Rgb, SOFT_INK, UNSTABLE};
+use super::legend::{Legend, Swatch};
+use super::page::{self, Area};
+use super::panels::Panel;
+use super::scale::Scale;
+use super::scene::{Point, Scene};
+use super::stack::{Row, Stack};
+use super::text::{Rich, assignment, number, suffix};
+use crate::slip::motion::Event;
+use crate::slip::outcome::Outcome;
+use crate::sweep::parameter::Units;
+use crate::sweep::trace::{Sample, TraceEvent};
+use crate::sweep::{CaseSpec, Parameter, Trace};
+
+const WIDTH: f64 = 2.6;
+/// The line of a switch-on or a lift-off.
+const MARK_WIDTH: f64 = 2.0;
+const DASH: (f64, f64) = (9.0, 7.0);
+/// Where the block sticks.
+const STUCK: Rgb = Rgb(0xed, 0xe6, 0xd6);
+/// Part of the width for the panels over time.
+const OVER_TIME: f64 = 0.655;
+/// Points of the phase portrait: after so many, from the end, what is older is covered by them.
+const MOST_PORTRAIT: usize = 30_000;
+
+/// What a curve shows of a sample.
+type Value = fn(&Sample) -> f64;
+
+/// A curve over time.
+struct Curve {
+    of: Value,
+    colour: Rgb,
+    name: &'static str,
+}
+
+/// A panel over time.
+struct Strip {
+    title: String,
+    curves: Vec<Curve>,
+}
+
+/// Draws a trace.
+pub fn draw(spec: &CaseSpec, trace: &Trace, scene: &mut Scene) {
+    let title = match spec.title.trim() {
+        "" => "Motion of the block",
+        title => title,
+    };
+    let body = page::head(scene, title, &notes(spec, trace));
+    let u = scene.unit();
+    let middle = body.left + OVER_TIME * body.width();
+    let over_time = Area {
+        right: middle - 10.0 * u,
+        ..body
+    };
+    let beside = Area {
+        left: middle + 14.0 * u,
+        ..body
+    };
+    let strips = strips(spec);
+    draw_strips(spec, trace, &strips, over_time, scene);
+    let legend = legend(trace, &strips);
+    let portrait = Area {
+        bottom: body.bottom - legend.height(u) - 20.0 * u,
+        ..beside
+    };
+    draw_portrait(&spec.units, &trace.samples, portrait, scene);
+    let column = Area {
+        left: beside.left + 60.0 * u,
+        top: portrait.bottom + 20.0 * u,
+        ..beside
+    };
+    legend.draw(scene, column);
+}
+
+/// The setting, and what became of the motion.
+fn notes(spec: &CaseSpec, trace: &Trace) -> Vec<Rich> {
+    let (setting, units) = (&spec.setting, &spec.units);
+    let mut notes = vec![];
+    for parameter in [
+        Parameter::V0,
+        Parameter::AlphaV,
+        Parameter::AlphaN,
+        Parameter::Tau,
+    ] {
+        let value = setting.get(parameter);
+        if value != 0.0 {
+            notes.push(assignment(parameter, value, &units.of_parameter(parameter)));
+        }
+    }
+    let time = |t: f64| format!("{}{}", number(t), suffix(&units.time(), " ", ""));
+    let summary = &trace.summary;
+    let became = match summary.outcome {
+        Outcome::Sliding => format!(
+            "outcome: sliding, settled {} after switch-on",
+            time(summary.settle_time)
+        ),
+        Outcome::StickSlip => format!("outcome: stick-slip, period {}", time(summary.period)),
+        Outcome::LiftOff => format!("outcome: lift-off at t = {}", time(summary.decided)),
+        other => format!("outcome: {}", other.name()),
+    };
+    notes.push(Rich::plain(&became));
+    notes
+}
+
+/// The panels over time: the last one shows what is controlled, if anything is.
+fn strips(spec: &CaseSpec) -> Vec<Strip> {
+    let [dark, light] = [colour::of_line(0, 3), colour::of_line(2, 3)];
+    let curve = |of, colour, name| Curve { of, colour, name };
+    let units = &spec.units;
+    let unit = |dimension| suffix(&units.of(dimension), "  (", ")");
+    let velocity: Value = |s| s.v;
+    let mut strips = vec![
+        Strip {
+            title: format!("velocities ẋ, v{}", unit([0, 1, -1])),
+            curves: vec![
+                curve(velocity, light, "pulling velocity v"),
+                curve(|s| s.x_dot, dark, "velocity of the block ẋ"),
+            ],
+        },
+        Strip {
+            title: format!("elongation a{}", unit([0, 1, 0])),
+            curves: vec![curve(|s| s.a, dark, "")],
+        },
+    ];
+    let control = spec.setting.control();
+    if control.alpha_n != 0.0 {
+        strips.push(Strip {
+            title: format!("load N{}", unit([1, 0, 0])),
+            curves: vec![curve(|s| s.n, dark, "")],
+        });
+    } else if control.alpha_v != 0.0 {
+        strips.push(Strip {
+            title: format!("pulling velocity v{}", unit([0, 1, -1])),
+            curves: vec![curve(velocity, light, "")],
+        });
+    }
+    strips
+}
+
+fn draw_strips(spec: &CaseSpec, trace: &Trace, strips: &[Strip], area: Area, scene: &mut Scene) {
+    let samples = &trace.samples;
+    let u = scene.unit();
+    let row = |strip: &Strip| Row {
+        scale: scale(strip.curves.iter().map(|c| c.of), samples),
+        title: Rich::plain(&strip.title),
+    };
+    let end = samples.last().map_or(0.0, |s| s.t);
+    // A lift-off is the end of the trace: its mark needs a place beside the frame.
+    let room = if lifts_off(trace) { 1.03 } else { 1.0 };
+    let x = Scale::linear(0.0, if end > 0.0 { room * end } else { 1.0 });
+    let below = format!("time t{}", suffix(&spec.units.time(), "  (", ")"));
+    let rows = strips.iter().map(row).collect();
+    let stack = Stack::new(scene, area, x, Rich::plain(&below), rows);
+    for panel in &stack.panels {
+        shade_sticks(panel, trace, scene);
+    }
+    stack.draw_grid(scene);
+    for (panel, strip) in stack.panels.iter().zip(strips) {
+        for event in marked(trace) {
+            mark(panel, event, scene);
+        }
+        for curve in &strip.curves {
+            let points = samples.iter().map(|s| panel.at(s.t, (curve.of)(s)));
+            scene.path(by_columns(points), curve.colour, WIDTH * u);
+        }
+    }
+    stack.draw_axes(scene);
+}
+
+/// Events with a mark of their own, within the picture.
+fn marked(trace: &Trace) -> impl Iterator<Item = &TraceEvent> {
+    let end = trace.samples.last().map_or(0.0, |s| s.t);
+    let events = trace.events.iter().filter(move |e| e.t <= end);
+    events.filter(|e| matches!(e.kind, Event::SwitchOn | Event::LiftOff))
+}
+
+fn lifts_off(trace: &Trace) -> bool {
+    marked(trace).any(|event| event.kind == Event::LiftOff)
+}
+
+fn mark(panel: &Panel, event: &TraceEvent, scene: &mut Scene) {
+    let x = panel.across(event.t);
+    let line = [(x, panel.area.bottom), (x, panel.area.top)];
+    let width = MARK_WIDTH * scene.unit();
+    scene.dashed(&line, mark_colour(event.kind), width, DASH);
+}
+
+fn mark_colour(kind: Event) -> Rgb {
+    match kind {
+        Event::LiftOff => UNSTABLE[3],
+        _ => SOFT_INK,
+    }
+}
+
+fn shade_sticks(panel: &Panel, trace: &Trace, scene: &mut Scene) {
+    let area = panel.area;
+    for (from, to) in trace.sticks() {
+        let (left, right) = (panel.across(from), panel.across(to));
+        scene.rect((left, area.top), (right, area.bottom), STUCK);
+    }
+}
+
+fn draw_portrait(units: &Units, samples: &[Sample], area: Area, scene: &mut Scene) {
+    let u = scene.unit();
+    let unit = |dimension| suffix(&units.of(dimension), "  (", ")");
+    let (elongation, velocity): (Value, Value) = (|s| s.a, |s| s.x_dot);
+    let x = scale([elongation].into_iter(), samples);
+    let row = Row {
+        scale: scale([velocity].into_iter(), samples),
+        title: Rich::plain(&format!("velocity ẋ{}", unit([0, 1, -1]))),
+    };
+    let below = Rich::plain(&format!("elongation a{}", unit([0, 1, 0])));
+    let stack = Stack::new(scene, area, x, below, vec![row]);
+    stack.draw_grid(scene);
+    if let Some(panel) = stack.panels.first() {
+        let points = samples.iter().map(|s| panel.at(s.a, s.x_dot));
+        let mut points = apart(points);
+        let old = points.len().saturating_sub(MOST_PORTRAIT);
+        points.drain(..old);
+        scene.path(points, colour::of_line(0, 3), 0.7 * WIDTH * u);
+    }
+    stack.draw_axes(scene);
+}
+
+/// The scale that holds all values, with a little room around them.
+fn scale(of: impl Iterator<Item = Value>, samples: &[Sample]) -> Scale {
+    let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
+    for of in of {
+        let values = samples.iter().map(of);
+        (low, high) = values.fold((low, high), |(l, h), v| (l.min(v), h.max(v)));
+    }
+    if low > high {
+        return Scale::linear(0.0, 1.0);
+    }
+    // What does not vary is drawn in the middle.
+    let least = 1e-6 * high.abs().max(low.abs());
+    let room = match high - low {
+        span if span > least => 0.06 * span,
+        _ if high == 0.0 => 1.0,
+        _ => 0.1 * high.abs(),
+    };
+    Scale::linear(low - room, high + room)
+}
+
+/// A curve over growing x with no more points than can be seen: of each column of pixels the first, the extremes, the last.
+fn by_columns(points: impl Iterator<Item = Point>) -> Vec<Point> {
+    let mut kept = Vec::new();
+    let mut column: Vec<Point> = Vec::new();
+    for point in points {
+        let new = column
+            .first()
+            .is_some_and(|p| p.0.floor() != point.0.floor());
+        if new {
+            close_column(&mut column, &mut kept);
+        }
+        column.push(point);
+    }
+    close_column(&mut column, &mut kept);
+    kept
+}
+
+fn close_column(column: &mut Vec<Point>, kept: &mut Vec<Point>) {
+    if column.len() <= 4 {
+        kept.append(column);
+        return;
+    }
+    let by_height = |&a: &usize, &b: &usize| column[a].1.total_cmp(&column[b].1);
+    let top = (0..column.len()).min_by(by_height).unwrap_or(0);
+    let bottom = (0..column.len()).max_by(by_height).unwrap_or(0);
+    let mut places = [0, top.min(bottom), top.max(bottom), column.len() - 1].to_vec();
+    places.dedup();
+    kept.extend(places.into_iter().map(|i| column[i]));
+    column.clear();
+}
+
+/// Points at least a third of a pixel from one another, and the last one.
+fn apart(points: impl Iterator<Item = Point>) -> Vec<Point> {
+    let mut kept: Vec<Point> = Vec::new();
+    let mut last = None;
+    for point in points {
+        let near = |p: &Point| (p.0 - point.0).hypot(p.1 - point.1) < 1.0 / 3.0;
+        last = kept.last().is_some_and(near).then_some(point);
+        if last.is_none() {
+            kept.push(point);
+        }
+    }
+    kept.extend(last);
+    kept
+}
+
+fn legend(trace: &Trace, strips: &[Strip]) -> Legend {
+    let curves = strips.iter().flat_map(|strip| &strip.curves).rev();
+    let named = curves.filter(|curve| !curve.name.is_empty());
+    let mut entries: Vec<(Swatch, Rich)> = named
+        .map(|c| (Swatch::Line(c.colour, WIDTH, None), Rich::plain(c.name)))
+        .collect();
+    if !trace.sticks().is_empty() {
+        entries.push((Swatch::Box(STUCK), Rich::plain("the block sticks")));
+    }
+    for event in marked(trace) {
+        let text = match event.kind {
+            Event::LiftOff => "lift-off",
+            _ => "control switched on",
+        };
+        let swatch = Swatch::Dashed(mark_colour(event.kind), MARK_WIDTH, DASH);
+        entries.push((swatch, Rich::plain(text)));
+    }
+    Legend {
+        heading: Vec::new(),
+        entries,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn thinning_keeps_ends_and_extremes() {
+        let points = (0..=10_000).map(|i| {
+            let x = f64::from(i) / 1000.0;
+            (x, (f64::from(i) * 0.37).sin() * 40.0)
+        });
+        let all: Vec<Point> = points.collect();
+        let kept = by_columns(all.iter().copied());
+        assert!(kept.len() <= 44 && kept.windows(2).all(|w| w[0].0 < w[1].0));
+        assert_eq!((kept[0], kept.last()), (all[0], all.last()));
+        let highest = |points: &[Point]| points.iter().map(|p| p.1).fold(0.0, f64::max);
+        assert_eq!(highest(&kept), highest(&all));
+        let kept = apart((0..1000).map(|i| (f64::from(i) / 1000.0, 0.0)));
+        assert!(kept.len() <= 5 && kept.last() == Some(&(0.999, 0.0)));
+    }
+
+    #[test]
+    fn what_does_not_vary_has_a_scale() {
+        let sample = Sample {
+            t: 0.0,
+            x: 0.0,
+            x_dot: 0.0,
+            a: 0.0,
+            v: 1.0,
+            n: 2.0,
+            mode: crate::slip::motion::Mode::Stick,
+        };
+        let of: [Value; 2] = [|s| s.a, |s| s.n];
+        for (of, value) in of.into_iter().zip([0.0, 2.0]) {
+            let scale = scale([of].into_iter(), &[sample]);
+            assert!((scale.part(value) - 0.5).abs() < 1e-12);
+        }
+        assert!(scale(of.into_iter(), &[]).holds(0.5));
+    }
+}

@@ -1,0 +1,156 @@
+//! The Taylor series of the friction coefficient along a motion.
+
+use super::series::{Coefficients, MOST_ORDER, PER_NEXT, product};
+use crate::model::FrictionLaw;
+use crate::model::friction::Kind;
+
+/// Coefficients of the friction μ_K(|ẋ|) n along a motion, grown one by one as those of speed and load become known.
+pub(super) trait Series {
+    /// Coefficient `k`; `speed` is coefficient k of |ẋ|, and the smaller ones were given before. `load` is known up to k.
+    fn extend(&mut self, k: usize, speed: f64, load: &Coefficients) -> f64;
+}
+
+/// A law's series, with its speeds in the motion's units. One type for each law, so that a step asks only once which it is.
+#[allow(
+    clippy::large_enum_variant,
+    reason = "one for each motion, and never moved"
+)]
+#[derive(Debug, Clone)]
+pub(super) enum FrictionSeries {
+    Coulomb(Coulomb),
+    Weakening(Weakening),
+    Stribeck(Stribeck),
+}
+
+impl FrictionSeries {
+    /// For `law`, with ẋ in units of `velocity_unit`.
+    pub fn new(law: &FrictionLaw, velocity_unit: f64) -> Self {
+        let zero = [0.0; MOST_ORDER + 1];
+        match law.kind() {
+            Kind::Coulomb { mu0 } => Self::Coulomb(Coulomb { mu0 }),
+            Kind::Weakening { mu0, v_s } => Self::Weakening(Weakening {
+                mu0,
+                per_v_s: velocity_unit / v_s,
+                friction: zero,
+                q: zero,
+                inverse: 1.0,
+            }),
+            Kind::Stribeck { mu0, v_s, mu_s } => Self::Stribeck(Stribeck {
+                mu0,
+                fall: mu_s - mu0,
+                per_v_s: velocity_unit / v_s,
+                coefficients: zero,
+                scaled: zero,
+                slope: zero,
+                gaussian: zero,
+            }),
+        }
+    }
+}
+
+/// The same at all speeds.
+#[derive(Debug, Clone)]
+pub(super) struct Coulomb {
+    mu0: f64,
+}
+
+impl Series for Coulomb {
+    #[inline(always)]
+    fn extend(&mut self, k: usize, _: f64, load: &Coefficients) -> f64 {
+        self.mu0 * load[k]
+    }
+}
+
+/// f with f q = μ0 n, q = 1 + |ẋ|/v_s.
+#[derive(Debug, Clone)]
+pub(super) struct Weakening {
+    mu0: f64,
+    per_v_s: f64,
+    friction: Coefficients,
+    /// q without its first coefficient, and the inverse of that one.
+    q: Coefficients,
+    inverse: f64,
+}
+
+impl Series for Weakening {
+    #[inline(always)]
+    fn extend(&mut self, k: usize, speed: f64, load: &Coefficients) -> f64 {
+        self.friction[k] = if k == 0 {
+            self.inverse = 1.0 / (1.0 + speed * self.per_v_s);
+            self.mu0 * load[0] * self.inverse
+        } else {
+            self.q[k - 1] = speed * self.per_v_s;
+            (self.mu0 * load[k] - product(&self.q, &self.friction, k - 1)) * self.inverse
+        };
+        self.friction[k]
+    }
+}
+
+/// m n with m = μ0 + (μ_S − μ0) g and Stribeck's Gaussian g = exp(−y), y = (ẋ/v_s)², which obeys g′ = −y′g.
+#[derive(Debug, Clone)]
+pub(super) struct Stribeck {
+    mu0: f64,
+    fall: f64,
+    per_v_s: f64,
+    coefficients: Coefficients,
+    /// ẋ/v_s.
+    scaled: Coefficients,
+    /// y′.
+    slope: Coefficients,
+    gaussian: Coefficients,
+}
+
+impl Series for Stribeck {
+    #[inline(always)]
+    fn extend(&mut self, k: usize, speed: f64, load: &Coefficients) -> f64 {
+        self.scaled[k] = speed * self.per_v_s;
+        let square = product(&self.scaled, &self.scaled, k);
+        self.coefficients[k] = if k == 0 {
+            self.gaussian[0] = (-square).exp();
+            self.mu0 + self.fall * self.gaussian[0]
+        } else {
+            self.slope[k - 1] = k as f64 * square;
+            self.gaussian[k] = -product(&self.slope, &self.gaussian, k - 1) * PER_NEXT[k - 1];
+            self.fall * self.gaussian[k]
+        };
+        product(&self.coefficients, load, k)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::series::value;
+    use super::*;
+
+    #[test]
+    fn the_series_is_the_law_along_a_motion() {
+        let laws = [
+            FrictionLaw::coulomb(0.4, 1.0).unwrap(),
+            FrictionLaw::weakening(0.5, 0.7, 1.0).unwrap(),
+            FrictionLaw::stribeck(0.3, 0.2, 0.9).unwrap(),
+        ];
+        let mut load = [0.0; MOST_ORDER + 1];
+        (load[0], load[1]) = (1.0, -0.5);
+        // Speed 0.3 + 0.2 s − 0.1 s², in units of 2.
+        let speed = [0.15, 0.1, -0.05];
+        for law in laws {
+            let mut coefficients = [0.0; MOST_ORDER + 1];
+            let mut series = FrictionSeries::new(&law, 2.0);
+            for (k, c) in coefficients.iter_mut().enumerate() {
+                let speed = speed.get(k).copied().unwrap_or(0.0);
+                *c = match &mut series {
+                    FrictionSeries::Coulomb(series) => series.extend(k, speed, &load),
+                    FrictionSeries::Weakening(series) => series.extend(k, speed, &load),
+                    FrictionSeries::Stribeck(series) => series.extend(k, speed, &load),
+                };
+            }
+            for s in [0.0, 0.05, 0.1] {
+                let exact = law.mu_k(0.3 + 0.2 * s - 0.1 * s * s) * (1.0 - 0.5 * s);
+                assert!(
+                    (value(&coefficients, s) - exact).abs() < 1e-13,
+                    "{law:?} {s}"
+                );
+            }
+        }
+    }
+}

@@ -1,0 +1,181 @@
+//! The elongation over the last delay, as the polynomials of the steps that made it.
+
+use std::collections::VecDeque;
+
+use super::series::{Coefficients, MOST_ORDER, shifted};
+
+/// One step's elongation.
+#[derive(Debug, Clone)]
+struct Piece {
+    from: f64,
+    to: f64,
+    /// How far from `from` the polynomial holds to the tolerance, both ways, as far as no kink is in between.
+    radius: f64,
+    order: usize,
+    a: Coefficients,
+    /// Order of the lowest derivative of a that jumps at `from`.
+    kink: u32,
+}
+
+/// What the delayed elongation is from some time on.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Reach {
+    /// Until when its polynomial may be used.
+    pub until: f64,
+    /// The lowest derivative that jumps there; [`SMOOTH`] where none does that matters.
+    pub kink: u32,
+}
+
+/// Stands for: no jump worth a step of its own.
+pub(super) const SMOOTH: u32 = u32::MAX;
+
+/// The part of a polynomial's radius within which it stands in for its neighbours.
+const SHARE: f64 = 0.75;
+
+/// The elongation over a window of time that moves along, of bounded length.
+#[derive(Debug, Clone)]
+pub(super) struct History {
+    pieces: VecDeque<Piece>,
+    /// The piece that was read last.
+    at: usize,
+    /// Jumps of this order and higher are not felt.
+    felt: u32,
+}
+
+impl History {
+    /// The history a = `a` for all times before `now`.
+    pub fn constant(a: f64, now: f64, felt: u32) -> Self {
+        let mut history = Self {
+            pieces: VecDeque::new(),
+            at: 0,
+            felt,
+        };
+        history.restart(a, now);
+        history
+    }
+
+    /// As after [`History::constant`].
+    pub fn restart(&mut self, a: f64, now: f64) {
+        let mut coefficients = [0.0; MOST_ORDER + 1];
+        coefficients[0] = a;
+        self.pieces.clear();
+        self.at = 0;
+        self.pieces.push_back(Piece {
+            from: f64::NEG_INFINITY,
+            to: now,
+            radius: f64::INFINITY,
+            order: 0,
+            a: coefficients,
+            kink: SMOOTH,
+        });
+    }
+
+    /// Adds the step from the end of the last one to `to`; its polynomial holds for `radius` from its start.
+    pub fn push(&mut self, to: f64, radius: f64, a: &[f64], kink: u32) {
+        let from = self.pieces.back().map_or(to, |p| p.to);
+        let mut coefficients = [0.0; MOST_ORDER + 1];
+        coefficients[..a.len()].copy_from_slice(a);
+        self.pieces.push_back(Piece {
+            from,
+            to,
+            radius: radius.max(to - from),
+            order: a.len() - 1,
+            a: coefficients,
+            kink,
+        });
+    }
+
+    /// Forgets what ended before `time`.
+    pub fn forget_before(&mut self, time: f64) {
+        while self.pieces.len() > 1 && self.pieces[0].to < time {
+            self.pieces.pop_front();
+            self.at = self.at.saturating_sub(1);
+        }
+    }
+
+    /// Writes the polynomial of a from `time` on, as one of the time since then, to `out`; zero beyond its order. `latest` is
+    /// the order of the kink at the end of the last step.
+    pub fn read(&mut self, time: f64, latest: u32, out: &mut Coefficients) -> Reach {
+        let close = 8.0 * f64::EPSILON * time.abs().max(1.0);
+        while self.at + 1 < self.pieces.len() && time >= self.pieces[self.at].to - close {
+            self.at += 1;
+        }
+        while self.at > 0 && time < self.pieces[self.at].from - close {
+            self.at -= 1;
+        }
+        let (index, reach) = self.farthest(time, latest);
+        let piece = &self.pieces[index];
+        let since = time - piece.from;
+        *out = if since.is_finite() && since.abs() > close {
+            shifted(&piece.a[..=piece.order], since)
+        } else {
+            piece.a
+        };
+        reach
+    }
+
+    /// The piece that may be used longest from `time` on, and until when. Over a boundary that is no more than a step's end
+    /// a polynomial may be used as far as it holds, forwards and backwards.
+    fn farthest(&self, time: f64, latest: u32) -> (usize, Reach) {
+        let mut best = (self.at, self.pieces[self.at].to);
+        let mut kink = if latest < self.felt { latest } else { SMOOTH };
+        let mut end = f64::INFINITY;
+        for (index, piece) in self.pieces.iter().enumerate().skip(self.at) {
+            if index > self.at {
+                if piece.kink < self.felt {
+                    (kink, end) = (piece.kink, piece.from);
+                    break;
+                }
+                if piece.from - time > SHARE * piece.radius {
+                    kink = SMOOTH;
+                    break;
+                }
+            }
+            let until = piece.to.max(piece.from + SHARE * piece.radius);
+            if until > best.1 {
+                best = (index, until);
+            }
+            end = piece.to;
+        }
+        // Nothing is known beyond the last piece, nor beyond a kink.
+        let until = best.1.min(end.max(self.pieces[self.at].to));
+        let kink = if until == end { kink } else { SMOOTH };
+        (best.0, Reach { until, kink })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn boundaries_are_kept_where_they_are_felt() {
+        let mut history = History::constant(2.0, 0.0, 10);
+        history.push(1.0, 4.0, &[2.0, 1.0], 1);
+        history.push(2.0, 1.0, &[3.0, 1.0], SMOOTH);
+        history.push(2.5, 0.5, &[4.0, -1.0], 2);
+        let mut a = [0.0; MOST_ORDER + 1];
+        assert_eq!(
+            history.read(-1.0, 3, &mut a),
+            Reach {
+                until: 0.0,
+                kink: 1
+            }
+        );
+        assert_eq!(a[0], 2.0);
+        assert_eq!(
+            history.read(0.5, 3, &mut a),
+            Reach {
+                until: 2.0,
+                kink: 2
+            }
+        );
+        assert_eq!((a[0], a[1]), (2.5, 1.0));
+        // The end of the last step is a kink as well, unless nothing happens there.
+        let reach = |kink| Reach { until: 2.5, kink };
+        assert_eq!(history.read(2.0, 3, &mut a), reach(3));
+        assert_eq!(history.read(2.0, SMOOTH, &mut a), reach(SMOOTH));
+        history.forget_before(1.5);
+        assert_eq!(history.pieces.len(), 2);
+    }
+}

@@ -1,0 +1,13 @@
+//! The nonlinear oscillator: stick, slip, lift-off and delayed feedback, with exact events.
+//!
+//! - [`case`]: a motion in physical units, to its outcome
+//! - [`motion`]: steps from event to event
+//! - [`outcome`]: what becomes of a motion
+//! - [`series`]: polynomials in time, their first zeros
+
+pub mod case;
+mod friction_series;
+mod history;
+pub mod motion;
+pub mod outcome;
+pub mod series;

@@ -1,0 +1,649 @@
+//! The motion of the block: slip, stick and what lies between them.
+//!
+//! In units of √(M/κ) for times, N0/κ for lengths and N0 for forces the letter's Eqs. (1) and (2) read, with u = ẋ,
+//!
+//! ```text
+//! u̇ = a − sgn(u) μ_K(|u|) n    in slip,      u = 0 while |a| < μ_S n    in stick,               (1)
+//! ȧ = v − u,   v = v0 + α_v [a(t) − a(t−τ)],   n = 1 + α_n [a(t) − a(t−τ)]                    (2)
+//! ```
+//!
+//! A step is a Taylor series in the time since its start, whose coefficients follow from (1), (2) and the polynomial that
+//! the delayed elongation is there. So the solution between steps is known to the order of the method at no cost, and
+//! events are zeros of polynomials. A step ends where the delayed polynomial ends, if the next one is another by more than
+//! the tolerance: kinks are stepped on, one delay after the other, until they are too smooth to be felt.
+
+use super::friction_series::{FrictionSeries, Series};
+use super::history::{History, SMOOTH};
+use super::series::{Coefficients, MOST_ORDER, PER_NEXT, first_zero, largest, shifted, value};
+use crate::model::FrictionLaw;
+
+/// What the block does.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Mode {
+    /// At rest.
+    Stick,
+    /// ẋ > 0.
+    Forwards,
+    /// ẋ < 0.
+    Backwards,
+}
+
+/// What ends a mode, or changes the equations.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Event {
+    /// From stick to slip.
+    Release,
+    /// From slip to stick.
+    Stick,
+    /// From slip to slip the other way.
+    Reversal,
+    /// N ≤ 0: the model ends.
+    LiftOff,
+    /// Control begins to act.
+    SwitchOn,
+}
+
+/// The parameters of a motion, dimensionless as in the module.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Parameters {
+    /// The friction law.
+    pub law: FrictionLaw,
+    /// N0/√(κM), the unit of velocity in which the law's speeds are given.
+    pub velocity_unit: f64,
+    /// α_v √(M/κ).
+    pub alpha_v: f64,
+    /// α_N/κ.
+    pub alpha_n: f64,
+    /// τ √(κ/M), greater than 0 where control acts.
+    pub tau: f64,
+    /// v0 √(κM)/N0.
+    pub v0: f64,
+    /// When control begins to act.
+    pub switch_on: f64,
+}
+
+/// How exact a motion is.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Accuracy {
+    /// Error allowed in a step, relative to the size of the motion; 1e-15 to 1e-3.
+    pub tolerance: f64,
+    /// Whether steps end on kinks of the delayed elongation.
+    pub step_on_kinks: bool,
+}
+
+impl Default for Accuracy {
+    fn default() -> Self {
+        Self {
+            tolerance: 1e-12,
+            step_on_kinks: true,
+        }
+    }
+}
+
+/// Speeds below this, in units of N0/√(κM), need no relative accuracy.
+const SLOWEST: f64 = 1e-3;
+
+/// Rounding of a force, relative.
+const ROUNDING: f64 = 64.0 * f64::EPSILON;
+
+/// A moving block.
+#[derive(Debug, Clone)]
+pub struct Motion {
+    parameters: Parameters,
+    tolerance: f64,
+    order: usize,
+    friction: FrictionSeries,
+    history: History,
+    mode: Mode,
+    /// Time, velocity, elongation, position.
+    pub t: f64,
+    /// ẋ.
+    pub u: f64,
+    /// Elongation.
+    pub a: f64,
+    /// Displacement since the start.
+    pub x: f64,
+    /// Order of the lowest derivative of a that jumps now.
+    kink: u32,
+    /// The last step's polynomials of u, a, n and the delayed elongation, and its length.
+    step: Step,
+}
+
+/// The polynomials of one step, of the time since its start.
+#[derive(Debug, Clone)]
+pub struct Step {
+    /// Length.
+    pub length: f64,
+    order: usize,
+    u: Coefficients,
+    a: Coefficients,
+    n: Coefficients,
+    delayed: Coefficients,
+}
+
+impl Step {
+    fn range(c: &Coefficients, order: usize) -> &[f64] {
+        &c[..=order]
+    }
+
+    /// `c` times `factor`, with `shift` added to it.
+    fn scaled(c: &Coefficients, factor: f64, shift: f64) -> Coefficients {
+        let mut scaled = c.map(|c| factor * c);
+        scaled[0] += shift;
+        scaled
+    }
+
+    /// ẋ, a and N at `s` since the start of the step.
+    #[must_use]
+    pub fn state(&self, s: f64) -> (f64, f64, f64) {
+        let at = |c| value(Self::range(c, self.order), s);
+        (at(&self.u), at(&self.a), at(&self.n))
+    }
+
+    /// The elongation one delay before `s`; means nothing before control acts.
+    #[must_use]
+    pub fn delayed_elongation(&self, s: f64) -> f64 {
+        value(Self::range(&self.delayed, self.order), s)
+    }
+
+    /// The displacement since the start of the step at `s`.
+    #[must_use]
+    pub fn displacement(&self, s: f64) -> f64 {
+        let mut mean = [0.0; MOST_ORDER + 1];
+        for (mean, (u, per_next)) in mean.iter_mut().zip(self.u.iter().zip(&PER_NEXT)) {
+            *mean = u * per_next;
+        }
+        s * value(Self::range(&mean, self.order), s)
+    }
+
+    /// The smaller one of `known` and the smallest load of the step.
+    #[must_use]
+    pub fn smallest_load(&self, known: f64) -> f64 {
+        let flipped = Self::scaled(&self.n, -1.0, 0.0);
+        -largest(Self::range(&flipped, self.order), self.length, -known)
+    }
+
+    /// The larger one of `known` and the largest |a| of the step.
+    #[must_use]
+    pub fn largest_elongation(&self, known: f64) -> f64 {
+        let flipped = Self::scaled(&self.a, -1.0, 0.0);
+        let one_way = largest(Self::range(&self.a, self.order), self.length, known);
+        largest(Self::range(&flipped, self.order), self.length, one_way)
+    }
+
+    /// The largest |ẋ − `v0`| or |a − `rest`| of the step.
+    #[must_use]
+    pub fn deviation(&self, v0: f64, rest: f64) -> f64 {
+        let mut found = 0.0;
+        for (c, centre) in [(&self.u, v0), (&self.a, rest)] {
+            for factor in [1.0, -1.0] {
+                let c = Self::scaled(c, factor, -factor * centre);
+                found = largest(Self::range(&c, self.order), self.length, found);
+            }
+        }
+        found
+    }
+
+    /// The last time in the step at which |ẋ − `v0`| exceeds `band`; none if it never does.
+    #[must_use]
+    pub fn last_outside(&self, v0: f64, band: f64) -> Option<f64> {
+        let u = Self::range(&self.u, self.order);
+        let spread = u[1..]
+            .iter()
+            .rev()
+            .fold(0.0, |sum, c| (sum + c.abs()) * self.length);
+        if (u[0] - v0).abs() + spread <= band {
+            return None;
+        }
+        // Backwards from the end.
+        let mut reversed = shifted(u, self.length);
+        reversed
+            .iter_mut()
+            .skip(1)
+            .step_by(2)
+            .for_each(|c| *c = -*c);
+        if (reversed[0] - v0).abs() > band {
+            return Some(self.length);
+        }
+        let crossing = |factor: f64| {
+            let room = Self::scaled(&reversed, -factor, band + factor * v0);
+            first_zero(Self::range(&room, self.order), self.length)
+        };
+        let back = [crossing(1.0), crossing(-1.0)].into_iter().flatten();
+        let back = back.fold(f64::INFINITY, f64::min);
+        back.is_finite().then_some(self.length - back)
+    }
+}
+
+/// v0 and the gains that act in a step.
+#[derive(Debug, Clone, Copy)]
+struct Control {
+    v0: f64,
+    alpha_v: f64,
+    alpha_n: f64,
+}
+
+impl Step {
+    /// Coefficients k of the load, and of v.
+    #[inline(always)]
+    fn controlled(&mut self, control: Control, k: usize) -> f64 {
+        let difference = self.a[k] - self.delayed[k];
+        let (v0, load) = if k == 0 {
+            (control.v0, 1.0)
+        } else {
+            (0.0, 0.0)
+        };
+        self.n[k] = load + control.alpha_n * difference;
+        v0 + control.alpha_v * difference
+    }
+
+    /// Coefficients of the order 1 and higher at rest.
+    fn stick(&mut self, control: Control) {
+        let order = self.order.min(MOST_ORDER);
+        for (k, per_next) in PER_NEXT.iter().enumerate().take(order) {
+            self.a[k + 1] = self.controlled(control, k) * per_next;
+            self.u[k + 1] = 0.0;
+        }
+        self.controlled(control, order);
+    }
+
+    /// Those in slip.
+    fn slip(&mut self, control: Control, direction: f64, series: &mut impl Series) {
+        let order = self.order.min(MOST_ORDER);
+        for (k, per_next) in PER_NEXT.iter().enumerate().take(order) {
+            let pull = self.controlled(control, k);
+            let friction = series.extend(k, direction * self.u[k], &self.n);
+            self.a[k + 1] = (pull - self.u[k]) * per_next;
+            self.u[k + 1] = (self.a[k] - direction * friction) * per_next;
+        }
+        self.controlled(control, order);
+    }
+}
+
+impl Motion {
+    /// A block that slides or sticks at t = 0 with velocity `u` and elongation `a`, which was `a` at all times before.
+    #[must_use]
+    pub fn new(parameters: Parameters, accuracy: Accuracy, u: f64, a: f64) -> Self {
+        let tolerance = accuracy.tolerance.clamp(1e-15, 1e-3);
+        // The order at which Taylor's method does least work per unit of time (Jorba and Zou 2005).
+        let order = ((2.0 - 0.5 * tolerance.ln()).ceil() as usize).clamp(4, MOST_ORDER);
+        let felt = if accuracy.step_on_kinks {
+            order as u32
+        } else {
+            0
+        };
+        let zero = [0.0; MOST_ORDER + 1];
+        let mut motion = Self {
+            parameters,
+            tolerance,
+            order,
+            friction: FrictionSeries::new(&parameters.law, parameters.velocity_unit),
+            history: History::constant(a, 0.0, felt),
+            mode: Mode::Stick,
+            t: 0.0,
+            u,
+            a,
+            x: 0.0,
+            kink: 1,
+            step: Step {
+                length: 0.0,
+                order: 0,
+                u: zero,
+                a: zero,
+                n: zero,
+                delayed: zero,
+            },
+        };
+        motion.mode = motion.mode_at(1.0);
+        motion
+    }
+
+    /// The parameters.
+    #[must_use]
+    pub fn parameters(&self) -> &Parameters {
+        &self.parameters
+    }
+
+    /// The elongation of continuous sliding at v0.
+    #[must_use]
+    pub fn sliding_elongation(&self) -> f64 {
+        let p = &self.parameters;
+        p.law.mu_k(p.v0 * p.velocity_unit)
+    }
+
+    /// What the block does now.
+    #[must_use]
+    pub fn mode(&self) -> Mode {
+        self.mode
+    }
+
+    /// The last step.
+    #[must_use]
+    pub fn last_step(&self) -> &Step {
+        &self.step
+    }
+
+    /// The mode of the present state under the load `n`.
+    fn mode_at(&self, n: f64) -> Mode {
+        let moving = if self.u != 0.0 {
+            self.u
+        } else if self.a.abs() <= self.parameters.law.mu_s() * n + self.force_noise() {
+            // At the limit stick comes first: whether it lasts is seen from how the forces change.
+            return Mode::Stick;
+        } else {
+            self.a
+        };
+        if moving > 0.0 {
+            Mode::Forwards
+        } else {
+            Mode::Backwards
+        }
+    }
+
+    /// One step, not beyond `horizon`, and the event that ends it, if one does.
+    pub fn advance(&mut self, horizon: f64) -> Option<Event> {
+        let controlled = self.t >= self.parameters.switch_on;
+        let delay_limit = self.read_delayed(controlled);
+        let mut limit = delay_limit.length.min(horizon - self.t);
+        let until_switch = self.parameters.switch_on - self.t;
+        if !controlled {
+            limit = limit.min(until_switch);
+        }
+        self.expand(controlled);
+        if self.step.n[0] <= 0.0 {
+            self.step.length = 0.0;
+            return Some(Event::LiftOff);
+        }
+        let free = self.free_length();
+        // Two halves rather than a long and a tiny step.
+        let length = match free / limit {
+            r if r >= 1.0 => limit,
+            r if r > 0.5 && delay_limit.kink != SMOOTH => 0.5 * limit,
+            _ => free,
+        };
+        let found = self.first_event(length);
+        let length = found.map_or(length, |(s, _)| s);
+        self.finish(length, free);
+        let mut event = found.map(|(_, event)| event);
+        self.kink = SMOOTH;
+        if event.is_some() {
+            self.kink = 2;
+        } else if !controlled && length == until_switch {
+            self.t = self.parameters.switch_on;
+            self.kink = if self.parameters.alpha_v == 0.0 { 2 } else { 1 };
+            event = Some(Event::SwitchOn);
+        } else if length == delay_limit.length && delay_limit.kink != SMOOTH {
+            self.kink = self.passed_on(delay_limit.kink);
+        }
+        match event {
+            Some(Event::SwitchOn) | None => event,
+            Some(event) => Some(self.change_mode(event)),
+        }
+    }
+
+    /// Fills the delayed polynomial. Tells how long a step may be for it, and the kink there.
+    fn read_delayed(&mut self, controlled: bool) -> DelayLimit {
+        // Also before control acts, so that memory does not grow with time.
+        self.history
+            .forget_before(self.t - 2.0 * self.parameters.tau);
+        if !controlled {
+            return DelayLimit {
+                length: f64::INFINITY,
+                kink: SMOOTH,
+            };
+        }
+        let time = self.t - self.parameters.tau;
+        let reach = self.history.read(time, self.kink, &mut self.step.delayed);
+        DelayLimit {
+            length: reach.until - time,
+            kink: reach.kink,
+        }
+    }
+
+    /// The order of a kink of the delayed elongation after it has passed into the motion.
+    fn passed_on(&self, kink: u32) -> u32 {
+        let smoother = match (self.mode, self.parameters.alpha_v != 0.0) {
+            (_, true) => 1,
+            // A stuck block feels the load only when it is released.
+            (Mode::Stick, false) => return SMOOTH,
+            (_, false) => 2,
+        };
+        kink + smoother
+    }
+
+    /// Works out the coefficients of the step, Eqs. (1) and (2) of the module.
+    fn expand(&mut self, controlled: bool) {
+        let p = &self.parameters;
+        let control = Control {
+            v0: p.v0,
+            alpha_v: if controlled { p.alpha_v } else { 0.0 },
+            alpha_n: if controlled { p.alpha_n } else { 0.0 },
+        };
+        let step = &mut self.step;
+        step.u[0] = self.u;
+        step.a[0] = self.a;
+        step.order = self.order;
+        let direction = match self.mode {
+            Mode::Stick => return step.stick(control),
+            Mode::Forwards => 1.0,
+            Mode::Backwards => -1.0,
+        };
+        match &mut self.friction {
+            FrictionSeries::Coulomb(series) => step.slip(control, direction, series),
+            FrictionSeries::Weakening(series) => step.slip(control, direction, series),
+            FrictionSeries::Stribeck(series) => step.slip(control, direction, series),
+        }
+    }
+
+    /// How long a step may be for its last terms to stay below the tolerance.
+    fn free_length(&self) -> f64 {
+        let step = &self.step;
+        let (u, a) = (&step.u, &step.a);
+        let speed = u[0].abs().max(self.parameters.v0.abs()).max(SLOWEST);
+        let stretch = a[0].abs().max(self.parameters.law.mu_s());
+        // log₂ to 0.1: enough to tell which of the last two terms asks for the shorter step.
+        let rough_log2 = |x: f64| (x.to_bits() >> 42) as f64 / 1024.0 - 1023.0;
+        let asked = [self.order - 1, self.order].map(|k| {
+            // What is not a number ends the motion elsewhere, not here.
+            let ratio = (u[k].abs() / speed).max(a[k].abs() / stretch).max(0.0);
+            let room = self.tolerance / ratio;
+            (rough_log2(room) / k as f64, room, k)
+        });
+        let shorter = if asked[0].0 < asked[1].0 { 0 } else { 1 };
+        let (_, room, k) = asked[shorter];
+        room.powf(1.0 / k as f64)
+    }
+
+    /// The first event within `length`.
+    fn first_event(&self, length: f64) -> Option<(f64, Event)> {
+        let step = &self.step;
+        let range = ..=step.order;
+        let mut first: Option<(f64, Event)> = None;
+        let mut consider = |zero: Option<f64>, event: Event| {
+            if let Some(s) = zero
+                && first.is_none_or(|(earliest, _)| s < earliest)
+            {
+                first = Some((s, event));
+            }
+        };
+        if self.parameters.alpha_n != 0.0 {
+            consider(first_zero(&step.n[range], length), Event::LiftOff);
+        }
+        if self.mode == Mode::Stick {
+            for direction in [1.0, -1.0] {
+                let hold = self.hold(direction);
+                consider(first_zero(&hold[range], length), Event::Release);
+            }
+        } else if self.mode == Mode::Forwards && step.u[0] != 0.0 {
+            consider(first_zero(&step.u[range], length), Event::Stick);
+        } else {
+            consider(first_zero(&self.speed()[range], length), Event::Stick);
+        }
+        first
+    }
+
+    /// What holds the block against a pull in `direction`: μ_S n − a in stick.
+    fn hold(&self, direction: f64) -> Coefficients {
+        let mu_s = self.parameters.law.mu_s();
+        let mut hold = [0.0; MOST_ORDER + 1];
+        let terms = self.step.n.iter().zip(&self.step.a);
+        for (hold, (n, a)) in hold.iter_mut().zip(terms).take(self.step.order + 1) {
+            *hold = mu_s * n - direction * a;
+        }
+        hold[0] = self.without_noise(hold[0]);
+        hold
+    }
+
+    /// |ẋ| in slip. A block that was just released does not accelerate backwards: μ_K(0⁺) ≤ μ_S.
+    fn speed(&self) -> Coefficients {
+        let mut speed = self.step.u;
+        if self.mode == Mode::Backwards {
+            speed.iter_mut().for_each(|u| *u = -*u);
+        }
+        if speed[0] == 0.0 {
+            speed[1] = self.without_noise(speed[1]);
+        }
+        speed
+    }
+
+    /// `force` at the start of a mode, which cannot be negative there: zero where it is so by no more than noise.
+    fn without_noise(&self, force: f64) -> f64 {
+        let noise = self.force_noise();
+        let rounding = noise * ROUNDING / (ROUNDING + self.tolerance);
+        if (-noise..=rounding).contains(&force) {
+            0.0
+        } else {
+            force
+        }
+    }
+
+    /// Noise of forces: rounding, and two polynomials of the past, which agree to the tolerance, taking turns. Without it a
+    /// block with μ_K(0⁺) = μ_S would stick and slip again and again at the moment of its release.
+    fn force_noise(&self) -> f64 {
+        let (a, delayed) = (self.step.a[0].abs(), self.step.delayed[0].abs());
+        let load = 1.0 + self.parameters.alpha_n.abs() * (a + delayed);
+        (ROUNDING + self.tolerance) * (a + self.parameters.law.mu_s() * load)
+    }
+
+    /// Moves on by `length`; the polynomials hold for `radius`.
+    fn finish(&mut self, length: f64, radius: f64) {
+        let order = self.step.order;
+        let (u, a) = (&self.step.u[..=order], &self.step.a[..=order]);
+        self.u = value(u, length);
+        self.a = value(a, length);
+        self.x += self.step.displacement(length);
+        self.t += length;
+        self.history.push(self.t, radius, a, self.kink);
+        self.step.length = length;
+    }
+
+    /// The mode after `event`, which may turn out to be another one.
+    fn change_mode(&mut self, event: Event) -> Event {
+        let n = value(&self.step.n[..=self.step.order], self.step.length);
+        match event {
+            Event::Release => {
+                self.u = 0.0;
+                self.mode = if self.a > 0.0 {
+                    Mode::Forwards
+                } else {
+                    Mode::Backwards
+                };
+                Event::Release
+            }
+            Event::Stick => {
+                let before = self.mode;
+                self.u = 0.0;
+                self.mode = self.mode_at(n);
+                if self.mode == Mode::Stick || self.mode == before {
+                    Event::Stick
+                } else {
+                    Event::Reversal
+                }
+            }
+            other => other,
+        }
+    }
+}
+
+/// How long a step may be for the delayed elongation, and the order of the kink there.
+#[derive(Debug, Clone, Copy)]
+struct DelayLimit {
+    length: f64,
+    kink: u32,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Events of the letter's Fig. 3 (physics of the project, section 7): times of switch-on, and of what follows.
+    fn fig3(
+        v0: f64,
+        alpha_v: f64,
+        alpha_n: f64,
+        tau: f64,
+        accuracy: Accuracy,
+    ) -> Vec<(f64, Event, f64)> {
+        let law = FrictionLaw::weakening(0.5, 0.5, 1.0).unwrap();
+        let parameters = Parameters {
+            law,
+            velocity_unit: 1.0,
+            alpha_v,
+            alpha_n,
+            tau,
+            v0,
+            switch_on: 70.0,
+        };
+        let mut motion = Motion::new(parameters, accuracy, 1.01 * v0, law.mu_k(v0));
+        let mut events = Vec::new();
+        while motion.t < 150.0 {
+            if let Some(event) = motion.advance(150.0) {
+                events.push((motion.t, event, motion.a));
+            }
+        }
+        events
+    }
+
+    fn last_release(events: &[(f64, Event, f64)]) -> (f64, f64) {
+        let last = events
+            .iter()
+            .rev()
+            .find(|e| e.1 == Event::Release)
+            .expect("released");
+        (last.0, last.2)
+    }
+
+    #[test]
+    fn the_events_of_the_letters_figure_3() {
+        let accuracy = Accuracy::default();
+        let a = fig3(0.35, -0.33, 0.0, 4.15, accuracy);
+        let b = fig3(0.1, 0.0, -10.0, 0.5, accuracy);
+        for (events, slip, stick) in [(&a, 3.97549563, 4.92001175), (&b, 3.44600138, 15.85555061)] {
+            let before: Vec<_> = events.iter().filter(|e| e.0 < 70.0).collect();
+            let [release, stop, again] = before[before.len() - 3..] else {
+                panic!("three events");
+            };
+            let (release, stop, again) = if release.1 == Event::Release {
+                (release, stop, again)
+            } else {
+                (stop, again, before[before.len() - 4])
+            };
+            assert!(
+                (stop.0 - release.0 - slip).abs() < 1e-8,
+                "{}",
+                stop.0 - release.0
+            );
+            assert!(((again.0 - stop.0).abs() - stick).abs() < 1e-8 || again.0 < stop.0);
+        }
+        assert!(
+            (last_release(&a).0 - 97.029009396).abs() < 1e-8,
+            "{:?}",
+            last_release(&a)
+        );
+        let (t, elongation) = last_release(&b);
+        assert!(
+            (t - 76.277483031).abs() < 1e-8 && (elongation - 0.5).abs() < 1e-8,
+            "{t} {elongation}"
+        );
+    }
+}

@@ -1,0 +1,475 @@
+//! What becomes of a motion: sliding, stick-slip, oscillation, lift-off, or none that can be told.
+
+use std::f64::consts::TAU;
+
+use super::motion::{Event, Mode, Motion, Step};
+
+/// How a motion ends up.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum Outcome {
+    /// It settles to sliding at v0: sliding is linearly stable, the deviation stayed below 10⁻³ v0 for a whole delay and has
+    /// decayed since as the abscissa says, for one relaxation time.
+    Sliding,
+    /// Stick and slip follow one another periodically.
+    StickSlip,
+    /// A bounded periodic oscillation without sticking.
+    Oscillation,
+    /// N ≤ 0: the model ends.
+    LiftOff,
+    /// It grows beyond all bounds.
+    Diverged,
+    /// None of these was reached before the horizon, or within the steps allowed.
+    Undecided,
+}
+
+impl Outcome {
+    /// All outcomes, in the order of their numbers in a map.
+    pub const ALL: [Self; 6] = [
+        Self::Sliding,
+        Self::StickSlip,
+        Self::Oscillation,
+        Self::LiftOff,
+        Self::Diverged,
+        Self::Undecided,
+    ];
+
+    /// The name in maps, files and messages.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Sliding => "sliding",
+            Self::StickSlip => "stick-slip",
+            Self::Oscillation => "oscillation",
+            Self::LiftOff => "lift-off",
+            Self::Diverged => "diverged",
+            Self::Undecided => "undecided",
+        }
+    }
+}
+
+/// Where to stop, and what is known of sliding.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Limits {
+    /// The latest time, in units of √(M/κ).
+    pub horizon: f64,
+    /// The most steps.
+    pub steps: u64,
+    /// The spectral abscissa of sliding at v0 under the control that acts, if all roots are stable.
+    pub stable_abscissa: Option<f64>,
+}
+
+/// A motion that was followed to its outcome. Times, lengths and forces as in [`super::motion`].
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Summary {
+    /// What became of it.
+    pub outcome: Outcome,
+    /// When that was known.
+    pub decided: f64,
+    /// From switch-on until ẋ stays within 1 % of v0; NaN unless it came to sliding.
+    pub settle_time: f64,
+    /// The smallest load since switch-on.
+    pub n_min: f64,
+    /// The largest spring force |κa| since switch-on.
+    pub peak: f64,
+    /// Period of stick-slip, and how long it sticks and slips in one; NaN else.
+    pub period: f64,
+    /// Time stuck in one period.
+    pub stick_time: f64,
+    /// Time in slip in one period.
+    pub slip_time: f64,
+    /// When the last stick ended; NaN if there was none.
+    pub last_release: f64,
+    /// Steps taken.
+    pub steps: u64,
+}
+
+/// Sees every step of a motion.
+pub trait Observer {
+    /// After each step, with the event that ended it.
+    fn step(&mut self, motion: &Motion, event: Option<Event>);
+}
+
+/// Sees nothing.
+impl Observer for () {
+    fn step(&mut self, _: &Motion, _: Option<Event>) {}
+}
+
+/// Follows `motion` until its outcome is known.
+pub fn follow(motion: &mut Motion, limits: &Limits, observer: &mut impl Observer) -> Summary {
+    let mut watch = Watch::new(motion, *limits);
+    loop {
+        if let Some(outcome) = watch.ended(motion) {
+            return watch.summary(motion, outcome);
+        }
+        let event = motion.advance(limits.horizon);
+        watch.steps += 1;
+        observer.step(motion, event);
+        watch.see(motion, event);
+    }
+}
+
+/// Cycles that are remembered.
+const CYCLES: usize = 64;
+/// The largest multiple period that is recognised.
+const MOST_FOLD: usize = 4;
+/// How well cycles have to repeat, relative.
+const REPEATED: f64 = 1e-9;
+/// Deviation from sliding, over v0, below which linear theory decides.
+const SMALL: f64 = 1e-3;
+/// The part of v0 that counts as settled.
+const SETTLED: f64 = 0.01;
+/// Amplitudes beyond this, over what is natural, diverge.
+const BEYOND: f64 = 1e6;
+/// Windows of equal amplitude that make an oscillation.
+const EQUAL_WINDOWS: u32 = 4;
+
+/// From one release to the next.
+#[derive(Debug, Clone, Copy, Default)]
+struct Cycle {
+    end: f64,
+    period: f64,
+    slip: f64,
+    elongation: f64,
+}
+
+/// What has been seen of a motion.
+struct Watch {
+    limits: Limits,
+    switch_on: f64,
+    v0: f64,
+    tau: f64,
+    rest: f64,
+    scale: f64,
+    steps: u64,
+    outcome: Option<Outcome>,
+    n_min: f64,
+    peak: f64,
+    unsettled: f64,
+    last_release: f64,
+    last_stop: f64,
+    cycles: [Cycle; CYCLES],
+    count: usize,
+    fold: usize,
+    decay: Decay,
+    window: Window,
+}
+
+/// The decay of small deviations.
+#[derive(Debug, Clone, Copy)]
+struct Decay {
+    /// Since when the deviation has been small.
+    small_since: f64,
+    /// From when on, and how large the deviation was over the first delay after.
+    from: f64,
+    first: f64,
+    second: f64,
+}
+
+/// The amplitude of one window of time after the other.
+#[derive(Debug, Clone, Copy)]
+struct Window {
+    length: f64,
+    until: f64,
+    amplitude: f64,
+    before: f64,
+    equal: u32,
+}
+
+impl Watch {
+    fn new(motion: &Motion, limits: Limits) -> Self {
+        let p = motion.parameters();
+        let rest = motion.sliding_elongation();
+        let tau = if p.switch_on.is_finite() { p.tau } else { 0.0 };
+        Self {
+            limits,
+            switch_on: p.switch_on,
+            v0: p.v0,
+            tau,
+            rest,
+            scale: (1.0 + p.v0.abs()).max(motion.a.abs()).max(motion.u.abs()),
+            steps: 0,
+            outcome: None,
+            n_min: f64::INFINITY,
+            peak: 0.0,
+            unsettled: motion.t,
+            last_release: f64::NAN,
+            last_stop: f64::NAN,
+            cycles: [Cycle::default(); CYCLES],
+            count: 0,
+            fold: 0,
+            decay: Decay {
+                small_since: f64::INFINITY,
+                from: f64::INFINITY,
+                first: 0.0,
+                second: 0.0,
+            },
+            window: Window {
+                length: tau + 4.0 * TAU,
+                until: motion.t,
+                amplitude: 0.0,
+                before: f64::NAN,
+                equal: 0,
+            },
+        }
+    }
+
+    fn ended(&self, motion: &Motion) -> Option<Outcome> {
+        if self.outcome.is_some() {
+            return self.outcome;
+        }
+        let over = motion.t >= self.limits.horizon || self.steps >= self.limits.steps;
+        over.then_some(Outcome::Undecided)
+    }
+
+    fn see(&mut self, motion: &Motion, event: Option<Event>) {
+        let step = motion.last_step();
+        let size = motion.a.abs().max(motion.u.abs());
+        if !(motion.a + motion.u).is_finite() || size > BEYOND * self.scale {
+            self.outcome = Some(Outcome::Diverged);
+            return;
+        }
+        let controlled = motion.t - step.length >= self.switch_on || !self.switch_on.is_finite();
+        if controlled {
+            self.n_min = step.smallest_load(self.n_min);
+            self.peak = step.largest_elongation(self.peak);
+        }
+        if let Some(t) = step.last_outside(self.v0, SETTLED * self.v0) {
+            self.unsettled = motion.t - step.length + t;
+        }
+        match event {
+            Some(Event::LiftOff) => self.outcome = Some(Outcome::LiftOff),
+            Some(Event::SwitchOn) => self.count = 0,
+            Some(Event::Release) => self.see_release(motion),
+            Some(Event::Stick) => self.last_stop = motion.t,
+            _ => {}
+        }
+        if self.outcome.is_none() && controlled {
+            self.see_deviation(motion, step);
+        }
+    }
+
+    /// Adds the cycle that ends with this release, and looks whether cycles repeat over more than a delay.
+    fn see_release(&mut self, motion: &Motion) {
+        if self.last_release.is_finite() && self.last_stop > self.last_release {
+            self.cycles[self.count % CYCLES] = Cycle {
+                end: motion.t,
+                period: motion.t - self.last_release,
+                slip: self.last_stop - self.last_release,
+                elongation: motion.a,
+            };
+            self.count += 1;
+        }
+        self.last_release = motion.t;
+        for fold in 1..=MOST_FOLD {
+            if self.repeats(motion.t, fold) {
+                self.fold = fold;
+                self.outcome = Some(Outcome::StickSlip);
+                return;
+            }
+        }
+    }
+
+    /// Whether the cycles of the last delay, and `fold` more, equal those `fold` earlier.
+    fn repeats(&self, now: f64, fold: usize) -> bool {
+        let known = self.count.min(CYCLES);
+        let since = self.switch_on.max(f64::MIN);
+        for back in 0..known {
+            if back + fold >= known {
+                return false;
+            }
+            let at = |back: usize| self.cycles[(self.count - 1 - back) % CYCLES];
+            let (p, q) = (at(back), at(back + fold));
+            let near = |p: f64, q: f64| (p - q).abs() <= REPEATED * (p.abs() + q.abs()) + REPEATED;
+            if !(near(p.period, q.period)
+                && near(p.slip, q.slip)
+                && near(p.elongation, q.elongation))
+            {
+                return false;
+            }
+            if self.switch_on.is_finite() && q.end - q.period < since {
+                return false;
+            }
+            if back + 1 >= fold && now - p.end + p.period > self.tau {
+                return true;
+            }
+        }
+        false
+    }
+
+    fn see_deviation(&mut self, motion: &Motion, step: &Step) {
+        if motion.mode() == Mode::Stick {
+            self.decay.small_since = f64::INFINITY;
+            self.decay.from = f64::INFINITY;
+            self.window.equal = 0;
+            return;
+        }
+        let deviation = step.deviation(self.v0, self.rest);
+        self.see_decay(motion.t, step.length, deviation);
+        self.see_amplitude(motion.t, deviation);
+    }
+
+    fn see_decay(&mut self, now: f64, length: f64, deviation: f64) {
+        let Some(abscissa) = self.limits.stable_abscissa else {
+            return;
+        };
+        let decay = &mut self.decay;
+        if deviation > SMALL * self.v0 {
+            decay.small_since = f64::INFINITY;
+            decay.from = f64::INFINITY;
+            return;
+        }
+        let start = now - length;
+        decay.small_since = decay.small_since.min(start);
+        if start - decay.small_since < self.tau {
+            return;
+        }
+        let window = self.tau.max(TAU);
+        if decay.from == f64::INFINITY {
+            (decay.from, decay.first, decay.second) = (start, 0.0, 0.0);
+        }
+        let relaxation = -1.0 / abscissa;
+        if start < decay.from + window {
+            decay.first = decay.first.max(deviation);
+        } else if start >= decay.from + relaxation {
+            decay.second = decay.second.max(deviation);
+        }
+        if now >= decay.from + relaxation.max(window) + window {
+            // Beats of two roots decay unevenly; what is near rounding decays no more.
+            if decay.second <= 0.6 * decay.first || decay.first < 1e-11 {
+                self.outcome = Some(Outcome::Sliding);
+            }
+            decay.from = f64::INFINITY;
+        }
+    }
+
+    fn see_amplitude(&mut self, now: f64, deviation: f64) {
+        let window = &mut self.window;
+        window.amplitude = window.amplitude.max(deviation);
+        if now < window.until {
+            return;
+        }
+        let same = (window.amplitude - window.before).abs() <= 1e-6 * window.amplitude;
+        window.equal = if same { window.equal + 1 } else { 0 };
+        let large = window.amplitude > 10.0 * SMALL * self.v0;
+        if window.equal >= EQUAL_WINDOWS && large {
+            self.outcome = Some(Outcome::Oscillation);
+        }
+        window.before = window.amplitude;
+        window.amplitude = 0.0;
+        window.until = now + window.length;
+    }
+
+    fn summary(&self, motion: &Motion, outcome: Outcome) -> Summary {
+        let (mut period, mut slip_time) = (f64::NAN, f64::NAN);
+        if outcome == Outcome::StickSlip {
+            let last = (0..self.fold).map(|back| self.cycles[(self.count - 1 - back) % CYCLES]);
+            (period, slip_time) = last.fold((0.0, 0.0), |(p, s), c| (p + c.period, s + c.slip));
+        }
+        let since = if self.switch_on.is_finite() {
+            self.switch_on
+        } else {
+            0.0
+        };
+        Summary {
+            outcome,
+            decided: motion.t,
+            settle_time: if outcome == Outcome::Sliding {
+                (self.unsettled - since).max(0.0)
+            } else {
+                f64::NAN
+            },
+            n_min: self.n_min,
+            peak: self.peak,
+            period,
+            stick_time: period - slip_time,
+            slip_time,
+            last_release: self.last_release,
+            steps: self.steps,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::linear::rightmost::Rightmost;
+    use crate::linear::{Crossings, MarginalTolerance};
+    use crate::model::{FrictionLaw, Groups};
+    use crate::slip::motion::{Accuracy, Parameters};
+
+    fn letter(v0: f64, alpha_v: f64, alpha_n: f64, tau: f64) -> Parameters {
+        Parameters {
+            law: FrictionLaw::weakening(0.5, 0.5, 1.0).unwrap(),
+            velocity_unit: 1.0,
+            alpha_v,
+            alpha_n,
+            tau,
+            v0,
+            switch_on: 70.0,
+        }
+    }
+
+    fn run(p: Parameters, u: f64) -> Summary {
+        let groups = Groups::new(
+            p.law.mu_prime(p.v0),
+            p.alpha_v,
+            p.law.mu_k(p.v0) * p.alpha_n,
+        );
+        let count = Crossings::of(groups).count(p.tau, MarginalTolerance::default());
+        let root = Rightmost::at(groups, p.tau, 1, count).roots[0];
+        let limits = Limits {
+            horizon: 3000.0,
+            steps: 1_000_000,
+            stable_abscissa: count.stable().then_some(root.lambda.re),
+        };
+        let mut motion = Motion::new(p, Accuracy::default(), u, p.law.mu_k(p.v0));
+        follow(&mut motion, &limits, &mut ())
+    }
+
+    #[test]
+    fn the_letters_figure_3_ends_in_sliding() {
+        let a = run(letter(0.35, -0.33, 0.0, 4.15), 1.01 * 0.35);
+        let b = run(letter(0.1, 0.0, -10.0, 0.5), 1.01 * 0.1);
+        for s in [a, b] {
+            assert_eq!(s.outcome, Outcome::Sliding, "{s:?}");
+            assert!(
+                s.settle_time > 5.0 && s.settle_time < 300.0 && s.decided < 1000.0,
+                "{s:?}"
+            );
+        }
+        assert!((a.last_release - 97.029009396).abs() < 1e-8);
+        assert!((b.last_release - 76.277483031).abs() < 1e-8);
+        assert!(
+            b.n_min >= 0.5 - 1e-12 && b.n_min < 0.6 && a.n_min == 1.0,
+            "{a:?} {b:?}"
+        );
+    }
+
+    #[test]
+    fn below_the_critical_velocity_stick_slip_survives() {
+        let s = run(letter(0.3, -0.33, 0.0, 4.15), 0.303);
+        assert_eq!(s.outcome, Outcome::StickSlip, "{s:?}");
+        assert!((s.period - s.stick_time - s.slip_time).abs() < 1e-12 && s.stick_time > 0.0);
+        let s = run(letter(0.02, 0.0, -10.0, 0.5), 0.0202);
+        assert_eq!(s.outcome, Outcome::StickSlip, "{s:?}");
+        // Without control, for ever.
+        let s = run(
+            Parameters {
+                switch_on: f64::INFINITY,
+                ..letter(0.1, 0.0, 0.0, 1.0)
+            },
+            0.101,
+        );
+        assert_eq!(s.outcome, Outcome::StickSlip, "{s:?}");
+        assert!(
+            (s.slip_time - 3.44600138).abs() < 1e-8 && (s.stick_time - 15.85555061).abs() < 1e-8
+        );
+    }
+
+    #[test]
+    fn strong_load_control_lifts_off() {
+        let s = run(letter(1.5, 0.0, -10.0, 0.9), 0.5);
+        assert_eq!(s.outcome, Outcome::LiftOff, "{s:?}");
+        assert!(s.n_min <= 1e-9, "{s:?}");
+    }
+}

@@ -1,0 +1,244 @@
+//! Polynomials in the time since the start of a step: Taylor series of a solution, cut off.
+
+/// Highest order of a series.
+pub const MOST_ORDER: usize = 24;
+
+/// Coefficients c₀ … c_N of Σ c_k s^k; those beyond the order in use mean nothing.
+pub type Coefficients = [f64; MOST_ORDER + 1];
+
+/// 1/(k + 1).
+pub const PER_NEXT: Coefficients = {
+    let mut inverse = [1.0; MOST_ORDER + 1];
+    let mut k = 1;
+    while k <= MOST_ORDER {
+        inverse[k] = 1.0 / (k + 1) as f64;
+        k += 1;
+    }
+    inverse
+};
+
+/// Binomial coefficients: row m, column j hold j + m over j; zero where j + m > [`MOST_ORDER`].
+const BINOMIAL: [Coefficients; MOST_ORDER + 1] = {
+    let mut rows = [[0.0; MOST_ORDER + 1]; MOST_ORDER + 1];
+    rows[0] = [1.0; MOST_ORDER + 1];
+    let mut m = 1;
+    while m <= MOST_ORDER {
+        rows[m][0] = 1.0;
+        let mut j = 1;
+        while j + m <= MOST_ORDER {
+            rows[m][j] = rows[m][j - 1] + rows[m - 1][j];
+            j += 1;
+        }
+        m += 1;
+    }
+    rows
+};
+
+/// Σ c_k s^k, by Horner's scheme for even and for odd powers: half as long a chain of operations.
+#[inline]
+#[must_use]
+pub fn value(c: &[f64], s: f64) -> f64 {
+    let square = s * s;
+    let pairs = c.chunks_exact(2);
+    let last = pairs.remainder().first().copied().unwrap_or(0.0);
+    let (even, odd) = pairs.rev().fold((last, 0.0), |(even, odd), pair| {
+        (even * square + pair[0], odd * square + pair[1])
+    });
+    even + s * odd
+}
+
+/// Value and derivative.
+#[inline]
+fn value_and_slope(c: &[f64], s: f64) -> (f64, f64) {
+    let (mut value, mut slope) = (0.0, 0.0);
+    for c in c.iter().rev() {
+        slope = slope * s + value;
+        value = value * s + c;
+    }
+    (value, slope)
+}
+
+/// The coefficients about s = `by` of those in `c`, Σ_m (j + m over j) c_{j+m} by^m.
+///
+/// Horner's scheme takes as many operations, but each waits for the one before.
+#[inline]
+#[must_use]
+pub fn shifted(c: &[f64], by: f64) -> Coefficients {
+    let mut about = [0.0; MOST_ORDER + 1];
+    about[..c.len()].copy_from_slice(c);
+    let mut power = 1.0;
+    for (m, row) in BINOMIAL.iter().enumerate().take(c.len()).skip(1) {
+        power *= by;
+        let terms = row.iter().zip(&c[m..]);
+        for (sum, (binomial, c)) in about.iter_mut().zip(terms) {
+            *sum += power * (binomial * c);
+        }
+    }
+    about
+}
+
+/// Coefficient k of the product of `p` and `q`, from the middle to both ends: what was found last is waited for last.
+#[inline(always)]
+#[must_use]
+pub fn product(p: &Coefficients, q: &Coefficients, k: usize) -> f64 {
+    let k = k.min(MOST_ORDER);
+    let middle = k / 2;
+    let (mut low, mut high) = (0.0, 0.0);
+    for i in 0..=middle {
+        low += p[middle - i] * q[k - middle + i];
+    }
+    for i in middle + 1..=k {
+        high += p[i] * q[k - i];
+    }
+    low + high
+}
+
+/// The first zero in (0, `end`] of a polynomial that is positive just after 0; none if it stays positive.
+///
+/// No zero is stepped over: a parabola below the polynomial says how far it stays positive at least. Near a simple zero the
+/// steps are Newton's; a minimum within rounding of zero counts as one. Zeros at s = 0 itself are divided out.
+#[must_use]
+pub fn first_zero(c: &[f64], end: f64) -> Option<f64> {
+    let multiplicity = c.iter().position(|&c| c != 0.0)?;
+    let c = &c[multiplicity..];
+    let size = |from: usize, weight: fn(f64) -> f64| {
+        let mut power = 1.0;
+        let mut sum = 0.0;
+        for (k, c) in c.iter().enumerate().skip(from) {
+            sum += weight(k as f64) * c.abs() * power;
+            power *= end;
+        }
+        sum
+    };
+    // The rest of the series cannot outweigh its first term.
+    if c[0] > 0.0 && c[0] > end * size(1, |_| 1.0) {
+        return None;
+    }
+    let bend = size(2, |k| k * (k - 1.0));
+    if !bend.is_finite() {
+        return None;
+    }
+    let rounding = 4.0 * f64::EPSILON * size(0, |k| 1.0 + k);
+    let mut s = 0.0;
+    loop {
+        let (value, slope) = value_and_slope(c, s);
+        if value <= rounding {
+            // One more step of Newton's method, where there is a slope to follow.
+            let correction = value / slope;
+            let polished = if slope < 0.0 && correction.abs() < 1e-6 * end {
+                s - correction
+            } else {
+                s
+            };
+            return Some(polished.clamp(0.0, end));
+        }
+        // The first zero of value + slope δ − bend δ²/2, without cancellation.
+        let root = (slope * slope + 2.0 * bend * value).sqrt();
+        let step = if slope < 0.0 {
+            2.0 * value / (root - slope)
+        } else if bend > 0.0 {
+            (slope + root) / bend
+        } else {
+            f64::INFINITY
+        };
+        s += step.max(f64::EPSILON * end);
+        // Also where something is not a number.
+        if s.is_nan() || s > end {
+            return None;
+        }
+    }
+}
+
+/// The largest value on [0, `end`], or `known` if that is larger.
+///
+/// Extrema are looked for in eighths of the range; a step of an integrator holds one at most.
+#[must_use]
+pub fn largest(c: &[f64], end: f64, known: f64) -> f64 {
+    let bound = c[1..]
+        .iter()
+        .rev()
+        .fold(0.0, |sum, c| (sum + c.abs()) * end);
+    if c[0] + bound <= known {
+        return known;
+    }
+    let mut found = known.max(c[0]).max(value(c, end));
+    let at = |i: u32| end * f64::from(i) / 8.0;
+    let mut slope_before = value_and_slope(c, 0.0).1;
+    for i in 1..=8 {
+        let slope = value_and_slope(c, at(i)).1;
+        if slope_before > 0.0 && slope < 0.0 {
+            let (mut from, mut to) = (at(i - 1), at(i));
+            // Quadratic at its top: half the digits of the place are all of the value.
+            for _ in 0..27 {
+                let middle = 0.5 * (from + to);
+                if value_and_slope(c, middle).1 > 0.0 {
+                    from = middle;
+                } else {
+                    to = middle;
+                }
+            }
+            found = found.max(value(c, from));
+        }
+        slope_before = slope;
+    }
+    found
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    #[test]
+    fn grazes_are_told_apart() {
+        // (s − 1)² ± 1e-9.
+        assert_eq!(first_zero(&[1.0 + 1e-9, -2.0, 1.0], 3.0), None);
+        let zero = first_zero(&[1.0 - 1e-9, -2.0, 1.0], 3.0).expect("crosses twice");
+        assert!((zero - (1.0 - 1e-9_f64.sqrt())).abs() < 1e-10, "{zero}");
+        let touch = first_zero(&[1.0, -2.0, 1.0], 3.0).expect("touches");
+        assert!((touch - 1.0).abs() < 1e-6);
+    }
+
+    #[test]
+    fn a_zero_at_the_start_is_divided_out() {
+        // s (1 − s)(2 − s).
+        let zero = first_zero(&[0.0, 2.0, -3.0, 1.0], 5.0).expect("at one");
+        assert!((zero - 1.0).abs() < 1e-15);
+        assert_eq!(first_zero(&[0.0, 0.0, 1.0], 5.0), None);
+    }
+
+    proptest! {
+        /// Of a polynomial made of its zeros, the first one is found.
+        #[test]
+        fn the_first_zero_is_found(zeros in prop::collection::vec(0.05..3.0_f64, 1..7), end in 0.5..2.0_f64) {
+            let mut c = vec![1.0];
+            for zero in &zeros {
+                let mut next = vec![0.0; c.len() + 1];
+                for (k, c) in c.iter().enumerate() {
+                    next[k] += c;
+                    next[k + 1] -= c / zero;
+                }
+                c = next;
+            }
+            let first = zeros.iter().copied().fold(f64::INFINITY, f64::min);
+            match first_zero(&c, end) {
+                Some(s) => prop_assert!((s - first).abs() < 1e-3 && value(&c, s).abs() < 1e-11, "{s} {first}"),
+                None => prop_assert!(first > end - 1e-3),
+            }
+        }
+
+        #[test]
+        fn products_are_those_of_the_polynomials(p in prop::collection::vec(-1.0..1.0_f64, 9), q in prop::collection::vec(-1.0..1.0_f64, 9), s in -0.5..0.5_f64) {
+            let (mut long_p, mut long_q) = ([0.0; MOST_ORDER + 1], [0.0; MOST_ORDER + 1]);
+            long_p[..9].copy_from_slice(&p);
+            long_q[..9].copy_from_slice(&q);
+            let c: Vec<_> = (0..17).map(|k| product(&long_p, &long_q, k)).collect();
+            prop_assert!((value(&c, s) - value(&p, s) * value(&q, s)).abs() < 1e-13);
+        }
+
+        #[test]
+        fn shifting_changes_nothing(c in prop::collection::vec(-1.0..1.0_f64, 1..20), by in -0.5..0.5_f64, s in -0.5..0.5_f64) {
+            prop_assert!((value(&shifted(&c, by), s) - value(&c, s + by)).abs() < 1e-12);
+        }
+    }
+}

@@ -1,0 +1,332 @@
+//! One motion, as a case file describes it: read and checked once.
+//!
+//! ```toml
+//! title = "Velocity control"      # optional
+//! switch_on = 70.0                # when control begins to act, 0 by default; false: never
+//! horizon = 1000.0                # until when the outcome is looked for; by default 1000 √(M/κ) after switch-on
+//! tolerance = 1e-12               # error allowed in a step, relative; 1e-15 to 1e-3
+//!
+//! [friction]                      # as in sweep files
+//! law = "weakening"
+//! mu0 = 0.5
+//! v_s = 0.5
+//!
+//! [fixed]                         # as in sweep files; tau may be left out where both gains are 0
+//! v0 = 0.35
+//! alpha_v = -0.33
+//! tau = 4.15
+//!
+//! [start]                         # optional: at t = 0, and the elongation before
+//! x_dot0 = 0.3535                 # v0 by default
+//! a0 = 0.294                      # that of sliding at v0 by default, μ_K(v0) N0/κ
+//!
+//! [trace]                         # optional
+//! until = 150.0                   # end of the trace; by default when the outcome is known
+//! samples = 24                    # in each step of the integrator; or interval = 0.05, in time
+//!
+//! [units]                         # optional, as in sweep files
+//! ```
+
+use std::ops::{Range, RangeInclusive};
+
+use super::given::{GivenParameters, read_units};
+use super::parameter::{LARGEST, Parameter, Setting, Units};
+use super::toml_reader::{Entry, SpecError, entries, parse};
+use crate::model::{Control, ModelError};
+use crate::slip::case::Case;
+use crate::slip::motion::Accuracy;
+
+/// Horizon where the file gives none, from switch-on, in units of √(M/κ).
+const HORIZON: f64 = 1000.0;
+/// The most steps of a motion: some seconds.
+const MOST_STEPS: u64 = 10_000_000;
+/// Samples in a step where the file does not say.
+const SAMPLES: u32 = 24;
+/// The most samples in a step.
+const MOST_SAMPLES: u64 = 64;
+
+/// How densely a motion is sampled between its events.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Sampling {
+    /// So many samples in each step of the integrator, 1 to 64.
+    PerStep(u32),
+    /// At all multiples of this time.
+    Interval(f64),
+}
+
+/// A case as its file describes it: every value in range, every name known.
+#[derive(Debug, Clone, PartialEq)]
+pub struct CaseSpec {
+    /// Title for pictures and the trace; may be empty.
+    pub title: String,
+    /// All parameters; with a friction law.
+    pub setting: Setting,
+    /// The motion.
+    pub case: Case,
+    /// End of the trace, in time; none: when the outcome is known.
+    pub until: Option<f64>,
+    /// How densely to sample.
+    pub sampling: Sampling,
+    /// Units of the parameters.
+    pub units: Units,
+    /// The text of the file.
+    pub text: String,
+}
+
+impl std::str::FromStr for CaseSpec {
+    type Err = SpecError;
+
+    /// Reads a case file.
+    ///
+    /// # Errors
+    /// Points at the first place that is not understood, out of range or contradictory.
+    fn from_str(text: &str) -> Result<Self, SpecError> {
+        let document = parse(text)?;
+        let mut draft = Draft::default();
+        for entry in entries(document.get_ref(), "") {
+            match entry.key {
+                "title" => draft.title = entry.string()?.to_owned(),
+                "friction" => draft.given.read_friction(&entry)?,
+                "fixed" => draft.given.read_fixed(&entry)?,
+                "switch_on" => draft.switch_on = Some(read_switch_on(&entry)?),
+                "horizon" => draft.read_horizon(&entry)?,
+                "tolerance" => draft.tolerance = Some(entry.number_within(1e-15..=1e-3)?),
+                "start" => draft.read_start(&entry)?,
+                "trace" => draft.read_trace(&entry)?,
+                "units" => draft.units = read_units(&entry)?,
+                _ => {
+                    return Err(entry.unknown(&[
+                        "title",
+                        "friction",
+                        "fixed",
+                        "switch_on",
+                        "horizon",
+                        "tolerance",
+                        "start",
+                        "trace",
+                        "units",
+                    ]));
+                }
+            }
+        }
+        draft.finish(text)
+    }
+}
+
+/// Times and lengths that are greater than zero.
+const POSITIVE: RangeInclusive<f64> = 1.0 / LARGEST..=LARGEST;
+
+/// When control begins to act: a time, or +∞ for `false`.
+fn read_switch_on(entry: &Entry) -> Result<f64, SpecError> {
+    match entry.boolean() {
+        Ok(false) => Ok(f64::INFINITY),
+        Ok(true) => Err(entry
+            .error("true says not when")
+            .help("a time from 0 on, or false for never")),
+        Err(_) => entry.number_within(0.0..=LARGEST),
+    }
+}
+
+#[derive(Default)]
+struct Draft {
+    title: String,
+    given: GivenParameters,
+    switch_on: Option<f64>,
+    horizon: Option<(f64, Range<usize>)>,
+    tolerance: Option<f64>,
+    x_dot0: Option<f64>,
+    a0: Option<f64>,
+    until: Option<f64>,
+    sampling: Option<Sampling>,
+    units: Units,
+}
+
+impl Draft {
+    fn read_horizon(&mut self, entry: &Entry) -> Result<(), SpecError> {
+        self.horizon = Some((entry.number_within(POSITIVE)?, entry.span.clone()));
+        Ok(())
+    }
+
+    fn read_start(&mut self, start: &Entry) -> Result<(), SpecError> {
+        for entry in start.table()? {
+            match entry.key {
+                "x_dot0" => self.x_dot0 = Some(entry.number_within(-LARGEST..=LARGEST)?),
+                "a0" => self.a0 = Some(entry.number_within(-LARGEST..=LARGEST)?),
+                _ => return Err(entry.unknown(&["x_dot0", "a0"])),
+            }
+        }
+        Ok(())
+    }
+
+    fn read_trace(&mut self, trace: &Entry) -> Result<(), SpecError> {
+        for entry in trace.table()? {
+            let sampling = match entry.key {
+                "until" => {
+                    self.until = Some(entry.number_within(POSITIVE)?);
+                    continue;
+                }
+                "samples" => Sampling::PerStep(read_samples(&entry)?),
+                "interval" => Sampling::Interval(entry.number_within(POSITIVE)?),
+                _ => return Err(entry.unknown(&["until", "samples", "interval"])),
+            };
+            if self.sampling.replace(sampling).is_some() {
+                return Err(SpecError::at(
+                    entry.key_span.clone(),
+                    "trace: either samples in each step or an interval, not both",
+                ));
+            }
+        }
+        Ok(())
+    }
+
+    fn finish(mut self, text: &str) -> Result<CaseSpec, SpecError> {
+        let Some(law_place) = self.given.law_place().cloned() else {
+            return Err(SpecError::whole("a case needs a friction law")
+                .help("for example: [friction] law = \"weakening\", mu0 = 0.5, v_s = 0.5"));
+        };
+        let mut setting = self.given.setting();
+        let optional = (setting.control() == Control::default()).then_some(Parameter::Tau);
+        self.given.check(optional, Some(&law_place))?;
+        if setting.get(Parameter::Tau).is_nan() {
+            setting.set(Parameter::Tau, 0.0);
+        }
+        let case = self.case(&setting, &law_place)?;
+        case.motion().map_err(|error| self.refused(&error))?;
+        Ok(CaseSpec {
+            title: std::mem::take(&mut self.title),
+            setting,
+            case,
+            until: self.until,
+            sampling: self.sampling.unwrap_or(Sampling::PerStep(SAMPLES)),
+            units: self.units,
+            text: text.to_owned(),
+        })
+    }
+
+    /// The motion, with the defaults that depend on parameters.
+    fn case(&self, setting: &Setting, law_place: &Range<usize>) -> Result<Case, SpecError> {
+        let at_law = |error: ModelError| SpecError::at(law_place.clone(), error.to_string());
+        let law = setting.friction_law().map_err(at_law)?;
+        let law = law.ok_or_else(|| SpecError::whole("a case needs a friction law"))?;
+        let oscillator = setting.oscillator().map_err(at_law)?;
+        let v0 = setting.get(Parameter::V0);
+        let length_unit = oscillator.normal_load() / oscillator.stiffness();
+        // Without gains nothing is ever switched on.
+        let switch_on = match self.switch_on {
+            _ if setting.control() == Control::default() => f64::INFINITY,
+            given => given.unwrap_or(0.0),
+        };
+        let start = if switch_on.is_finite() {
+            switch_on
+        } else {
+            0.0
+        };
+        let horizon = match &self.horizon {
+            Some((horizon, place)) if *horizon <= start => {
+                let message =
+                    format!("horizon: {horizon} is not later than switch_on, which is {start}");
+                return Err(SpecError::at(place.clone(), message));
+            }
+            Some((horizon, _)) => *horizon,
+            None => start + HORIZON * oscillator.time_unit(),
+        };
+        let accuracy = Accuracy::default();
+        Ok(Case {
+            oscillator,
+            law,
+            control: setting.control(),
+            tau: setting.get(Parameter::Tau),
+            v0,
+            switch_on,
+            x_dot0: self.x_dot0.unwrap_or(v0),
+            a0: self.a0.unwrap_or_else(|| law.mu_k(v0) * length_unit),
+            horizon,
+            steps: MOST_STEPS,
+            accuracy: Accuracy {
+                tolerance: self.tolerance.unwrap_or(accuracy.tolerance),
+                ..accuracy
+            },
+        })
+    }
+
+    /// What the model refuses, at the parameter's place where the file gives it.
+    fn refused(&self, error: &ModelError) -> SpecError {
+        let parameter = Parameter::from_name(error.parameter);
+        SpecError {
+            message: error.to_string(),
+            span: parameter.and_then(|p| self.given.place(p)).cloned(),
+            help: None,
+        }
+    }
+}
+
+fn read_samples(entry: &Entry) -> Result<u32, SpecError> {
+    match entry.whole()? {
+        n @ 1..=MOST_SAMPLES => Ok(n as u32),
+        n => Err(entry.error(format!("{n} is outside its range: 1 to {MOST_SAMPLES}"))),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const PLAIN: &str = "[friction]\nlaw = \"coulomb\"\nmu0 = 0.4\n[fixed]\nv0 = 0.1\n";
+
+    #[test]
+    fn what_is_left_out_has_its_default() {
+        let spec: CaseSpec = PLAIN.parse().unwrap();
+        let case = &spec.case;
+        assert_eq!((case.x_dot0, case.a0), (0.1, 0.4));
+        assert_eq!(case.switch_on, f64::INFINITY, "nothing to switch on");
+        assert_eq!((case.tau, case.horizon), (0.0, 1000.0));
+        assert_eq!(case.accuracy, Accuracy::default());
+        assert_eq!((spec.until, spec.sampling), (None, Sampling::PerStep(24)));
+    }
+
+    #[test]
+    fn mistakes_are_pointed_at() {
+        for (text, says, at) in [
+            ("", "needs a friction law", None),
+            ("[fixed]\nv0 = 1\n", "needs a friction law", None),
+            ("horizons = 3", "unknown key `horizons`", Some("horizons")),
+            ("switch_on = true", "true says not when", Some("true")),
+            ("switch_on = -1.0", "switch_on: -1 is outside", Some("-1.0")),
+            ("horizon = nan", "horizon: expected a finite", Some("nan")),
+            ("tolerance = 1e-20", "tolerance: ", Some("1e-20")),
+            ("start = { x = 1 }", "unknown key `start.x`", Some("x")),
+            ("trace = { samples = 0 }", "trace.samples: 0 is", Some("0")),
+            (
+                "trace = { samples = 1, interval = 1.0 }",
+                "not both",
+                Some("interval"),
+            ),
+            (
+                "switch_on = 7.0\nhorizon = 5.0\nfixed.alpha_v = 1\nfixed.tau = 1",
+                "not later than",
+                Some("5.0"),
+            ),
+            (
+                "fixed.tau = 0.0\nfixed.alpha_n = 1.0",
+                "tau = 0",
+                Some("tau"),
+            ),
+            (
+                "fixed.alpha_n = 1.0",
+                "tau is not given",
+                Some("\"coulomb\""),
+            ),
+            ("fixed.mu_k = 1.0", "mu_k has no meaning", Some("mu_k")),
+        ] {
+            let friction = "friction = { law = \"coulomb\", mu0 = 0.4 }\nfixed.v0 = 0.1\n";
+            let whole = match at {
+                Some(_) => format!("{text}\n{friction}"),
+                None => text.to_owned(),
+            };
+            let error = whole.parse::<CaseSpec>().unwrap_err();
+            assert!(error.message.contains(says), "{text}: {error}");
+            let place = error.span.clone().map(|span| &whole[span]);
+            assert_eq!(place, at, "{text}: {error}");
+        }
+    }
+}

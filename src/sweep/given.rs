@@ -1,0 +1,155 @@
+//! The parameters that a file gives a value: its tables `[fixed]` and `[friction]`, with the place of every key.
+
+use std::ops::Range;
+
+use super::parameter::{GivenError, LawKind, Parameter, Setting, Units};
+use super::toml_reader::{Entry, SpecError};
+
+/// Parameters in the order of the file, each at most once.
+#[derive(Debug, Default)]
+pub(super) struct GivenParameters {
+    values: Vec<(Parameter, f64)>,
+    law: Option<(LawKind, Range<usize>)>,
+    places: Vec<(Parameter, Range<usize>)>,
+}
+
+impl GivenParameters {
+    /// Notes that the file gives `parameter`, as a value or as an axis.
+    pub fn give(&mut self, entry: &Entry, parameter: Parameter) -> Result<(), SpecError> {
+        if self.place(parameter).is_some() {
+            let message = format!("{} is given twice", parameter.name());
+            return Err(SpecError::at(entry.key_span.clone(), message)
+                .help("a parameter is either an axis or a fixed value"));
+        }
+        self.places.push((parameter, entry.key_span.clone()));
+        Ok(())
+    }
+
+    /// Reads the table `[fixed]`.
+    pub fn read_fixed(&mut self, fixed: &Entry) -> Result<(), SpecError> {
+        for entry in fixed.table()? {
+            let known = Parameter::ALL.into_iter().filter(|p| !p.of_friction_law());
+            let names: Vec<_> = known.clone().map(Parameter::name).collect();
+            let parameter = known
+                .into_iter()
+                .find(|p| p.name() == entry.key)
+                .ok_or_else(|| entry.unknown(&names))?;
+            self.read_value(&entry, parameter)?;
+        }
+        Ok(())
+    }
+
+    fn read_value(&mut self, entry: &Entry, parameter: Parameter) -> Result<(), SpecError> {
+        self.give(entry, parameter)?;
+        let value = entry.number()?;
+        parameter
+            .check(value)
+            .map_err(|e| SpecError::at(entry.span.clone(), e.to_string()))?;
+        self.values.push((parameter, value));
+        Ok(())
+    }
+
+    /// Reads the table `[friction]`.
+    pub fn read_friction(&mut self, friction: &Entry) -> Result<(), SpecError> {
+        let names = ["law", "mu0", "v_s", "mu_s"];
+        for entry in friction.table()? {
+            match Parameter::from_name(entry.key).filter(|p| p.of_friction_law()) {
+                Some(parameter) => self.read_value(&entry, parameter)?,
+                None if entry.key == "law" => {
+                    self.law = Some((read_law(&entry)?, entry.span.clone()));
+                }
+                None => return Err(entry.unknown(&names)),
+            }
+        }
+        if self.law.is_none() {
+            return Err(SpecError::at(
+                friction.key_span.clone(),
+                "[friction] needs a law",
+            ));
+        }
+        Ok(())
+    }
+
+    /// Where the friction law is named, if it is.
+    pub fn law_place(&self) -> Option<&Range<usize>> {
+        self.law.as_ref().map(|(_, place)| place)
+    }
+
+    /// The place of the key of a parameter that is given.
+    pub fn place(&self, parameter: Parameter) -> Option<&Range<usize>> {
+        let found = self.places.iter().find(|(p, _)| *p == parameter);
+        found.map(|(_, place)| place)
+    }
+
+    /// The values that are given, and the defaults of all others.
+    pub fn setting(&self) -> Setting {
+        let mut setting = Setting::new(self.law.as_ref().map(|(law, _)| *law));
+        for (parameter, value) in &self.values {
+            setting.set(*parameter, *value);
+        }
+        setting
+    }
+
+    /// Every parameter that is needed is there, none that would be ignored. `optional` can be left out; what is missing is
+    /// told at the friction law, or at `place`.
+    pub fn check(
+        &self,
+        optional: Option<Parameter>,
+        place: Option<&Range<usize>>,
+    ) -> Result<(), SpecError> {
+        let law = self.law.as_ref().map(|(law, _)| *law);
+        let there = |p: Parameter| self.place(p).is_some() || optional == Some(p);
+        Setting::check_given(law, there).map_err(|error| {
+            let span = match error {
+                GivenError::Unused(p) => self.place(p),
+                GivenError::Missing(Parameter::Mu0 | Parameter::VS | Parameter::V0) => {
+                    self.law_place()
+                }
+                GivenError::Missing(_) => place,
+            };
+            SpecError {
+                message: error.message(law),
+                span: span.cloned(),
+                help: Some(error.help()),
+            }
+        })
+    }
+}
+
+fn read_law(entry: &Entry) -> Result<LawKind, SpecError> {
+    let name = entry.string()?;
+    let found = LawKind::ALL.into_iter().find(|law| law.name() == name);
+    found.ok_or_else(|| {
+        let laws = LawKind::ALL.map(LawKind::name).join(", ");
+        entry
+            .error(format!("unknown friction law \"{name}\""))
+            .help(format!("known: {laws}"))
+    })
+}
+
+/// Reads the table `[units]`.
+pub(super) fn read_units(units: &Entry) -> Result<Units, SpecError> {
+    let [mut force, mut length, mut time] = [None, None, None];
+    for entry in units.table()? {
+        let slot = match entry.key {
+            "force" => &mut force,
+            "length" => &mut length,
+            "time" => &mut time,
+            _ => return Err(entry.unknown(&["force", "length", "time"])),
+        };
+        let name = entry.string()?;
+        if name.is_empty() || !name.chars().all(|c| c.is_alphabetic() || c == '%') {
+            return Err(entry.error("a unit is one word of letters, like \"N\" or \"mm\""));
+        }
+        *slot = Some(name.to_owned());
+    }
+    match (force, length, time) {
+        (Some(force), Some(length), Some(time)) => Ok(Units {
+            force_length_time: Some([force, length, time]),
+        }),
+        _ => Err(SpecError::at(
+            units.key_span.clone(),
+            "units: force, length and time are needed, all three",
+        )),
+    }
+}

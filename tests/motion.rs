@@ -1,0 +1,538 @@
+//! The integrator against known event times, linear theory, closed forms, an energy balance, another integrator, and chance.
+//!
+//! Units: M = κ = N0 = 1, so that everything is dimensionless as in `slipmap::slip::motion`.
+
+use slipmap::linear::rightmost::Rightmost;
+use slipmap::linear::{Crossings, MarginalTolerance};
+use slipmap::model::{FrictionLaw, Groups};
+use slipmap::slip::motion::{Accuracy, Event, Mode, Motion, Parameters};
+use slipmap::slip::outcome::{Limits, Observer, Outcome, Summary, follow};
+
+#[path = "motion/fixed_step.rs"]
+mod fixed_step;
+
+fn at_tolerance(tolerance: f64) -> Accuracy {
+    Accuracy {
+        tolerance,
+        ..Accuracy::default()
+    }
+}
+
+fn case(law: FrictionLaw, v0: f64, gains: (f64, f64), tau: f64, switch_on: f64) -> Parameters {
+    Parameters {
+        law,
+        velocity_unit: 1.0,
+        alpha_v: gains.0,
+        alpha_n: gains.1,
+        tau,
+        v0,
+        switch_on,
+    }
+}
+
+fn letters_law() -> FrictionLaw {
+    FrictionLaw::weakening(0.5, 0.5, 1.0).unwrap()
+}
+
+/// The letter's Fig. 3 (a) and (b).
+fn fig3() -> [Parameters; 2] {
+    [
+        case(letters_law(), 0.35, (-0.33, 0.0), 4.15, 70.0),
+        case(letters_law(), 0.1, (0.0, -10.0), 0.5, 70.0),
+    ]
+}
+
+/// Events with their times and elongations until `horizon`, from ẋ = 1.01 v0, a = μ_K(v0).
+fn events(p: Parameters, accuracy: Accuracy, horizon: f64) -> Vec<(Event, f64, f64)> {
+    let mut motion = Motion::new(p, accuracy, 1.01 * p.v0, p.law.mu_k(p.v0));
+    let mut events = Vec::new();
+    while motion.t < horizon {
+        if let Some(event) = motion.advance(horizon) {
+            events.push((event, motion.t, motion.a));
+        }
+    }
+    events
+}
+
+/// Slip and stick duration of the last full cycle before switch-on, the end of the last stick, the elongation there.
+fn landmarks(events: &[(Event, f64, f64)]) -> [f64; 4] {
+    let switch = events.iter().position(|e| e.0 == Event::SwitchOn).unwrap();
+    let before = &events[..switch];
+    let stop = before.iter().rposition(|e| e.0 == Event::Stick).unwrap();
+    let release = |from: &[(Event, f64, f64)]| {
+        let found = from.iter().rev().find(|e| e.0 == Event::Release);
+        let &(_, t, a) = found.expect("released");
+        (t, a)
+    };
+    let (started, _) = release(&before[..stop]);
+    let previous_stop = before[..stop].iter().rev().find(|e| e.0 == Event::Stick);
+    let stick = started - previous_stop.unwrap().1;
+    let (last, elongation) = release(events);
+    [before[stop].1 - started, stick, last, elongation]
+}
+
+#[test]
+fn the_events_of_the_letters_figure_3() {
+    let expected = [
+        [3.97549563, 4.92001175, 97.029009396],
+        [3.44600138, 15.85555061, 76.277483031],
+    ];
+    for (p, expected) in fig3().into_iter().zip(expected) {
+        let found = events(p, Accuracy::default(), 250.0);
+        let marks = landmarks(&found);
+        for (mark, expected) in marks.iter().zip(expected) {
+            assert!((mark - expected).abs() < 1e-8, "{marks:?}");
+        }
+        if p.alpha_n != 0.0 {
+            assert!((marks[3] - 0.5).abs() < 1e-10, "{marks:?}");
+        }
+        // Continuous sliding afterwards.
+        assert_eq!(found.last().unwrap().0, Event::Release);
+    }
+}
+
+#[test]
+fn errors_are_proportional_to_the_tolerance() {
+    for p in fig3() {
+        let tightest = landmarks(&events(p, at_tolerance(1e-15), 150.0));
+        let error = |accuracy| {
+            let marks = landmarks(&events(p, accuracy, 150.0));
+            let pairs = marks.iter().zip(&tightest);
+            pairs.map(|(m, t)| (m - t).abs()).fold(0.0, f64::max)
+        };
+        let mut points = Vec::new();
+        for halvings in 0..20 {
+            let tolerance = 1e-6 * 0.5_f64.powi(halvings);
+            let error = error(at_tolerance(tolerance));
+            points.push((tolerance.ln(), error.max(1e-14).ln()));
+        }
+        for tolerance in [3e-13, 1e-13, 1e-14] {
+            let error = error(at_tolerance(tolerance));
+            assert!(error < 1e-11, "{error:e} at {tolerance:e}");
+        }
+        let slope = slope(&points);
+        println!("errors grow with the tolerance to the power {slope:.3}");
+        assert!((0.8..1.3).contains(&slope), "{slope} {points:?}");
+        if p.alpha_v == 0.0 {
+            // Kinks are not felt in its one controlled slip: the block sticks for more than a delay before.
+            continue;
+        }
+        for tolerance in [1e-10, 1e-12] {
+            let stepped = error(at_tolerance(tolerance));
+            let over = error(Accuracy {
+                tolerance,
+                step_on_kinks: false,
+            });
+            println!("{tolerance:e}: {stepped:e} with kinks stepped on, {over:e} without");
+            assert!(over > 10.0 * stepped, "{over:e} {stepped:e}");
+        }
+    }
+}
+
+/// Slope of a straight line through `points`.
+fn slope(points: &[(f64, f64)]) -> f64 {
+    let n = points.len() as f64;
+    let mean = points
+        .iter()
+        .fold((0.0, 0.0), |m, p| (m.0 + p.0 / n, m.1 + p.1 / n));
+    let sums = points.iter().fold((0.0, 0.0), |s, p| {
+        let (x, y) = (p.0 - mean.0, p.1 - mean.1);
+        (s.0 + x * y, s.1 + x * x)
+    });
+    sums.0 / sums.1
+}
+
+/// a(t) at multiples of `every` from `from` on, `count` of them.
+fn samples(motion: &mut Motion, from: f64, every: f64, count: usize) -> Vec<f64> {
+    let mut found = Vec::new();
+    while found.len() < count {
+        let start = motion.t;
+        assert_eq!(motion.advance(f64::MAX), None, "slides on");
+        while found.len() < count {
+            let s = from + every * found.len() as f64 - start;
+            if s > motion.last_step().length {
+                break;
+            }
+            found.push(motion.last_step().state(s.max(0.0)).1);
+        }
+    }
+    found
+}
+
+/// Re λ and |Im λ| of a signal that is one pair of exponentials: s₊ = p s − q s₋, by least squares.
+fn exponent(signal: &[f64], every: f64) -> (f64, f64) {
+    let (mut a11, mut a12, mut a22, mut b1, mut b2) = (0.0, 0.0, 0.0, 0.0, 0.0);
+    for s in signal.windows(3) {
+        // Each equation counts alike, however far the signal has decayed.
+        let weight = 1.0 / (s[0] * s[0] + s[1] * s[1]);
+        a11 += weight * s[1] * s[1];
+        a12 -= weight * s[1] * s[0];
+        a22 += weight * s[0] * s[0];
+        b1 += weight * s[1] * s[2];
+        b2 -= weight * s[0] * s[2];
+    }
+    let det = a11 * a22 - a12 * a12;
+    let (p, q) = ((b1 * a22 - b2 * a12) / det, (a11 * b2 - a12 * b1) / det);
+    (
+        q.ln() / (2.0 * every),
+        (p / (2.0 * q.sqrt())).acos() / every,
+    )
+}
+
+#[test]
+fn small_deviations_grow_and_decay_as_linear_theory_says() {
+    let mut chance = Chance(3);
+    // By control (velocity, load, both), decaying and growing.
+    let mut seen = [[0; 2]; 3];
+    while seen.as_flattened().iter().any(|&n| n < 4) {
+        let control = chance.of(3);
+        let v0 = chance.between(0.2, 1.5);
+        let law = match chance.of(2) {
+            0 => FrictionLaw::weakening(0.5, chance.between(0.3, 1.0), 1.0),
+            _ => FrictionLaw::stribeck(0.4, chance.between(0.4, 1.5), 1.0),
+        };
+        let law = law.unwrap();
+        let gains = (
+            [1.0, 0.0, 1.0][control] * chance.between(-0.6, 0.3),
+            [0.0, 1.0, 1.0][control] * chance.between(-5.0, 0.5),
+        );
+        let p = case(law, v0, gains, chance.between(0.2, 5.0), 0.0);
+        if let Some(growing) = deviation_follows_linear_theory(p) {
+            seen[control][usize::from(growing)] += 1;
+        }
+    }
+    println!("{seen:?}");
+}
+
+/// Compares a small deviation of `p` with its rightmost root. Says whether it grows; none where this does not tell apart:
+/// where the next root is too near, the rate too slow or too fast.
+fn deviation_follows_linear_theory(p: Parameters) -> Option<bool> {
+    let groups = Groups::new(
+        p.law.mu_prime(p.v0),
+        p.alpha_v,
+        p.law.mu_k(p.v0) * p.alpha_n,
+    );
+    let count = Crossings::of(groups).count(p.tau, MarginalTolerance::default());
+    let rightmost = Rightmost::at(groups, p.tau, 2, count);
+    let [root, next] = rightmost.roots[..] else {
+        return None;
+    };
+    let (root, next) = (root.lambda, next.lambda);
+    if !rightmost.certified || root.im == 0.0 || root.re.abs() < 0.02 {
+        return None;
+    }
+    let count = 12;
+    let every = 0.25 * std::f64::consts::TAU / root.im.abs();
+    // The next root's part has fallen by e^−19.
+    let late = 19.0 / (root.re - next.re);
+    let end = late + f64::from(count) * every;
+    if root.re.abs() * end > 8.0 {
+        return None;
+    }
+    // Nonlinear terms stay below 1e-6 of the deviation.
+    let start = (3e-7 * (-root.re * end).exp()).clamp(1e-12, 1e-5);
+    let mut motion = Motion::new(p, at_tolerance(1e-15), p.v0 + start, p.law.mu_k(p.v0));
+    let rest = motion.sliding_elongation();
+    let signal = samples(&mut motion, late, every, count as usize);
+    let signal: Vec<_> = signal.iter().map(|a| a - rest).collect();
+    let (rate, frequency) = exponent(&signal, every);
+    assert!(
+        (rate / root.re - 1.0).abs() < 1e-6,
+        "{p:?} {root} {next} {rate}"
+    );
+    assert!(
+        (frequency / root.im.abs() - 1.0).abs() < 1e-6,
+        "{p:?} {root} {frequency}"
+    );
+    Some(root.re > 0.0)
+}
+
+/// Compares u and a with `exact` (of time) until `end`.
+fn agrees(p: Parameters, u: f64, a: f64, end: f64, exact: impl Fn(f64) -> (f64, f64)) {
+    let mut motion = Motion::new(p, Accuracy::default(), u, a);
+    while motion.t < end {
+        let start = motion.t;
+        assert_eq!(motion.advance(end), None, "slides on");
+        let step = motion.last_step();
+        for i in 0..=4 {
+            let s = step.length * f64::from(i) / 4.0;
+            let ((u, a, _), (u_exact, a_exact)) = (step.state(s), exact(start + s));
+            let error = (u - u_exact).abs().max((a - a_exact).abs());
+            assert!(error < 1e-10, "{error:e} at {}", start + s);
+        }
+    }
+}
+
+#[test]
+fn coulomb_slip_is_its_closed_form() {
+    let (mu, v0, u0, a0) = (0.4, 1.0, 1.3, 0.5);
+    let law = FrictionLaw::coulomb(mu, 1.0).unwrap();
+    // Harmonic without control.
+    let free = case(law, v0, (0.0, 0.0), 1.0, f64::INFINITY);
+    agrees(free, u0, a0, 40.0, |t| {
+        let (p, q) = (a0 - mu, u0 - v0);
+        (
+            v0 + p * t.sin() + q * t.cos(),
+            mu + p * t.cos() - q * t.sin(),
+        )
+    });
+    // Load control over the first delay: a″ = −(1 − μα)(a − a*), with a constant delayed elongation.
+    let (alpha, tau) = (-1.5, 3.0);
+    let w2: f64 = 1.0 - mu * alpha;
+    let rest = mu * (1.0 - alpha * a0) / w2;
+    let w = w2.sqrt();
+    agrees(case(law, v0, (0.0, alpha), tau, 0.0), u0, a0, tau, |t| {
+        let (c, s) = ((w * t).cos(), (w * t).sin());
+        let (p, q) = (a0 - rest, (v0 - u0) / w);
+        (v0 + w * (p * s - q * c), rest + p * c + q * s)
+    });
+    // Velocity control over the first delay: y = a − μ obeys y″ = αy′ − y.
+    let alpha = -0.3;
+    let w = (1.0_f64 - 0.25 * alpha * alpha).sqrt();
+    agrees(case(law, v0, (alpha, 0.0), tau, 0.0), u0, a0, tau, |t| {
+        let (y0, slope0) = (a0 - mu, v0 - u0);
+        let q = (slope0 - 0.5 * alpha * y0) / w;
+        let (c, s, growth) = ((w * t).cos(), (w * t).sin(), (0.5 * alpha * t).exp());
+        let y = growth * (y0 * c + q * s);
+        let slope = 0.5 * alpha * y + growth * w * (q * c - y0 * s);
+        (v0 + alpha * (y + mu - a0) - slope, y + mu)
+    });
+}
+
+/// Nodes and weights of Gauss's rule with eight points on [0, 1].
+const GAUSS: [(f64, f64); 4] = [
+    (0.960_289_856_497_536_3, 0.101_228_536_290_376_26),
+    (0.796_666_477_413_626_7, 0.222_381_034_453_374_48),
+    (0.525_532_409_916_329, 0.313_706_645_877_887_27),
+    (0.183_434_642_495_649_8, 0.362_683_783_378_362),
+];
+
+fn integral(f: impl Fn(f64) -> f64, end: f64) -> f64 {
+    let sum = GAUSS.iter().map(|&(node, weight)| {
+        let half = 0.5 * weight;
+        half * (f(0.5 * end * (1.0 - node)) + f(0.5 * end * (1.0 + node)))
+    });
+    end * sum.sum::<f64>()
+}
+
+#[test]
+fn energy_is_accounted_for() {
+    let stribeck = FrictionLaw::stribeck(0.4, 0.6, 1.0).unwrap();
+    for (law, v0, gains, tau) in [
+        (letters_law(), 0.1, (0.0, -10.0), 0.5),
+        (letters_law(), 0.35, (-0.3, -0.5), 2.0),
+        (stribeck, 0.3, (-0.1, 0.3), 3.0),
+        (stribeck, 0.2, (0.1, -2.0), 0.7),
+    ] {
+        let p = case(law, v0, gains, tau, 30.0);
+        for tolerance in [1e-9, 1e-13] {
+            let mut motion = Motion::new(p, at_tolerance(tolerance), 1.5 * v0, law.mu_k(v0));
+            let energy = |m: &Motion| 0.5 * (m.a * m.a + m.u * m.u);
+            let start = energy(&motion);
+            let (mut pulled, mut lost) = (0.0, 0.0);
+            while motion.t < 100.0 {
+                if motion.advance(100.0) == Some(Event::LiftOff) {
+                    break;
+                }
+                let step = motion.last_step();
+                // n − 1 is α_n times the difference that α_v acts on.
+                let power = |s| {
+                    let (_, a, n) = step.state(s);
+                    a * (v0 + p.alpha_v * (n - 1.0) / p.alpha_n)
+                };
+                let friction = |s| {
+                    let (u, _, n) = step.state(s);
+                    u.abs() * law.mu_k(u.abs()) * n
+                };
+                pulled += integral(power, step.length);
+                lost += integral(friction, step.length);
+            }
+            let balance = energy(&motion) - start - pulled + lost;
+            println!("{tolerance:e}: {balance:e} of {pulled}");
+            assert!(
+                balance.abs() < 1e2 * tolerance * (1.0 + pulled),
+                "{p:?} {balance:e}"
+            );
+        }
+    }
+}
+
+/// Numbers that look random, the same in every run (splitmix64).
+struct Chance(u64);
+
+impl Chance {
+    fn unit(&mut self) -> f64 {
+        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
+        let mut z = self.0;
+        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+        ((z ^ (z >> 31)) >> 11) as f64 / (1_u64 << 53) as f64
+    }
+
+    fn between(&mut self, from: f64, to: f64) -> f64 {
+        from + (to - from) * self.unit()
+    }
+
+    fn log(&mut self, from: f64, to: f64) -> f64 {
+        self.between(from.ln(), to.ln()).exp()
+    }
+
+    fn of(&mut self, n: usize) -> usize {
+        (self.unit() * n as f64) as usize
+    }
+}
+
+#[test]
+fn another_integrator_agrees() {
+    let mut chance = Chance(7);
+    let mut compared = 0;
+    for _ in 0..20 {
+        let mu_s = chance.between(0.7, 1.2);
+        let mu0 = chance.between(0.2, 0.6);
+        let law = match chance.of(3) {
+            0 => FrictionLaw::coulomb(mu0, mu_s),
+            1 => FrictionLaw::weakening(mu0, chance.between(0.3, 1.0), mu_s),
+            _ => FrictionLaw::stribeck(mu0, chance.between(0.3, 1.0), mu_s),
+        };
+        let gains = (chance.between(-0.5, 0.3), chance.between(-1.5, 0.5));
+        let tau = chance.between(0.5, 5.0);
+        let p = case(law.unwrap(), chance.between(0.1, 0.6), gains, tau, 6.0);
+        let (u, a) = (chance.between(-0.5, 1.0), chance.between(-0.5, 1.0));
+        let reference = fixed_step::events(&p, u, a, 25.0, 2e-3);
+        let mut motion = Motion::new(p, Accuracy::default(), u, a);
+        let mut found = Vec::new();
+        while motion.t < 25.0 {
+            match motion.advance(25.0) {
+                Some(Event::SwitchOn) | None => {}
+                Some(event) => found.push((event, motion.t)),
+            }
+            if found.last().is_some_and(|e| e.0 == Event::LiftOff) {
+                break;
+            }
+        }
+        for (one, other) in found.iter().zip(&reference).take(6) {
+            assert!(
+                one.0 == other.0 && (one.1 - other.1).abs() < 1e-6,
+                "{p:?} {u} {a}\n{found:?}\n{reference:?}"
+            );
+            compared += 1;
+        }
+        assert_eq!(
+            found.len().min(6),
+            reference.len().min(6),
+            "{found:?} {reference:?}"
+        );
+    }
+    println!("{compared} events");
+    assert!(compared > 40, "{compared}");
+}
+
+fn any_case(chance: &mut Chance) -> (Parameters, f64, f64) {
+    let mu_s = chance.log(0.05, 5.0);
+    // Now and then μ_K(0⁺) = μ_S.
+    let mu0 = if chance.of(4) == 0 {
+        mu_s
+    } else {
+        mu_s * chance.unit().max(1e-3)
+    };
+    let v_s = chance.log(1e-4, 1e3);
+    let law = match chance.of(3) {
+        0 => FrictionLaw::coulomb(mu0, mu_s),
+        1 => FrictionLaw::weakening(mu0, v_s, mu_s),
+        _ => FrictionLaw::stribeck(mu0, v_s, mu_s),
+    }
+    .unwrap();
+    let mut gain = || {
+        let size = chance.log(1e-6, 1e6);
+        [0.0, 0.0, size, -size][chance.of(4)]
+    };
+    let gains = (gain(), gain());
+    let tau = chance.log(1e-4, 100.0);
+    let v0 = chance.log(1e-6, 10.0);
+    let switch_on = [0.0, chance.between(0.0, 50.0), f64::INFINITY][chance.of(3)];
+    let mut p = case(law, v0, gains, tau, switch_on);
+    p.velocity_unit = [1.0, chance.log(0.1, 10.0)][chance.of(2)];
+    let u = [0.0, v0, 1.01 * v0, chance.between(-3.0, 3.0)][chance.of(4)];
+    let rest = law.mu_k(v0 * p.velocity_unit);
+    let a = [0.0, rest, mu_s, -mu_s, chance.between(-3.0, 3.0)][chance.of(5)];
+    (p, u, a)
+}
+
+fn is_sound(s: &Summary, limits: &Limits) {
+    let known = [s.decided, s.peak, s.n_min];
+    assert!(known.iter().all(|x| !x.is_nan()), "{s:?}");
+    assert!(
+        s.decided <= limits.horizon && s.steps <= limits.steps,
+        "{s:?}"
+    );
+    if s.outcome != Outcome::LiftOff {
+        assert!(s.n_min > 0.0, "{s:?}");
+    }
+    if s.outcome == Outcome::StickSlip {
+        assert!(
+            s.period > 0.0 && s.slip_time > 0.0 && s.stick_time >= 0.0,
+            "{s:?}"
+        );
+    }
+    assert_eq!(
+        s.settle_time.is_nan(),
+        s.outcome != Outcome::Sliding,
+        "{s:?}"
+    );
+}
+
+/// The most events in a row between which no time passes.
+#[derive(Default)]
+struct Chatter {
+    last: f64,
+    now: u32,
+    most: u32,
+}
+
+impl Observer for Chatter {
+    fn step(&mut self, motion: &Motion, event: Option<Event>) {
+        let passed = motion.t - self.last > 1e-15 * motion.t;
+        self.last = motion.t;
+        self.now = match event {
+            Some(_) if !passed => self.now + 1,
+            _ => 0,
+        };
+        self.most = self.most.max(self.now);
+    }
+}
+
+/// As many cases as `SLIPMAP_CASES` says, or 20,000.
+#[test]
+fn nothing_breaks_it() {
+    let cases = std::env::var("SLIPMAP_CASES").map_or(20_000, |n| n.parse().unwrap());
+    let mut chance = Chance(2024);
+    let mut tally = [0_u32; Outcome::ALL.len()];
+    for number in 0..cases {
+        let (p, u, a) = any_case(&mut chance);
+        let groups = Groups::new(
+            p.law.mu_prime(p.v0 * p.velocity_unit) * p.velocity_unit,
+            p.alpha_v,
+            p.law.mu_k(p.v0 * p.velocity_unit) * p.alpha_n,
+        );
+        let stable = number % 2 == 0
+            && Crossings::of(groups)
+                .count(p.tau, MarginalTolerance::default())
+                .stable();
+        let limits = Limits {
+            horizon: 2000.0,
+            steps: 2000,
+            stable_abscissa: stable.then_some(-0.1),
+        };
+        let mut chatter = Chatter::default();
+        let mut motion = Motion::new(p, at_tolerance(chance.log(1e-13, 1e-5)), u, a);
+        let summary = follow(&mut motion, &limits, &mut chatter);
+        assert!(chatter.most <= 3, "{p:?} {u} {a} {summary:?}");
+        is_sound(&summary, &limits);
+        assert!(motion.mode() != Mode::Stick || motion.u == 0.0 || motion.u.is_nan());
+        tally[summary.outcome as usize] += 1;
+    }
+    for (outcome, count) in Outcome::ALL.iter().zip(tally) {
+        println!("{}: {count}", outcome.name());
+    }
+    assert!(tally.iter().filter(|&&n| n > 0).count() >= 5, "{tally:?}");
+}
