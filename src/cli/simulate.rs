@@ -193,17 +193,13 @@ fn failure(error: TraceError) -> Failure {
 fn print(out: &mut impl Write, spec: &CaseSpec, trace: &Trace) -> std::io::Result<()> {
     let summary = &trace.summary;
     writeln!(out, "{}", verdict(summary, spec))?;
-    for (name, value) in [
-        ("decided at", summary.decided),
-        ("settle_time", summary.settle_time),
-        ("n_min", summary.n_min),
-        ("peak_force", summary.peak),
-        ("period", summary.period),
-        ("stick_time", summary.stick_time),
-        ("slip_time", summary.slip_time),
-        ("last_release", summary.last_release),
-    ] {
+    for (name, value) in summary.numbers() {
         if value.is_finite() {
+            let name = if name == "decided" {
+                "decided at"
+            } else {
+                name
+            };
             writeln!(out, "  {name:<16} {}", digits(value))?;
         }
     }

@@ -3,7 +3,7 @@
 use super::count::Count;
 use super::newton::Root;
 use super::spectrum::{Incomplete, RootFinder};
-use super::status::{CERTIFIED, DISAGREE, MARGINAL, MOST_COUNTED, NOT_CONVERGED, SATURATED};
+use super::status::{CERTIFIED, DISAGREE, MARGINAL, MOST_COUNTED, NOT_CONVERGED};
 use super::track::RootTracker;
 use crate::model::Groups;
 
@@ -25,13 +25,7 @@ impl Rightmost {
     #[must_use]
     pub fn at(groups: Groups, tau: f64, wanted: usize, count: Count) -> Self {
         let counted = count.n_unstable.min(u64::from(MOST_COUNTED));
-        let mut status = 0;
-        if counted < count.n_unstable {
-            status |= SATURATED;
-        }
-        if count.marginal {
-            status |= MARGINAL;
-        }
+        let mut status = if count.marginal { MARGINAL } else { 0 };
         let (mut first, mut margin) = (None, f64::NAN);
         let mut tracker = RootTracker::new(1);
         let (counts, flags) = ([counted as u16], std::slice::from_mut(&mut status));

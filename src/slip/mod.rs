@@ -3,6 +3,7 @@
 //! - [`case`]: a motion in physical units, to its outcome
 //! - [`motion`]: steps from event to event
 //! - [`outcome`]: what becomes of a motion
+//! - [`step`]: the polynomials of one step
 //! - [`series`]: polynomials in time, their first zeros
 
 pub mod case;
@@ -11,3 +12,4 @@ mod history;
 pub mod motion;
 pub mod outcome;
 pub mod series;
+pub mod step;

@@ -12,9 +12,10 @@
 //! events are zeros of polynomials. A step ends where the delayed polynomial ends, if the next one is another by more than
 //! the tolerance: kinks are stepped on, one delay after the other, until they are too smooth to be felt.
 
-use super::friction_series::{FrictionSeries, Series};
+use super::friction_series::FrictionSeries;
 use super::history::{History, SMOOTH};
-use super::series::{Coefficients, MOST_ORDER, PER_NEXT, first_zero, largest, shifted, value};
+use super::series::{Coefficients, MOST_ORDER, first_zero, value};
+use super::step::{Control, Step};
 use crate::model::FrictionLaw;
 
 /// What the block does.
@@ -107,157 +108,6 @@ pub struct Motion {
     kink: u32,
     /// The last step's polynomials of u, a, n and the delayed elongation, and its length.
     step: Step,
-}
-
-/// The polynomials of one step, of the time since its start.
-#[derive(Debug, Clone)]
-pub struct Step {
-    /// Length.
-    pub length: f64,
-    order: usize,
-    u: Coefficients,
-    a: Coefficients,
-    n: Coefficients,
-    delayed: Coefficients,
-}
-
-impl Step {
-    fn range(c: &Coefficients, order: usize) -> &[f64] {
-        &c[..=order]
-    }
-
-    /// `c` times `factor`, with `shift` added to it.
-    fn scaled(c: &Coefficients, factor: f64, shift: f64) -> Coefficients {
-        let mut scaled = c.map(|c| factor * c);
-        scaled[0] += shift;
-        scaled
-    }
-
-    /// ẋ, a and N at `s` since the start of the step.
-    #[must_use]
-    pub fn state(&self, s: f64) -> (f64, f64, f64) {
-        let at = |c| value(Self::range(c, self.order), s);
-        (at(&self.u), at(&self.a), at(&self.n))
-    }
-
-    /// The elongation one delay before `s`; means nothing before control acts.
-    #[must_use]
-    pub fn delayed_elongation(&self, s: f64) -> f64 {
-        value(Self::range(&self.delayed, self.order), s)
-    }
-
-    /// The displacement since the start of the step at `s`.
-    #[must_use]
-    pub fn displacement(&self, s: f64) -> f64 {
-        let mut mean = [0.0; MOST_ORDER + 1];
-        for (mean, (u, per_next)) in mean.iter_mut().zip(self.u.iter().zip(&PER_NEXT)) {
-            *mean = u * per_next;
-        }
-        s * value(Self::range(&mean, self.order), s)
-    }
-
-    /// The smaller one of `known` and the smallest load of the step.
-    #[must_use]
-    pub fn smallest_load(&self, known: f64) -> f64 {
-        let flipped = Self::scaled(&self.n, -1.0, 0.0);
-        -largest(Self::range(&flipped, self.order), self.length, -known)
-    }
-
-    /// The larger one of `known` and the largest |a| of the step.
-    #[must_use]
-    pub fn largest_elongation(&self, known: f64) -> f64 {
-        let flipped = Self::scaled(&self.a, -1.0, 0.0);
-        let one_way = largest(Self::range(&self.a, self.order), self.length, known);
-        largest(Self::range(&flipped, self.order), self.length, one_way)
-    }
-
-    /// The largest |ẋ − `v0`| or |a − `rest`| of the step.
-    #[must_use]
-    pub fn deviation(&self, v0: f64, rest: f64) -> f64 {
-        let mut found = 0.0;
-        for (c, centre) in [(&self.u, v0), (&self.a, rest)] {
-            for factor in [1.0, -1.0] {
-                let c = Self::scaled(c, factor, -factor * centre);
-                found = largest(Self::range(&c, self.order), self.length, found);
-            }
-        }
-        found
-    }
-
-    /// The last time in the step at which |ẋ − `v0`| exceeds `band`; none if it never does.
-    #[must_use]
-    pub fn last_outside(&self, v0: f64, band: f64) -> Option<f64> {
-        let u = Self::range(&self.u, self.order);
-        let spread = u[1..]
-            .iter()
-            .rev()
-            .fold(0.0, |sum, c| (sum + c.abs()) * self.length);
-        if (u[0] - v0).abs() + spread <= band {
-            return None;
-        }
-        // Backwards from the end.
-        let mut reversed = shifted(u, self.length);
-        reversed
-            .iter_mut()
-            .skip(1)
-            .step_by(2)
-            .for_each(|c| *c = -*c);
-        if (reversed[0] - v0).abs() > band {
-            return Some(self.length);
-        }
-        let crossing = |factor: f64| {
-            let room = Self::scaled(&reversed, -factor, band + factor * v0);
-            first_zero(Self::range(&room, self.order), self.length)
-        };
-        let back = [crossing(1.0), crossing(-1.0)].into_iter().flatten();
-        let back = back.fold(f64::INFINITY, f64::min);
-        back.is_finite().then_some(self.length - back)
-    }
-}
-
-/// v0 and the gains that act in a step.
-#[derive(Debug, Clone, Copy)]
-struct Control {
-    v0: f64,
-    alpha_v: f64,
-    alpha_n: f64,
-}
-
-impl Step {
-    /// Coefficients k of the load, and of v.
-    #[inline(always)]
-    fn controlled(&mut self, control: Control, k: usize) -> f64 {
-        let difference = self.a[k] - self.delayed[k];
-        let (v0, load) = if k == 0 {
-            (control.v0, 1.0)
-        } else {
-            (0.0, 0.0)
-        };
-        self.n[k] = load + control.alpha_n * difference;
-        v0 + control.alpha_v * difference
-    }
-
-    /// Coefficients of the order 1 and higher at rest.
-    fn stick(&mut self, control: Control) {
-        let order = self.order.min(MOST_ORDER);
-        for (k, per_next) in PER_NEXT.iter().enumerate().take(order) {
-            self.a[k + 1] = self.controlled(control, k) * per_next;
-            self.u[k + 1] = 0.0;
-        }
-        self.controlled(control, order);
-    }
-
-    /// Those in slip.
-    fn slip(&mut self, control: Control, direction: f64, series: &mut impl Series) {
-        let order = self.order.min(MOST_ORDER);
-        for (k, per_next) in PER_NEXT.iter().enumerate().take(order) {
-            let pull = self.controlled(control, k);
-            let friction = series.extend(k, direction * self.u[k], &self.n);
-            self.a[k + 1] = (pull - self.u[k]) * per_next;
-            self.u[k + 1] = (self.a[k] - direction * friction) * per_next;
-        }
-        self.controlled(control, order);
-    }
 }
 
 impl Motion {

@@ -2,7 +2,8 @@
 
 use std::f64::consts::TAU;
 
-use super::motion::{Event, Mode, Motion, Step};
+use super::motion::{Event, Mode, Motion};
+use super::step::Step;
 
 /// How a motion ends up.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -81,6 +82,23 @@ pub struct Summary {
     pub last_release: f64,
     /// Steps taken.
     pub steps: u64,
+}
+
+impl Summary {
+    /// Its numbers but the steps, by the names that files and messages have for them; NaN where there is none.
+    #[must_use]
+    pub const fn numbers(&self) -> [(&'static str, f64); 8] {
+        [
+            ("decided", self.decided),
+            ("settle_time", self.settle_time),
+            ("n_min", self.n_min),
+            ("peak_force", self.peak),
+            ("period", self.period),
+            ("stick_time", self.stick_time),
+            ("slip_time", self.slip_time),
+            ("last_release", self.last_release),
+        ]
+    }
 }
 
 /// Sees every step of a motion.

@@ -196,16 +196,7 @@ fn put_root(file: &File, spec: &CaseSpec, found: &Trace) -> hdf5::Result<()> {
         put_numbers(file, name, &[value])?;
     }
     put_text(file, trace::OUTCOME, summary.outcome.name())?;
-    for (name, value) in [
-        ("decided", summary.decided),
-        ("settle_time", summary.settle_time),
-        ("n_min", summary.n_min),
-        ("peak_force", summary.peak),
-        ("period", summary.period),
-        ("stick_time", summary.stick_time),
-        ("slip_time", summary.slip_time),
-        ("last_release", summary.last_release),
-    ] {
+    for (name, value) in summary.numbers() {
         put_numbers(file, name, &[value])?;
     }
     put_numbers(file, "steps", &[summary.steps])
