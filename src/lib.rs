@@ -36,6 +36,7 @@
 //! # Ok::<(), slipmap::model::ModelError>(())
 //! ```
 
+pub mod critical;
 pub mod linear;
 pub mod model;
 pub mod report;

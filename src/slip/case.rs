@@ -1,7 +1,7 @@
 //! A motion in physical units: what is given, and what comes out.
 
 use super::motion::{Accuracy, Motion, Parameters};
-use super::outcome::{Limits, Observer, Summary, follow};
+use super::outcome::{Limits, Observer, REPEATED, Summary, follow};
 use crate::linear::rightmost::Rightmost;
 use crate::linear::{Crossings, MarginalTolerance};
 use crate::model::{Control, FrictionLaw, ModelError, Oscillator, SlidingPoint};
@@ -153,6 +153,7 @@ impl Case {
             horizon: self.horizon / units.time,
             steps: self.steps,
             stable_abscissa: self.stable_abscissa()?.map(|s| s * units.time),
+            repeated: REPEATED,
         };
         let found = follow(&mut motion, &limits, observer);
         Ok(Summary {

@@ -70,6 +70,23 @@ impl History {
         });
     }
 
+    /// A past of at least two delays in which a has grown at the rate `rate`, to `a` at time 0.
+    pub fn restart_rising(&mut self, a: f64, rate: f64, tau: f64) {
+        self.restart(a, 0.0);
+        let past = 3.0 * tau;
+        let piece = &mut self.pieces[0];
+        (piece.from, piece.radius, piece.order) = (-past, f64::INFINITY, 1);
+        piece.a[0] = a - rate * past;
+        piece.a[1] = rate;
+    }
+
+    /// Becomes a copy of `other`, in memory that is there.
+    pub fn copy_from(&mut self, other: &Self) {
+        self.pieces.clear();
+        self.pieces.extend(other.pieces.iter().cloned());
+        (self.at, self.felt) = (other.at, other.felt);
+    }
+
     /// Adds the step from the end of the last one to `to`; its polynomial holds for `radius` from its start.
     pub fn push(&mut self, to: f64, radius: f64, a: &[f64], kink: u32) {
         let from = self.pieces.back().map_or(to, |p| p.to);

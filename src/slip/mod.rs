@@ -8,6 +8,7 @@
 
 pub mod case;
 mod friction_series;
+mod graze;
 mod history;
 pub mod motion;
 pub mod outcome;

@@ -106,6 +106,8 @@ pub struct Motion {
     pub x: f64,
     /// Order of the lowest derivative of a that jumps now.
     kink: u32,
+    /// Since when the block has stuck while v0 was the same; +∞ while it does not.
+    stuck_since: f64,
     /// The last step's polynomials of u, a, n and the delayed elongation, and its length.
     step: Step,
 }
@@ -135,8 +137,10 @@ impl Motion {
             a,
             x: 0.0,
             kink: 1,
+            stuck_since: f64::INFINITY,
             step: Step {
                 length: 0.0,
+                radius: 0.0,
                 order: 0,
                 u: zero,
                 a: zero,
@@ -146,6 +150,36 @@ impl Motion {
         };
         motion.mode = motion.mode_at(1.0);
         motion
+    }
+
+    /// Puts the block at the end of a stick that erased all memory: it is released at t = 0 to slip forwards from the
+    /// elongation `a`, which has grown at the rate v0 for longer than a delay.
+    pub fn release_from(&mut self, a: f64) {
+        let v0 = self.parameters.v0;
+        self.history.restart_rising(a, v0, self.parameters.tau);
+        (self.t, self.u, self.a, self.x) = (0.0, 0.0, a, 0.0);
+        self.mode = Mode::Forwards;
+        self.stuck_since = f64::INFINITY;
+        self.kink = 2;
+    }
+
+    /// Changes v0 from now on.
+    pub fn set_v0(&mut self, v0: f64) {
+        self.parameters.v0 = v0;
+        if self.mode == Mode::Stick {
+            self.stuck_since = self.t;
+        }
+        self.kink = 1;
+    }
+
+    /// Becomes a copy of `other`, a motion with the same law and accuracy, in memory that is there.
+    pub fn copy_from(&mut self, other: &Self) {
+        self.parameters.clone_from(&other.parameters);
+        self.history.copy_from(&other.history);
+        self.mode = other.mode;
+        (self.t, self.u, self.a, self.x) = (other.t, other.u, other.a, other.x);
+        (self.kink, self.stuck_since) = (other.kink, other.stuck_since);
+        self.step.clone_from(&other.step);
     }
 
     /// The parameters.
@@ -242,12 +276,30 @@ impl Motion {
                 kink: SMOOTH,
             };
         }
+        if self.stuck_since + self.parameters.tau <= self.t && self.parameters.alpha_v == 0.0 {
+            // The elongation grows evenly until release, one delay ago as now.
+            let v0 = self.parameters.v0;
+            self.step.delayed = [0.0; MOST_ORDER + 1];
+            self.step.delayed[0] = self.a - v0 * self.parameters.tau;
+            self.step.delayed[1] = v0;
+            return DelayLimit {
+                length: self.longest_stick(),
+                kink: SMOOTH,
+            };
+        }
         let time = self.t - self.parameters.tau;
         let reach = self.history.read(time, self.kink, &mut self.step.delayed);
         DelayLimit {
             length: reach.until - time,
             kink: reach.kink,
         }
+    }
+
+    /// More than the time until release of a block whose elongation has grown evenly for a delay.
+    fn longest_stick(&self) -> f64 {
+        let p = &self.parameters;
+        let load = 1.0 + (p.alpha_n * p.v0 * p.tau).abs();
+        2.0 * (self.a.abs() + p.law.mu_s() * load) / p.v0.abs()
     }
 
     /// The order of a kink of the delayed elongation after it has passed into the motion.
@@ -385,6 +437,7 @@ impl Motion {
         self.t += length;
         self.history.push(self.t, radius, a, self.kink);
         self.step.length = length;
+        self.step.radius = radius;
     }
 
     /// The mode after `event`, which may turn out to be another one.
@@ -393,6 +446,7 @@ impl Motion {
         match event {
             Event::Release => {
                 self.u = 0.0;
+                self.stuck_since = f64::INFINITY;
                 self.mode = if self.a > 0.0 {
                     Mode::Forwards
                 } else {
@@ -404,6 +458,9 @@ impl Motion {
                 let before = self.mode;
                 self.u = 0.0;
                 self.mode = self.mode_at(n);
+                if self.mode == Mode::Stick {
+                    self.stuck_since = self.t;
+                }
                 if self.mode == Mode::Stick || self.mode == before {
                     Event::Stick
                 } else {

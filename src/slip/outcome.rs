@@ -57,6 +57,8 @@ pub struct Limits {
     pub steps: u64,
     /// The spectral abscissa of sliding at v0 under the control that acts, if all roots are stable.
     pub stable_abscissa: Option<f64>,
+    /// How well cycles have to repeat, relative, to be periodic.
+    pub repeated: f64,
 }
 
 /// A motion that was followed to its outcome. Times, lengths and forces as in [`super::motion`].
@@ -80,6 +82,8 @@ pub struct Summary {
     pub slip_time: f64,
     /// When the last stick ended; NaN if there was none.
     pub last_release: f64,
+    /// Slips in one period of stick-slip; 0 else.
+    pub slips: u32,
     /// Steps taken.
     pub steps: u64,
 }
@@ -130,8 +134,8 @@ pub fn follow(motion: &mut Motion, limits: &Limits, observer: &mut impl Observer
 const CYCLES: usize = 64;
 /// The largest multiple period that is recognised.
 const MOST_FOLD: usize = 4;
-/// How well cycles have to repeat, relative.
-const REPEATED: f64 = 1e-9;
+/// How well cycles have to repeat by default, relative.
+pub const REPEATED: f64 = 1e-9;
 /// Deviation from sliding, over v0, below which linear theory decides.
 const SMALL: f64 = 1e-3;
 /// The part of v0 that counts as settled.
@@ -291,13 +295,14 @@ impl Watch {
     fn repeats(&self, now: f64, fold: usize) -> bool {
         let known = self.count.min(CYCLES);
         let since = self.switch_on.max(f64::MIN);
+        let repeated = self.limits.repeated;
         for back in 0..known {
             if back + fold >= known {
                 return false;
             }
             let at = |back: usize| self.cycles[(self.count - 1 - back) % CYCLES];
             let (p, q) = (at(back), at(back + fold));
-            let near = |p: f64, q: f64| (p - q).abs() <= REPEATED * (p.abs() + q.abs()) + REPEATED;
+            let near = |p: f64, q: f64| (p - q).abs() <= repeated * (p.abs() + q.abs()) + repeated;
             if !(near(p.period, q.period)
                 && near(p.slip, q.slip)
                 && near(p.elongation, q.elongation))
@@ -402,6 +407,7 @@ impl Watch {
             stick_time: period - slip_time,
             slip_time,
             last_release: self.last_release,
+            slips: self.fold as u32,
             steps: self.steps,
         }
     }
@@ -439,6 +445,7 @@ mod tests {
             horizon: 3000.0,
             steps: 1_000_000,
             stable_abscissa: count.stable().then_some(root.lambda.re),
+            repeated: REPEATED,
         };
         let mut motion = Motion::new(p, Accuracy::default(), u, p.law.mu_k(p.v0));
         follow(&mut motion, &limits, &mut ())

@@ -9,6 +9,8 @@ use super::series::{Coefficients, MOST_ORDER, PER_NEXT, first_zero, largest, shi
 pub struct Step {
     /// Length.
     pub length: f64,
+    /// For how long the polynomials hold to the tolerance.
+    pub(super) radius: f64,
     pub(super) order: usize,
     pub(super) u: Coefficients,
     pub(super) a: Coefficients,

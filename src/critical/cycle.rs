@@ -1,0 +1,104 @@
+//! One cycle of stick-slip: a slip and the stick after it, and how far it is from a graze and from lift-off.
+
+use crate::slip::motion::{Event, Mode, Motion};
+
+/// The most steps of a cycle.
+const MOST_STEPS: u32 = 20_000;
+/// How far from its expected time a minimum of ẋ still is the expected one, relative.
+const SAME_MINIMUM: f64 = 0.25;
+/// A slip that lasts that many times as long as expected has missed its stop.
+const MISSED: f64 = 1.6;
+
+/// One slip and the stick after it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Cycle {
+    /// Minimum of ẋ that the slip would have reached beyond its stop, ≤ 0; 0 where the stop is a graze.
+    pub depth: f64,
+    /// Duration of the slip.
+    pub slip: f64,
+    /// Duration of the stick after it; NaN where only the slip was followed.
+    pub stick: f64,
+    /// The smallest load.
+    pub n_min: f64,
+}
+
+/// What became of a block that was released.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Ride {
+    /// It stopped, and stuck until it was released again.
+    Cycle(Cycle),
+    /// It passed the minimum of ẋ at which it was expected to stop, or did not stop for much longer than expected.
+    Pass,
+    /// N ≤ 0.
+    LiftOff,
+    /// It slipped backwards, or went on for too long.
+    Other,
+}
+
+/// Follows a block that was just released until its next release; or until it stops, if it is `slip_only`.
+///
+/// `expected` is the duration of the slip from which the block is expected to stop, if one is known.
+pub fn ride(motion: &mut Motion, expected: Option<f64>, slip_only: bool) -> Ride {
+    let start = motion.t;
+    let mut stopped: Option<(f64, f64)> = None;
+    let mut n_min = f64::INFINITY;
+    for _ in 0..MOST_STEPS {
+        let before = motion.t;
+        let event = motion.advance(f64::INFINITY);
+        if !(motion.u + motion.a).is_finite() {
+            return Ride::Other;
+        }
+        n_min = motion.last_step().smallest_load(n_min);
+        match (event, stopped) {
+            (Some(Event::LiftOff), _) => return Ride::LiftOff,
+            (Some(Event::Stick), None) => {
+                let depth = motion.last_step().depth_beyond_stop();
+                stopped = Some((motion.t, depth));
+                if slip_only {
+                    return Ride::Cycle(Cycle {
+                        depth,
+                        slip: motion.t - start,
+                        stick: f64::NAN,
+                        n_min,
+                    });
+                }
+            }
+            (Some(Event::Release), Some((stop, depth))) if motion.mode() == Mode::Forwards => {
+                return Ride::Cycle(Cycle {
+                    depth,
+                    slip: stop - start,
+                    stick: motion.t - stop,
+                    n_min,
+                });
+            }
+            (Some(_), _) => return Ride::Other,
+            (None, None) => {
+                if let Some(expected) = expected
+                    && passed(motion, before - start, expected)
+                {
+                    return Ride::Pass;
+                }
+            }
+            (None, Some(_)) => {}
+        }
+        if expected.is_none() && stopped.is_none() && motion.t - start > LONGEST_SLIP {
+            return Ride::Pass;
+        }
+    }
+    Ride::Other
+}
+
+/// Slips last less than this before anything is known of them, in units of √(M/κ).
+const LONGEST_SLIP: f64 = 60.0;
+
+/// Whether the last step of a slip, `since` its release, shows that the stop `expected` then does not come.
+fn passed(motion: &Motion, since: f64, expected: f64) -> bool {
+    let step = motion.last_step();
+    let near = |t: f64| (t - expected).abs() < SAME_MINIMUM * expected;
+    if near(since) || near(since + step.length) {
+        if let Some((s, u)) = step.speed_minimum() {
+            return u > 0.0 && near(since + s);
+        }
+    }
+    since + step.length > MISSED * expected
+}

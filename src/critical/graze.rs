@@ -1,0 +1,319 @@
+//! The critical velocity as the velocity at which the slip of the stick-slip orbit grazes ẋ = ẍ = 0.
+//!
+//! Two roads to it. Where the block sticks for longer than a delay under pure load control, all memory is erased and one slip
+//! tells: it starts from a = μ_S (1 + α_n v0 τ), which has grown evenly. Else the orbit itself is followed from cycle to
+//! cycle while v0 approaches the graze.
+
+use super::cycle::{Cycle, Ride, ride};
+use super::{Method, Problem};
+use crate::slip::motion::{Accuracy, Motion};
+
+/// A graze and the orbit there.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Graze {
+    /// v0.
+    pub v0: f64,
+    /// The grazing cycle.
+    pub cycle: Cycle,
+    /// Which of the two roads led there.
+    pub method: Method,
+}
+
+/// How the search ended.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Found {
+    /// At a graze, beyond which the block slides.
+    Graze(Graze),
+    /// N ≤ 0 from this v0 on.
+    LiftOff(f64, Method),
+    /// Otherwise: simulation has to tell.
+    Unclear,
+}
+
+/// Where v0 starts, in order, in units of μ_S N0/√(κM).
+const STARTS: [f64; 4] = [3e-2, 3e-3, 1e-4, 1e-6];
+/// The largest relative step of v0.
+const LARGEST_STEP: f64 = 1.0;
+/// v_c is known to this, relative.
+const PRECISION: f64 = 1e-6;
+/// The most cycles at one v0.
+const MOST_CYCLES: u32 = 12;
+/// The most trials.
+const MOST_TRIALS: u32 = 80;
+
+/// Trials of stick-slip at one v0 after the other.
+trait Road {
+    /// What a block released at `v0` does, from where the last trial that was kept ended.
+    /// With memory, cycle after cycle until their depths differ by no more than `settled`, relative.
+    fn trial(&mut self, v0: f64, expected: Option<f64>, settled: f64) -> Ride;
+    /// Goes on from the end of the last trial.
+    fn keep(&mut self);
+}
+
+/// Slips that start without memory.
+struct Slips<'p> {
+    problem: &'p Problem,
+    motion: Motion,
+}
+
+impl Road for Slips<'_> {
+    fn trial(&mut self, v0: f64, expected: Option<f64>, _: f64) -> Ride {
+        let p = self.problem;
+        self.motion.set_v0(v0);
+        self.motion
+            .release_from(p.law.mu_s() * (1.0 + p.alpha_n * v0 * p.tau));
+        ride(&mut self.motion, expected, true)
+    }
+
+    fn keep(&mut self) {}
+}
+
+/// Cycle after cycle.
+struct Orbit {
+    kept: Motion,
+    tried: Motion,
+}
+
+impl Road for Orbit {
+    fn trial(&mut self, v0: f64, mut expected: Option<f64>, settled: f64) -> Ride {
+        self.tried.copy_from(&self.kept);
+        self.tried.set_v0(v0);
+        let mut seen = [[f64::NAN; 3]; 2];
+        for _ in 0..MOST_CYCLES {
+            let cycle = match ride(&mut self.tried, expected, false) {
+                Ride::Cycle(cycle) => cycle,
+                other => return other,
+            };
+            expected = expected.map(|_| cycle.slip);
+            for (seen, gauge) in seen.iter_mut().zip(gauges(&cycle)) {
+                *seen = [seen[1], seen[2], gauge];
+            }
+            if seen
+                .iter()
+                .all(|s| (s[2] - s[1]).abs() <= settled * s[2].abs())
+            {
+                return Ride::Cycle(Cycle {
+                    depth: limit(seen[0]),
+                    n_min: -limit(seen[1]),
+                    ..cycle
+                });
+            }
+        }
+        Ride::Other
+    }
+
+    fn keep(&mut self) {
+        std::mem::swap(&mut self.kept, &mut self.tried);
+    }
+}
+
+/// The graze of `problem`'s stick-slip.
+#[must_use]
+pub fn find(problem: &Problem, accuracy: Accuracy) -> Found {
+    if problem.alpha_v == 0.0
+        && let Some(found) = by_one_slip(problem, accuracy)
+    {
+        return found;
+    }
+    by_orbit(problem, accuracy)
+}
+
+fn motion(problem: &Problem, accuracy: Accuracy) -> Motion {
+    Motion::new(problem.at(1e-3, 0.0), accuracy, 0.0, 0.0)
+}
+
+/// The first road; none where it does not lead to the end.
+fn by_one_slip(problem: &Problem, accuracy: Accuracy) -> Option<Found> {
+    let mut road = Slips {
+        problem,
+        motion: motion(problem, accuracy),
+    };
+    let (v0, start) = STARTS.iter().find_map(|start| {
+        let v0 = start * problem.law.mu_s();
+        match road.trial(v0, None, 0.2) {
+            Ride::Cycle(cycle) => Some((v0, cycle)),
+            _ => None,
+        }
+    })?;
+    let climbed = climb(&mut road, v0, start);
+    let Climbed::Graze { v0, slip } = climbed else {
+        return None;
+    };
+    // The stick after this slip, and so the one before it, outlast the delay; and beyond it the block slides.
+    let below = v0 * (1.0 - 10.0 * PRECISION);
+    road.motion.set_v0(below);
+    road.motion
+        .release_from(problem.law.mu_s() * (1.0 + problem.alpha_n * below * problem.tau));
+    let Ride::Cycle(cycle) = ride(&mut road.motion, None, false) else {
+        return None;
+    };
+    if cycle.stick < problem.tau || (cycle.slip / slip - 1.0).abs() > 0.01 {
+        return None;
+    }
+    road.motion.set_v0(v0 * (1.0 + 10.0 * PRECISION));
+    if !slides(problem, &mut road.motion, slip) {
+        return Some(Found::Unclear);
+    }
+    Some(Found::Graze(Graze {
+        v0,
+        cycle,
+        method: Method::GrazeSlip,
+    }))
+}
+
+/// The second road.
+fn by_orbit(problem: &Problem, accuracy: Accuracy) -> Found {
+    let kept = motion(problem, accuracy);
+    let tried = kept.clone();
+    let mut road = Orbit { kept, tried };
+    for start in STARTS {
+        let v0 = start * problem.law.mu_s();
+        road.kept.set_v0(v0);
+        road.kept.release_from(problem.law.mu_s());
+        let Ride::Cycle(cycle) = road.trial(v0, None, 0.2) else {
+            continue;
+        };
+        road.keep();
+        return match climb(&mut road, v0, cycle) {
+            Climbed::Graze { v0, slip } => finish(problem, &mut road, v0, slip),
+            Climbed::LiftOff(v0) => Found::LiftOff(v0, Method::GrazeOrbit),
+            Climbed::Unclear => Found::Unclear,
+        };
+    }
+    Found::Unclear
+}
+
+fn finish(problem: &Problem, road: &mut Orbit, v0: f64, slip: f64) -> Found {
+    let below = v0 * (1.0 - 10.0 * PRECISION);
+    let Ride::Cycle(cycle) = road.trial(below, None, f64::INFINITY) else {
+        return Found::Unclear;
+    };
+    if (cycle.slip / slip - 1.0).abs() > 0.01 {
+        return Found::Unclear;
+    }
+    road.keep();
+    road.kept.set_v0(v0 * (1.0 + 20.0 * PRECISION));
+    if !slides(problem, &mut road.kept, slip) {
+        return Found::Unclear;
+    }
+    Found::Graze(Graze {
+        v0,
+        cycle,
+        method: Method::GrazeOrbit,
+    })
+}
+
+/// How a climb towards a graze ended.
+enum Climbed {
+    Graze { v0: f64, slip: f64 },
+    LiftOff(f64),
+    Unclear,
+}
+
+/// What changes with v0 and vanishes where stick-slip ends: minus the distance to a graze and to lift-off.
+fn gauges(cycle: &Cycle) -> [f64; 2] {
+    [cycle.depth, -cycle.n_min]
+}
+
+/// What a sequence converges to, as its last three members tell (Aitken).
+fn limit([first, second, third]: [f64; 3]) -> f64 {
+    let (before, last) = (second - first, third - second);
+    let ratio = last / before;
+    if ratio.abs() < 0.7 {
+        third + last * ratio / (1.0 - ratio)
+    } else {
+        third
+    }
+}
+
+/// Raises v0 from cycle to cycle towards where a gauge vanishes.
+fn climb<R: Road>(road: &mut R, start: f64, first: Cycle) -> Climbed {
+    let mut at = (start, first);
+    let mut slopes = [f64::NAN; 2];
+    let mut most = LARGEST_STEP;
+    let mut lifted = false;
+    for _ in 0..MOST_TRIALS {
+        let (v0, cycle) = at;
+        let gaps = [0, 1].map(|i| {
+            let gap = -gauges(&cycle)[i] / slopes[i] / v0;
+            if gap >= 0.0 { gap } else { f64::INFINITY }
+        });
+        let gap = gaps[0].min(gaps[1]);
+        if gap < PRECISION || most < PRECISION {
+            return if lifted && gaps[1] <= gaps[0] {
+                Climbed::LiftOff(v0)
+            } else if gap < 10.0 * PRECISION && gaps[0] <= gaps[1] {
+                Climbed::Graze {
+                    v0: v0 * (1.0 + gap),
+                    slip: cycle.slip,
+                }
+            } else if gaps[1] < 10.0 * PRECISION {
+                Climbed::LiftOff(v0)
+            } else {
+                Climbed::Unclear
+            };
+        }
+        let share = 0.97;
+        let step = (share * gap).min(most);
+        let next = v0 * (1.0 + step);
+        let settled = if step > 0.3 { 0.2 } else { 0.02 };
+        match road.trial(next, Some(cycle.slip), settled) {
+            Ride::Cycle(there) => {
+                road.keep();
+                {
+                    for i in [0, 1] {
+                        slopes[i] = (gauges(&there)[i] - gauges(&cycle)[i]) / (next - v0);
+                    }
+                }
+                at = (next, there);
+                most = (2.0 * most).min(LARGEST_STEP);
+            }
+            Ride::Pass => most = 0.5 * step,
+            Ride::LiftOff => {
+                lifted = true;
+                most = 0.5 * step;
+            }
+            Ride::Other => return Climbed::Unclear,
+        }
+    }
+    Climbed::Unclear
+}
+
+/// The share of v0 above which ẋ stays once the block slides.
+const SLIDING: f64 = 0.25;
+
+/// Whether a block released just beyond a graze slides from then on: its velocity's minima after the graze rise.
+fn slides(problem: &Problem, motion: &mut Motion, slip: f64) -> bool {
+    let v0 = motion.parameters().v0;
+    if !problem.count(v0).stable() {
+        return false;
+    }
+    let start = motion.t;
+    let mut lowest = f64::NEG_INFINITY;
+    let mut risen = 0;
+    for _ in 0..20_000 {
+        if motion.advance(f64::INFINITY).is_some() || !motion.u.is_finite() {
+            return false;
+        }
+        let Some((_, u)) = motion.last_step().speed_minimum() else {
+            continue;
+        };
+        if motion.t - start < 0.75 * slip {
+            continue;
+        }
+        if u < lowest {
+            // Beats: what comes after the lowest one counts.
+            risen = 0;
+        } else {
+            risen += 1;
+        }
+        lowest = u;
+        if risen >= 2 && u > SLIDING * v0 && motion.t - start > slip + problem.tau {
+            return true;
+        }
+        if motion.t - start > 20.0 * slip + 20.0 * problem.tau {
+            return false;
+        }
+    }
+    false
+}

@@ -1,0 +1,264 @@
+//! The critical velocity v_c: the velocity of the pull below which stick-slip survives.
+//!
+//! - [`limit`]: Coulomb friction, load control, τ → 0: closed form (the letter's Fig. 4)
+//! - [`graze`]: as the velocity at which the orbit's slip grazes ẋ = 0
+//! - [`follow`]: by simulation, v0 raised step by step
+//! - [`cycle`]: one slip and one stick
+
+pub mod cycle;
+pub mod follow;
+pub mod graze;
+pub mod limit;
+
+use crate::linear::rightmost::Rightmost;
+use crate::linear::{Count, Crossings, MarginalTolerance};
+use crate::model::{FrictionLaw, Groups};
+use crate::slip::motion::{Accuracy, Parameters};
+use crate::slip::outcome::Outcome;
+use follow::{Fate, Pace, Sustained};
+use graze::{Found, Graze};
+
+/// A controlled oscillator whose critical velocity is asked for, in the units of [`crate::slip::motion`].
+#[derive(Debug, Clone, PartialEq)]
+pub struct Problem {
+    /// The friction law.
+    pub law: FrictionLaw,
+    /// N0/√(κM), the unit of velocity in which the law's speeds are given.
+    pub velocity_unit: f64,
+    /// α_v √(M/κ).
+    pub alpha_v: f64,
+    /// α_N/κ.
+    pub alpha_n: f64,
+    /// τ √(κ/M).
+    pub tau: f64,
+}
+
+impl Problem {
+    /// A motion's parameters at `v0`, with control from `switch_on` on.
+    #[must_use]
+    pub fn at(&self, v0: f64, switch_on: f64) -> Parameters {
+        let controlled = self.alpha_v != 0.0 || self.alpha_n != 0.0;
+        Parameters {
+            law: self.law.clone(),
+            velocity_unit: self.velocity_unit,
+            alpha_v: self.alpha_v,
+            alpha_n: self.alpha_n,
+            tau: self.tau,
+            v0,
+            switch_on: if controlled { switch_on } else { f64::INFINITY },
+        }
+    }
+
+    /// The groups of linear stability at `v0`.
+    #[must_use]
+    pub fn groups(&self, v0: f64) -> Groups {
+        let speed = v0 * self.velocity_unit;
+        Groups::new(
+            self.law.mu_prime(speed) * self.velocity_unit,
+            self.alpha_v,
+            self.law.mu_k(speed) * self.alpha_n,
+        )
+    }
+
+    /// The number of unstable roots of sliding at `v0`.
+    #[must_use]
+    pub fn count(&self, v0: f64) -> Count {
+        Crossings::of(self.groups(v0)).count(self.tau, MarginalTolerance::default())
+    }
+
+    /// The spectral abscissa of sliding at `v0`, if it is stable.
+    #[must_use]
+    pub fn stable_abscissa(&self, v0: f64) -> Option<f64> {
+        let count = self.count(v0);
+        if !count.stable() {
+            return None;
+        }
+        let rightmost = Rightmost::at(self.groups(v0), self.tau, 1, count);
+        let root = rightmost.roots.first().filter(|_| rightmost.certified);
+        root.map(|root| root.lambda.re)
+            .filter(|abscissa| *abscissa < 0.0)
+    }
+}
+
+/// How stick-slip ends at v_c.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum End {
+    /// The slip grazes ẋ = ẍ = 0 at its end.
+    Grazing,
+    /// The orbit vanishes or loses its stability while its stops are still crossings of ẋ = 0.
+    Fold,
+    /// The last stick-slip has more than one slip in a period: one period has doubled before.
+    PeriodDoubling,
+    /// The last stick-slip does not repeat.
+    Irregular,
+    /// N ≤ 0 on the way: the model ends at `v_liftoff`, and there is no v_c.
+    LiftOff,
+    /// It survives up to the largest v0 that was tried.
+    Persists,
+    /// No stick-slip is sustained at any v0 that was tried: v_c = 0.
+    Never,
+}
+
+impl End {
+    /// All, in the order of their numbers in a map.
+    pub const ALL: [Self; 7] = [
+        Self::Grazing,
+        Self::Fold,
+        Self::PeriodDoubling,
+        Self::Irregular,
+        Self::LiftOff,
+        Self::Persists,
+        Self::Never,
+    ];
+
+    /// The name in maps and messages.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Grazing => "grazing",
+            Self::Fold => "fold",
+            Self::PeriodDoubling => "period-doubling",
+            Self::Irregular => "irregular",
+            Self::LiftOff => "lift-off",
+            Self::Persists => "persists",
+            Self::Never => "never",
+        }
+    }
+}
+
+/// What gave a critical velocity.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum Method {
+    /// One slip without memory, see [`graze`].
+    GrazeSlip,
+    /// The orbit at its graze, see [`graze`].
+    GrazeOrbit,
+    /// Simulation, see [`follow`].
+    Simulation,
+}
+
+impl Method {
+    /// All, in the order of their numbers in a map.
+    pub const ALL: [Self; 3] = [Self::GrazeSlip, Self::GrazeOrbit, Self::Simulation];
+
+    /// The name in maps and messages.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::GrazeSlip => "graze-slip",
+            Self::GrazeOrbit => "graze-orbit",
+            Self::Simulation => "simulation",
+        }
+    }
+}
+
+/// The critical velocity of a problem, in the units of [`crate::slip::motion`]; NaN for what there is not.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Critical {
+    /// The largest v0 at which stick-slip persists; 0 where it never does.
+    pub vc: f64,
+    /// How it ends there.
+    pub end: End,
+    /// What gave the answer.
+    pub method: Method,
+    /// The smallest v0 at which N ≤ 0 occurs, where that ends stick-slip.
+    pub v_liftoff: f64,
+    /// Time stuck in a period at v_c.
+    pub stick_time: f64,
+    /// Time in slip in a period at v_c.
+    pub slip_time: f64,
+    /// The smallest N at v_c.
+    pub n_min: f64,
+    /// Whether it is known what becomes of the motion beyond v_c.
+    pub decided: bool,
+}
+
+/// Error allowed in a step on the way to a graze.
+const GRAZE_TOLERANCE: f64 = 1e-8;
+/// Error allowed in a step where stick-slip is followed.
+const FOLLOW_TOLERANCE: f64 = 1e-9;
+
+/// The largest v0 at which stick-slip of `problem` persists while v0 is raised from low values: protocol `follow`.
+#[must_use]
+pub fn critical_velocity(problem: &Problem) -> Critical {
+    let accuracy = |tolerance| Accuracy {
+        tolerance,
+        ..Accuracy::default()
+    };
+    match graze::find(problem, accuracy(GRAZE_TOLERANCE)) {
+        Found::Graze(graze) => of_graze(&graze),
+        Found::LiftOff(v0, method) => of_lift_off(v0, method),
+        Found::Unclear => by_simulation(problem, &Pace::default(), accuracy(FOLLOW_TOLERANCE)),
+    }
+}
+
+fn of_graze(graze: &Graze) -> Critical {
+    Critical {
+        vc: graze.v0,
+        end: End::Grazing,
+        method: graze.method,
+        v_liftoff: f64::NAN,
+        stick_time: graze.cycle.stick,
+        slip_time: graze.cycle.slip,
+        n_min: graze.cycle.n_min,
+        decided: true,
+    }
+}
+
+fn of_lift_off(v0: f64, method: Method) -> Critical {
+    Critical {
+        v_liftoff: v0,
+        n_min: 0.0,
+        ..nothing(f64::NAN, End::LiftOff, method)
+    }
+}
+
+fn nothing(vc: f64, end: End, method: Method) -> Critical {
+    Critical {
+        vc,
+        end,
+        method,
+        v_liftoff: f64::NAN,
+        stick_time: f64::NAN,
+        slip_time: f64::NAN,
+        n_min: f64::NAN,
+        decided: true,
+    }
+}
+
+/// The same by simulation alone, whatever the other roads say.
+#[must_use]
+pub fn by_simulation(problem: &Problem, pace: &Pace, accuracy: Accuracy) -> Critical {
+    let followed = follow::critical_velocity(problem, pace, accuracy);
+    let method = Method::Simulation;
+    let undecided = |lost: &Sustained| lost.fate == Fate::Lost(Outcome::Undecided);
+    let decided = !followed.lost.as_ref().is_some_and(undecided);
+    match (followed.last, followed.lost) {
+        (_, Some(lost)) if lost.fate == Fate::LiftOff => of_lift_off(lost.v0, method),
+        (None, _) => Critical {
+            decided,
+            ..nothing(0.0, End::Never, method)
+        },
+        (Some(last), lost) => Critical {
+            vc: if lost.is_some() { last.v0 } else { f64::NAN },
+            stick_time: last.summary.stick_time,
+            slip_time: last.summary.slip_time,
+            n_min: last.summary.n_min,
+            decided,
+            ..nothing(f64::NAN, end(&last, lost.is_some()), method)
+        },
+    }
+}
+
+/// Depth of a stop, over v0, below which it is a graze.
+const GRAZING: f64 = 1e-3;
+
+fn end(last: &Sustained, lost: bool) -> End {
+    match last.fate {
+        _ if !lost => End::Persists,
+        Fate::Irregular => End::Irregular,
+        _ if last.summary.slips > 1 => End::PeriodDoubling,
+        _ if last.depth.abs() < GRAZING * last.v0 => End::Grazing,
+        _ => End::Fold,
+    }
+}

@@ -1,0 +1,67 @@
+//! How near ẋ comes to zero in slip: minima that are passed, and the depth to which a stop would have gone.
+
+use super::series::{Coefficients, first_zero, shifted, value};
+use super::step::Step;
+
+/// Steps of Newton's method on the way to a minimum.
+const NEWTON_STEPS: usize = 8;
+
+impl Step {
+    /// The first minimum of ẋ inside the step: the time since its start, and the value. None where there is none.
+    #[must_use]
+    pub fn speed_minimum(&self) -> Option<(f64, f64)> {
+        let slope = derivative(Self::range(&self.u, self.order), 1.0);
+        let slope = &slope[..self.order];
+        // One turn at most in a step, unless its ends say otherwise.
+        if slope[0] > 0.0 || value(slope, self.length) < 0.0 {
+            return None;
+        }
+        let falling = derivative(Self::range(&self.u, self.order), -1.0);
+        let s = first_zero(&falling[..self.order], self.length)?;
+        Some((s, value(Self::range(&self.u, self.order), s)))
+    }
+
+    /// The minimum ẋ < 0 that a slip forwards which stops at the end of this step would have reached, had the friction gone
+    /// on as for ẋ > 0: a smooth function of the parameters that is zero where the stop is a graze.
+    #[must_use]
+    pub fn depth_beyond_stop(&self) -> f64 {
+        let about = shifted(Self::range(&self.u, self.order), self.length);
+        let (fall, bend) = (-about[1], 2.0 * about[2]);
+        if bend <= 0.0 {
+            // It falls faster and faster: nowhere near a graze.
+            return -fall.abs();
+        }
+        let parabola = fall / bend;
+        let slope = derivative(&about[..=self.order], 1.0);
+        let slope = &slope[..self.order];
+        let bends = derivative(slope, 1.0);
+        let bends = &bends[..self.order - 1];
+        let mut s = parabola;
+        for _ in 0..NEWTON_STEPS {
+            let bend = value(bends, s);
+            if bend <= 0.0 || s > self.radius {
+                return -0.5 * fall * parabola;
+            }
+            let correction = value(slope, s) / bend;
+            s -= correction;
+            if correction.abs() <= 1e-9 * s {
+                break;
+            }
+        }
+        if (0.0..=self.radius).contains(&s) {
+            let c = &about[1..=self.order];
+            s * value(c, s)
+        } else {
+            -0.5 * fall * parabola
+        }
+    }
+}
+
+/// The coefficients of the derivative of `c`, times `factor`.
+fn derivative(c: &[f64], factor: f64) -> Coefficients {
+    let mut slope = [0.0; super::series::MOST_ORDER + 1];
+    for (k, (slope, c)) in slope.iter_mut().zip(&c[1..]).enumerate() {
+        *slope = factor * (k + 1) as f64 * c;
+    }
+    slope
+}
