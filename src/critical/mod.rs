@@ -3,12 +3,14 @@
 //! - [`limit`]: Coulomb friction, load control, τ → 0: closed form (the letter's Fig. 4)
 //! - [`graze`]: as the velocity at which the orbit's slip grazes ẋ = 0
 //! - [`follow`]: by simulation, v0 raised step by step
+//! - [`switch_on`]: by the other protocol, the windows in which stick-slip survives switching on
 //! - [`cycle`]: one slip and one stick
 
 pub mod cycle;
 pub mod follow;
 pub mod graze;
 pub mod limit;
+pub mod switch_on;
 
 use crate::linear::rightmost::Rightmost;
 use crate::linear::{Count, Crossings, MarginalTolerance};
