@@ -357,6 +357,22 @@ fn energy_is_accounted_for() {
     }
 }
 
+#[test]
+fn kinks_long_ago_do_not_stop_the_motion() {
+    // Events at times of the order of one, known better than times one long delay later are.
+    for tau in [40.3, 96.7, 700.0, 12345.6] {
+        let law = FrictionLaw::coulomb(0.5, 1.0).unwrap();
+        let p = case(law, 1.0, (-0.001, 0.0), tau, 0.0);
+        let mut motion = Motion::new(p, Accuracy::default(), 0.0, 0.0);
+        let end = 2.2 * tau;
+        while motion.t < end {
+            let before = motion.t;
+            let event = motion.advance(end);
+            assert!(motion.t > before || event.is_some(), "{tau}: {before}");
+        }
+    }
+}
+
 /// Numbers that look random, the same in every run (splitmix64).
 struct Chance(u64);
 
