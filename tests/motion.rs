@@ -6,7 +6,7 @@ use slipmap::linear::rightmost::Rightmost;
 use slipmap::linear::{Crossings, MarginalTolerance};
 use slipmap::model::{FrictionLaw, Groups};
 use slipmap::slip::motion::{Accuracy, Event, Mode, Motion, Parameters};
-use slipmap::slip::outcome::{Limits, Observer, Outcome, Summary, follow};
+use slipmap::slip::outcome::{Limits, Observer, Outcome, REPEATED, Summary, follow};
 
 #[path = "motion/fixed_step.rs"]
 mod fixed_step;
@@ -357,6 +357,22 @@ fn energy_is_accounted_for() {
     }
 }
 
+#[test]
+fn kinks_long_ago_do_not_stop_the_motion() {
+    // Events at times of the order of one, known better than times one long delay later are.
+    for tau in [40.3, 96.7, 700.0, 12345.6] {
+        let law = FrictionLaw::coulomb(0.5, 1.0).unwrap();
+        let p = case(law, 1.0, (-0.001, 0.0), tau, 0.0);
+        let mut motion = Motion::new(p, Accuracy::default(), 0.0, 0.0);
+        let end = 2.2 * tau;
+        while motion.t < end {
+            let before = motion.t;
+            let event = motion.advance(end);
+            assert!(motion.t > before || event.is_some(), "{tau}: {before}");
+        }
+    }
+}
+
 /// Numbers that look random, the same in every run (splitmix64).
 struct Chance(u64);
 
@@ -522,6 +538,7 @@ fn nothing_breaks_it() {
             horizon: 2000.0,
             steps: 2000,
             stable_abscissa: stable.then_some(-0.1),
+            repeated: REPEATED,
         };
         let mut chatter = Chatter::default();
         let mut motion = Motion::new(p, at_tolerance(chance.log(1e-13, 1e-5)), u, a);

@@ -113,7 +113,9 @@ impl History {
     /// Writes the polynomial of a from `time` on, as one of the time since then, to `out`; zero beyond its order. `latest` is
     /// the order of the kink at the end of the last step.
     pub fn read(&mut self, time: f64, latest: u32, out: &mut Coefficients) -> Reach {
-        let close = 8.0 * f64::EPSILON * time.abs().max(1.0);
+        // `time` is rounded as the present is, one delay later: with less than that a step could be too short to move on.
+        let now = self.pieces.back().map_or(0.0, |p| p.to.abs());
+        let close = 8.0 * f64::EPSILON * time.abs().max(now).max(1.0);
         while self.at + 1 < self.pieces.len() && time >= self.pieces[self.at].to - close {
             self.at += 1;
         }
@@ -194,5 +196,16 @@ mod tests {
         assert_eq!(history.read(2.0, SMOOTH, &mut a), reach(SMOOTH));
         history.forget_before(1.5);
         assert_eq!(history.pieces.len(), 2);
+    }
+
+    #[test]
+    fn boundaries_nearer_than_the_present_is_rounded_are_passed() {
+        let mut history = History::constant(2.0, 0.0, 10);
+        history.push(0.3, 0.3, &[2.0, 1.0], 1);
+        history.push(1000.0, 1000.0, &[3.0], 2);
+        let mut a = [0.0; MOST_ORDER + 1];
+        let reach = history.read(0.3 - 1e-14, SMOOTH, &mut a);
+        assert!(1000.0 + (reach.until - 0.3) > 1000.0, "{reach:?}");
+        assert_eq!(a[0], 3.0);
     }
 }

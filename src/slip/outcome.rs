@@ -130,10 +130,10 @@ pub fn follow(motion: &mut Motion, limits: &Limits, observer: &mut impl Observer
     }
 }
 
-/// Cycles that are remembered.
-const CYCLES: usize = 64;
 /// The largest multiple period that is recognised.
 const MOST_FOLD: usize = 4;
+/// Cycles that are remembered.
+const CYCLES: usize = MOST_FOLD + 1;
 /// How well cycles have to repeat by default, relative.
 pub const REPEATED: f64 = 1e-9;
 /// Deviation from sliding, over v0, below which linear theory decides.
@@ -148,10 +148,17 @@ const EQUAL_WINDOWS: u32 = 4;
 /// From one release to the next.
 #[derive(Debug, Clone, Copy, Default)]
 struct Cycle {
-    end: f64,
     period: f64,
     slip: f64,
     elongation: f64,
+}
+
+/// Cycles in a row that equal those a fixed number of cycles earlier.
+#[derive(Debug, Clone, Copy, Default)]
+struct Repeats {
+    /// When the first of them began.
+    since: f64,
+    count: usize,
 }
 
 /// What has been seen of a motion.
@@ -163,6 +170,8 @@ struct Watch {
     rest: f64,
     scale: f64,
     steps: u64,
+    /// Until when it has been seen.
+    seen: f64,
     outcome: Option<Outcome>,
     n_min: f64,
     peak: f64,
@@ -171,6 +180,8 @@ struct Watch {
     last_stop: f64,
     cycles: [Cycle; CYCLES],
     count: usize,
+    /// For the multiple periods 1, 2, …
+    repeats: [Repeats; MOST_FOLD],
     fold: usize,
     decay: Decay,
     window: Window,
@@ -210,6 +221,7 @@ impl Watch {
             rest,
             scale: (1.0 + p.v0.abs()).max(motion.a.abs()).max(motion.u.abs()),
             steps: 0,
+            seen: motion.t,
             outcome: None,
             n_min: f64::INFINITY,
             peak: 0.0,
@@ -218,6 +230,7 @@ impl Watch {
             last_stop: f64::NAN,
             cycles: [Cycle::default(); CYCLES],
             count: 0,
+            repeats: [Repeats::default(); MOST_FOLD],
             fold: 0,
             decay: Decay {
                 small_since: f64::INFINITY,
@@ -245,22 +258,23 @@ impl Watch {
 
     fn see(&mut self, motion: &Motion, event: Option<Event>) {
         let step = motion.last_step();
+        // The time itself, not the end less the length: rounding would put the first step under control before it.
+        let start = std::mem::replace(&mut self.seen, motion.t);
         let size = motion.a.abs().max(motion.u.abs());
         if !(motion.a + motion.u).is_finite() || size > BEYOND * self.scale {
             self.outcome = Some(Outcome::Diverged);
             return;
         }
-        let controlled = motion.t - step.length >= self.switch_on || !self.switch_on.is_finite();
+        let controlled = start >= self.switch_on || !self.switch_on.is_finite();
         if controlled {
             self.n_min = step.smallest_load(self.n_min);
             self.peak = step.largest_elongation(self.peak);
         }
         if let Some(t) = step.last_outside(self.v0, SETTLED * self.v0) {
-            self.unsettled = motion.t - step.length + t;
+            self.unsettled = start + t;
         }
         match event {
             Some(Event::LiftOff) => self.outcome = Some(Outcome::LiftOff),
-            Some(Event::SwitchOn) => self.count = 0,
             Some(Event::Release) => self.see_release(motion),
             Some(Event::Stick) => self.last_stop = motion.t,
             _ => {}
@@ -272,51 +286,50 @@ impl Watch {
 
     /// Adds the cycle that ends with this release, and looks whether cycles repeat over more than a delay.
     fn see_release(&mut self, motion: &Motion) {
-        if self.last_release.is_finite() && self.last_stop > self.last_release {
-            self.cycles[self.count % CYCLES] = Cycle {
-                end: motion.t,
-                period: motion.t - self.last_release,
-                slip: self.last_stop - self.last_release,
-                elongation: motion.a,
-            };
-            self.count += 1;
+        let began = std::mem::replace(&mut self.last_release, motion.t);
+        // Before switch-on, or across it, no cycle says what comes after.
+        let after_switch_on = began >= self.switch_on || !self.switch_on.is_finite();
+        if !(after_switch_on && self.last_stop > began) {
+            return;
         }
-        self.last_release = motion.t;
-        for fold in 1..=MOST_FOLD {
-            if self.repeats(motion.t, fold) {
-                self.fold = fold;
-                self.outcome = Some(Outcome::StickSlip);
-                return;
-            }
+        self.cycles[self.count % CYCLES] = Cycle {
+            period: motion.t - began,
+            slip: self.last_stop - began,
+            elongation: motion.a,
+        };
+        self.count += 1;
+        let repeating = (1..=MOST_FOLD).find(|&fold| self.repeats(motion.t, fold));
+        if let Some(fold) = repeating {
+            self.fold = fold;
+            self.outcome = Some(Outcome::StickSlip);
         }
     }
 
-    /// Whether the cycles of the last delay, and `fold` more, equal those `fold` earlier.
-    fn repeats(&self, now: f64, fold: usize) -> bool {
-        let known = self.count.min(CYCLES);
-        let since = self.switch_on.max(f64::MIN);
-        let repeated = self.limits.repeated;
-        for back in 0..known {
-            if back + fold >= known {
-                return false;
-            }
-            let at = |back: usize| self.cycles[(self.count - 1 - back) % CYCLES];
-            let (p, q) = (at(back), at(back + fold));
-            let near = |p: f64, q: f64| (p - q).abs() <= repeated * (p.abs() + q.abs()) + repeated;
-            if !(near(p.period, q.period)
-                && near(p.slip, q.slip)
-                && near(p.elongation, q.elongation))
-            {
-                return false;
-            }
-            if self.switch_on.is_finite() && q.end - q.period < since {
-                return false;
-            }
-            if back + 1 >= fold && now - p.end + p.period > self.tau {
-                return true;
-            }
+    /// The cycle `back` before the last one.
+    fn cycle(&self, back: usize) -> Cycle {
+        self.cycles[(self.count - 1 - back) % CYCLES]
+    }
+
+    /// Whether the cycles of the last delay, and `fold` at least, equal those `fold` earlier.
+    fn repeats(&mut self, now: f64, fold: usize) -> bool {
+        if self.count <= fold {
+            return false;
         }
-        false
+        let (p, q) = (self.cycle(0), self.cycle(fold));
+        let repeated = self.limits.repeated;
+        let near = |p: f64, q: f64| (p - q).abs() <= repeated * (p.abs() + q.abs()) + repeated;
+        let equal =
+            near(p.period, q.period) && near(p.slip, q.slip) && near(p.elongation, q.elongation);
+        let repeats = &mut self.repeats[fold - 1];
+        if !equal {
+            repeats.count = 0;
+            return false;
+        }
+        if repeats.count == 0 {
+            repeats.since = now - p.period;
+        }
+        repeats.count += 1;
+        repeats.count >= fold && now - repeats.since > self.tau
     }
 
     fn see_deviation(&mut self, motion: &Motion, step: &Step) {
@@ -371,7 +384,10 @@ impl Watch {
         if now < window.until {
             return;
         }
-        let same = (window.amplitude - window.before).abs() <= 1e-6 * window.amplitude;
+        // Where sliding is stable, a decay as slow as its abscissa is none of these.
+        let decay = self.limits.stable_abscissa.map_or(f64::INFINITY, f64::abs) * window.length;
+        let same = (window.amplitude - window.before).abs()
+            <= 1e-6_f64.min(0.1 * decay) * window.amplitude;
         window.equal = if same { window.equal + 1 } else { 0 };
         let large = window.amplitude > 10.0 * SMALL * self.v0;
         if window.equal >= EQUAL_WINDOWS && large {
@@ -385,7 +401,7 @@ impl Watch {
     fn summary(&self, motion: &Motion, outcome: Outcome) -> Summary {
         let (mut period, mut slip_time) = (f64::NAN, f64::NAN);
         if outcome == Outcome::StickSlip {
-            let last = (0..self.fold).map(|back| self.cycles[(self.count - 1 - back) % CYCLES]);
+            let last = (0..self.fold).map(|back| self.cycle(back));
             (period, slip_time) = last.fold((0.0, 0.0), |(p, s), c| (p + c.period, s + c.slip));
         }
         let since = if self.switch_on.is_finite() {
@@ -489,6 +505,84 @@ mod tests {
         assert!(
             (s.slip_time - 3.44600138).abs() < 1e-8 && (s.stick_time - 15.85555061).abs() < 1e-8
         );
+    }
+
+    #[test]
+    fn cycles_repeat_over_any_delay() {
+        // Some hundred cycles in a delay, which begin anew, slightly other ones, with every delay.
+        let p = Parameters {
+            law: FrictionLaw::coulomb(0.5, 1.0).unwrap(),
+            switch_on: 0.0,
+            ..letter(1.0, -0.001, 0.0, 700.0)
+        };
+        let limits = Limits {
+            horizon: 20_000.0,
+            steps: 100_000,
+            stable_abscissa: None,
+            repeated: REPEATED,
+        };
+        let mut motion = Motion::new(p, Accuracy::default(), 0.0, 0.0);
+        let s = follow(&mut motion, &limits, &mut ());
+        assert_eq!(s.outcome, Outcome::StickSlip, "{s:?}");
+    }
+
+    #[test]
+    fn the_first_step_under_control_counts() {
+        // N jumps at switch-on and is smallest there, whatever the times are rounded to.
+        for i in 0..100 {
+            let p = Parameters {
+                switch_on: [2.0, 0.9, 0.3, 8.0][i % 4],
+                ..letter(0.3, 0.0, 0.8, 2.0)
+            };
+            let limits = Limits {
+                horizon: p.switch_on + 1.0,
+                steps: 1000,
+                stable_abscissa: None,
+                repeated: REPEATED,
+            };
+            let mut motion = Motion::new(p, Accuracy::default(), 0.3, -0.6 + 0.012 * i as f64);
+            let mut first = First(f64::NAN, false);
+            let s = follow(&mut motion, &limits, &mut first);
+            assert!(s.n_min <= first.0, "{p:?} {s:?} {}", first.0);
+        }
+    }
+
+    /// The load right after switch-on.
+    struct First(f64, bool);
+
+    impl Observer for First {
+        fn step(&mut self, motion: &Motion, event: Option<Event>) {
+            if self.1 {
+                self.0 = motion.last_step().state(0.0).2;
+            }
+            self.1 = event == Some(Event::SwitchOn);
+        }
+    }
+
+    #[test]
+    fn a_slow_decay_is_no_oscillation() {
+        let p = Parameters {
+            law: FrictionLaw::coulomb(0.5, 1.0).unwrap(),
+            switch_on: 0.0,
+            ..letter(0.5, -1e-9, 0.0, 3.0)
+        };
+        let s = run(p, 0.7);
+        assert_eq!(s.outcome, Outcome::Undecided, "{s:?}");
+        // Without control it is one.
+        let p = Parameters {
+            switch_on: f64::INFINITY,
+            alpha_v: 0.0,
+            ..p
+        };
+        let mut motion = Motion::new(p, Accuracy::default(), 0.7, 0.5);
+        let limits = Limits {
+            horizon: 3000.0,
+            steps: 100_000,
+            stable_abscissa: None,
+            repeated: REPEATED,
+        };
+        let s = follow(&mut motion, &limits, &mut ());
+        assert_eq!(s.outcome, Outcome::Oscillation, "{s:?}");
     }
 
     #[test]

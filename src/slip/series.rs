@@ -166,7 +166,7 @@ pub fn largest(c: &[f64], end: f64, known: f64) -> f64 {
     let mut slope_before = value_and_slope(c, 0.0).1;
     for i in 1..=8 {
         let slope = value_and_slope(c, at(i)).1;
-        if slope_before > 0.0 && slope < 0.0 {
+        if slope_before > 0.0 && slope <= 0.0 {
             let (mut from, mut to) = (at(i - 1), at(i));
             // Quadratic at its top: half the digits of the place are all of the value.
             for _ in 0..27 {
@@ -205,6 +205,12 @@ mod tests {
         let zero = first_zero(&[0.0, 2.0, -3.0, 1.0], 5.0).expect("at one");
         assert!((zero - 1.0).abs() < 1e-15);
         assert_eq!(first_zero(&[0.0, 0.0, 1.0], 5.0), None);
+    }
+
+    #[test]
+    fn the_largest_value_may_stand_where_it_is_looked_for() {
+        // s (1 − s), largest at the fourth eighth.
+        assert!((largest(&[0.0, 1.0, -1.0], 1.0, 0.0) - 0.25).abs() < 1e-15);
     }
 
     proptest! {
