@@ -456,7 +456,8 @@ mod tests {
             steps: 1_000_000,
             stable_abscissa: count.stable().then_some(root.lambda.re),
         };
-        let mut motion = Motion::new(p, Accuracy::default(), u, p.law.mu_k(p.v0));
+        let rest = p.law.mu_k(p.v0);
+        let mut motion = Motion::new(p, Accuracy::default(), u, rest);
         follow(&mut motion, &limits, &mut ())
     }
 
