@@ -30,7 +30,7 @@ struct Problem {
 fn problems() -> [Problem; 3] {
     let law = FrictionLaw::weakening(0.5, 0.5, 1.0).expect("a law");
     let letter = |v0, alpha_v, alpha_n, tau, switch_on| Parameters {
-        law,
+        law: law.clone(),
         velocity_unit: 1.0,
         alpha_v,
         alpha_n,
@@ -63,7 +63,7 @@ impl Problem {
             tolerance,
             ..Accuracy::default()
         };
-        Motion::new(self.parameters, accuracy, self.u, self.a)
+        Motion::new(self.parameters.clone(), accuracy, self.u, self.a)
     }
 
     /// Steps taken.

@@ -778,3 +778,60 @@ fn a_reader_that_has_gone_is_no_failure() {
         assert!(folder.path().join("small.h5").exists());
     }
 }
+
+#[test]
+fn a_measured_friction_law_goes_through_every_command() {
+    let curve = "speed, mu_k\n# a straight line\n0, 0.5\n0.2, 0.45\n1, 0.25\n";
+    let law = "[friction]\nlaw = \"table\"\nspeeds = [0, 0.2, 1]\nmu_k = [0.5, 0.45, 0.25]\n";
+    let sweep = format!(
+        "fields = [\"n_unstable\", \"abscissa\"]\nboundaries = true\ndegree_of_stability = [0.05]\n\
+         [axes]\nv0 = {{ from = 0.1, to = 2, points = 12 }}\ntau = {{ from = 0.1, to = 6, points = 30 }}\n\
+         [fixed]\nalpha_v = -0.2\n{law}"
+    );
+    let case = format!("horizon = 200\n[fixed]\nv0 = 0.3\n[start]\nx_dot0 = 0.0\n{law}");
+    let folder = Folder::with(&[
+        ("curve.csv", curve),
+        ("map.toml", &sweep),
+        ("case.toml", &case),
+        ("bad.csv", "speed, mu_k\n0, 0.5\n0.2, 0.45\n0.2, 0.4\n"),
+        ("fast.csv", "0 1.5\n1 0.5\n"),
+    ]);
+    let point = ["point", "--tau", "3.4", "--alpha-v", "-0.17", "--json"];
+    let friction = ["--friction", "table", "--v0", "0.5", "--table"];
+    let json = |args: &[&str]| -> serde_json::Value {
+        let output = folder.run(&[&point[..], args].concat());
+        serde_json::from_slice(&output.stdout).unwrap_or_else(|_| panic!("{}", err(&output)))
+    };
+    let table = json(&[&friction[..], &["curve.csv"]].concat());
+    let plain = json(&["--mu-prime", "-0.25", "--mu-k", "0.375"]);
+    for name in ["mu_prime", "mu_k", "abscissa", "frequency"] {
+        let [one, other] = [&table, &plain].map(|v| v[name].as_f64().unwrap());
+        assert!((one - other).abs() < 1e-12, "{name}: {one} {other}");
+    }
+    for args in [
+        &["run", "map.toml"][..],
+        &["info", "map.h5"],
+        &["simulate", "case.toml", "--json"],
+    ] {
+        let output = folder.run(args);
+        assert_eq!(output.status.code(), Some(0), "{}", err(&output));
+    }
+    let wrong = |args: &[&str]| folder.run(&[&point[..], args].concat());
+    let bad = wrong(&[&friction[..], &["bad.csv"]].concat());
+    assert_eq!(bad.status.code(), Some(2));
+    insta::assert_snapshot!("bad_table", err(&bad));
+    let ill_posed = wrong(&[&friction[..], &["fast.csv"]].concat());
+    expect(
+        &ill_posed,
+        2,
+        "mu_k = 1.5 is outside its range: at most mu_s",
+    );
+    expect(
+        &wrong(&[&friction[..], &["none.csv"]].concat()),
+        2,
+        "cannot read none.csv",
+    );
+    expect(&wrong(&friction[..4]), 2, "--table is not given");
+    let misplaced = ["--mu-prime", "1", "--table", "curve.csv"];
+    expect(&wrong(&misplaced), 2, "with --friction table only");
+}

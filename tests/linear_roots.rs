@@ -6,12 +6,13 @@ use common::winding;
 use num_complex::Complex64;
 use proptest::prelude::*;
 use slipmap::linear::certificate::{UnstableCount, roots_right_of};
+use slipmap::linear::rightmost::Rightmost;
 use slipmap::linear::row::Delays;
 use slipmap::linear::spectrum::RootFinder;
 use slipmap::linear::status::{CERTIFIED, DISAGREE, MARGINAL, NOT_CONVERGED};
 use slipmap::linear::track::{BLOCK, MARGIN, RootTracker};
 use slipmap::linear::{Crossings, MarginalTolerance};
-use slipmap::model::Groups;
+use slipmap::model::{FrictionLaw, Groups, Table};
 
 /// What the tracker tells of a line: all roots of each cell, its margin and its status.
 struct Line {
@@ -361,4 +362,28 @@ fn the_spectrum_is_complete() {
         }
     }
     assert!(checked > 2900, "{checked}");
+}
+
+#[test]
+fn a_dense_table_has_the_roots_of_its_law() {
+    let law = FrictionLaw::weakening(0.5, 0.5, 1.0).unwrap();
+    let root = |law: &FrictionLaw, v0: f64| {
+        let groups = Groups::new(law.mu_prime(v0), -0.33, -0.1 * law.mu_k(v0));
+        let count = Crossings::of(groups).count(4.15, MarginalTolerance::default());
+        Rightmost::at(groups, 4.15, 1, count).roots[0].lambda
+    };
+    let errors = [33, 65, 129, 257].map(|points: u32| {
+        let speed = |i: u32| 2.0 * f64::from(i) / f64::from(points - 1);
+        let speeds: Vec<_> = (0..points).map(speed).collect();
+        let mu_k = speeds.iter().map(|v| law.mu_k(*v)).collect();
+        let table = FrictionLaw::table(Table::new(speeds, mu_k).unwrap(), 1.0).unwrap();
+        let v0s = (1..40).map(|i| 0.2 + 0.0171 * f64::from(i));
+        v0s.map(|v0| (root(&table, v0) - root(&law, v0)).norm())
+            .fold(0.0, f64::max)
+    });
+    println!("{errors:?}");
+    // The slope of the table is of second order.
+    for pair in errors.windows(2) {
+        assert!(pair[1] < pair[0] / 3.0, "{errors:?}");
+    }
 }

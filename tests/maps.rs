@@ -213,7 +213,7 @@ fn degrees_of_stability_bound_what_they_say() {
         };
         let vertices = &curve.piece.vertices;
         for v in vertices.iter().skip(1).step_by(9).take(vertices.len() / 9) {
-            let mut setting = plan.spec.fixed;
+            let mut setting = plan.spec.fixed.clone();
             setting.set(Parameter::Mass, curve.outer[0]);
             setting.set(Parameter::AlphaN, v.p);
             let (g, unit) = setting.groups().unwrap();

@@ -4,7 +4,8 @@
 
 use slipmap::linear::rightmost::Rightmost;
 use slipmap::linear::{Crossings, MarginalTolerance};
-use slipmap::model::{FrictionLaw, Groups};
+use slipmap::model::friction::Kind;
+use slipmap::model::{FrictionLaw, Groups, Table};
 use slipmap::slip::motion::{Accuracy, Event, Mode, Motion, Parameters};
 use slipmap::slip::outcome::{Limits, Observer, Outcome, REPEATED, Summary, follow};
 
@@ -43,8 +44,8 @@ fn fig3() -> [Parameters; 2] {
 }
 
 /// Events with their times and elongations until `horizon`, from ẋ = 1.01 v0, a = μ_K(v0).
-fn events(p: Parameters, accuracy: Accuracy, horizon: f64) -> Vec<(Event, f64, f64)> {
-    let mut motion = Motion::new(p, accuracy, 1.01 * p.v0, p.law.mu_k(p.v0));
+fn events(p: &Parameters, accuracy: Accuracy, horizon: f64) -> Vec<(Event, f64, f64)> {
+    let mut motion = Motion::new(p.clone(), accuracy, 1.01 * p.v0, p.law.mu_k(p.v0));
     let mut events = Vec::new();
     while motion.t < horizon {
         if let Some(event) = motion.advance(horizon) {
@@ -78,7 +79,7 @@ fn the_events_of_the_letters_figure_3() {
         [3.44600138, 15.85555061, 76.277483031],
     ];
     for (p, expected) in fig3().into_iter().zip(expected) {
-        let found = events(p, Accuracy::default(), 250.0);
+        let found = events(&p, Accuracy::default(), 250.0);
         let marks = landmarks(&found);
         for (mark, expected) in marks.iter().zip(expected) {
             assert!((mark - expected).abs() < 1e-8, "{marks:?}");
@@ -94,9 +95,9 @@ fn the_events_of_the_letters_figure_3() {
 #[test]
 fn errors_are_proportional_to_the_tolerance() {
     for p in fig3() {
-        let tightest = landmarks(&events(p, at_tolerance(1e-15), 150.0));
+        let tightest = landmarks(&events(&p, at_tolerance(1e-15), 150.0));
         let error = |accuracy| {
-            let marks = landmarks(&events(p, accuracy, 150.0));
+            let marks = landmarks(&events(&p, accuracy, 150.0));
             let pairs = marks.iter().zip(&tightest);
             pairs.map(|(m, t)| (m - t).abs()).fold(0.0, f64::max)
         };
@@ -197,7 +198,7 @@ fn small_deviations_grow_and_decay_as_linear_theory_says() {
             [0.0, 1.0, 1.0][control] * chance.between(-5.0, 0.5),
         );
         let p = case(law, v0, gains, chance.between(0.2, 5.0), 0.0);
-        if let Some(growing) = deviation_follows_linear_theory(p) {
+        if let Some(growing) = deviation_follows_linear_theory(&p) {
             seen[control][usize::from(growing)] += 1;
         }
     }
@@ -206,7 +207,7 @@ fn small_deviations_grow_and_decay_as_linear_theory_says() {
 
 /// Compares a small deviation of `p` with its rightmost root. Says whether it grows; none where this does not tell apart:
 /// where the next root is too near, the rate too slow or too fast.
-fn deviation_follows_linear_theory(p: Parameters) -> Option<bool> {
+fn deviation_follows_linear_theory(p: &Parameters) -> Option<bool> {
     let groups = Groups::new(
         p.law.mu_prime(p.v0),
         p.alpha_v,
@@ -231,7 +232,12 @@ fn deviation_follows_linear_theory(p: Parameters) -> Option<bool> {
     }
     // Nonlinear terms stay below 1e-6 of the deviation.
     let start = (3e-7 * (-root.re * end).exp()).clamp(1e-12, 1e-5);
-    let mut motion = Motion::new(p, at_tolerance(1e-15), p.v0 + start, p.law.mu_k(p.v0));
+    let mut motion = Motion::new(
+        p.clone(),
+        at_tolerance(1e-15),
+        p.v0 + start,
+        p.law.mu_k(p.v0),
+    );
     let rest = motion.sliding_elongation();
     let signal = samples(&mut motion, late, every, count as usize);
     let signal: Vec<_> = signal.iter().map(|a| a - rest).collect();
@@ -268,7 +274,7 @@ fn coulomb_slip_is_its_closed_form() {
     let (mu, v0, u0, a0) = (0.4, 1.0, 1.3, 0.5);
     let law = FrictionLaw::coulomb(mu, 1.0).unwrap();
     // Harmonic without control.
-    let free = case(law, v0, (0.0, 0.0), 1.0, f64::INFINITY);
+    let free = case(law.clone(), v0, (0.0, 0.0), 1.0, f64::INFINITY);
     agrees(free, u0, a0, 40.0, |t| {
         let (p, q) = (a0 - mu, u0 - v0);
         (
@@ -281,7 +287,8 @@ fn coulomb_slip_is_its_closed_form() {
     let w2: f64 = 1.0 - mu * alpha;
     let rest = mu * (1.0 - alpha * a0) / w2;
     let w = w2.sqrt();
-    agrees(case(law, v0, (0.0, alpha), tau, 0.0), u0, a0, tau, |t| {
+    let load = case(law.clone(), v0, (0.0, alpha), tau, 0.0);
+    agrees(load, u0, a0, tau, |t| {
         let (c, s) = ((w * t).cos(), (w * t).sin());
         let (p, q) = (a0 - rest, (v0 - u0) / w);
         (v0 + w * (p * s - q * c), rest + p * c + q * s)
@@ -321,12 +328,14 @@ fn energy_is_accounted_for() {
     for (law, v0, gains, tau) in [
         (letters_law(), 0.1, (0.0, -10.0), 0.5),
         (letters_law(), 0.35, (-0.3, -0.5), 2.0),
-        (stribeck, 0.3, (-0.1, 0.3), 3.0),
+        (stribeck.clone(), 0.3, (-0.1, 0.3), 3.0),
         (stribeck, 0.2, (0.1, -2.0), 0.7),
+        (coarse_table(), 0.35, (-0.3, -0.5), 2.0),
     ] {
-        let p = case(law, v0, gains, tau, 30.0);
+        let p = case(law.clone(), v0, gains, tau, 30.0);
         for tolerance in [1e-9, 1e-13] {
-            let mut motion = Motion::new(p, at_tolerance(tolerance), 1.5 * v0, law.mu_k(v0));
+            let mut motion =
+                Motion::new(p.clone(), at_tolerance(tolerance), 1.5 * v0, law.mu_k(v0));
             let energy = |m: &Motion| 0.5 * (m.a * m.a + m.u * m.u);
             let start = energy(&motion);
             let (mut pulled, mut lost) = (0.0, 0.0);
@@ -402,12 +411,13 @@ impl Chance {
 fn another_integrator_agrees() {
     let mut chance = Chance(7);
     let mut compared = 0;
-    for _ in 0..20 {
+    for _ in 0..28 {
         let mu_s = chance.between(0.7, 1.2);
         let mu0 = chance.between(0.2, 0.6);
-        let law = match chance.of(3) {
+        let law = match chance.of(4) {
             0 => FrictionLaw::coulomb(mu0, mu_s),
             1 => FrictionLaw::weakening(mu0, chance.between(0.3, 1.0), mu_s),
+            2 => FrictionLaw::table(any_table(&mut chance, (mu0, mu_s), 1.0), mu_s),
             _ => FrictionLaw::stribeck(mu0, chance.between(0.3, 1.0), mu_s),
         };
         let gains = (chance.between(-0.5, 0.3), chance.between(-1.5, 0.5));
@@ -415,7 +425,7 @@ fn another_integrator_agrees() {
         let p = case(law.unwrap(), chance.between(0.1, 0.6), gains, tau, 6.0);
         let (u, a) = (chance.between(-0.5, 1.0), chance.between(-0.5, 1.0));
         let reference = fixed_step::events(&p, u, a, 25.0, 2e-3);
-        let mut motion = Motion::new(p, Accuracy::default(), u, a);
+        let mut motion = Motion::new(p.clone(), Accuracy::default(), u, a);
         let mut found = Vec::new();
         while motion.t < 25.0 {
             match motion.advance(25.0) {
@@ -443,6 +453,20 @@ fn another_integrator_agrees() {
     assert!(compared > 40, "{compared}");
 }
 
+/// A table that begins with one of `at_rest`, or below it, and has speeds of the size `v_s`.
+fn any_table(chance: &mut Chance, (mu0, mu_s): (f64, f64), v_s: f64) -> Table {
+    let points = 2 + chance.of(12);
+    let mut speeds = vec![[0.0, v_s * chance.unit().max(1e-3)][chance.of(2)]];
+    let mut mu_k = vec![[mu0, mu_s][chance.of(2)]];
+    while speeds.len() < points {
+        // Now and then very close to one another.
+        let step = v_s * [chance.unit(), chance.log(1e-4, 1.0)][chance.of(2)];
+        speeds.push(speeds[speeds.len() - 1] + step);
+        mu_k.push(mu_s * chance.between(0.1, 1.3));
+    }
+    Table::new(speeds, mu_k).unwrap()
+}
+
 fn any_case(chance: &mut Chance) -> (Parameters, f64, f64) {
     let mu_s = chance.log(0.05, 5.0);
     // Now and then μ_K(0⁺) = μ_S.
@@ -452,9 +476,10 @@ fn any_case(chance: &mut Chance) -> (Parameters, f64, f64) {
         mu_s * chance.unit().max(1e-3)
     };
     let v_s = chance.log(1e-4, 1e3);
-    let law = match chance.of(3) {
+    let law = match chance.of(5) {
         0 => FrictionLaw::coulomb(mu0, mu_s),
         1 => FrictionLaw::weakening(mu0, v_s, mu_s),
+        2 | 3 => FrictionLaw::table(any_table(chance, (mu0, mu_s), v_s), mu_s),
         _ => FrictionLaw::stribeck(mu0, v_s, mu_s),
     }
     .unwrap();
@@ -464,9 +489,14 @@ fn any_case(chance: &mut Chance) -> (Parameters, f64, f64) {
     };
     let gains = (gain(), gain());
     let tau = chance.log(1e-4, 100.0);
-    let v0 = chance.log(1e-6, 10.0);
+    let mut v0 = chance.log(1e-6, 10.0);
+    if let (Kind::Table(table), 0) = (law.kind(), chance.of(3)) {
+        // On a point of the table.
+        let speeds = table.speeds();
+        v0 = speeds[chance.of(speeds.len())].max(1e-6);
+    }
     let switch_on = [0.0, chance.between(0.0, 50.0), f64::INFINITY][chance.of(3)];
-    let mut p = case(law, v0, gains, tau, switch_on);
+    let mut p = case(law.clone(), v0, gains, tau, switch_on);
     p.velocity_unit = [1.0, chance.log(0.1, 10.0)][chance.of(2)];
     let u = [0.0, v0, 1.01 * v0, chance.between(-3.0, 3.0)][chance.of(4)];
     let rest = law.mu_k(v0 * p.velocity_unit);
@@ -541,7 +571,8 @@ fn nothing_breaks_it() {
             repeated: REPEATED,
         };
         let mut chatter = Chatter::default();
-        let mut motion = Motion::new(p, at_tolerance(chance.log(1e-13, 1e-5)), u, a);
+        let tolerance = at_tolerance(chance.log(1e-13, 1e-5));
+        let mut motion = Motion::new(p.clone(), tolerance, u, a);
         let summary = follow(&mut motion, &limits, &mut chatter);
         assert!(chatter.most <= 3, "{p:?} {u} {a} {summary:?}");
         is_sound(&summary, &limits);
@@ -552,4 +583,105 @@ fn nothing_breaks_it() {
         println!("{}: {count}", outcome.name());
     }
     assert!(tally.iter().filter(|&&n| n > 0).count() >= 5, "{tally:?}");
+}
+
+/// A coarse measured curve: it falls, and rises again.
+fn coarse_table() -> FrictionLaw {
+    let speeds = vec![0.05, 0.15, 0.3, 0.55, 0.9, 1.4];
+    let table = Table::new(speeds, vec![0.52, 0.44, 0.33, 0.27, 0.29, 0.36]);
+    FrictionLaw::table(table.unwrap(), 1.0).unwrap()
+}
+
+#[test]
+fn points_of_a_table_are_stepped_on() {
+    for (v0, gains, tau) in [(0.35, (-0.33, 0.0), 4.15), (0.1, (0.0, -3.0), 1.5)] {
+        let p = case(coarse_table(), v0, gains, tau, 30.0);
+        let state = |tolerance| {
+            let mut motion = Motion::new(p.clone(), at_tolerance(tolerance), 0.0, 0.0);
+            let mut found = Vec::new();
+            while motion.t < 60.0 {
+                if motion.advance(60.0).is_some() {
+                    found.push(motion.t);
+                }
+            }
+            found.extend([motion.u, motion.a]);
+            found
+        };
+        let tightest = state(1e-15);
+        let mut points = Vec::new();
+        for halvings in 0..24 {
+            let tolerance = 1e-5 * 0.5_f64.powi(halvings);
+            let found = state(tolerance);
+            assert_eq!(found.len(), tightest.len());
+            let pairs = found.iter().zip(&tightest);
+            let error = pairs.map(|(x, y)| (x - y).abs()).fold(0.0, f64::max);
+            points.push((tolerance.ln(), error.max(1e-14).ln()));
+        }
+        let last = state(1e-14);
+        let pairs = last.iter().zip(&tightest);
+        let error = pairs.map(|(x, y)| (x - y).abs()).fold(0.0, f64::max);
+        let slope = slope(&points);
+        println!("errors grow with the tolerance to the power {slope:.3}, {error:e} at 1e-14");
+        assert!(error < 1e-11, "{error:e}");
+        assert!((0.8..1.3).contains(&slope), "{slope} {points:?}");
+    }
+}
+
+#[test]
+fn a_dense_table_moves_the_block_as_its_law_does() {
+    let (v0, gains, tau) = (0.35, (-0.33, 0.0), 4.15);
+    let landmarks = |law: FrictionLaw| {
+        let p = case(law, v0, gains, tau, 30.0);
+        let mut motion = Motion::new(p, Accuracy::default(), 0.0, 0.0);
+        while motion.t < 45.0 {
+            motion.advance(45.0);
+        }
+        [motion.u, motion.a, motion.x]
+    };
+    let exact = landmarks(letters_law());
+    let errors = [33, 65, 129, 257].map(|points: u32| {
+        let speeds: Vec<_> = (0..points)
+            .map(|i| 4.0 * f64::from(i) / f64::from(points - 1))
+            .collect();
+        let mu_k = speeds.iter().map(|v| letters_law().mu_k(*v)).collect();
+        let table = Table::new(speeds, mu_k).unwrap();
+        let found = landmarks(FrictionLaw::table(table, 1.0).unwrap());
+        let pairs = found.iter().zip(&exact);
+        pairs.map(|(x, y)| (x - y).abs()).fold(0.0, f64::max)
+    });
+    println!("{errors:?}");
+    for pair in errors.windows(2) {
+        // Third order.
+        assert!(pair[1] < pair[0] / 5.0, "{errors:?}");
+    }
+}
+
+/// Sliding at the speed of a point, from rest there and from a little beside it, and grazing one.
+#[test]
+fn a_motion_that_stays_at_a_point_of_a_table_takes_long_steps() {
+    for (v0, gains) in [
+        (0.9, (0.0, 0.0)),
+        (0.55, (0.0, 0.0)),
+        (0.55, (0.0, -0.5)),
+        (1.4, (-0.1, 0.0)),
+        (0.05, (-0.1, -1.0)),
+    ] {
+        for start in [0.0, 1e-15, -1e-12, 1e-9, 1e-6, -1e-3] {
+            for tolerance in [1e-6, 1e-12] {
+                let p = case(coarse_table(), v0, gains, 1.0, 0.0);
+                let rest = p.law.mu_k(v0);
+                let mut motion = Motion::new(p, at_tolerance(tolerance), v0 + start, rest);
+                let mut steps = 0;
+                while motion.t < 500.0 && steps < 100_000 {
+                    motion.advance(500.0);
+                    steps += 1;
+                }
+                println!(
+                    "{v0} {start:e} {tolerance:e}: {steps} steps, {:e}",
+                    motion.u - v0
+                );
+                assert!(steps < 8000, "{v0} {gains:?} {start} {tolerance}: {steps}");
+            }
+        }
+    }
 }

@@ -45,7 +45,7 @@ fn everything_is_understood() {
     assert_eq!(order, [Parameter::V0, Parameter::Tau, Parameter::AlphaN]);
     assert_eq!(spec.axes[1].values, [0.0, 0.5, 2.0]);
     assert_eq!(spec.axes[2].values.len(), 10);
-    assert_eq!(spec.fixed.law(), Some(LawKind::Weakening));
+    assert_eq!(spec.fixed.law(), Some(&LawKind::Weakening));
     assert_eq!(spec.fixed.get(Parameter::Mass), 2.0);
     assert_eq!(spec.fixed.get(Parameter::MuS), 1.0);
     assert_eq!(spec.units.of_parameter(Parameter::AlphaN), "N mm-1");
@@ -357,6 +357,56 @@ const BAD: &[(&str, &str, &str)] = &[
         "v0 = 0 is outside its range",
     ),
     (
+        "[axes]\ntau = [1]\n[fixed]\nv0 = 1\n[friction]\nlaw = \"table\"\nmu_k = [1, 1]\n",
+        "\"table\"",
+        "speeds is not given",
+    ),
+    (
+        "[axes]\ntau = [1]\n[fixed]\nv0 = 1\n[friction]\nlaw = \"table\"\nspeeds = [0, 1]\n",
+        "\"table\"",
+        "mu_k is not given",
+    ),
+    (
+        "[axes]\ntau = [1]\n[fixed]\nv0 = 1\n[friction]\nlaw = \"table\"\nspeeds = [0, 1]\nmu_k = [1]\n",
+        "mu_k",
+        "2 speeds and 1 values of mu_k",
+    ),
+    (
+        "[axes]\ntau = [1]\n[fixed]\nv0 = 1\n[friction]\nlaw = \"table\"\nspeeds = [0, 2, 1]\nmu_k = [1, 1, 1]\n",
+        "1",
+        "speeds = 1 is outside its range: speeds increase",
+    ),
+    (
+        "[axes]\ntau = [1]\n[fixed]\nv0 = 1\n[friction]\nlaw = \"table\"\nspeeds = [-3, 1]\nmu_k = [1, 1]\n",
+        "-3",
+        "speeds = -3 is outside its range",
+    ),
+    (
+        "[axes]\ntau = [1]\n[fixed]\nv0 = 1\n[friction]\nlaw = \"table\"\nspeeds = [0, 1]\nmu_k = [0.5, 0.0]\n",
+        "0.0",
+        "mu_k = 0 is outside its range",
+    ),
+    (
+        "[axes]\ntau = [1]\n[fixed]\nv0 = 1\n[friction]\nlaw = \"table\"\nspeeds = [0, \"x\"]\nmu_k = [1, 1]\n",
+        "\"x\"",
+        "friction.speeds[1]: expected a number",
+    ),
+    (
+        "[axes]\ntau = [1]\n[fixed]\nv0 = 1\n[friction]\nlaw = \"table\"\nspeeds = [0, 1]\nmu_k = [1.5, 0.5]\n",
+        "1.5",
+        "mu_k = 1.5 is outside its range: at most mu_s",
+    ),
+    (
+        "[axes]\ntau = [1]\n[fixed]\nv0 = 1\n[friction]\nlaw = \"table\"\nspeeds = [0, 1]\nmu_k = [1, 0.5]\nmu0 = 1\n",
+        "mu0",
+        "mu0 has no meaning with the table law",
+    ),
+    (
+        "[axes]\ntau = [1]\n[fixed]\nv0 = 1\n[friction]\nlaw = \"coulomb\"\nmu0 = 0.5\nspeeds = [0, 1]\n",
+        "speeds",
+        "speeds has no meaning with the coulomb law",
+    ),
+    (
         "[axes]\ntau = [1]\n[units]\nforce = \"N\"\n",
         "units",
         "all three",
@@ -441,4 +491,19 @@ fn equal_plans_have_equal_hashes_and_others_not() {
     ] {
         assert_ne!(hash(base), hash(other), "{other}");
     }
+}
+
+#[test]
+fn a_table_is_part_of_the_plan() {
+    let plan = |mu: &str| {
+        let text = format!(
+            "[axes]\nv0 = [0.5, 1]\ntau = [1]\n[friction]\nlaw = \"table\"\nmu_k = [0.5, {mu}]\nspeeds = [0.0, 2]\n"
+        );
+        Plan::new(text.parse().unwrap()).unwrap()
+    };
+    assert_eq!(plan("0.4").hash(), plan("4e-1").hash());
+    assert_ne!(plan("0.4").hash(), plan("0.3").hash());
+    let sliding = plan("0.4").setting(&[0, 0]).sliding_point().unwrap();
+    assert!((sliding.mu_k - 0.475).abs() < 1e-15, "{sliding:?}");
+    assert!((sliding.mu_prime + 0.05).abs() < 1e-15, "{sliding:?}");
 }

@@ -1,10 +1,13 @@
 //! The flags that give a point of parameter space, the same words as in sweep files.
 
+use std::path::PathBuf;
+
 use clap::{Args, ValueEnum};
 use slipmap::sweep::Parameter;
 use slipmap::sweep::parameter::{LawKind, Setting};
 
 use super::failure::Failure;
+use super::sweep_file::read_table;
 
 /// Friction laws by name.
 #[derive(Debug, Clone, Copy, ValueEnum)]
@@ -15,16 +18,8 @@ pub enum Law {
     Weakening,
     /// μ_K = μ0 + (μ_S − μ0) exp(−(v/v_s)²)
     Stribeck,
-}
-
-impl From<Law> for LawKind {
-    fn from(law: Law) -> Self {
-        match law {
-            Law::Coulomb => Self::Coulomb,
-            Law::Weakening => Self::Weakening,
-            Law::Stribeck => Self::Stribeck,
-        }
-    }
+    /// The points in the file --table, joined by monotone cubics
+    Table,
 }
 
 /// A point of parameter space.
@@ -57,6 +52,9 @@ pub struct ParameterArgs {
     /// Friction law, instead of --mu-prime and --mu-k
     #[arg(long)]
     friction: Option<Law>,
+    /// Points of a measured friction law, for --friction table: two columns, speed and μ_K
+    #[arg(long, value_name = "FILE.csv")]
+    table: Option<PathBuf>,
     /// v0, pulling velocity (with --friction)
     #[arg(long, allow_hyphen_values = true)]
     v0: Option<f64>,
@@ -89,6 +87,27 @@ impl ParameterArgs {
         }
     }
 
+    /// The friction law that the flags name, with the points of its file.
+    fn law(&self) -> Result<Option<LawKind>, Failure> {
+        let help =
+            "--friction table --table FILE.csv, with a speed and a value of mu_k in each line";
+        match (self.friction, &self.table) {
+            (Some(Law::Table), Some(path)) => Ok(Some(LawKind::Table(read_table(path)?))),
+            (Some(Law::Table), None) => Err(Failure::bad_input_with_help(
+                "--table is not given: the table law goes through the points of a file",
+                help,
+            )),
+            (_, Some(_)) => Err(Failure::bad_input_with_help(
+                "--table has a meaning with --friction table only",
+                help,
+            )),
+            (Some(Law::Coulomb), None) => Ok(Some(LawKind::Coulomb)),
+            (Some(Law::Weakening), None) => Ok(Some(LawKind::Weakening)),
+            (Some(Law::Stribeck), None) => Ok(Some(LawKind::Stribeck)),
+            (None, None) => Ok(None),
+        }
+    }
+
     /// The setting that the flags describe.
     pub fn setting(&self) -> Result<Setting, Failure> {
         self.setting_but(&[])
@@ -96,7 +115,7 @@ impl ParameterArgs {
 
     /// The setting that the flags describe but for the parameters `searched`, which must not be given.
     pub fn setting_but(&self, searched: &[Parameter]) -> Result<Setting, Failure> {
-        let law = self.friction.map(LawKind::from);
+        let law = self.law()?;
         let flag = |name: &str| format!("--{}", name.replace('_', "-"));
         for parameter in searched {
             if let Some(value) = self.given(*parameter) {
@@ -108,8 +127,8 @@ impl ParameterArgs {
             }
         }
         let there = |p| searched.contains(&p) || self.given(p).is_some();
-        Setting::check_given(law, there)
-            .map_err(|e| Failure::bad_input_with_help(e.message(law), e.help()))?;
+        Setting::check_given(law.as_ref(), there)
+            .map_err(|e| Failure::bad_input_with_help(e.message(law.as_ref()), e.help()))?;
         let mut setting = Setting::new(law);
         for parameter in Parameter::ALL {
             if let Some(value) = self.given(parameter) {

@@ -1,12 +1,14 @@
-//! Reading sweep and case files, with errors that point into them.
+//! Reading sweep files, case files and tables of friction, with errors that point into them.
 
 use std::path::Path;
 
+use slipmap::model::Table;
+use slipmap::sweep::friction_table::table_of_columns;
 use slipmap::sweep::{CaseSpec, Plan, SpecError, SweepSpec};
 
 use super::failure::Failure;
 
-/// A file larger than this is no sweep and no case.
+/// A file larger than this is none of these.
 const MOST_BYTES: u64 = 64 << 20;
 
 /// The plan of the sweep file at `path`.
@@ -19,6 +21,11 @@ pub fn read_plan(path: &Path) -> Result<Plan, Failure> {
 /// The case of the case file at `path`.
 pub fn read_case(path: &Path) -> Result<CaseSpec, Failure> {
     read(path, "case", str::parse)
+}
+
+/// The friction curve of the two columns in the file at `path`.
+pub fn read_table(path: &Path) -> Result<Table, Failure> {
+    read(path, "table", table_of_columns)
 }
 
 fn read<T>(

@@ -1,19 +1,19 @@
 //! Kinetic friction laws μ_K(v), each with value and slope.
 
-use super::ModelError;
+use super::{ModelError, Table};
 
 /// A law of kinetic friction together with the static coefficient μ_S that goes with it.
 ///
 /// Every law is a function of the sliding speed |ẋ| > 0; the force points against the motion.
 /// A law with μ_K(0⁺) > μ_S is refused: release from stick would accelerate backwards.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct FrictionLaw {
     kind: Kind,
     mu_s: f64,
 }
 
 /// The form of a law, with its parameters in the symbols of the constructors of [`FrictionLaw`].
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 pub enum Kind {
     /// μ_K = μ0.
     Coulomb {
@@ -36,6 +36,8 @@ pub enum Kind {
         /// μ_S.
         mu_s: f64,
     },
+    /// A curve through measured points.
+    Table(Table),
 }
 
 impl FrictionLaw {
@@ -81,10 +83,23 @@ impl FrictionLaw {
         })
     }
 
+    /// A measured curve.
+    ///
+    /// # Errors
+    /// μ_S must be finite and positive, and at least μ_K(0⁺), the first coefficient of the table.
+    pub fn table(table: Table, mu_s: f64) -> Result<Self, ModelError> {
+        let mu_s = ModelError::positive("mu_s", mu_s)?;
+        checked_at_rest("mu_k", table.mu_k()[0], mu_s)?;
+        Ok(Self {
+            kind: Kind::Table(table),
+            mu_s,
+        })
+    }
+
     /// The form of the law and its parameters.
     #[must_use]
-    pub fn kind(&self) -> Kind {
-        self.kind
+    pub fn kind(&self) -> &Kind {
+        &self.kind
     }
 
     /// μ_S.
@@ -96,26 +111,28 @@ impl FrictionLaw {
     /// μ_K(v), dimensionless, at the sliding speed `speed` ≥ 0 (at 0: the limit 0⁺).
     #[must_use]
     pub fn mu_k(&self, speed: f64) -> f64 {
-        match self.kind {
-            Kind::Coulomb { mu0 } => mu0,
-            Kind::Weakening { mu0, v_s } => mu0 / (1.0 + speed / v_s),
-            Kind::Stribeck { mu0, v_s, mu_s } => mu0 + (mu_s - mu0) * gaussian(speed / v_s),
+        match &self.kind {
+            &Kind::Coulomb { mu0 } => mu0,
+            &Kind::Weakening { mu0, v_s } => mu0 / (1.0 + speed / v_s),
+            &Kind::Stribeck { mu0, v_s, mu_s } => mu0 + (mu_s - mu0) * gaussian(speed / v_s),
+            Kind::Table(table) => table.value(speed),
         }
     }
 
     /// μ_K′(v), time/length, at the sliding speed `speed` ≥ 0 (at 0: the limit 0⁺, the slope at rest).
     #[must_use]
     pub fn mu_prime(&self, speed: f64) -> f64 {
-        match self.kind {
+        match &self.kind {
             Kind::Coulomb { .. } => 0.0,
-            Kind::Weakening { mu0, v_s } => {
+            &Kind::Weakening { mu0, v_s } => {
                 let s = 1.0 + speed / v_s;
                 -mu0 / (v_s * s * s)
             }
-            Kind::Stribeck { mu0, v_s, mu_s } => {
+            &Kind::Stribeck { mu0, v_s, mu_s } => {
                 let s = speed / v_s;
                 -2.0 * (mu_s - mu0) * s / v_s * gaussian(s)
             }
+            Kind::Table(table) => table.slope(speed),
         }
     }
 }
@@ -127,21 +144,24 @@ fn gaussian(s: f64) -> f64 {
 fn checked_coefficients(mu0: f64, mu_s: f64) -> Result<(f64, f64), ModelError> {
     let mu_s = ModelError::positive("mu_s", mu_s)?;
     let mu0 = ModelError::positive("mu0", mu0)?;
-    let mu0 = ModelError::check(
-        "mu0",
-        mu0,
-        "at most mu_s, else release from stick would accelerate backwards",
-        mu0 <= mu_s,
-    )?;
+    checked_at_rest("mu0", mu0, mu_s)?;
     Ok((mu0, mu_s))
+}
+
+/// μ_K(0⁺) ≤ μ_S.
+fn checked_at_rest(parameter: &'static str, at_rest: f64, mu_s: f64) -> Result<(), ModelError> {
+    let allowed = "at most mu_s, else release from stick would accelerate backwards";
+    ModelError::check(parameter, at_rest, allowed, at_rest <= mu_s).map(|_| ())
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    fn laws() -> [FrictionLaw; 3] {
+    fn laws() -> [FrictionLaw; 4] {
+        let table = Table::new(vec![0.0, 0.3, 1.5, 3.0], vec![0.8, 0.4, 0.5, 0.6]).unwrap();
         [
+            FrictionLaw::table(table, 1.0).unwrap(),
             FrictionLaw::coulomb(0.4, 1.0).unwrap(),
             FrictionLaw::weakening(0.5, 0.7, 1.0).unwrap(),
             FrictionLaw::stribeck(0.3, 0.2, 0.9).unwrap(),
@@ -164,7 +184,9 @@ mod tests {
 
     #[test]
     fn limits_at_rest_and_at_high_speed() {
-        let [coulomb, weakening, stribeck] = laws();
+        let [table, coulomb, weakening, stribeck] = laws();
+        assert_eq!((table.mu_k(0.0), table.mu_k(10.0)), (0.8, 0.6));
+        assert!(table.mu_prime(0.0) < 0.0 && table.mu_prime(10.0) == 0.0);
         assert_eq!(coulomb.mu_k(0.0), 0.4);
         assert_eq!(weakening.mu_k(0.0), 0.5);
         assert_eq!(weakening.mu_prime(0.0), -0.5 / 0.7);
@@ -189,5 +211,8 @@ mod tests {
             FrictionLaw::coulomb(0.5, -1.0).unwrap_err().parameter,
             "mu_s"
         );
+        let table = Table::new(vec![0.1, 1.0], vec![0.8, 0.4]).unwrap();
+        let error = FrictionLaw::table(table, 0.7).unwrap_err();
+        assert_eq!((error.parameter, error.value), ("mu_k", 0.8));
     }
 }

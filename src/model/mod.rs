@@ -17,8 +17,10 @@ pub mod friction;
 mod groups;
 pub mod known_cases;
 mod oscillator;
+pub mod table;
 
 pub use error::ModelError;
 pub use friction::FrictionLaw;
 pub use groups::Groups;
 pub use oscillator::{Control, Oscillator, SlidingPoint};
+pub use table::Table;

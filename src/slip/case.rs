@@ -69,7 +69,7 @@ impl Case {
         self.check()?;
         let units = self.units();
         let parameters = Parameters {
-            law: self.law,
+            law: self.law.clone(),
             velocity_unit: units.velocity,
             alpha_v: self.control.alpha_v * units.time,
             alpha_n: self.control.alpha_n / self.oscillator.stiffness(),
@@ -185,6 +185,7 @@ mod tests {
         };
         let law = FrictionLaw::weakening(0.5, 0.5 * units.velocity, 1.0).unwrap();
         let v0 = 0.35 * units.velocity;
+        let a0 = law.mu_k(v0) * units.length;
         Case {
             oscillator,
             law,
@@ -196,7 +197,7 @@ mod tests {
             v0,
             switch_on: 70.0 * units.time,
             x_dot0: 1.01 * v0,
-            a0: law.mu_k(v0) * units.length,
+            a0,
             horizon: 1000.0 * units.time,
             steps: 1_000_000,
             accuracy: Accuracy::default(),

@@ -1,6 +1,7 @@
 //! The Taylor series of the friction coefficient along a motion.
 
 use super::series::{Coefficients, MOST_ORDER, PER_NEXT, product};
+use super::table_series::TableSeries;
 use crate::model::FrictionLaw;
 use crate::model::friction::Kind;
 
@@ -20,22 +21,23 @@ pub(super) enum FrictionSeries {
     Coulomb(Coulomb),
     Weakening(Weakening),
     Stribeck(Stribeck),
+    Table(TableSeries),
 }
 
 impl FrictionSeries {
-    /// For `law`, with ẋ in units of `velocity_unit`.
+    /// For `law` at the speed 0, with ẋ in units of `velocity_unit`.
     pub fn new(law: &FrictionLaw, velocity_unit: f64) -> Self {
         let zero = [0.0; MOST_ORDER + 1];
         match law.kind() {
-            Kind::Coulomb { mu0 } => Self::Coulomb(Coulomb { mu0 }),
-            Kind::Weakening { mu0, v_s } => Self::Weakening(Weakening {
+            &Kind::Coulomb { mu0 } => Self::Coulomb(Coulomb { mu0 }),
+            &Kind::Weakening { mu0, v_s } => Self::Weakening(Weakening {
                 mu0,
                 per_v_s: velocity_unit / v_s,
                 friction: zero,
                 q: zero,
                 inverse: 1.0,
             }),
-            Kind::Stribeck { mu0, v_s, mu_s } => Self::Stribeck(Stribeck {
+            &Kind::Stribeck { mu0, v_s, mu_s } => Self::Stribeck(Stribeck {
                 mu0,
                 fall: mu_s - mu0,
                 per_v_s: velocity_unit / v_s,
@@ -44,6 +46,14 @@ impl FrictionSeries {
                 slope: zero,
                 gaussian: zero,
             }),
+            Kind::Table(table) => Self::Table(TableSeries::new(table, velocity_unit)),
+        }
+    }
+
+    /// Goes on from `speed`, wherever it was before.
+    pub fn restart(&mut self, speed: f64) {
+        if let Self::Table(series) = self {
+            series.restart(speed);
         }
     }
 }
@@ -121,13 +131,16 @@ impl Series for Stribeck {
 mod tests {
     use super::super::series::value;
     use super::*;
+    use crate::model::Table;
 
     #[test]
     fn the_series_is_the_law_along_a_motion() {
+        let table = Table::new(vec![0.0, 0.25, 0.4, 1.0], vec![0.8, 0.5, 0.45, 0.6]).unwrap();
         let laws = [
             FrictionLaw::coulomb(0.4, 1.0).unwrap(),
             FrictionLaw::weakening(0.5, 0.7, 1.0).unwrap(),
             FrictionLaw::stribeck(0.3, 0.2, 0.9).unwrap(),
+            FrictionLaw::table(table, 1.0).unwrap(),
         ];
         let mut load = [0.0; MOST_ORDER + 1];
         (load[0], load[1]) = (1.0, -0.5);
@@ -136,12 +149,14 @@ mod tests {
         for law in laws {
             let mut coefficients = [0.0; MOST_ORDER + 1];
             let mut series = FrictionSeries::new(&law, 2.0);
+            series.restart(0.15);
             for (k, c) in coefficients.iter_mut().enumerate() {
                 let speed = speed.get(k).copied().unwrap_or(0.0);
                 *c = match &mut series {
                     FrictionSeries::Coulomb(series) => series.extend(k, speed, &load),
                     FrictionSeries::Weakening(series) => series.extend(k, speed, &load),
                     FrictionSeries::Stribeck(series) => series.extend(k, speed, &load),
+                    FrictionSeries::Table(series) => series.extend(k, speed, &load),
                 };
             }
             for s in [0.0, 0.05, 0.1] {

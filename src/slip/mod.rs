@@ -14,3 +14,4 @@ pub mod motion;
 pub mod outcome;
 pub mod series;
 pub mod step;
+mod table_series;

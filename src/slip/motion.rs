@@ -16,6 +16,7 @@ use super::friction_series::FrictionSeries;
 use super::history::{History, SMOOTH};
 use super::series::{Coefficients, MOST_ORDER, first_zero, value};
 use super::step::{Control, Step};
+use super::table_series::Crossing;
 use crate::model::FrictionLaw;
 
 /// What the block does.
@@ -45,7 +46,7 @@ pub enum Event {
 }
 
 /// The parameters of a motion, dimensionless as in the module.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct Parameters {
     /// The friction law.
     pub law: FrictionLaw,
@@ -119,6 +120,8 @@ impl Motion {
         let tolerance = accuracy.tolerance.clamp(1e-15, 1e-3);
         // The order at which Taylor's method does least work per unit of time (Jorba and Zou 2005).
         let order = ((2.0 - 0.5 * tolerance.ln()).ceil() as usize).clamp(4, MOST_ORDER);
+        let mut friction = FrictionSeries::new(&parameters.law, parameters.velocity_unit);
+        friction.restart(u.abs());
         let felt = if accuracy.step_on_kinks {
             order as u32
         } else {
@@ -129,7 +132,7 @@ impl Motion {
             parameters,
             tolerance,
             order,
-            friction: FrictionSeries::new(&parameters.law, parameters.velocity_unit),
+            friction,
             history: History::constant(a, 0.0, felt),
             mode: Mode::Stick,
             t: 0.0,
@@ -246,11 +249,18 @@ impl Motion {
             _ => free,
         };
         let found = self.first_event(length);
-        let length = found.map_or(length, |(s, _)| s);
-        self.finish(length, free);
+        let mut length = found.map_or(length, |(s, _)| s);
         let mut event = found.map(|(_, event)| event);
+        let crossing = self.friction_crossing(length);
+        if let Some(crossing) = crossing {
+            length = crossing.s;
+            event = None;
+        }
+        self.finish(length, free);
         self.kink = SMOOTH;
-        if event.is_some() {
+        if let Some(crossing) = crossing {
+            self.kink = crossing.kink;
+        } else if event.is_some() {
             self.kink = 2;
         } else if !controlled && length == until_switch {
             self.t = self.parameters.switch_on;
@@ -334,6 +344,7 @@ impl Motion {
             FrictionSeries::Coulomb(series) => step.slip(control, direction, series),
             FrictionSeries::Weakening(series) => step.slip(control, direction, series),
             FrictionSeries::Stribeck(series) => step.slip(control, direction, series),
+            FrictionSeries::Table(series) => step.slip(control, direction, series),
         }
     }
 
@@ -382,6 +393,20 @@ impl Motion {
             consider(first_zero(&self.speed()[range], length), Event::Stick);
         }
         first
+    }
+
+    /// The first point of a table of friction that the speed crosses before `length`; the series goes on behind it.
+    fn friction_crossing(&mut self, length: f64) -> Option<Crossing> {
+        if self.mode == Mode::Stick || !matches!(self.friction, FrictionSeries::Table(_)) {
+            return None;
+        }
+        let speed = self.speed();
+        let FrictionSeries::Table(series) = &mut self.friction else {
+            return None;
+        };
+        let crossing = series.crossing(&speed[..=self.step.order], length, self.tolerance)?;
+        series.enter(crossing.region);
+        Some(crossing)
     }
 
     /// What holds the block against a pull in `direction`: μ_S n − a in stick.
@@ -447,6 +472,7 @@ impl Motion {
             Event::Release => {
                 self.u = 0.0;
                 self.stuck_since = f64::INFINITY;
+                self.friction.restart(0.0);
                 self.mode = if self.a > 0.0 {
                     Mode::Forwards
                 } else {
@@ -457,6 +483,7 @@ impl Motion {
             Event::Stick => {
                 let before = self.mode;
                 self.u = 0.0;
+                self.friction.restart(0.0);
                 self.mode = self.mode_at(n);
                 if self.mode == Mode::Stick {
                     self.stuck_since = self.t;
@@ -492,6 +519,7 @@ mod tests {
         accuracy: Accuracy,
     ) -> Vec<(f64, Event, f64)> {
         let law = FrictionLaw::weakening(0.5, 0.5, 1.0).unwrap();
+        let rest = law.mu_k(v0);
         let parameters = Parameters {
             law,
             velocity_unit: 1.0,
@@ -501,7 +529,7 @@ mod tests {
             v0,
             switch_on: 70.0,
         };
-        let mut motion = Motion::new(parameters, accuracy, 1.01 * v0, law.mu_k(v0));
+        let mut motion = Motion::new(parameters, accuracy, 1.01 * v0, rest);
         let mut events = Vec::new();
         while motion.t < 150.0 {
             if let Some(event) = motion.advance(150.0) {

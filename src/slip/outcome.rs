@@ -463,7 +463,8 @@ mod tests {
             stable_abscissa: count.stable().then_some(root.lambda.re),
             repeated: REPEATED,
         };
-        let mut motion = Motion::new(p, Accuracy::default(), u, p.law.mu_k(p.v0));
+        let rest = p.law.mu_k(p.v0);
+        let mut motion = Motion::new(p, Accuracy::default(), u, rest);
         follow(&mut motion, &limits, &mut ())
     }
 

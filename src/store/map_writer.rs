@@ -19,6 +19,7 @@ use crate::linear::status::FLAGS;
 use crate::sweep::best::BestSettings;
 use crate::sweep::boundaries::BoundaryPlane;
 use crate::sweep::engine::{Encode, N_UNSTABLE_FILL, STATUS_FILL, Sink, TileBuffers};
+use crate::sweep::parameter::LawKind;
 use crate::sweep::parameter::Units;
 use crate::sweep::tile::Tile;
 use crate::sweep::{Field, Parameter, Plan, Setting};
@@ -186,8 +187,18 @@ fn put_root(file: &File, plan: &Plan, provenance: &Provenance) -> hdf5::Result<(
     put_text(file, root::PLAN_HASH, &plan.hash())?;
     put_text(file, root::SWEEP, &plan.spec.text)?;
     put_numbers(file, root::MARGINAL_TOLERANCE, &[plan.spec.tolerance.0])?;
-    if let Some(law) = plan.spec.fixed.law() {
-        put_text(file, root::FRICTION_LAW, law.name())?;
+    put_friction(file, &plan.spec.fixed)
+}
+
+/// What the scalar coordinates leave open of the friction law, if there is one.
+pub(super) fn put_friction(file: &File, setting: &Setting) -> hdf5::Result<()> {
+    let Some(law) = setting.law() else {
+        return Ok(());
+    };
+    put_text(file, root::FRICTION_LAW, law.name())?;
+    if let LawKind::Table(table) = law {
+        put_numbers(file, root::FRICTION_SPEEDS, table.speeds())?;
+        put_numbers(file, root::FRICTION_MU_K, table.mu_k())?;
     }
     Ok(())
 }

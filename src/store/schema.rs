@@ -49,6 +49,10 @@ pub mod root {
     pub const MARGINAL_TOLERANCE: &str = "marginal_tolerance";
     /// Name of the friction law, where there is one.
     pub const FRICTION_LAW: &str = "friction_law";
+    /// Speeds of the points of a friction law from a table.
+    pub const FRICTION_SPEEDS: &str = "friction_speeds";
+    /// μ_K at these.
+    pub const FRICTION_MU_K: &str = "friction_mu_k";
 }
 
 /// Name of the status of each cell.

@@ -9,10 +9,10 @@ use hdf5::{Dataset, File, Group, H5Type};
 use super::attributes::{put_numbers, put_text, text};
 use super::codec::DEFLATE_LEVEL;
 use super::error::StoreError;
-use super::map_writer::{Provenance, create_file, put_provenance, put_scalars};
+use super::map_writer::{Provenance, create_file, put_friction, put_provenance, put_scalars};
 use super::netcdf::{DimensionId, Dimensions, named};
 use super::output::Output;
-use super::schema::{self, root, trace};
+use super::schema::{self, trace};
 use crate::sweep::parameter::Units;
 use crate::sweep::trace::{EVENTS, MODES, Sample, TraceEvent};
 use crate::sweep::{CaseSpec, Trace};
@@ -182,9 +182,7 @@ fn put_root(file: &File, spec: &CaseSpec, found: &Trace) -> hdf5::Result<()> {
     let version = schema::TRACE_FORMAT_VERSION;
     put_numbers(file, trace::FORMAT_VERSION, &[version])?;
     put_text(file, trace::CASE, &spec.text)?;
-    if let Some(law) = spec.setting.law() {
-        put_text(file, root::FRICTION_LAW, law.name())?;
-    }
+    put_friction(file, &spec.setting)?;
     let (case, summary) = (&spec.case, &found.summary);
     for (name, value) in [
         ("x_dot0", case.x_dot0),

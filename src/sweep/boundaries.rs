@@ -83,7 +83,7 @@ fn trace_window(
     degrees_of_stability: &[f64],
 ) -> Result<Vec<DegreeCurves>, ModelError> {
     let groups_at = |p: f64| {
-        let mut setting = setting;
+        let mut setting = setting.clone();
         setting.set(parameter, p);
         setting.groups()
     };

@@ -205,12 +205,13 @@ impl Draft {
 
     /// The motion, with the defaults that depend on parameters.
     fn case(&self, setting: &Setting, law_place: &Range<usize>) -> Result<Case, SpecError> {
-        let at_law = |error: ModelError| SpecError::at(law_place.clone(), error.to_string());
+        let place = self.given.ill_posed_place().unwrap_or(law_place);
+        let at_law = |error: ModelError| SpecError::at(place.clone(), error.to_string());
         let law = setting.friction_law().map_err(at_law)?;
         let law = law.ok_or_else(|| SpecError::whole("a case needs a friction law"))?;
         let oscillator = setting.oscillator().map_err(at_law)?;
         let v0 = setting.get(Parameter::V0);
-        let length_unit = oscillator.normal_load() / oscillator.stiffness();
+        let rest = law.mu_k(v0) * (oscillator.normal_load() / oscillator.stiffness());
         // Without gains nothing is ever switched on.
         let switch_on = match self.switch_on {
             _ if setting.control() == Control::default() => f64::INFINITY,
@@ -239,7 +240,7 @@ impl Draft {
             v0,
             switch_on,
             x_dot0: self.x_dot0.unwrap_or(v0),
-            a0: self.a0.unwrap_or_else(|| law.mu_k(v0) * length_unit),
+            a0: self.a0.unwrap_or(rest),
             horizon,
             steps: MOST_STEPS,
             accuracy: Accuracy {

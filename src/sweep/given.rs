@@ -2,6 +2,7 @@
 
 use std::ops::Range;
 
+use super::friction_table::GivenTable;
 use super::parameter::{GivenError, LawKind, Parameter, Setting, Units};
 use super::toml_reader::{Entry, SpecError};
 
@@ -10,6 +11,7 @@ use super::toml_reader::{Entry, SpecError};
 pub(super) struct GivenParameters {
     values: Vec<(Parameter, f64)>,
     law: Option<(LawKind, Range<usize>)>,
+    table: GivenTable,
     places: Vec<(Parameter, Range<usize>)>,
 }
 
@@ -51,23 +53,48 @@ impl GivenParameters {
 
     /// Reads the table `[friction]`.
     pub fn read_friction(&mut self, friction: &Entry) -> Result<(), SpecError> {
-        let names = ["law", "mu0", "v_s", "mu_s"];
+        let names = ["law", "mu0", "v_s", "mu_s", "speeds", "mu_k"];
+        let mut law = None;
         for entry in friction.table()? {
             match Parameter::from_name(entry.key).filter(|p| p.of_friction_law()) {
                 Some(parameter) => self.read_value(&entry, parameter)?,
-                None if entry.key == "law" => {
-                    self.law = Some((read_law(&entry)?, entry.span.clone()));
-                }
+                None if entry.key == "law" => law = Some(entry),
+                None if self.table.read(&entry)? => {}
                 None => return Err(entry.unknown(&names)),
             }
         }
-        if self.law.is_none() {
-            return Err(SpecError::at(
-                friction.key_span.clone(),
-                "[friction] needs a law",
-            ));
-        }
+        let Some(law) = law else {
+            let place = friction.key_span.clone();
+            return Err(SpecError::at(place, "[friction] needs a law"));
+        };
+        self.law = Some((self.read_law(&law)?, law.span.clone()));
         Ok(())
+    }
+
+    /// The law that `entry` names, with its points if it is a table.
+    fn read_law(&self, entry: &Entry) -> Result<LawKind, SpecError> {
+        let name = entry.string()?;
+        if name == LawKind::TABLE {
+            return Ok(LawKind::Table(self.table.table(&entry.span)?));
+        }
+        let mut formulas = LawKind::FORMULAS.into_iter();
+        let law = formulas.find(|law| law.name() == name).ok_or_else(|| {
+            entry
+                .error(format!("unknown friction law \"{name}\""))
+                .help(format!("known: {}", LawKind::names()))
+        })?;
+        if let Some((place, column)) = self.table.any() {
+            let message = format!("{} has no meaning with the {name} law", column.name());
+            return Err(
+                SpecError::at(place.clone(), message).help("points are for law = \"table\"")
+            );
+        }
+        Ok(law)
+    }
+
+    /// Where to tell that the friction law is ill-posed: at what it is at rest, or at its name.
+    pub fn ill_posed_place(&self) -> Option<&Range<usize>> {
+        self.table.at_rest().or(self.law_place())
     }
 
     /// Where the friction law is named, if it is.
@@ -83,7 +110,7 @@ impl GivenParameters {
 
     /// The values that are given, and the defaults of all others.
     pub fn setting(&self) -> Setting {
-        let mut setting = Setting::new(self.law.as_ref().map(|(law, _)| *law));
+        let mut setting = Setting::new(self.law.as_ref().map(|(law, _)| law.clone()));
         for (parameter, value) in &self.values {
             setting.set(*parameter, *value);
         }
@@ -97,7 +124,7 @@ impl GivenParameters {
         optional: Option<Parameter>,
         place: Option<&Range<usize>>,
     ) -> Result<(), SpecError> {
-        let law = self.law.as_ref().map(|(law, _)| *law);
+        let law = self.law.as_ref().map(|(law, _)| law);
         let there = |p: Parameter| self.place(p).is_some() || optional == Some(p);
         Setting::check_given(law, there).map_err(|error| {
             let span = match error {
@@ -114,17 +141,6 @@ impl GivenParameters {
             }
         })
     }
-}
-
-fn read_law(entry: &Entry) -> Result<LawKind, SpecError> {
-    let name = entry.string()?;
-    let found = LawKind::ALL.into_iter().find(|law| law.name() == name);
-    found.ok_or_else(|| {
-        let laws = LawKind::ALL.map(LawKind::name).join(", ");
-        entry
-            .error(format!("unknown friction law \"{name}\""))
-            .help(format!("known: {laws}"))
-    })
 }
 
 /// Reads the table `[units]`.

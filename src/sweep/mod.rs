@@ -17,6 +17,7 @@ pub mod case_file;
 pub mod engine;
 pub mod events;
 pub mod field;
+pub mod friction_table;
 mod given;
 pub mod parameter;
 pub mod plan;

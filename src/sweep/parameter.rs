@@ -1,6 +1,6 @@
 //! Every parameter of a sweep: its one name in flags, sweep files and maps, its meaning, unit and range.
 
-use crate::model::{Control, FrictionLaw, Groups, ModelError, Oscillator, SlidingPoint};
+use crate::model::{Control, FrictionLaw, Groups, ModelError, Oscillator, SlidingPoint, Table};
 
 /// The largest size of any parameter, and one over the smallest of those that must be positive: far beyond any
 /// experiment, and small enough that no dimensionless group overflows.
@@ -252,8 +252,8 @@ impl Units {
     }
 }
 
-/// Which friction law a sweep uses.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+/// Which friction law a sweep uses, with what it has besides parameters.
+#[derive(Debug, Clone, PartialEq)]
 pub enum LawKind {
     /// [`FrictionLaw::coulomb`].
     Coulomb,
@@ -261,28 +261,42 @@ pub enum LawKind {
     Weakening,
     /// [`FrictionLaw::stribeck`].
     Stribeck,
+    /// [`FrictionLaw::table`].
+    Table(Table),
 }
 
 impl LawKind {
-    /// All laws.
-    pub const ALL: [Self; 3] = [Self::Coulomb, Self::Weakening, Self::Stribeck];
+    /// The laws that parameters alone describe.
+    pub const FORMULAS: [Self; 3] = [Self::Coulomb, Self::Weakening, Self::Stribeck];
+
+    /// The name of [`LawKind::Table`].
+    pub const TABLE: &str = "table";
 
     /// The name in flags and sweep files.
     #[must_use]
-    pub const fn name(self) -> &'static str {
+    pub const fn name(&self) -> &'static str {
         match self {
             Self::Coulomb => "coulomb",
             Self::Weakening => "weakening",
             Self::Stribeck => "stribeck",
+            Self::Table(_) => Self::TABLE,
         }
+    }
+
+    /// The names of all laws.
+    #[must_use]
+    pub fn names() -> String {
+        let formulas = Self::FORMULAS.iter().map(Self::name);
+        formulas.chain([Self::TABLE]).collect::<Vec<_>>().join(", ")
     }
 
     /// The parameters that the law needs, besides μ_S.
     #[must_use]
-    pub const fn needs(self) -> &'static [Parameter] {
+    pub const fn needs(&self) -> &'static [Parameter] {
         match self {
             Self::Coulomb => &[Parameter::Mu0],
             Self::Weakening | Self::Stribeck => &[Parameter::Mu0, Parameter::VS],
+            Self::Table(_) => &[],
         }
     }
 }
@@ -299,7 +313,7 @@ pub enum GivenError {
 impl GivenError {
     /// What is wrong, in words, for a setting with the friction law `law`.
     #[must_use]
-    pub fn message(self, law: Option<LawKind>) -> String {
+    pub fn message(self, law: Option<&LawKind>) -> String {
         match (self, law) {
             (Self::Missing(p), _) => format!("{} is not given", p.name()),
             (Self::Unused(p), Some(law)) => {
@@ -322,7 +336,7 @@ impl GivenError {
 }
 
 /// One value for every parameter: a point of parameter space.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct Setting {
     values: [f64; Parameter::ALL.len()],
     law: Option<LawKind>,
@@ -351,18 +365,19 @@ impl Setting {
 
     /// The friction law that the setting uses, if any.
     #[must_use]
-    pub fn law(&self) -> Option<LawKind> {
-        self.law
+    pub fn law(&self) -> Option<&LawKind> {
+        self.law.as_ref()
     }
 
     /// True for the parameters on which a cell of this setting can depend.
     #[must_use]
     pub fn uses(&self, parameter: Parameter) -> bool {
-        match self.law {
-            Some(law) => {
-                !matches!(parameter, Parameter::MuPrime | Parameter::MuK)
-                    && (parameter != Parameter::VS || law.needs().contains(&Parameter::VS))
-            }
+        match &self.law {
+            Some(law) => match parameter {
+                Parameter::MuPrime | Parameter::MuK => false,
+                Parameter::Mu0 | Parameter::VS => law.needs().contains(&parameter),
+                _ => true,
+            },
             None => !parameter.of_friction_law() && parameter != Parameter::V0,
         }
     }
@@ -372,10 +387,10 @@ impl Setting {
     /// # Errors
     /// Names the first parameter that is missing or unused.
     pub fn check_given(
-        law: Option<LawKind>,
+        law: Option<&LawKind>,
         given: impl Fn(Parameter) -> bool,
     ) -> Result<(), GivenError> {
-        let setting = Self::new(law);
+        let setting = Self::new(law.cloned());
         for parameter in Parameter::ALL {
             let used = setting.uses(parameter);
             if given(parameter) && !used {
@@ -395,10 +410,12 @@ impl Setting {
     pub fn friction_law(&self) -> Result<Option<FrictionLaw>, ModelError> {
         let [mu0, v_s, mu_s] = [Parameter::Mu0, Parameter::VS, Parameter::MuS].map(|p| self.get(p));
         self.law
+            .as_ref()
             .map(|law| match law {
                 LawKind::Coulomb => FrictionLaw::coulomb(mu0, mu_s),
                 LawKind::Weakening => FrictionLaw::weakening(mu0, v_s, mu_s),
                 LawKind::Stribeck => FrictionLaw::stribeck(mu0, v_s, mu_s),
+                LawKind::Table(table) => FrictionLaw::table(table.clone(), mu_s),
             })
             .transpose()
     }

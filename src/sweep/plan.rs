@@ -4,9 +4,10 @@ use sha2::{Digest, Sha256};
 
 use super::axis::plane_of_curves;
 use super::best::gain_plane;
-use super::parameter::{Parameter, Setting};
+use super::parameter::{LawKind, Parameter, Setting};
 use super::spec::{SpecError, SweepSpec};
 use super::tile::{Tile, TileGrid};
+use crate::model::table::Column;
 
 /// Cells in a tile, about: small enough for a processor's cache, large enough to compress and write well.
 const CELLS_PER_TILE: usize = 1 << 18;
@@ -121,7 +122,7 @@ impl Plan {
     /// The parameters of the cell at `index`, one index per axis.
     #[must_use]
     pub fn setting(&self, index: &[usize]) -> Setting {
-        let mut setting = self.spec.fixed;
+        let mut setting = self.spec.fixed.clone();
         for (axis, &i) in self.spec.axes.iter().zip(index) {
             setting.set(axis.parameter, axis.values[i]);
         }
@@ -159,7 +160,11 @@ impl Plan {
             }
         };
         let fixed = &self.spec.fixed;
-        put(fixed.law().map_or("no law", |law| law.name()), &[]);
+        put(fixed.law().map_or("no law", LawKind::name), &[]);
+        if let Some(LawKind::Table(table)) = fixed.law() {
+            put(Column::Speeds.name(), table.speeds());
+            put(Column::MuK.name(), table.mu_k());
+        }
         put("axes", &[self.spec.axes.len() as f64]);
         for axis in &self.spec.axes {
             put(axis.parameter.name(), &axis.values);

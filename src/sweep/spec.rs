@@ -16,7 +16,7 @@
 //! alpha_n = 0.0
 //!
 //! [friction]                              # optional, with v0 instead of mu_prime and mu_k
-//! law = "weakening"
+//! law = "weakening"                       # or coulomb, stribeck; or table, with speeds and mu_k at them as lists
 //! mu0 = 0.5
 //! v_s = 0.5
 //!
@@ -218,10 +218,10 @@ impl Draft {
 
     /// The law is well posed in every cell: μ0 at its largest against μ_S at its smallest.
     fn check_law(&self, fixed: &Setting) -> Result<(), SpecError> {
-        let Some(place) = self.given.law_place() else {
+        let Some(place) = self.given.ill_posed_place() else {
             return Ok(());
         };
-        let mut worst = *fixed;
+        let mut worst = fixed.clone();
         for axis in &self.axes {
             let (smallest, largest) = axis.range();
             let value = if axis.parameter == Parameter::Mu0 {

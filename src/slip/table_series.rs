@@ -1,0 +1,133 @@
+//! The series of a friction law from a table: one cubic in the speed at a time, and where the speed leaves it.
+//!
+//! At a point of the table the second derivative of μ_K jumps, and with it the fourth derivative of the elongation; at the first
+//! and the last point it is the slope, and the third derivative. Steps end there. A cubic stays in use until the speed is
+//! beyond its end by a little more than noise, so that a motion that rests on a point, or grazes it, does not go back and
+//! forth between two cubics: after each crossing the speed has to come back by more than rounding before the next one. What
+//! the cubics differ by so near their common end is below the tolerance.
+
+use super::friction_series::Series;
+use super::series::{Coefficients, MOST_ORDER, first_zero, product};
+use crate::model::Table;
+use crate::model::table::Piece;
+
+/// μ_K n with μ_K = ((c₃ w + c₂) w + c₁) w + c₀, w = (|ẋ| − from)/width.
+#[derive(Debug, Clone)]
+pub(super) struct TableSeries {
+    table: Table,
+    velocity_unit: f64,
+    /// The number of points below the cubic in use, and the cubic, with speeds in the motion's units.
+    region: usize,
+    piece: Piece,
+    w: Coefficients,
+    slope: Coefficients,
+    bend: Coefficients,
+    coefficient: Coefficients,
+}
+
+/// Where the speed leaves a cubic.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Crossing {
+    /// When.
+    pub s: f64,
+    /// The region that it enters.
+    pub region: usize,
+    /// The lowest derivative of the elongation that jumps.
+    pub kink: u32,
+}
+
+impl TableSeries {
+    /// At the speed 0, with ẋ in units of `velocity_unit`.
+    pub fn new(table: &Table, velocity_unit: f64) -> Self {
+        let zero = [0.0; MOST_ORDER + 1];
+        let mut series = Self {
+            table: table.clone(),
+            velocity_unit,
+            region: 0,
+            piece: table.piece(0),
+            w: zero,
+            slope: zero,
+            bend: zero,
+            coefficient: zero,
+        };
+        series.restart(0.0);
+        series
+    }
+
+    /// Goes on from `speed`, wherever it was before.
+    pub fn restart(&mut self, speed: f64) {
+        let region = match self.table.region(speed * self.velocity_unit) {
+            Ok(point) => point + 1,
+            Err(region) => region,
+        };
+        self.enter(region);
+    }
+
+    /// Goes on with the cubic of `region`.
+    pub fn enter(&mut self, region: usize) {
+        let piece = self.table.piece(region);
+        self.region = region;
+        self.piece = Piece {
+            from: piece.from / self.velocity_unit,
+            width: piece.width / self.velocity_unit,
+            ..piece
+        };
+    }
+
+    /// The speed of a point, if it is there and a speed can cross it.
+    fn knot(&self, point: Option<usize>) -> Option<f64> {
+        let speed = *self.table.speeds().get(point?)?;
+        (speed > 0.0).then_some(speed / self.velocity_unit)
+    }
+
+    /// Where |ẋ|, whose series is `speed`, first leaves the cubic in use within `length`.
+    pub fn crossing(&self, speed: &[f64], length: f64, tolerance: f64) -> Option<Crossing> {
+        let last = self.table.speeds().len() - 1;
+        let slack = (0.125 * tolerance * self.piece.width).max(noise(speed, length));
+        let mut first: Option<Crossing> = None;
+        for (side, point) in [(1.0, Some(self.region)), (-1.0, self.region.checked_sub(1))] {
+            let Some((knot, point)) = self.knot(point).zip(point) else {
+                continue;
+            };
+            // How far the speed is inside.
+            let mut inside = [0.0; MOST_ORDER + 1];
+            for (inside, speed) in inside.iter_mut().zip(speed) {
+                *inside = -side * speed;
+            }
+            inside[0] += side * knot + slack;
+            let before = first.map_or(length, |crossing| crossing.s);
+            if let Some(s) = first_zero(&inside[..speed.len()], before) {
+                first = Some(Crossing {
+                    s,
+                    region: if side > 0.0 { point + 1 } else { point },
+                    kink: if point == 0 || point == last { 3 } else { 4 },
+                });
+            }
+        }
+        first
+    }
+}
+
+/// More than what [`first_zero`] takes for zero.
+fn noise(speed: &[f64], length: f64) -> f64 {
+    let mut power = 1.0;
+    let mut size = 0.0;
+    for (k, c) in speed.iter().enumerate() {
+        size += (1.0 + k as f64) * c.abs() * power;
+        power *= length;
+    }
+    32.0 * f64::EPSILON * size
+}
+
+impl Series for TableSeries {
+    #[inline(always)]
+    fn extend(&mut self, k: usize, speed: f64, load: &Coefficients) -> f64 {
+        let first = |c: f64| if k == 0 { c } else { 0.0 };
+        let [c0, c1, c2, c3] = self.piece.c;
+        self.w[k] = (speed - first(self.piece.from)) / self.piece.width;
+        self.bend[k] = c3 * self.w[k] + first(c2);
+        self.slope[k] = product(&self.bend, &self.w, k) + first(c1);
+        self.coefficient[k] = product(&self.slope, &self.w, k) + first(c0);
+        product(&self.coefficient, load, k)
+    }
+}

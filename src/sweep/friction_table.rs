@@ -1,0 +1,185 @@
+//! The points of a friction law from measurements: in a sweep file, or as a text of two columns.
+
+use std::ops::Range;
+
+use super::toml_reader::{Entry, SpecError};
+use crate::model::Table;
+use crate::model::table::{Column, TableError};
+
+/// The numbers of one column with their places in the text.
+#[derive(Debug, Default)]
+struct Numbers {
+    values: Vec<f64>,
+    places: Vec<Range<usize>>,
+}
+
+impl Numbers {
+    fn push(&mut self, value: f64, place: Range<usize>) {
+        self.values.push(value);
+        self.places.push(place);
+    }
+
+    fn of_array(entry: &Entry) -> Result<Self, SpecError> {
+        let mut numbers = Self::default();
+        for element in entry.array()? {
+            numbers.push(element.number()?, element.span.clone());
+        }
+        Ok(numbers)
+    }
+}
+
+/// The columns of a table as a text gives them.
+#[derive(Debug, Default)]
+pub(super) struct GivenTable {
+    speeds: Option<(Range<usize>, Numbers)>,
+    mu_k: Option<(Range<usize>, Numbers)>,
+}
+
+impl GivenTable {
+    /// Reads `entry` if it is a column. Says whether it is one.
+    pub fn read(&mut self, entry: &Entry) -> Result<bool, SpecError> {
+        let column = match entry.key {
+            key if key == Column::Speeds.name() => &mut self.speeds,
+            key if key == Column::MuK.name() => &mut self.mu_k,
+            _ => return Ok(false),
+        };
+        *column = Some((entry.key_span.clone(), Numbers::of_array(entry)?));
+        Ok(true)
+    }
+
+    /// The place and name of a column that is given; none without columns.
+    pub fn any(&self) -> Option<(&Range<usize>, Column)> {
+        let speeds = self.speeds.as_ref().map(|c| (&c.0, Column::Speeds));
+        speeds.or(self.mu_k.as_ref().map(|c| (&c.0, Column::MuK)))
+    }
+
+    /// The place of μ_K at its first point.
+    pub fn at_rest(&self) -> Option<&Range<usize>> {
+        self.mu_k.as_ref()?.1.places.first()
+    }
+
+    /// The table; what is missing is told at `law`.
+    pub fn table(&self, law: &Range<usize>) -> Result<Table, SpecError> {
+        let missing = |column: Column| {
+            SpecError::at(law.clone(), format!("{} is not given", column.name()))
+                .help("the table law goes through points: speeds = [0.0, …], mu_k = [0.5, …]")
+        };
+        let speeds = self.speeds.as_ref().ok_or_else(|| missing(Column::Speeds));
+        let mu_k = self.mu_k.as_ref().ok_or_else(|| missing(Column::MuK));
+        let ((_, speeds), (place, mu_k)) = (speeds?, mu_k?);
+        built(speeds, mu_k, place)
+    }
+}
+
+/// The table of two columns; `place`: where to tell that they are not of the same length.
+fn built(speeds: &Numbers, mu_k: &Numbers, place: &Range<usize>) -> Result<Table, SpecError> {
+    Table::new(speeds.values.clone(), mu_k.values.clone()).map_err(|error| {
+        let span = match error {
+            TableError::Count { .. } => place,
+            TableError::Value { column, index, .. } => match column {
+                Column::Speeds => &speeds.places[index],
+                Column::MuK => &mu_k.places[index],
+            },
+        };
+        SpecError::at(span.clone(), error.to_string())
+    })
+}
+
+/// Reads a table from a text with a line for each point: the speed and μ_K, separated by a comma, a semicolon or blanks.
+/// Empty lines, lines that begin with `#`, and one line of titles before the first point are passed over.
+///
+/// # Errors
+/// Points at the first line or number that is not understood or out of range, see [`Table::new`].
+pub fn table_of_columns(text: &str) -> Result<Table, SpecError> {
+    let (mut speeds, mut mu_k) = (Numbers::default(), Numbers::default());
+    let mut titles = false;
+    let mut start = 0;
+    for line in text.split_inclusive('\n') {
+        let from = start;
+        start += line.len();
+        let content = line.trim();
+        if content.is_empty() || content.starts_with('#') {
+            continue;
+        }
+        let fields = fields(line, from);
+        let numbers = fields.iter().map(|f| text[f.clone()].parse::<f64>().ok());
+        match numbers.collect::<Vec<_>>()[..] {
+            [Some(speed), Some(mu)] => {
+                speeds.push(speed, fields[0].clone());
+                mu_k.push(mu, fields[1].clone());
+            }
+            [None, None] if speeds.values.is_empty() && !titles => titles = true,
+            _ => {
+                let place = from..from + line.trim_end().len();
+                return Err(SpecError::at(place, "expected a speed and a value of mu_k"));
+            }
+        }
+    }
+    let end = text.len();
+    built(&speeds, &mu_k, &(end..end)).map_err(|error| SpecError {
+        span: error.span.filter(|span| !span.is_empty()),
+        ..error
+    })
+}
+
+/// The places of the fields of a line that begins at `from`.
+fn fields(line: &str, from: usize) -> Vec<Range<usize>> {
+    let separated = |c: char| c == ',' || c == ';';
+    // Some spreadsheets begin a text with a byte order mark.
+    let blank = |c: char| c.is_whitespace() || c == '\u{feff}';
+    let place = |field: &str| {
+        let at = from + (field.as_ptr() as usize - line.as_ptr() as usize);
+        at..at + field.len()
+    };
+    match line.contains(separated) {
+        true => line
+            .split(separated)
+            .map(|f| place(f.trim_matches(blank)))
+            .collect(),
+        false => line
+            .split(blank)
+            .filter(|f| !f.is_empty())
+            .map(place)
+            .collect(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn columns_are_read() {
+        for text in [
+            "0,0.5\n1,0.4\n",
+            "speed; mu_k\n0; 0.5\n 1;0.4",
+            "\u{feff}0,0.5\n\n1,0.4",
+            "v mu\n# measured\n\n0\t0.5\r\n1  0.4\r\n",
+        ] {
+            let table = table_of_columns(text).unwrap();
+            assert_eq!(table.speeds(), [0.0, 1.0], "{text}");
+            assert_eq!(table.mu_k(), [0.5, 0.4], "{text}");
+        }
+    }
+
+    #[test]
+    fn mistakes_in_columns_are_pointed_at() {
+        for (text, place, says) in [
+            ("", "", "0 speeds and 0 values of mu_k"),
+            ("0,0.5\n", "", "1 speeds and 1 values"),
+            ("0,0.5\n1\n", "1", "expected a speed and a value"),
+            ("0,0.5\n1,x\n", "1,x", "expected a speed"),
+            ("v\nmu\n0,1\n", "v", "expected a speed"),
+            ("a b\nc d\n", "c d", "expected a speed"),
+            ("0,0.5\n2,0.4\n1,0.4", "1", "speeds = 1 is outside"),
+            ("0,0.5\n1,-4\n", "-4", "mu_k = -4 is outside its range"),
+            ("0,0.5\nnan,1\n", "nan", "speeds = NaN"),
+            ("0 0.5 1\n", "0 0.5 1", "expected a speed"),
+        ] {
+            let error = table_of_columns(text).unwrap_err();
+            assert!(error.message.contains(says), "{text}: {error}");
+            let found = error.span.clone().map_or("", |span| &text[span]);
+            assert_eq!(found, place, "{text}: {error}");
+        }
+    }
+}
