@@ -88,10 +88,8 @@ impl Road for Orbit {
             for (seen, gauge) in seen.iter_mut().zip(gauges(&cycle)) {
                 *seen = [seen[1], seen[2], gauge];
             }
-            if seen
-                .iter()
-                .all(|s| (s[2] - s[1]).abs() <= settled * s[2].abs())
-            {
+            let near = |s: &[f64; 3]| (s[2] - s[1]).abs() <= settled * s[2].abs();
+            if settled == f64::INFINITY || seen.iter().all(near) {
                 return Ride::Cycle(Cycle {
                     depth: limit(seen[0]),
                     n_min: -limit(seen[1]),
@@ -226,57 +224,106 @@ fn limit([first, second, third]: [f64; 3]) -> f64 {
     }
 }
 
-/// Raises v0 from cycle to cycle towards where a gauge vanishes.
-fn climb<R: Road>(road: &mut R, start: f64, first: Cycle) -> Climbed {
-    let mut at = (start, first);
-    let mut slopes = [f64::NAN; 2];
+/// A kept trial on the way to a graze.
+#[derive(Debug, Clone, Copy)]
+struct Place {
+    v0: f64,
+    cycle: Cycle,
+    /// How settled it is, see [`Road::trial`].
+    settled: f64,
+    /// The gauges' derivatives with respect to v0; NaN before they are known.
+    slopes: [f64; 2],
+}
+
+impl Place {
+    /// By how much v0 has to grow for each gauge to vanish, relative; +∞ where it does not come to that.
+    fn gaps(&self) -> [f64; 2] {
+        [0, 1].map(|i| {
+            let gap = -gauges(&self.cycle)[i] / self.slopes[i] / self.v0;
+            if gap >= 0.0 { gap } else { f64::INFINITY }
+        })
+    }
+
+    /// The next one.
+    fn moved_to(&self, v0: f64, cycle: Cycle, settled: f64) -> Self {
+        let slopes = [0, 1].map(|i| {
+            let slope = (gauges(&cycle)[i] - gauges(&self.cycle)[i]) / (v0 - self.v0);
+            // At the same v0 only the gauges are better known.
+            if v0 > self.v0 { slope } else { self.slopes[i] }
+        });
+        Self {
+            v0,
+            cycle,
+            settled,
+            slopes,
+        }
+    }
+}
+
+/// Where the end is near, cycles have to be settled to this.
+const SETTLED: f64 = 0.02;
+/// The share of the way to the expected end that is taken at once.
+const SHARE: f64 = 0.97;
+
+/// How settled a trial has to be after a step of v0: far from the end one cycle tells enough.
+fn needed(step: f64) -> f64 {
+    match step {
+        0.3.. => f64::INFINITY,
+        0.02.. => 0.1,
+        _ => SETTLED,
+    }
+}
+
+/// Raises v0 towards where a gauge vanishes.
+fn climb(road: &mut impl Road, start: f64, first: Cycle) -> Climbed {
+    let mut at = Place {
+        v0: start,
+        cycle: first,
+        settled: f64::INFINITY,
+        slopes: [f64::NAN; 2],
+    };
     let mut most = LARGEST_STEP;
     let mut lifted = false;
     for _ in 0..MOST_TRIALS {
-        let (v0, cycle) = at;
-        let gaps = [0, 1].map(|i| {
-            let gap = -gauges(&cycle)[i] / slopes[i] / v0;
-            if gap >= 0.0 { gap } else { f64::INFINITY }
-        });
+        let gaps = at.gaps();
         let gap = gaps[0].min(gaps[1]);
-        if gap < PRECISION || most < PRECISION {
-            return if lifted && gaps[1] <= gaps[0] {
-                Climbed::LiftOff(v0)
-            } else if gap < 10.0 * PRECISION && gaps[0] <= gaps[1] {
-                Climbed::Graze {
-                    v0: v0 * (1.0 + gap),
-                    slip: cycle.slip,
-                }
-            } else if gaps[1] < 10.0 * PRECISION {
-                Climbed::LiftOff(v0)
-            } else {
-                Climbed::Unclear
-            };
+        let mut step = (SHARE * gap).min(most);
+        if step < PRECISION {
+            if at.settled <= SETTLED {
+                return arrived(&at, gaps, lifted);
+            }
+            step = 0.0;
         }
-        let share = 0.97;
-        let step = (share * gap).min(most);
-        let next = v0 * (1.0 + step);
-        let settled = if step > 0.3 { 0.2 } else { 0.02 };
-        match road.trial(next, Some(cycle.slip), settled) {
+        let (next, settled) = (at.v0 * (1.0 + step), needed(step));
+        match road.trial(next, Some(at.cycle.slip), settled) {
             Ride::Cycle(there) => {
                 road.keep();
-                {
-                    for i in [0, 1] {
-                        slopes[i] = (gauges(&there)[i] - gauges(&cycle)[i]) / (next - v0);
-                    }
-                }
-                at = (next, there);
+                at = at.moved_to(next, there, settled);
                 most = (2.0 * most).min(LARGEST_STEP);
             }
-            Ride::Pass => most = 0.5 * step,
-            Ride::LiftOff => {
-                lifted = true;
+            missed @ (Ride::Pass | Ride::LiftOff) => {
+                lifted = missed == Ride::LiftOff;
                 most = 0.5 * step;
             }
             Ride::Other => return Climbed::Unclear,
         }
     }
     Climbed::Unclear
+}
+
+/// What vanishes at the end of a climb; `lifted`: the last trial beyond it lifted off.
+fn arrived(at: &Place, [graze, lift]: [f64; 2], lifted: bool) -> Climbed {
+    let near = 10.0 * PRECISION;
+    if lift < near || (lifted && graze >= near) {
+        Climbed::LiftOff(at.v0)
+    } else if graze < near {
+        Climbed::Graze {
+            v0: at.v0 * (1.0 + graze),
+            slip: at.cycle.slip,
+        }
+    } else {
+        Climbed::Unclear
+    }
 }
 
 /// The share of v0 above which ẋ stays once the block slides.

@@ -56,6 +56,13 @@ impl FrictionSeries {
             series.restart(speed);
         }
     }
+
+    /// Goes on from where `other` is, the series of the same law.
+    pub fn copy_place(&mut self, other: &Self) {
+        if let (Self::Table(series), Self::Table(other)) = (self, other) {
+            series.copy_place(other);
+        }
+    }
 }
 
 /// The same at all speeds.

@@ -162,6 +162,7 @@ impl Motion {
         self.history.restart_rising(a, v0, self.parameters.tau);
         (self.t, self.u, self.a, self.x) = (0.0, 0.0, a, 0.0);
         self.mode = Mode::Forwards;
+        self.friction.restart(0.0);
         self.stuck_since = f64::INFINITY;
         self.kink = 2;
     }
@@ -179,6 +180,7 @@ impl Motion {
     pub fn copy_from(&mut self, other: &Self) {
         self.parameters.clone_from(&other.parameters);
         self.history.copy_from(&other.history);
+        self.friction.copy_place(&other.friction);
         self.mode = other.mode;
         (self.t, self.u, self.a, self.x) = (other.t, other.u, other.a, other.x);
         (self.kink, self.stuck_since) = (other.kink, other.stuck_since);

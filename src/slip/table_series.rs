@@ -74,6 +74,11 @@ impl TableSeries {
         };
     }
 
+    /// Goes on with the cubic that `other` is on.
+    pub fn copy_place(&mut self, other: &Self) {
+        (self.region, self.piece) = (other.region, other.piece);
+    }
+
     /// The speed of a point, if it is there and a speed can cross it.
     fn knot(&self, point: Option<usize>) -> Option<f64> {
         let speed = *self.table.speeds().get(point?)?;

@@ -1,0 +1,237 @@
+//! `slipmap vc`: the critical velocity at one point.
+
+use std::io::Write;
+
+use clap::ValueEnum;
+use serde::Serialize;
+use slipmap::critical::End;
+use slipmap::critical::limit::{CoulombLimit, strong, weak};
+use slipmap::critical::switch_on::{Phase, Scan};
+use slipmap::sweep::{Parameter, Setting, vc};
+
+use super::failure::Failure;
+use super::parameters::ParameterArgs;
+
+/// Phases over one cycle for the worst case.
+const PHASES: u32 = 32;
+
+#[derive(Debug, clap::Args)]
+#[command(after_help = "Examples:
+  slipmap vc --friction weakening --mu0 0.5 --v-s 0.5 --alpha-v=-0.33 --tau 4.15
+  slipmap vc --friction weakening --mu0 0.5 --v-s 0.5 --alpha-v=-0.33 --tau 4.15 --protocol switch-on --phase 0.2
+  slipmap vc --protocol limit --gamma 0.25 --mu-ratio 0.5")]
+pub struct Args {
+    #[command(flatten)]
+    parameters: ParameterArgs,
+    /// Which question is asked
+    #[arg(long, value_enum, default_value_t = Protocol::Follow)]
+    protocol: Protocol,
+    /// Time from a release to switch-on, or `worst` for the worst of 32 phases (with --protocol switch-on) [default: 0]
+    #[arg(long, value_name = "T", allow_hyphen_values = true)]
+    phase: Option<String>,
+    /// γ = −μ_K α_N τ/(2√(κM)) (with --protocol limit)
+    #[arg(long, allow_hyphen_values = true)]
+    gamma: Option<f64>,
+    /// μ_K/μ_S (with --protocol limit)
+    #[arg(long, allow_hyphen_values = true)]
+    mu_ratio: Option<f64>,
+    /// One JSON object on standard output; what there is not is null
+    #[arg(long)]
+    json: bool,
+}
+
+/// Protocols by name.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum, Serialize)]
+#[serde(rename_all = "kebab-case")]
+enum Protocol {
+    /// From controlled stick-slip at low v0, raised until stick-slip ends
+    Follow,
+    /// Control switched on at a phase of uncontrolled stick-slip
+    SwitchOn,
+    /// Coulomb friction, load control, τ → 0: closed form
+    Limit,
+}
+
+/// The JSON of a critical velocity. What there is not is null.
+#[derive(Debug, Serialize)]
+struct Found {
+    vc: Option<f64>,
+    protocol: Protocol,
+    outcome: &'static str,
+    windows: Vec<[f64; 2]>,
+    v_liftoff: Option<f64>,
+    stick_time: Option<f64>,
+    slip_time: Option<f64>,
+    n_min: Option<f64>,
+    method: &'static str,
+    decided: bool,
+}
+
+/// The JSON of the limit.
+#[derive(Debug, Serialize)]
+struct Limit {
+    protocol: Protocol,
+    gamma: f64,
+    mu_ratio: f64,
+    vc_over_vtilde: f64,
+    #[serde(rename = "omega0_T")]
+    omega0_t: Option<f64>,
+    liftoff_over_vtilde: Option<f64>,
+    weak_control: f64,
+    strong_control: f64,
+}
+
+/// Runs the subcommand.
+pub fn main(args: &Args) -> Result<(), Failure> {
+    args.check()?;
+    let mut out = std::io::stdout().lock();
+    match args.protocol {
+        Protocol::Limit => print(&mut out, args.json, &args.limit()?),
+        protocol => {
+            let setting = args.parameters.setting_without_v0()?;
+            let found = match protocol {
+                Protocol::SwitchOn => args.switch_on(&setting)?,
+                _ => follow(&setting)?,
+            };
+            print(&mut out, args.json, &found)
+        }
+    }
+}
+
+/// The object as one line of JSON, or its entries one below the other.
+fn print(out: &mut impl Write, json: bool, found: &impl Serialize) -> Result<(), Failure> {
+    let value = serde_json::to_value(found)?;
+    if json {
+        writeln!(out, "{value}")?;
+        return Ok(());
+    }
+    for (key, value) in value.as_object().into_iter().flatten() {
+        let shown = match value {
+            serde_json::Value::String(text) => text.clone(),
+            serde_json::Value::Null => "none".into(),
+            other => other.to_string(),
+        };
+        writeln!(out, "{key:<20} {shown}")?;
+    }
+    Ok(())
+}
+
+fn finite(value: f64) -> Option<f64> {
+    value.is_finite().then_some(value)
+}
+
+fn follow(setting: &Setting) -> Result<Found, Failure> {
+    let found = vc::follow(setting)?;
+    let window = match found.end {
+        End::Never | End::LiftOff | End::Persists => Vec::new(),
+        _ => vec![[0.0, found.vc]],
+    };
+    Ok(Found {
+        vc: finite(found.vc),
+        protocol: Protocol::Follow,
+        outcome: found.end.name(),
+        windows: window,
+        v_liftoff: finite(found.v_liftoff),
+        stick_time: finite(found.stick_time),
+        slip_time: finite(found.slip_time),
+        n_min: finite(found.n_min),
+        method: found.method.name(),
+        decided: found.decided,
+    })
+}
+
+impl Args {
+    /// No flag is given that another protocol needs.
+    fn check(&self) -> Result<(), Failure> {
+        let refuse = |flag: &str, protocol: &str| {
+            Err(Failure::bad_input_with_help(
+                format!("{flag} has no meaning with this protocol"),
+                format!("it belongs to --protocol {protocol}"),
+            ))
+        };
+        if self.phase.is_some() && self.protocol != Protocol::SwitchOn {
+            return refuse("--phase", "switch-on");
+        }
+        if self.protocol != Protocol::Limit {
+            if self.gamma.is_some() {
+                return refuse("--gamma", "limit");
+            }
+            if self.mu_ratio.is_some() {
+                return refuse("--mu-ratio", "limit");
+            }
+        } else if self.parameters.any_given() {
+            return Err(Failure::bad_input_with_help(
+                "the limit takes no parameters but --gamma and --mu-ratio".into(),
+                "for example: slipmap vc --protocol limit --gamma 0.25 --mu-ratio 0.5".into(),
+            ));
+        }
+        Ok(())
+    }
+
+    fn limit(&self) -> Result<Limit, Failure> {
+        let needed = |value: Option<f64>, flag: &str| {
+            value.ok_or_else(|| {
+                Failure::bad_input_with_help(
+                    format!("{flag} is missing"),
+                    "the limit needs --gamma and --mu-ratio".into(),
+                )
+            })
+        };
+        let gamma = needed(self.gamma, "--gamma")?;
+        let mu_ratio = needed(self.mu_ratio, "--mu-ratio")?;
+        let found = CoulombLimit::at(gamma, mu_ratio)?;
+        Ok(Limit {
+            protocol: Protocol::Limit,
+            gamma,
+            mu_ratio,
+            vc_over_vtilde: found.vc_over_vtilde,
+            omega0_t: finite(found.omega0_t),
+            liftoff_over_vtilde: finite(found.liftoff_over_vtilde),
+            weak_control: weak(gamma),
+            strong_control: strong(gamma),
+        })
+    }
+
+    /// The phase in words of the flag.
+    fn phase(&self) -> Result<Phase, Failure> {
+        match self.phase.as_deref() {
+            None => Ok(Phase::After(0.0)),
+            Some("worst") => Ok(Phase::Worst(PHASES)),
+            Some(text) => {
+                let time = text.parse::<f64>().ok();
+                let time = time.filter(|t| (0.0..=1e12).contains(t));
+                time.map(Phase::After).ok_or_else(|| {
+                    Failure::bad_input_with_help(
+                        format!("--phase {text} is neither a time nor the word worst"),
+                        "a time from a release to switch-on: 0 or more, at most 1e12".into(),
+                    )
+                })
+            }
+        }
+    }
+
+    fn switch_on(&self, setting: &Setting) -> Result<Found, Failure> {
+        let scan = Scan::default();
+        let found = vc::switch_on(setting, self.phase()?, &scan)?;
+        let largest = scan.v_max * setting.get(Parameter::MuS) * vc::problem(setting)?.1.velocity;
+        let top = found.top();
+        let outcome = match top {
+            None if found.v_liftoff.is_some() => "lift-off",
+            None => "never",
+            Some(top) if top >= largest * (1.0 - 1e-9) => "persists",
+            Some(_) => "lost",
+        };
+        Ok(Found {
+            vc: top.or((outcome == "never").then_some(0.0)),
+            protocol: Protocol::SwitchOn,
+            outcome,
+            windows: found.survives,
+            v_liftoff: found.v_liftoff,
+            stick_time: None,
+            slip_time: None,
+            n_min: None,
+            method: "simulation",
+            decided: found.decided,
+        })
+    }
+}
