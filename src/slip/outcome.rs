@@ -21,17 +21,20 @@ pub enum Outcome {
     Diverged,
     /// None of these was reached before the horizon, or within the steps allowed.
     Undecided,
+    /// There is no motion: no uncontrolled stick-slip at whose phase control could be switched on.
+    NoCycle,
 }
 
 impl Outcome {
     /// All outcomes, in the order of their numbers in a map.
-    pub const ALL: [Self; 6] = [
+    pub const ALL: [Self; 7] = [
         Self::Sliding,
         Self::StickSlip,
         Self::Oscillation,
         Self::LiftOff,
         Self::Diverged,
         Self::Undecided,
+        Self::NoCycle,
     ];
 
     /// The name in maps, files and messages.
@@ -44,6 +47,7 @@ impl Outcome {
             Self::LiftOff => "lift-off",
             Self::Diverged => "diverged",
             Self::Undecided => "undecided",
+            Self::NoCycle => "no-cycle",
         }
     }
 }
