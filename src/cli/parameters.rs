@@ -84,6 +84,7 @@ impl ParameterArgs {
             Parameter::Mu0 => self.mu0,
             Parameter::VS => self.v_s,
             Parameter::MuS => self.mu_s,
+            Parameter::XDot0 | Parameter::A0 | Parameter::SwitchOnPhase => None,
         }
     }
 

@@ -115,6 +115,21 @@ impl Motion {
     /// A block that slides or sticks at t = 0 with velocity `u` and elongation `a`, which was `a` at all times before.
     #[must_use]
     pub fn new(parameters: Parameters, accuracy: Accuracy, u: f64, a: f64) -> Self {
+        Self::with_history(parameters, accuracy, (u, a), History::default())
+    }
+
+    /// As after [`Motion::new`], without allocating anew.
+    pub fn restart(&mut self, parameters: Parameters, accuracy: Accuracy, u: f64, a: f64) {
+        let history = std::mem::take(&mut self.history);
+        *self = Self::with_history(parameters, accuracy, (u, a), history);
+    }
+
+    fn with_history(
+        parameters: Parameters,
+        accuracy: Accuracy,
+        (u, a): (f64, f64),
+        mut history: History,
+    ) -> Self {
         let tolerance = accuracy.tolerance.clamp(1e-15, 1e-3);
         // The order at which Taylor's method does least work per unit of time (Jorba and Zou 2005).
         let order = ((2.0 - 0.5 * tolerance.ln()).ceil() as usize).clamp(4, MOST_ORDER);
@@ -125,13 +140,14 @@ impl Motion {
         } else {
             0
         };
+        history.restart(a, 0.0, felt);
         let zero = [0.0; MOST_ORDER + 1];
         let mut motion = Self {
             parameters,
             tolerance,
             order,
             friction,
-            history: History::constant(a, 0.0, felt),
+            history,
             mode: Mode::Stick,
             t: 0.0,
             u,
@@ -149,6 +165,17 @@ impl Motion {
         };
         motion.mode = motion.mode_at(1.0);
         motion
+    }
+
+    /// Makes the present t = 0 and x = 0, with control acting from `switch_on` on. The past stays what it is.
+    pub(super) fn begin_here(&mut self, switch_on: f64) {
+        self.history.shift(-self.t);
+        self.t = 0.0;
+        self.x = 0.0;
+        self.parameters.switch_on = switch_on;
+        if switch_on <= 0.0 {
+            self.kink = 1;
+        }
     }
 
     /// The parameters.

@@ -22,6 +22,8 @@ mod given;
 pub mod parameter;
 pub mod plan;
 mod root_columns;
+pub mod simulation;
+mod slip_columns;
 pub mod spec;
 pub mod tile;
 mod toml_reader;
