@@ -9,6 +9,7 @@ use slipmap::linear::{Crossings, MarginalTolerance};
 use slipmap::store::map_writer::Provenance;
 use slipmap::store::{MapFile, MapWriter, Output};
 use slipmap::sweep::events::Silent;
+use slipmap::sweep::field::Storage;
 use slipmap::sweep::plan::BLOCK_OF_DELAYS;
 use slipmap::sweep::{Field, Parameter, Plan, Setting, engine};
 
@@ -40,7 +41,7 @@ struct Cells {
 impl Cells {
     fn read(path: &Path, plan: &Plan) -> Self {
         let file = hdf5::File::open(path).unwrap();
-        let real = |field: &&Field| !field.is_count();
+        let real = |field: &&Field| field.storage() == Storage::Real;
         let column = |&field: &Field| (field, file.dataset(field.name()).unwrap().read_raw());
         let columns = plan.spec.fields.iter().filter(real).map(column);
         Self {

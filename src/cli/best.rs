@@ -131,9 +131,11 @@ impl From<&Optimum> for OptimumOut {
 
 pub fn main(args: &Args) -> Result<(), Failure> {
     let gain = args.control.searched();
+    let help = "leave it out; --alpha-from, --alpha-to, --tau-from and --tau-to are the ranges of the search";
     let setting = args
         .parameters
-        .setting_but(&[args.control.parameter(), Parameter::Tau])?;
+        .setting_but(&[args.control.parameter(), Parameter::Tau], help)?;
+    setting.sliding_point()?;
     let ranges = ranges(args, &default_ranges(&setting, gain)?)?;
     let found = best_settings(&setting, gain, &ranges)?;
     let mut out = std::io::stdout().lock();

@@ -6,6 +6,7 @@ use std::path::PathBuf;
 use slipmap::linear::curves::StableSide;
 use slipmap::linear::status::FLAGS;
 use slipmap::report::numbers::{bytes, grouped, short};
+use slipmap::slip::outcome::Outcome;
 use slipmap::store::MapFile;
 use slipmap::store::schema::root;
 use slipmap::sweep::Field;
@@ -110,10 +111,17 @@ pub fn main(args: &Args) -> Result<(), Failure> {
     Ok(())
 }
 
-/// ", −0.3 to 1.2, 12 infinite, 3 without a value".
+/// ", −0.3 to 1.2, 12 infinite, 3 without a value", or ", 12 sliding, 3 lift-off".
 fn values(map: &MapFile, field: Field) -> Result<String, Failure> {
-    let summary = map.summary(field)?;
     let mut text = String::new();
+    if field == Field::Outcome {
+        let counts = Outcome::ALL.into_iter().zip(map.outcome_counts()?);
+        for (outcome, cells) in counts.filter(|(_, cells)| *cells > 0) {
+            text += &format!(", {} {}", grouped(cells), outcome.name());
+        }
+        return Ok(text);
+    }
+    let summary = map.summary(field)?;
     if let Some((low, high)) = summary.range {
         text += &format!(", {} to {}", short(low), short(high));
     }

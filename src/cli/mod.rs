@@ -12,6 +12,7 @@ mod run;
 mod say;
 mod simulate;
 mod sweep_file;
+mod vc;
 
 use std::process::ExitCode;
 
@@ -38,6 +39,8 @@ enum Command {
     Point(point::Args),
     /// The gain and delay of fastest decay, for every stable region
     Best(best::Args),
+    /// The critical velocity at one point
+    Vc(vc::Args),
     /// One motion in time: from a case file to HDF5 and a picture, with its events and outcome
     Simulate(simulate::Args),
     /// Draw a map as PNG or SVG
@@ -53,6 +56,7 @@ pub fn main() -> ExitCode {
         Command::Plan(args) => plan::main(&args),
         Command::Point(args) => point::main(&args),
         Command::Best(args) => best::main(&args),
+        Command::Vc(args) => vc::main(&args),
         Command::Simulate(args) => simulate::main(&args),
         Command::Plot(args) => plot::main(&args),
         Command::Info(args) => info::main(&args),

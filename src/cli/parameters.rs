@@ -84,6 +84,7 @@ impl ParameterArgs {
             Parameter::Mu0 => self.mu0,
             Parameter::VS => self.v_s,
             Parameter::MuS => self.mu_s,
+            Parameter::XDot0 | Parameter::A0 | Parameter::SwitchOnPhase => None,
         }
     }
 
@@ -110,11 +111,34 @@ impl ParameterArgs {
 
     /// The setting that the flags describe.
     pub fn setting(&self) -> Result<Setting, Failure> {
-        self.setting_but(&[])
+        let setting = self.setting_but(&[], "")?;
+        setting.sliding_point()?;
+        Ok(setting)
+    }
+
+    /// The setting of a critical velocity: a friction law, and no v0.
+    pub fn setting_without_v0(&self) -> Result<Setting, Failure> {
+        if self.friction.is_none() {
+            return Err(Failure::bad_input_with_help(
+                "--friction is not given: the critical velocity depends on the whole friction law",
+                "for example: --friction weakening --mu0 0.5 --v-s 0.5",
+            ));
+        }
+        let setting =
+            self.setting_but(&[Parameter::V0], "leave it out: v0 is what is looked for")?;
+        setting.friction_law()?;
+        Ok(setting)
+    }
+
+    /// Whether any parameter is given.
+    pub fn any_given(&self) -> bool {
+        let flags = self.friction.is_some() || self.table.is_some();
+        flags || Parameter::ALL.into_iter().any(|p| self.given(p).is_some())
     }
 
     /// The setting that the flags describe but for the parameters `searched`, which must not be given.
-    pub fn setting_but(&self, searched: &[Parameter]) -> Result<Setting, Failure> {
+    /// `help` says why.
+    pub fn setting_but(&self, searched: &[Parameter], help: &str) -> Result<Setting, Failure> {
         let law = self.law()?;
         let flag = |name: &str| format!("--{}", name.replace('_', "-"));
         for parameter in searched {
@@ -122,7 +146,7 @@ impl ParameterArgs {
                 let name = parameter.name();
                 return Err(Failure::bad_input_with_help(
                     format!("{} {value} would fix {name}, which is searched", flag(name)),
-                    "leave it out; --alpha-from, --alpha-to, --tau-from and --tau-to are the ranges of the search",
+                    help,
                 ));
             }
         }
@@ -138,7 +162,6 @@ impl ParameterArgs {
                 setting.set(parameter, value);
             }
         }
-        setting.sliding_point()?;
         Ok(setting)
     }
 }

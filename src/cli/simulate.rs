@@ -182,7 +182,7 @@ fn draw(
 
 fn failure(error: TraceError) -> Failure {
     match error {
-        TraceError::Model(error) => error.into(),
+        TraceError::Case(error) => Failure::bad_input(error.to_string()),
         TraceError::TooLong => Failure::bad_input_with_help(
             error.to_string(),
             "[trace] until = … ends it earlier, interval = … makes it coarser",
@@ -244,5 +244,6 @@ fn verdict(summary: &Summary, spec: &CaseSpec) -> String {
             format!("undecided after {} steps", grouped(summary.steps))
         }
         Outcome::Undecided => format!("undecided at the horizon, t = {}", spec.case.horizon),
+        Outcome::NoCycle => "there is no uncontrolled stick-slip to start from".into(),
     }
 }

@@ -100,7 +100,7 @@ pub fn main(args: &Args) -> Result<(), Failure> {
 
 /// The object as one line of JSON, or its entries one below the other.
 fn print(out: &mut impl Write, json: bool, found: &impl Serialize) -> Result<(), Failure> {
-    let value = serde_json::to_value(found)?;
+    let value = serde_json::to_value(found).map_err(std::io::Error::from)?;
     if json {
         writeln!(out, "{value}")?;
         return Ok(());
@@ -161,8 +161,8 @@ impl Args {
             }
         } else if self.parameters.any_given() {
             return Err(Failure::bad_input_with_help(
-                "the limit takes no parameters but --gamma and --mu-ratio".into(),
-                "for example: slipmap vc --protocol limit --gamma 0.25 --mu-ratio 0.5".into(),
+                "the limit takes no parameters but --gamma and --mu-ratio",
+                "for example: slipmap vc --protocol limit --gamma 0.25 --mu-ratio 0.5",
             ));
         }
         Ok(())
@@ -173,7 +173,7 @@ impl Args {
             value.ok_or_else(|| {
                 Failure::bad_input_with_help(
                     format!("{flag} is missing"),
-                    "the limit needs --gamma and --mu-ratio".into(),
+                    "the limit needs --gamma and --mu-ratio",
                 )
             })
         };
@@ -203,7 +203,7 @@ impl Args {
                 time.map(Phase::After).ok_or_else(|| {
                     Failure::bad_input_with_help(
                         format!("--phase {text} is neither a time nor the word worst"),
-                        "a time from a release to switch-on: 0 or more, at most 1e12".into(),
+                        "a time from a release to switch-on: 0 or more, at most 1e12",
                     )
                 })
             }

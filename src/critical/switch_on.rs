@@ -102,7 +102,7 @@ impl<'p> Trials<'p> {
     /// The uncontrolled cycle at `v0`; none where there is no stick-slip without control.
     pub fn uncontrolled_cycle(&mut self, v0: f64) -> Option<UncontrolledCycle> {
         let parameters = self.problem.at(v0, 0.0);
-        restart_after_release(&mut self.motion, parameters, self.accuracy, 0.0).ok()
+        restart_after_release(&mut self.motion, &parameters, self.accuracy, 0.0).ok()
     }
 
     /// What becomes of stick-slip at `v0`.
@@ -134,8 +134,7 @@ impl<'p> Trials<'p> {
     /// At one phase, with the uncontrolled period.
     fn once(&mut self, v0: f64, phase: f64) -> (Survival, f64) {
         let parameters = self.problem.at(v0, 0.0);
-        let restarted =
-            restart_after_release(&mut self.motion, parameters, self.accuracy, phase);
+        let restarted = restart_after_release(&mut self.motion, &parameters, self.accuracy, phase);
         let cycle = match restarted {
             Ok(cycle) => cycle,
             Err(NoCycle::NoStickSlip) => return (Survival::NoStickSlip, f64::NAN),
@@ -153,6 +152,7 @@ impl<'p> Trials<'p> {
         let survival = match summary.outcome {
             Outcome::StickSlip => Survival::Survives,
             Outcome::LiftOff => Survival::LiftOff,
+            Outcome::NoCycle => Survival::NoStickSlip,
             Outcome::Sliding | Outcome::Oscillation | Outcome::Diverged => Survival::Ends,
             // It was released not long ago: it still sticks from time to time.
             Outcome::Undecided if end - summary.last_release < 0.25 * end => Survival::Survives,

@@ -3,6 +3,7 @@
 use super::numbers::short;
 use crate::store::map_file::{MapAxis, Plane};
 use crate::store::{MapFile, StoreError};
+use crate::sweep::field::Storage;
 use crate::sweep::{Field, Parameter};
 
 /// Lines of the picture itself; captions take three more.
@@ -17,7 +18,7 @@ const COLOURS: [u8; 5] = [37, 230, 180, 136, 250];
 /// The same without colours.
 const SHADES: [char; 5] = ['█', ' ', '░', '▒', '?'];
 
-/// What the map looks like, in text of at most 19 lines and `width` columns; none where the map does not tell what is stable,
+/// What the map looks like, in text of at most 19 lines and `width` columns; none where the map tells neither outcomes nor what is stable,
 /// or has fewer than two axes with more than one value. `colour`: with ANSI escapes, two rows of cells in each line.
 ///
 /// Axes outside the plane are held at their middle value.
@@ -25,12 +26,14 @@ const SHADES: [char; 5] = ['█', ' ', '░', '▒', '?'];
 /// # Errors
 /// When the map cannot be read.
 pub fn preview(map: &MapFile, width: usize, colour: bool) -> Result<Option<String>, StoreError> {
-    let (Some((x, y)), Some(field)) = (plane_axes(map), map.stability_field()) else {
+    let outcome = map.fields().iter().copied().find(|f| *f == Field::Outcome);
+    let shown = outcome.or_else(|| map.stability_field());
+    let (Some((x, y)), Some(field)) = (plane_axes(map), shown) else {
         return Ok(None);
     };
     let index: Vec<usize> = map.axes().iter().map(|a| a.values.len() / 2).collect();
     let mut plane = map.plane(field, &index, (y, x), MOST_CELLS)?;
-    if !field.is_count() {
+    if field.storage() != Storage::Count {
         plane
             .cells
             .iter_mut()
@@ -52,8 +55,11 @@ pub fn preview(map: &MapFile, width: usize, colour: bool) -> Result<Option<Strin
     Ok(Some(captions.around(&picture, columns, colour)))
 }
 
-/// The least number of unstable roots that goes with a value.
+/// The least number of unstable roots that goes with a value. Outcomes are shown like 0, 2, 4 and 6 roots.
 fn as_count(field: Field, value: f64) -> f64 {
+    if field == Field::Outcome {
+        return if value <= 3.0 { 2.0 * value } else { f64::NAN };
+    }
     match field.tells_stable(value) {
         Some(stable) if !value.is_nan() => f64::from(u8::from(!stable)),
         _ => f64::NAN,
@@ -153,10 +159,10 @@ impl Captions {
             margin: margin.into_iter().max().unwrap_or(0),
             top,
             bottom,
-            kinds: if field.is_count() {
-                &["stable", "2", "4", "6 or more unstable roots"]
-            } else {
-                &["stable", "unstable"]
+            kinds: match field.storage() {
+                Storage::Count => &["stable", "2", "4", "6 or more unstable roots"],
+                Storage::Kind => &["sliding", "stick-slip", "oscillation", "lift-off", "others"],
+                Storage::Real => &["stable", "unstable"],
             },
         }
     }

@@ -1,5 +1,6 @@
 //! A motion in physical units: what is given, and what comes out.
 
+use super::cycle::{NoCycle, after_release, restart_after_release};
 use super::motion::{Accuracy, Motion, Parameters};
 use super::outcome::{Limits, Observer, REPEATED, Summary, follow};
 use crate::linear::rightmost::Rightmost;
@@ -21,16 +22,42 @@ pub struct Case {
     pub v0: f64,
     /// When control is switched on; +∞ for never. Without gains it never is.
     pub switch_on: f64,
-    /// ẋ at t = 0.
-    pub x_dot0: f64,
-    /// Elongation at t = 0 and before.
-    pub a0: f64,
+    /// The block at t = 0 and before.
+    pub start: Start,
     /// Until when to follow the motion.
     pub horizon: f64,
     /// The most steps.
     pub steps: u64,
     /// How exactly.
     pub accuracy: Accuracy,
+}
+
+/// The block at t = 0, and its elongation before.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Start {
+    /// Any state.
+    State {
+        /// ẋ at t = 0.
+        x_dot0: f64,
+        /// Elongation at t = 0 and before.
+        a0: f64,
+    },
+    /// Just released from stick, after uncontrolled stick-slip. `switch_on` is then a phase: it counts modulo the period.
+    AfterRelease,
+}
+
+/// Why a case has no motion.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum CaseError {
+    /// A value is out of range.
+    #[error(transparent)]
+    Model(#[from] ModelError),
+    /// It has no uncontrolled cycle to start from.
+    #[error("{}", match .0 {
+        NoCycle::NoStickSlip => "switch_on_phase needs stick-slip without control, and there is none at this v0",
+        NoCycle::LongDelay => "switch_on_phase: tau is longer than 10000 cycles of stick-slip",
+    })]
+    NoCycle(NoCycle),
 }
 
 /// The units in which a [`Motion`] computes.
@@ -46,29 +73,86 @@ pub struct CaseUnits {
     pub force: f64,
 }
 
-impl Case {
-    /// The units of its motion.
+impl CaseUnits {
+    /// Of an oscillator.
     #[must_use]
-    pub fn units(&self) -> CaseUnits {
-        let time = self.oscillator.time_unit();
-        let force = self.oscillator.normal_load();
-        let length = force / self.oscillator.stiffness();
-        CaseUnits {
+    pub fn of(oscillator: &Oscillator) -> Self {
+        let time = oscillator.time_unit();
+        let force = oscillator.normal_load();
+        let length = force / oscillator.stiffness();
+        Self {
             time,
             length,
             velocity: length / time,
             force,
         }
     }
+}
+
+impl Case {
+    /// The units of its motion.
+    #[must_use]
+    pub fn units(&self) -> CaseUnits {
+        CaseUnits::of(&self.oscillator)
+    }
 
     /// The block at t = 0.
     ///
     /// # Errors
-    /// When a value is not finite or out of its range.
-    pub fn motion(&self) -> Result<Motion, ModelError> {
+    /// When a value is not finite or out of its range, or there is no uncontrolled cycle to start from.
+    pub fn motion(&self) -> Result<Motion, CaseError> {
         self.check()?;
+        let p = self.parameters();
+        Ok(match self.start {
+            Start::State { x_dot0, a0 } => {
+                let (u, a) = self.dimensionless(x_dot0, a0);
+                Motion::new(p, self.accuracy, u, a)
+            }
+            Start::AfterRelease => {
+                after_release(&p, self.accuracy, p.switch_on)
+                    .map_err(CaseError::NoCycle)?
+                    .0
+            }
+        })
+    }
+
+    /// As [`Case::motion`], in the memory of another motion; what that holds after an error means nothing.
+    ///
+    /// # Errors
+    /// As [`Case::motion`].
+    pub fn restart(&self, motion: &mut Motion) -> Result<(), CaseError> {
+        self.check()?;
+        let p = self.parameters();
+        match self.start {
+            Start::State { x_dot0, a0 } => {
+                let (u, a) = self.dimensionless(x_dot0, a0);
+                motion.restart(p, self.accuracy, u, a);
+            }
+            Start::AfterRelease => {
+                restart_after_release(motion, &p, self.accuracy, p.switch_on)
+                    .map_err(CaseError::NoCycle)?;
+            }
+        }
+        Ok(())
+    }
+
+    /// ẋ and the elongation at t = 0.
+    #[must_use]
+    pub fn initial_state(&self) -> (f64, f64) {
+        match self.start {
+            Start::State { x_dot0, a0 } => (x_dot0, a0),
+            Start::AfterRelease => (0.0, self.law.mu_s() * self.units().length),
+        }
+    }
+
+    fn dimensionless(&self, x_dot: f64, a: f64) -> (f64, f64) {
         let units = self.units();
-        let parameters = Parameters {
+        (x_dot / units.velocity, a / units.length)
+    }
+
+    fn parameters(&self) -> Parameters {
+        let units = self.units();
+        Parameters {
             law: self.law.clone(),
             velocity_unit: units.velocity,
             alpha_v: self.control.alpha_v * units.time,
@@ -80,23 +164,18 @@ impl Case {
             } else {
                 self.switch_on / units.time
             },
-        };
-        Ok(Motion::new(
-            parameters,
-            self.accuracy,
-            self.x_dot0 / units.velocity,
-            self.a0 / units.length,
-        ))
+        }
     }
 
     fn check(&self) -> Result<(), ModelError> {
         ModelError::positive("v0", self.v0)?;
         let uncontrolled = self.control == Control::default();
+        let (x_dot0, a0) = self.initial_state();
         for (name, value) in [
             ("alpha_v", self.control.alpha_v),
             ("alpha_n", self.control.alpha_n),
-            ("x_dot0", self.x_dot0),
-            ("a0", self.a0),
+            ("x_dot0", x_dot0),
+            ("a0", a0),
         ] {
             ModelError::check(name, value, "finite", value.is_finite())?;
         }
@@ -145,18 +224,28 @@ impl Case {
     /// Follows the motion to its outcome. Times, lengths and forces of the summary are physical.
     ///
     /// # Errors
-    /// When a value is not finite or out of its range.
-    pub fn run(&self, observer: &mut impl Observer) -> Result<Summary, ModelError> {
+    /// As [`Case::motion`].
+    pub fn run(&self, observer: &mut impl Observer) -> Result<Summary, CaseError> {
         let mut motion = self.motion()?;
+        Ok(self.follow(&mut motion, self.stable_abscissa()?, observer))
+    }
+
+    /// Follows `motion`, which is at this case's start, as [`Case::run`] does, with what [`Case::stable_abscissa`] says.
+    pub fn follow(
+        &self,
+        motion: &mut Motion,
+        stable_abscissa: Option<f64>,
+        observer: &mut impl Observer,
+    ) -> Summary {
         let units = self.units();
         let limits = Limits {
             horizon: self.horizon / units.time,
             steps: self.steps,
-            stable_abscissa: self.stable_abscissa()?.map(|s| s * units.time),
+            stable_abscissa: stable_abscissa.map(|s| s * units.time),
             repeated: REPEATED,
         };
-        let found = follow(&mut motion, &limits, observer);
-        Ok(Summary {
+        let found = follow(motion, &limits, observer);
+        Summary {
             decided: found.decided * units.time,
             settle_time: found.settle_time * units.time,
             n_min: found.n_min * units.force,
@@ -166,7 +255,7 @@ impl Case {
             slip_time: found.slip_time * units.time,
             last_release: found.last_release * units.time,
             ..found
-        })
+        }
     }
 }
 
@@ -196,8 +285,10 @@ mod tests {
             tau: 4.15 * units.time,
             v0,
             switch_on: 70.0 * units.time,
-            x_dot0: 1.01 * v0,
-            a0,
+            start: Start::State {
+                x_dot0: 1.01 * v0,
+                a0,
+            },
             horizon: 1000.0 * units.time,
             steps: 1_000_000,
             accuracy: Accuracy::default(),
@@ -239,7 +330,10 @@ mod tests {
             ),
             (
                 Case {
-                    x_dot0: f64::NAN,
+                    start: Start::State {
+                        x_dot0: f64::NAN,
+                        a0: 0.0,
+                    },
                     ..case.clone()
                 },
                 "x_dot0",

@@ -33,7 +33,7 @@ pub(super) const SMOOTH: u32 = u32::MAX;
 const SHARE: f64 = 0.75;
 
 /// The elongation over a window of time that moves along, of bounded length.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Default)]
 pub(super) struct History {
     pieces: VecDeque<Piece>,
     /// The piece that was read last.
@@ -43,21 +43,11 @@ pub(super) struct History {
 }
 
 impl History {
-    /// The history a = `a` for all times before `now`.
-    pub fn constant(a: f64, now: f64, felt: u32) -> Self {
-        let mut history = Self {
-            pieces: VecDeque::new(),
-            at: 0,
-            felt,
-        };
-        history.restart(a, now);
-        history
-    }
-
-    /// As after [`History::constant`].
-    pub fn restart(&mut self, a: f64, now: f64) {
+    /// Makes it the history a = `a` for all times before `now`; jumps of the order `felt` and higher are not felt.
+    pub fn restart(&mut self, a: f64, now: f64, felt: u32) {
         let mut coefficients = [0.0; MOST_ORDER + 1];
         coefficients[0] = a;
+        self.felt = felt;
         self.pieces.clear();
         self.at = 0;
         self.pieces.push_back(Piece {
@@ -72,7 +62,7 @@ impl History {
 
     /// A past of at least two delays in which a has grown at the rate `rate`, to `a` at time 0.
     pub fn restart_rising(&mut self, a: f64, rate: f64, tau: f64) {
-        self.restart(a, 0.0);
+        self.restart(a, 0.0, self.felt);
         let past = 3.0 * tau;
         let piece = &mut self.pieces[0];
         (piece.from, piece.radius, piece.order) = (-past, f64::INFINITY, 1);
@@ -85,6 +75,14 @@ impl History {
         self.pieces.clear();
         self.pieces.extend(other.pieces.iter().cloned());
         (self.at, self.felt) = (other.at, other.felt);
+    }
+
+    /// Moves everything by `time`.
+    pub fn shift(&mut self, time: f64) {
+        for piece in &mut self.pieces {
+            piece.from += time;
+            piece.to += time;
+        }
     }
 
     /// Adds the step from the end of the last one to `to`; its polynomial holds for `radius` from its start.
@@ -169,7 +167,8 @@ mod tests {
 
     #[test]
     fn boundaries_are_kept_where_they_are_felt() {
-        let mut history = History::constant(2.0, 0.0, 10);
+        let mut history = History::default();
+        history.restart(2.0, 0.0, 10);
         history.push(1.0, 4.0, &[2.0, 1.0], 1);
         history.push(2.0, 1.0, &[3.0, 1.0], SMOOTH);
         history.push(2.5, 0.5, &[4.0, -1.0], 2);
@@ -200,7 +199,8 @@ mod tests {
 
     #[test]
     fn boundaries_nearer_than_the_present_is_rounded_are_passed() {
-        let mut history = History::constant(2.0, 0.0, 10);
+        let mut history = History::default();
+        history.restart(2.0, 0.0, 10);
         history.push(0.3, 0.3, &[2.0, 1.0], 1);
         history.push(1000.0, 1000.0, &[3.0], 2);
         let mut a = [0.0; MOST_ORDER + 1];

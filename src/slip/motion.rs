@@ -117,6 +117,21 @@ impl Motion {
     /// A block that slides or sticks at t = 0 with velocity `u` and elongation `a`, which was `a` at all times before.
     #[must_use]
     pub fn new(parameters: Parameters, accuracy: Accuracy, u: f64, a: f64) -> Self {
+        Self::with_history(parameters, accuracy, (u, a), History::default())
+    }
+
+    /// As after [`Motion::new`], without allocating anew.
+    pub fn restart(&mut self, parameters: Parameters, accuracy: Accuracy, u: f64, a: f64) {
+        let history = std::mem::take(&mut self.history);
+        *self = Self::with_history(parameters, accuracy, (u, a), history);
+    }
+
+    fn with_history(
+        parameters: Parameters,
+        accuracy: Accuracy,
+        (u, a): (f64, f64),
+        mut history: History,
+    ) -> Self {
         let tolerance = accuracy.tolerance.clamp(1e-15, 1e-3);
         // The order at which Taylor's method does least work per unit of time (Jorba and Zou 2005).
         let order = ((2.0 - 0.5 * tolerance.ln()).ceil() as usize).clamp(4, MOST_ORDER);
@@ -127,13 +142,14 @@ impl Motion {
         } else {
             0
         };
+        history.restart(a, 0.0, felt);
         let zero = [0.0; MOST_ORDER + 1];
         let mut motion = Self {
             parameters,
             tolerance,
             order,
             friction,
-            history: History::constant(a, 0.0, felt),
+            history,
             mode: Mode::Stick,
             t: 0.0,
             u,
@@ -152,6 +168,9 @@ impl Motion {
             },
         };
         motion.mode = motion.mode_at(1.0);
+        if motion.mode == Mode::Stick {
+            motion.stuck_since = 0.0;
+        }
         motion
     }
 
@@ -185,6 +204,18 @@ impl Motion {
         (self.t, self.u, self.a, self.x) = (other.t, other.u, other.a, other.x);
         (self.kink, self.stuck_since) = (other.kink, other.stuck_since);
         self.step.clone_from(&other.step);
+    }
+
+    /// Makes the present t = 0 and x = 0, with control acting from `switch_on` on. The past stays what it is.
+    pub(super) fn begin_here(&mut self, switch_on: f64) {
+        self.history.shift(-self.t);
+        self.stuck_since -= self.t;
+        self.t = 0.0;
+        self.x = 0.0;
+        self.parameters.switch_on = switch_on;
+        if switch_on <= 0.0 {
+            self.kink = 1;
+        }
     }
 
     /// The parameters.

@@ -21,17 +21,20 @@ pub enum Outcome {
     Diverged,
     /// None of these was reached before the horizon, or within the steps allowed.
     Undecided,
+    /// There is no motion: no uncontrolled stick-slip at whose phase control could be switched on.
+    NoCycle,
 }
 
 impl Outcome {
     /// All outcomes, in the order of their numbers in a map.
-    pub const ALL: [Self; 6] = [
+    pub const ALL: [Self; 7] = [
         Self::Sliding,
         Self::StickSlip,
         Self::Oscillation,
         Self::LiftOff,
         Self::Diverged,
         Self::Undecided,
+        Self::NoCycle,
     ];
 
     /// The name in maps, files and messages.
@@ -44,6 +47,7 @@ impl Outcome {
             Self::LiftOff => "lift-off",
             Self::Diverged => "diverged",
             Self::Undecided => "undecided",
+            Self::NoCycle => "no-cycle",
         }
     }
 }
@@ -541,7 +545,8 @@ mod tests {
                 stable_abscissa: None,
                 repeated: REPEATED,
             };
-            let mut motion = Motion::new(p, Accuracy::default(), 0.3, -0.6 + 0.012 * i as f64);
+            let mut motion =
+                Motion::new(p.clone(), Accuracy::default(), 0.3, -0.6 + 0.012 * i as f64);
             let mut first = First(f64::NAN, false);
             let s = follow(&mut motion, &limits, &mut first);
             assert!(s.n_min <= first.0, "{p:?} {s:?} {}", first.0);
@@ -567,7 +572,7 @@ mod tests {
             switch_on: 0.0,
             ..letter(0.5, -1e-9, 0.0, 3.0)
         };
-        let s = run(p, 0.7);
+        let s = run(p.clone(), 0.7);
         assert_eq!(s.outcome, Outcome::Undecided, "{s:?}");
         // Without control it is one.
         let p = Parameters {

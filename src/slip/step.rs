@@ -43,6 +43,11 @@ impl Step {
         value(Self::range(&self.delayed, self.order), s)
     }
 
+    /// The acceleration at the start of the step.
+    pub(super) fn acceleration(&self) -> f64 {
+        self.u[1]
+    }
+
     /// The displacement since the start of the step at `s`.
     #[must_use]
     pub fn displacement(&self, s: f64) -> f64 {

@@ -55,6 +55,14 @@ pub(super) fn put_numbers<T: H5Type>(at: &Location, name: &str, values: &[T]) ->
     Ok(())
 }
 
+/// Describes a dataset of kinds, of which `names` are those with the numbers 0, 1, ….
+pub(super) fn put_flags(at: &Location, long_name: &str, names: &[&str]) -> hdf5::Result<()> {
+    let values: Vec<u8> = (0..names.len() as u8).collect();
+    put_text(at, "long_name", long_name)?;
+    put_numbers(at, "flag_values", &values)?;
+    put_text(at, "flag_meanings", &names.join(" "))
+}
+
 /// Reads a text attribute of fixed or variable length.
 pub(super) fn text(at: &Location, name: &str) -> hdf5::Result<String> {
     use hdf5::types::{TypeDescriptor, VarLenUnicode};

@@ -9,7 +9,8 @@ use super::error::StoreError;
 use super::schema::{self, BOUNDARIES, DEGREE_OF_STABILITY, PLANE, STATUS, root};
 use crate::linear::Direction;
 use crate::linear::curves::{CurvePiece, StableSide, Vertex};
-use crate::sweep::engine::N_UNSTABLE_FILL;
+use crate::sweep::engine::{N_UNSTABLE_FILL, OUTCOME_FILL};
+use crate::sweep::field::Storage;
 use crate::sweep::{Field, Parameter};
 
 /// An axis of a map.
@@ -250,16 +251,11 @@ impl MapFile {
         dataset: &Dataset,
         slab: Vec<SliceOrIndex>,
     ) -> Result<Vec<f64>, StoreError> {
-        if !field.is_count() {
-            return self.read(dataset, slab);
+        match field.storage() {
+            Storage::Real => self.read(dataset, slab),
+            Storage::Count => Ok(numbers(self.read::<u16>(dataset, slab)?, N_UNSTABLE_FILL)),
+            Storage::Kind => Ok(numbers(self.read::<u8>(dataset, slab)?, OUTCOME_FILL)),
         }
-        let counts = self.read::<u16>(dataset, slab)?.into_iter();
-        Ok(counts
-            .map(|n| match n {
-                N_UNSTABLE_FILL => f64::NAN,
-                n => f64::from(n),
-            })
-            .collect())
     }
 
     pub(super) fn read<T: H5Type>(
@@ -389,6 +385,12 @@ fn read_axes(file: &File, path: &Path) -> Result<Vec<MapAxis>, StoreError> {
 
 fn first_number<T: H5Type + Copy>(file: &File, name: &str) -> Option<T> {
     file.attr(name).ok()?.read_raw::<T>().ok()?.first().copied()
+}
+
+/// Whole numbers as reals, NaN for `fill`.
+fn numbers<T: Copy + PartialEq + Into<f64>>(cells: Vec<T>, fill: T) -> Vec<f64> {
+    let number = |n: T| if n == fill { f64::NAN } else { n.into() };
+    cells.into_iter().map(number).collect()
 }
 
 fn transposed(cells: &[f64], rows: usize, columns: usize) -> Vec<f64> {

@@ -6,6 +6,7 @@ use super::error::StoreError;
 use super::map_file::MapFile;
 use super::schema::STATUS;
 use crate::linear::status::FLAGS;
+use crate::slip::outcome::Outcome;
 use crate::sweep::Field;
 
 /// What values a field has in a map.
@@ -47,6 +48,24 @@ impl MapFile {
             Ok(())
         })?;
         Ok(summary)
+    }
+
+    /// Number of cells with each outcome, in the order of [`Outcome::ALL`], read piece by piece.
+    ///
+    /// # Errors
+    /// When the map holds no outcomes, or is damaged.
+    pub fn outcome_counts(&self) -> Result<[u64; Outcome::ALL.len()], StoreError> {
+        let dataset = self.dataset(Field::Outcome.name())?;
+        let mut counts = [0; Outcome::ALL.len()];
+        for_each_chunk(&dataset, |slab| {
+            for outcome in self.read::<u8>(&dataset, slab)? {
+                if let Some(count) = counts.get_mut(usize::from(outcome)) {
+                    *count += 1;
+                }
+            }
+            Ok(())
+        })?;
+        Ok(counts)
     }
 
     /// Number of cells with each bit of the status, in the order of [`crate::linear::status::FLAGS`], read piece by piece.

@@ -7,7 +7,7 @@ use hdf5::{Dataset, File, Group, H5Type};
 use hdf5_sys::h5d::H5Dwrite_chunk;
 use hdf5_sys::h5p::H5P_DEFAULT;
 
-use super::attributes::{put_numbers, put_text};
+use super::attributes::{put_flags, put_numbers, put_text};
 use super::best_writer::BestWriter;
 use super::boundary_writer::BoundaryWriter;
 use super::codec::{Chunk, ChunkCodec, DEFLATE_LEVEL};
@@ -16,9 +16,11 @@ use super::netcdf::{DimensionId, Dimensions, named};
 use super::output::Output;
 use super::schema::{self, STATUS, root};
 use crate::linear::status::FLAGS;
+use crate::slip::outcome::Outcome;
 use crate::sweep::best::BestSettings;
 use crate::sweep::boundaries::BoundaryPlane;
-use crate::sweep::engine::{Encode, N_UNSTABLE_FILL, STATUS_FILL, Sink, TileBuffers};
+use crate::sweep::engine::{Encode, N_UNSTABLE_FILL, OUTCOME_FILL, STATUS_FILL, Sink, TileBuffers};
+use crate::sweep::field::Storage;
 use crate::sweep::parameter::LawKind;
 use crate::sweep::parameter::Units;
 use crate::sweep::tile::Tile;
@@ -245,11 +247,19 @@ struct Variables<'a> {
 
 impl Variables<'_> {
     fn field(&mut self, field: Field) -> hdf5::Result<Dataset> {
-        let dataset = match field.is_count() {
-            true => self.variable(field.name(), N_UNSTABLE_FILL)?,
-            false => self.variable(field.name(), f64::NAN)?,
+        let dataset = match field.storage() {
+            Storage::Count => self.variable(field.name(), N_UNSTABLE_FILL)?,
+            Storage::Kind => self.variable(field.name(), OUTCOME_FILL)?,
+            Storage::Real => self.variable(field.name(), f64::NAN)?,
         };
-        put_text(&dataset, "long_name", &field.long_name())?;
+        match field {
+            Field::Outcome => put_flags(
+                &dataset,
+                &field.long_name(),
+                &Outcome::ALL.map(Outcome::name),
+            )?,
+            _ => put_text(&dataset, "long_name", &field.long_name())?,
+        }
         put_text(&dataset, "units", &field.unit(&self.plan.spec.units))?;
         if let Some(comment) = field.comment() {
             put_text(&dataset, "comment", comment)?;
@@ -308,9 +318,12 @@ impl Encode for TileEncoder {
     type Encoded = EncodedTile;
 
     fn encode(&mut self, buffers: &TileBuffers) -> EncodedTile {
-        let mut chunks = Vec::with_capacity(2 + buffers.columns.len());
+        let mut chunks = Vec::with_capacity(3 + buffers.columns.len());
         if let Some(n) = &buffers.n_unstable {
             chunks.push(self.codec.encode(n));
+        }
+        if let Some(outcome) = &buffers.outcome {
+            chunks.push(self.codec.encode(outcome));
         }
         for column in &buffers.columns {
             chunks.push(self.codec.encode(&column.cells));

@@ -6,7 +6,7 @@ use hdf5::plist::group_create::LinkCreationOrder;
 use hdf5::types::OwnedDynValue;
 use hdf5::{Dataset, File, Group, H5Type};
 
-use super::attributes::{put_numbers, put_text, text};
+use super::attributes::{put_flags, put_numbers, put_text, text};
 use super::codec::DEFLATE_LEVEL;
 use super::error::StoreError;
 use super::map_writer::{Provenance, create_file, put_friction, put_provenance, put_scalars};
@@ -15,7 +15,7 @@ use super::output::Output;
 use super::schema::{self, trace};
 use crate::sweep::parameter::Units;
 use crate::sweep::trace::{EVENTS, MODES, Sample, TraceEvent};
-use crate::sweep::{CaseSpec, Trace};
+use crate::sweep::{CaseSpec, Parameter, Trace};
 
 /// Elements in a chunk.
 const CHUNK: usize = 1 << 13;
@@ -140,7 +140,7 @@ fn fill_file(
 ) -> hdf5::Result<()> {
     put_provenance(file, &spec.title, provenance)?;
     put_root(file, spec, trace)?;
-    let scalars = put_scalars(file, &spec.setting, &spec.units, |_| false)?;
+    let scalars = put_scalars(file, &spec.setting, &spec.units, Parameter::of_start)?;
     let mut dimensions = Dimensions::default();
     let time = named(file.new_dataset_builder())
         .with_data(&column(trace, TIME.of))
@@ -184,9 +184,10 @@ fn put_root(file: &File, spec: &CaseSpec, found: &Trace) -> hdf5::Result<()> {
     put_text(file, trace::CASE, &spec.text)?;
     put_friction(file, &spec.setting)?;
     let (case, summary) = (&spec.case, &found.summary);
+    let (x_dot0, a0) = case.initial_state();
     for (name, value) in [
-        ("x_dot0", case.x_dot0),
-        ("a0", case.a0),
+        ("x_dot0", x_dot0),
+        ("a0", a0),
         ("switch_on", case.switch_on),
         ("horizon", case.horizon),
         ("tolerance", case.accuracy.tolerance),
@@ -203,14 +204,6 @@ fn put_root(file: &File, spec: &CaseSpec, found: &Trace) -> hdf5::Result<()> {
 fn describe(dataset: &Dataset, quantity: &Quantity, units: &Units) -> hdf5::Result<()> {
     put_text(dataset, "long_name", quantity.long_name)?;
     put_text(dataset, "units", &quantity.unit(units))
-}
-
-/// Names the values 0, 1, … of a dataset.
-fn put_flags(dataset: &Dataset, long_name: &str, names: &[&str]) -> hdf5::Result<()> {
-    let values: Vec<u8> = (0..names.len() as u8).collect();
-    put_text(dataset, "long_name", long_name)?;
-    put_numbers(dataset, "flag_values", &values)?;
-    put_text(dataset, "flag_meanings", &names.join(" "))
 }
 
 /// Makes the variables of one dimension.

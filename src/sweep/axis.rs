@@ -23,8 +23,8 @@ pub struct Axis {
     pub values: Vec<f64>,
 }
 
-/// The axes of the planes in which curves can be traced, (parameter, delay): the last gain axis, else the last other axis,
-/// and the delay. None where there are no two such axes with two values or more.
+/// The axes of the planes in which curves can be traced, (parameter, delay): the last gain axis, else the last other axis on
+/// which linear stability depends, and the delay. None where there are no two such axes with two values or more.
 #[must_use]
 pub fn plane_of_curves(axes: &[Axis]) -> Option<(usize, usize)> {
     let several =
@@ -33,7 +33,7 @@ pub fn plane_of_curves(axes: &[Axis]) -> Option<(usize, usize)> {
     let last = |gain: bool| {
         axes.iter().rposition(|axis| {
             let is_gain = matches!(axis.parameter, Parameter::AlphaV | Parameter::AlphaN);
-            several(axis, false) && (is_gain || !gain)
+            several(axis, false) && (is_gain || !(gain || axis.parameter.of_start()))
         })
     };
     Some((last(true).or_else(|| last(false))?, tau))

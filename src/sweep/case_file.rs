@@ -5,6 +5,7 @@
 //! switch_on = 70.0                # when control begins to act, 0 by default; false: never
 //! horizon = 1000.0                # until when the outcome is looked for; by default 1000 √(M/κ) after switch-on
 //! tolerance = 1e-12               # error allowed in a step, relative; 1e-15 to 1e-3
+//! steps = 1000000                 # the most steps
 //!
 //! [friction]                      # as in sweep files
 //! law = "weakening"
@@ -19,6 +20,8 @@
 //! [start]                         # optional: at t = 0, and the elongation before
 //! x_dot0 = 0.3535                 # v0 by default
 //! a0 = 0.294                      # that of sliding at v0 by default, μ_K(v0) N0/κ
+//!                                 # or, with switch_on left out: switch_on_phase = 0.2, the time from a release of
+//!                                 # uncontrolled stick-slip, which is t = 0, to switch-on, modulo the period
 //!
 //! [trace]                         # optional
 //! until = 150.0                   # end of the trace; by default when the outcome is known
@@ -27,19 +30,15 @@
 //! [units]                         # optional, as in sweep files
 //! ```
 
-use std::ops::{Range, RangeInclusive};
+use std::ops::Range;
 
 use super::given::{GivenParameters, read_units};
 use super::parameter::{LARGEST, Parameter, Setting, Units};
+use super::simulation::{POSITIVE, Simulation};
 use super::toml_reader::{Entry, SpecError, entries, parse};
-use crate::model::{Control, ModelError};
-use crate::slip::case::Case;
-use crate::slip::motion::Accuracy;
+use crate::model::Control;
+use crate::slip::case::{Case, CaseError};
 
-/// Horizon where the file gives none, from switch-on, in units of √(M/κ).
-const HORIZON: f64 = 1000.0;
-/// The most steps of a motion: some seconds.
-const MOST_STEPS: u64 = 10_000_000;
 /// Samples in a step where the file does not say.
 const SAMPLES: u32 = 24;
 /// The most samples in a step.
@@ -88,12 +87,13 @@ impl std::str::FromStr for CaseSpec {
                 "title" => draft.title = entry.string()?.to_owned(),
                 "friction" => draft.given.read_friction(&entry)?,
                 "fixed" => draft.given.read_fixed(&entry)?,
-                "switch_on" => draft.switch_on = Some(read_switch_on(&entry)?),
-                "horizon" => draft.read_horizon(&entry)?,
-                "tolerance" => draft.tolerance = Some(entry.number_within(1e-15..=1e-3)?),
-                "start" => draft.read_start(&entry)?,
+                "switch_on" => {
+                    draft.switch_on = Some((read_switch_on(&entry)?, entry.key_span.clone()));
+                }
+                "start" => draft.given.read_start(&entry)?,
                 "trace" => draft.read_trace(&entry)?,
                 "units" => draft.units = read_units(&entry)?,
+                _ if draft.simulation.read(&entry)? => {}
                 _ => {
                     return Err(entry.unknown(&[
                         "title",
@@ -102,6 +102,7 @@ impl std::str::FromStr for CaseSpec {
                         "switch_on",
                         "horizon",
                         "tolerance",
+                        "steps",
                         "start",
                         "trace",
                         "units",
@@ -112,9 +113,6 @@ impl std::str::FromStr for CaseSpec {
         draft.finish(text)
     }
 }
-
-/// Times and lengths that are greater than zero.
-const POSITIVE: RangeInclusive<f64> = 1.0 / LARGEST..=LARGEST;
 
 /// When control begins to act: a time, or +∞ for `false`.
 fn read_switch_on(entry: &Entry) -> Result<f64, SpecError> {
@@ -131,33 +129,14 @@ fn read_switch_on(entry: &Entry) -> Result<f64, SpecError> {
 struct Draft {
     title: String,
     given: GivenParameters,
-    switch_on: Option<f64>,
-    horizon: Option<(f64, Range<usize>)>,
-    tolerance: Option<f64>,
-    x_dot0: Option<f64>,
-    a0: Option<f64>,
+    switch_on: Option<(f64, Range<usize>)>,
+    simulation: Simulation,
     until: Option<f64>,
     sampling: Option<Sampling>,
     units: Units,
 }
 
 impl Draft {
-    fn read_horizon(&mut self, entry: &Entry) -> Result<(), SpecError> {
-        self.horizon = Some((entry.number_within(POSITIVE)?, entry.span.clone()));
-        Ok(())
-    }
-
-    fn read_start(&mut self, start: &Entry) -> Result<(), SpecError> {
-        for entry in start.table()? {
-            match entry.key {
-                "x_dot0" => self.x_dot0 = Some(entry.number_within(-LARGEST..=LARGEST)?),
-                "a0" => self.a0 = Some(entry.number_within(-LARGEST..=LARGEST)?),
-                _ => return Err(entry.unknown(&["x_dot0", "a0"])),
-            }
-        }
-        Ok(())
-    }
-
     fn read_trace(&mut self, trace: &Entry) -> Result<(), SpecError> {
         for entry in trace.table()? {
             let sampling = match entry.key {
@@ -206,53 +185,36 @@ impl Draft {
     /// The motion, with the defaults that depend on parameters.
     fn case(&self, setting: &Setting, law_place: &Range<usize>) -> Result<Case, SpecError> {
         let place = self.given.ill_posed_place().unwrap_or(law_place);
-        let at_law = |error: ModelError| SpecError::at(place.clone(), error.to_string());
-        let law = setting.friction_law().map_err(at_law)?;
-        let law = law.ok_or_else(|| SpecError::whole("a case needs a friction law"))?;
-        let oscillator = setting.oscillator().map_err(at_law)?;
-        let v0 = setting.get(Parameter::V0);
-        let rest = law.mu_k(v0) * (oscillator.normal_load() / oscillator.stiffness());
-        // Without gains nothing is ever switched on.
-        let switch_on = match self.switch_on {
-            _ if setting.control() == Control::default() => f64::INFINITY,
-            given => given.unwrap_or(0.0),
-        };
-        let start = if switch_on.is_finite() {
-            switch_on
-        } else {
-            0.0
-        };
-        let horizon = match &self.horizon {
-            Some((horizon, place)) if *horizon <= start => {
-                let message =
-                    format!("horizon: {horizon} is not later than switch_on, which is {start}");
-                return Err(SpecError::at(place.clone(), message));
+        self.given.check_start()?;
+        let phase = self.given.place(Parameter::SwitchOnPhase);
+        let switch_on = match (&self.switch_on, phase) {
+            (Some((_, place)), Some(_)) => {
+                let message = "switch_on: switch_on_phase says when control begins to act";
+                return Err(SpecError::at(place.clone(), message).help("leave one of them out"));
             }
-            Some((horizon, _)) => *horizon,
-            None => start + HORIZON * oscillator.time_unit(),
+            (given, _) => given.as_ref().map_or(0.0, |(time, _)| *time),
         };
-        let accuracy = Accuracy::default();
-        Ok(Case {
-            oscillator,
-            law,
-            control: setting.control(),
-            tau: setting.get(Parameter::Tau),
-            v0,
-            switch_on,
-            x_dot0: self.x_dot0.unwrap_or(v0),
-            a0: self.a0.unwrap_or(rest),
-            horizon,
-            steps: MOST_STEPS,
-            accuracy: Accuracy {
-                tolerance: self.tolerance.unwrap_or(accuracy.tolerance),
-                ..accuracy
-            },
-        })
+        let case = self
+            .simulation
+            .case(setting, switch_on)
+            .map_err(|error| SpecError::at(place.clone(), error.to_string()))?
+            .ok_or_else(|| SpecError::whole("a case needs a friction law"))?;
+        let name = match phase {
+            Some(_) => Parameter::SwitchOnPhase.name(),
+            None => "switch_on",
+        };
+        if case.switch_on.is_finite() {
+            self.simulation.check_horizon(name, case.switch_on)?;
+        }
+        Ok(case)
     }
 
     /// What the model refuses, at the parameter's place where the file gives it.
-    fn refused(&self, error: &ModelError) -> SpecError {
-        let parameter = Parameter::from_name(error.parameter);
+    fn refused(&self, error: &CaseError) -> SpecError {
+        let parameter = match error {
+            CaseError::Model(error) => Parameter::from_name(error.parameter),
+            CaseError::NoCycle(_) => Some(Parameter::SwitchOnPhase),
+        };
         SpecError {
             message: error.to_string(),
             span: parameter.and_then(|p| self.given.place(p)).cloned(),
@@ -271,6 +233,7 @@ fn read_samples(entry: &Entry) -> Result<u32, SpecError> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::slip::motion::Accuracy;
 
     const PLAIN: &str = "[friction]\nlaw = \"coulomb\"\nmu0 = 0.4\n[fixed]\nv0 = 0.1\n";
 
@@ -278,7 +241,7 @@ mod tests {
     fn what_is_left_out_has_its_default() {
         let spec: CaseSpec = PLAIN.parse().unwrap();
         let case = &spec.case;
-        assert_eq!((case.x_dot0, case.a0), (0.1, 0.4));
+        assert_eq!(case.initial_state(), (0.1, 0.4));
         assert_eq!(case.switch_on, f64::INFINITY, "nothing to switch on");
         assert_eq!((case.tau, case.horizon), (0.0, 1000.0));
         assert_eq!(case.accuracy, Accuracy::default());

@@ -11,7 +11,7 @@ use super::boundaries::{BoundaryPlane, planes, trace_plane};
 use super::events::{Event, Observer};
 use super::plan::Plan;
 use super::tile::Tile;
-pub use super::worker::{Column, N_UNSTABLE_FILL, STATUS_FILL, TileBuffers, Worker};
+pub use super::worker::{Column, N_UNSTABLE_FILL, OUTCOME_FILL, STATUS_FILL, TileBuffers, Worker};
 use crate::model::ModelError;
 
 /// Planes of crossing curves that are held in memory at a time.
@@ -81,7 +81,8 @@ pub enum RunError<E> {
     },
 }
 
-/// Computes every tile of `plan` on `threads` threads and hands them to `sink`; `stop` ends it at the next tile.
+/// Computes every tile of `plan` on `threads` threads and hands them to `sink`; `stop` ends it at the next tile, where
+/// motions are followed at the next cell.
 ///
 /// What a tile holds depends on the plan alone.
 ///
@@ -205,7 +206,9 @@ fn run_tiles<S: Sink>(
                     break;
                 }
                 let tile = plan.tiles.tile(number);
-                worker.compute(&tile);
+                if !worker.compute_until(&tile, stop) {
+                    break;
+                }
                 if sender
                     .send((tile, encoder.encode(&worker.buffers)))
                     .is_err()

@@ -82,6 +82,8 @@ impl Slope {
 pub enum Field {
     /// Number of unstable roots.
     NUnstable,
+    /// Number of the [`crate::slip::outcome::Outcome`] of the motion.
+    Outcome,
     /// Signed distance in τ to the nearest change of stability.
     DelayMargin,
     /// Re λ of the root of that rank; −∞ where there are fewer roots. Of the first: the spectral abscissa.
@@ -94,30 +96,51 @@ pub enum Field {
     AbscissaSlope(Slope),
     /// How far right of the spectral abscissa a line lies that no root is right of.
     CertificateMargin,
+    /// From switch-on until ẋ stays within 1 % of v0; NaN where the motion does not come to slide.
+    SettleTime,
+    /// The smallest load since switch-on.
+    NMin,
+    /// The largest spring force since switch-on.
+    PeakForce,
+}
+
+/// How a field is stored.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Storage {
+    /// u16: a count, saturating.
+    Count,
+    /// u8: one of few kinds.
+    Kind,
+    /// f64, NaN for no value.
+    Real,
 }
 
 impl Field {
-    const COUNT: usize = 8 + 2 * MOST_ROOTS;
+    const COUNT: usize = 12 + 2 * MOST_ROOTS;
 
     /// All fields, in the order in which maps hold them.
     pub const ALL: [Self; Self::COUNT] = Self::all();
 
     const fn all() -> [Self; Self::COUNT] {
         let mut all = [Self::NUnstable; Self::COUNT];
-        all[1] = Self::DelayMargin;
+        all[1] = Self::Outcome;
+        all[2] = Self::DelayMargin;
         let mut rank = 0;
         while rank < MOST_ROOTS {
-            all[2 + rank] = Self::Abscissa(Rank(rank));
-            all[2 + MOST_ROOTS + rank] = Self::Frequency(Rank(rank));
+            all[3 + rank] = Self::Abscissa(Rank(rank));
+            all[3 + MOST_ROOTS + rank] = Self::Frequency(Rank(rank));
             rank += 1;
         }
-        let rest = 2 + 2 * MOST_ROOTS;
+        let rest = 3 + 2 * MOST_ROOTS;
         all[rest] = Self::RelaxationTime;
         all[rest + 1] = Self::AbscissaSlope(Slope::Tau);
         all[rest + 2] = Self::AbscissaSlope(Slope::AlphaV);
         all[rest + 3] = Self::AbscissaSlope(Slope::AlphaN);
         all[rest + 4] = Self::AbscissaSlope(Slope::MuPrime);
         all[rest + 5] = Self::CertificateMargin;
+        all[rest + 6] = Self::SettleTime;
+        all[rest + 7] = Self::NMin;
+        all[rest + 8] = Self::PeakForce;
         all
     }
 
@@ -138,6 +161,10 @@ impl Field {
             Self::AbscissaSlope(Slope::AlphaN) => "d_abscissa_d_alpha_n",
             Self::AbscissaSlope(Slope::MuPrime) => "d_abscissa_d_mu_prime",
             Self::CertificateMargin => "certificate_margin",
+            Self::Outcome => "outcome",
+            Self::SettleTime => "settle_time",
+            Self::NMin => "n_min",
+            Self::PeakForce => "peak_force",
         }
     }
 
@@ -178,6 +205,12 @@ impl Field {
                 "certified distance: no characteristic root lies farther right of the abscissa"
                     .into()
             }
+            Self::Outcome => "what becomes of the motion".into(),
+            Self::SettleTime => {
+                "time from switch-on until the velocity stays within 1 % of v0".into()
+            }
+            Self::NMin => "smallest normal load since switch-on".into(),
+            Self::PeakForce => "largest spring force since switch-on".into(),
         }
     }
 
@@ -196,6 +229,10 @@ impl Field {
                 format!("∂ abscissa / ∂ {}", slope.parameter().symbol())
             }
             Self::CertificateMargin => "certificate margin".into(),
+            Self::Outcome => "outcome".into(),
+            Self::SettleTime => "settle time".into(),
+            Self::NMin => "smallest load".into(),
+            Self::PeakForce => "peak force".into(),
         }
     }
 
@@ -216,6 +253,14 @@ impl Field {
             Self::CertificateMargin => {
                 Some("in units of max(1/t, |abscissa|), t = sqrt(mass/stiffness)")
             }
+            Self::Outcome => Some(
+                "undecided: none of the others before the horizon or within the steps allowed, not_converged in status; \
+                 no-cycle: no uncontrolled stick-slip at whose phase control could be switched on",
+            ),
+            Self::SettleTime => Some("no value where the motion does not come to slide"),
+            Self::NMin | Self::PeakForce => {
+                Some("until the outcome was known; where control never acts, since t = 0")
+            }
             _ => None,
         }
     }
@@ -224,8 +269,9 @@ impl Field {
     #[must_use]
     pub fn unit(self, units: &Units) -> String {
         match self {
-            Self::NUnstable | Self::CertificateMargin => units.of([0; 3]),
-            Self::DelayMargin | Self::RelaxationTime => units.time(),
+            Self::NUnstable | Self::CertificateMargin | Self::Outcome => units.of([0; 3]),
+            Self::DelayMargin | Self::RelaxationTime | Self::SettleTime => units.time(),
+            Self::NMin | Self::PeakForce => units.of([1, 0, 0]),
             Self::Abscissa(_) => units.of([0, 0, -1]),
             Self::Frequency(_) => units.angular_frequency(),
             Self::AbscissaSlope(slope) => {
@@ -235,10 +281,23 @@ impl Field {
         }
     }
 
-    /// True for counts, stored as u16; all other fields are stored as f64 with NaN for no value.
+    /// How it is stored.
     #[must_use]
-    pub const fn is_count(self) -> bool {
-        matches!(self, Self::NUnstable)
+    pub const fn storage(self) -> Storage {
+        match self {
+            Self::NUnstable => Storage::Count,
+            Self::Outcome => Storage::Kind,
+            _ => Storage::Real,
+        }
+    }
+
+    /// True for fields of the motion of the block, which need a friction law and depend on its start.
+    #[must_use]
+    pub const fn of_motion(self) -> bool {
+        matches!(
+            self,
+            Self::Outcome | Self::SettleTime | Self::NMin | Self::PeakForce
+        )
     }
 
     /// Number of roots from the right, pairs counted once, that the field needs; 0 if the closed form gives it.
@@ -246,6 +305,7 @@ impl Field {
     pub const fn roots_needed(self) -> usize {
         match self {
             Self::NUnstable | Self::DelayMargin => 0,
+            Self::Outcome | Self::SettleTime | Self::NMin | Self::PeakForce => 0,
             Self::Abscissa(rank) | Self::Frequency(rank) => rank.0 + 1,
             Self::RelaxationTime | Self::AbscissaSlope(_) | Self::CertificateMargin => 1,
         }
@@ -266,10 +326,10 @@ impl Field {
     /// Bytes per cell, uncompressed.
     #[must_use]
     pub const fn bytes(self) -> usize {
-        if self.is_count() {
-            size_of::<u16>()
-        } else {
-            size_of::<f64>()
+        match self.storage() {
+            Storage::Count => size_of::<u16>(),
+            Storage::Kind => size_of::<u8>(),
+            Storage::Real => size_of::<f64>(),
         }
     }
 }
@@ -317,6 +377,10 @@ mod tests {
             ("d_abscissa_d_alpha_n", "N-1 mm s-1"),
             ("d_abscissa_d_mu_prime", "mm s-2"),
             ("certificate_margin", "1"),
+            ("outcome", "1"),
+            ("settle_time", "s"),
+            ("n_min", "N"),
+            ("peak_force", "N"),
         ] {
             let field = Field::from_name(name).expect("a field");
             assert_eq!(field.unit(&units), unit, "{name}");
@@ -328,9 +392,9 @@ mod tests {
     fn numbered_names_are_listed_as_ranges() {
         assert_eq!(
             known_fields(),
-            "n_unstable, delay_margin, abscissa, abscissa_2 … abscissa_8, frequency, \
+            "n_unstable, outcome, delay_margin, abscissa, abscissa_2 … abscissa_8, frequency, \
              frequency_2 … frequency_8, relaxation_time, d_abscissa_d_tau, d_abscissa_d_alpha_v, \
-             d_abscissa_d_alpha_n, d_abscissa_d_mu_prime, certificate_margin"
+             d_abscissa_d_alpha_n, d_abscissa_d_mu_prime, certificate_margin, settle_time, n_min, peak_force"
         );
     }
 }

@@ -41,6 +41,32 @@ impl GivenParameters {
         Ok(())
     }
 
+    /// Reads the table `[start]`: where a motion starts. The same parameters may stand in `[fixed]`.
+    pub fn read_start(&mut self, start: &Entry) -> Result<(), SpecError> {
+        for entry in start.table()? {
+            let known = Parameter::from_name(entry.key).filter(|p| p.of_start());
+            let parameter =
+                known.ok_or_else(|| entry.unknown(&Parameter::START.map(Parameter::name)))?;
+            self.read_value(&entry, parameter)?;
+        }
+        Ok(())
+    }
+
+    /// A motion starts in a state or at a phase, not both.
+    pub fn check_start(&self) -> Result<(), SpecError> {
+        let state = [Parameter::XDot0, Parameter::A0];
+        let state = state.into_iter().find(|p| self.place(*p).is_some());
+        match (self.place(Parameter::SwitchOnPhase), state) {
+            (Some(place), Some(state)) => {
+                let message = format!("switch_on_phase: {} is given as well", state.name());
+                Err(SpecError::at(place.clone(), message).help(
+                    "a motion starts in a state (x_dot0, a0) or in uncontrolled stick-slip (switch_on_phase), not both",
+                ))
+            }
+            _ => Ok(()),
+        }
+    }
+
     fn read_value(&mut self, entry: &Entry, parameter: Parameter) -> Result<(), SpecError> {
         self.give(entry, parameter)?;
         let value = entry.number()?;

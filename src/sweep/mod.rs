@@ -22,10 +22,13 @@ mod given;
 pub mod parameter;
 pub mod plan;
 mod root_columns;
+pub mod simulation;
+mod slip_columns;
 pub mod spec;
 pub mod tile;
 mod toml_reader;
 pub mod trace;
+pub mod vc;
 mod worker;
 
 pub use axis::Axis;

@@ -33,6 +33,12 @@ pub enum Parameter {
     VS,
     /// μ_S, the static friction coefficient.
     MuS,
+    /// ẋ at t = 0.
+    XDot0,
+    /// Elongation at t = 0 and before.
+    A0,
+    /// Time from a release of uncontrolled stick-slip to switch-on.
+    SwitchOnPhase,
 }
 
 /// Ranges that a parameter's values can be held to.
@@ -45,7 +51,7 @@ enum Range {
 
 impl Parameter {
     /// All parameters.
-    pub const ALL: [Self; 12] = [
+    pub const ALL: [Self; 15] = [
         Self::MuPrime,
         Self::AlphaV,
         Self::AlphaN,
@@ -58,7 +64,13 @@ impl Parameter {
         Self::Mu0,
         Self::VS,
         Self::MuS,
+        Self::XDot0,
+        Self::A0,
+        Self::SwitchOnPhase,
     ];
+
+    /// The start of a motion: where none is given it slides at v0.
+    pub const START: [Self; 3] = [Self::XDot0, Self::A0, Self::SwitchOnPhase];
 
     /// The name, the same word everywhere (flags write `-` for `_`).
     #[must_use]
@@ -76,6 +88,9 @@ impl Parameter {
             Self::Mu0 => "mu0",
             Self::VS => "v_s",
             Self::MuS => "mu_s",
+            Self::XDot0 => "x_dot0",
+            Self::A0 => "a0",
+            Self::SwitchOnPhase => "switch_on_phase",
         }
     }
 
@@ -101,6 +116,9 @@ impl Parameter {
             Self::Mu0 => "kinetic friction coefficient mu0 of the friction law",
             Self::VS => "velocity scale of the friction law",
             Self::MuS => "static friction coefficient",
+            Self::XDot0 => "velocity of the block at t = 0",
+            Self::A0 => "elongation of the spring at t = 0 and before",
+            Self::SwitchOnPhase => "time from release to switch-on",
         }
     }
 
@@ -120,6 +138,9 @@ impl Parameter {
             Self::Mu0 => "μ0",
             Self::VS => "v_s",
             Self::MuS => "μ_S",
+            Self::XDot0 => "ẋ0",
+            Self::A0 => "a0",
+            Self::SwitchOnPhase => "φ",
         }
     }
 
@@ -129,21 +150,23 @@ impl Parameter {
             Self::MuPrime => [0, -1, 1],
             Self::AlphaV => [0, 0, -1],
             Self::AlphaN | Self::Stiffness => [1, -1, 0],
-            Self::Tau => [0, 0, 1],
-            Self::V0 | Self::VS => [0, 1, -1],
+            Self::Tau | Self::SwitchOnPhase => [0, 0, 1],
+            Self::A0 => [0, 1, 0],
+            Self::V0 | Self::VS | Self::XDot0 => [0, 1, -1],
             Self::MuK | Self::Mu0 | Self::MuS => [0, 0, 0],
             Self::Mass => [1, -1, 2],
             Self::NormalLoad => [1, 0, 0],
         }
     }
 
-    /// The value where a sweep does not give one; none where it must.
+    /// The value where a sweep does not give one; none where it must, and for [`Parameter::START`].
     #[must_use]
     pub const fn default_value(self) -> Option<f64> {
         match self {
             Self::AlphaV | Self::AlphaN => Some(0.0),
             Self::MuK | Self::Mass | Self::Stiffness | Self::NormalLoad | Self::MuS => Some(1.0),
             Self::MuPrime | Self::Tau | Self::V0 | Self::Mu0 | Self::VS => None,
+            Self::XDot0 | Self::A0 | Self::SwitchOnPhase => None,
         }
     }
 
@@ -153,10 +176,16 @@ impl Parameter {
         matches!(self, Self::Mu0 | Self::VS | Self::MuS)
     }
 
+    /// True for [`Parameter::START`].
+    #[must_use]
+    pub const fn of_start(self) -> bool {
+        matches!(self, Self::XDot0 | Self::A0 | Self::SwitchOnPhase)
+    }
+
     const fn range(self) -> Range {
         match self {
-            Self::MuPrime | Self::AlphaV | Self::AlphaN => Range::Any,
-            Self::Tau => Range::NotNegative,
+            Self::MuPrime | Self::AlphaV | Self::AlphaN | Self::XDot0 | Self::A0 => Range::Any,
+            Self::Tau | Self::SwitchOnPhase => Range::NotNegative,
             _ => Range::Positive,
         }
     }
@@ -369,10 +398,11 @@ impl Setting {
         self.law.as_ref()
     }
 
-    /// True for the parameters on which a cell of this setting can depend.
+    /// True for the parameters on which a cell of this setting can depend; the start of a motion where it is set.
     #[must_use]
     pub fn uses(&self, parameter: Parameter) -> bool {
         match &self.law {
+            _ if parameter.of_start() => !self.get(parameter).is_nan(),
             Some(law) => match parameter {
                 Parameter::MuPrime | Parameter::MuK => false,
                 Parameter::Mu0 | Parameter::VS => law.needs().contains(&parameter),
@@ -382,7 +412,8 @@ impl Setting {
         }
     }
 
-    /// Every parameter that a setting with this law needs is given, and none that would be ignored.
+    /// Every parameter that a setting with this law needs is given, and none that would be ignored. The start of a motion
+    /// is another matter: linear stability knows none.
     ///
     /// # Errors
     /// Names the first parameter that is missing or unused.
@@ -391,7 +422,7 @@ impl Setting {
         given: impl Fn(Parameter) -> bool,
     ) -> Result<(), GivenError> {
         let setting = Self::new(law.cloned());
-        for parameter in Parameter::ALL {
+        for parameter in Parameter::ALL.into_iter().filter(|p| !p.of_start()) {
             let used = setting.uses(parameter);
             if given(parameter) && !used {
                 return Err(GivenError::Unused(parameter));

@@ -14,6 +14,8 @@ const CELLS_PER_TILE: usize = 1 << 18;
 /// The same where roots are followed from cell to cell: each cell costs thousands of times as much, and tiles of about the
 /// same time keep all threads busy to the end and a run quick to stop.
 const CELLS_PER_ROOT_TILE: usize = 1 << 14;
+/// The same where motions are followed, which takes about a millisecond a cell.
+const CELLS_PER_MOTION_TILE: usize = 1 << 8;
 /// Delays in a tile at most, so that memory stays bounded on the longest line.
 const DELAYS_PER_TILE: usize = 1 << 17;
 /// Lines of delays are cut at multiples of this only: there tracking starts anew, and no value depends on the tiles.
@@ -42,8 +44,9 @@ impl Plan {
     /// # Errors
     /// When there are more cells than any machine could hold.
     pub fn new(spec: SweepSpec) -> Result<Self, SpecError> {
-        let roots = spec.fields.iter().any(|f| f.roots_needed() > 0);
-        let cells = if roots {
+        let cells = if follows_motions(&spec) {
+            CELLS_PER_MOTION_TILE
+        } else if follows_roots(&spec) {
             CELLS_PER_ROOT_TILE
         } else {
             CELLS_PER_TILE
@@ -72,7 +75,12 @@ impl Plan {
             .axes
             .iter()
             .position(|axis| axis.parameter == Parameter::Tau);
-        let tile_shape = tile_shape(&shape, tau_axis, cells_per_tile);
+        // Motions know nothing of the delay before: only roots keep lines in blocks.
+        let block = match follows_motions(&spec) && !follows_roots(&spec) {
+            true => 1,
+            false => BLOCK_OF_DELAYS,
+        };
+        let tile_shape = tile_shape(&shape, (tau_axis, block), cells_per_tile);
         let boundary_plane = boundary_plane(&spec);
         Ok(Self {
             tiles: TileGrid::new(shape, tile_shape),
@@ -186,17 +194,34 @@ impl Plan {
         if self.spec.best {
             put("best", &[]);
         }
+        if follows_motions(&self.spec) {
+            let how = &self.spec.simulation;
+            let horizon = how.horizon.unwrap_or(0.0);
+            put("simulation", &[horizon, how.tolerance, how.steps as f64]);
+        }
         hash.finalize().iter().map(|b| format!("{b:02x}")).collect()
     }
 }
 
-/// Whole lines as far as they go, else whole blocks of delays; then as many neighbouring lines as fit into `cells`.
-fn tile_shape(shape: &[usize], tau_axis: Option<usize>, cells: usize) -> Vec<usize> {
+fn follows_motions(spec: &SweepSpec) -> bool {
+    spec.fields.iter().any(|f| f.of_motion())
+}
+
+fn follows_roots(spec: &SweepSpec) -> bool {
+    spec.fields.iter().any(|f| f.roots_needed() > 0)
+}
+
+/// Whole lines as far as they go, else whole blocks of so many delays; then as many neighbouring lines as fit into `cells`.
+fn tile_shape(
+    shape: &[usize],
+    (tau_axis, block): (Option<usize>, usize),
+    cells: usize,
+) -> Vec<usize> {
     let mut tile = vec![1; shape.len()];
     let mut room = cells;
     if let Some(axis) = tau_axis {
-        let blocks = (cells.min(DELAYS_PER_TILE) / BLOCK_OF_DELAYS).max(1);
-        let delays = part(shape[axis].div_ceil(BLOCK_OF_DELAYS), blocks) * BLOCK_OF_DELAYS;
+        let blocks = (cells.min(DELAYS_PER_TILE) / block).max(1);
+        let delays = part(shape[axis].div_ceil(block), blocks) * block;
         tile[axis] = delays.min(shape[axis]);
         room /= tile[axis];
     }
@@ -245,7 +270,7 @@ mod tests {
         ) {
             let mut shape = vec![lines, 7];
             shape.insert(place, delays);
-            let tile = tile_shape(&shape, Some(place), cells);
+            let tile = tile_shape(&shape, (Some(place), BLOCK_OF_DELAYS), cells);
             prop_assert!(tile[place] == delays || tile[place].is_multiple_of(BLOCK_OF_DELAYS));
             prop_assert!(tile.iter().zip(&shape).all(|(t, n)| (1..=*n).contains(t)));
             let block = delays.min(BLOCK_OF_DELAYS);
@@ -255,8 +280,11 @@ mod tests {
 
     #[test]
     fn tiles_without_delays_hold_as_many_cells() {
-        assert_eq!(tile_shape(&[600, 700], None, 1 << 14), [23, 700]);
-        assert_eq!(tile_shape(&[5, 1001, 4097], Some(2), 1 << 14), [1, 3, 4097]);
-        assert_eq!(tile_shape(&[1001, 20_000], Some(1), 1 << 14), [1, 12_288]);
+        let shape = |shape: &[usize], tau| tile_shape(shape, (tau, BLOCK_OF_DELAYS), 1 << 14);
+        assert_eq!(shape(&[600, 700], None), [23, 700]);
+        assert_eq!(shape(&[5, 1001, 4097], Some(2)), [1, 3, 4097]);
+        assert_eq!(shape(&[1001, 20_000], Some(1)), [1, 12_288]);
+        assert_eq!(tile_shape(&[300, 1000], (Some(1), 1), 256), [1, 250]);
+        assert_eq!(tile_shape(&[300, 100], (Some(1), 1), 256), [2, 100]);
     }
 }

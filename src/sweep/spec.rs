@@ -20,6 +20,14 @@
 //! mu0 = 0.5
 //! v_s = 0.5
 //!
+//! [start]                                 # optional, for fields of motions: where they start, if no axis says so
+//! x_dot0 = 0.1                            # and a0; or switch_on_phase, as in case files
+//!
+//! [simulation]                            # optional, for fields of motions: as in case files
+//! horizon = 1000.0
+//! tolerance = 1e-12
+//! steps = 1000000
+//!
 //! [units]                                 # optional: names for the map, dimensionless without
 //! force = "N"
 //! length = "m"
@@ -36,6 +44,7 @@ use super::best::gain_plane;
 use super::field::{Field, known_fields};
 use super::given::{GivenParameters, read_units};
 use super::parameter::{Parameter, Setting, Units};
+use super::simulation::Simulation;
 pub use super::toml_reader::SpecError;
 use super::toml_reader::{Entry, entries, parse};
 use crate::linear::MarginalTolerance;
@@ -64,6 +73,8 @@ pub struct SweepSpec {
     pub best: bool,
     /// How near to a crossing a cell is marginal.
     pub tolerance: MarginalTolerance,
+    /// How far and how exactly motions are followed.
+    pub simulation: Simulation,
     /// Units of the parameters.
     pub units: Units,
     /// The text of the file.
@@ -83,13 +94,15 @@ impl std::str::FromStr for SweepSpec {
         for entry in entries(document.get_ref(), "") {
             match entry.key {
                 "title" => draft.title = entry.string()?.to_owned(),
-                "fields" => draft.fields = Some(read_fields(&entry)?),
+                "fields" => draft.read_fields(&entry)?,
                 "boundaries" => draft.boundaries = Some(entry.boolean()?),
                 "degree_of_stability" => draft.read_degrees(&entry)?,
                 "best" => draft.best = entry.boolean()?.then(|| entry.key_span.clone()),
                 "axes" => draft.read_axes(&entry)?,
                 "fixed" => draft.given.read_fixed(&entry)?,
                 "friction" => draft.given.read_friction(&entry)?,
+                "start" => draft.given.read_start(&entry)?,
+                "simulation" => draft.read_simulation(&entry)?,
                 "units" => draft.units = read_units(&entry)?,
                 "tolerance" => draft.tolerance = read_tolerance(&entry)?,
                 _ => {
@@ -102,6 +115,8 @@ impl std::str::FromStr for SweepSpec {
                         "axes",
                         "fixed",
                         "friction",
+                        "start",
+                        "simulation",
                         "units",
                         "tolerance",
                     ]));
@@ -116,6 +131,10 @@ impl std::str::FromStr for SweepSpec {
 struct Draft {
     title: String,
     fields: Option<Vec<Field>>,
+    /// Where the first field of motions is asked for, if one is.
+    motion_place: Option<Range<usize>>,
+    simulation: Simulation,
+    simulation_place: Option<Range<usize>>,
     boundaries: Option<bool>,
     degrees: Vec<f64>,
     degrees_place: Option<Range<usize>>,
@@ -129,6 +148,21 @@ struct Draft {
 }
 
 impl Draft {
+    fn read_fields(&mut self, fields: &Entry) -> Result<(), SpecError> {
+        self.fields = Some(read_fields(fields)?);
+        let of_motion = |element: &Entry| {
+            let name = element.string().unwrap_or_default();
+            Field::from_name(name).is_some_and(Field::of_motion)
+        };
+        self.motion_place = fields.array()?.into_iter().find(of_motion).map(|e| e.span);
+        Ok(())
+    }
+
+    fn read_simulation(&mut self, simulation: &Entry) -> Result<(), SpecError> {
+        self.simulation_place = Some(simulation.key_span.clone());
+        self.simulation.read_table(simulation)
+    }
+
     fn read_degrees(&mut self, degrees: &Entry) -> Result<(), SpecError> {
         self.degrees = read_degrees(degrees)?;
         self.degrees_place = Some(degrees.key_span.clone());
@@ -166,6 +200,10 @@ impl Draft {
         self.check_best()?;
         let fixed = self.given.setting();
         self.check_law(&fixed)?;
+        match &self.motion_place {
+            Some(place) => self.check_motions(&fixed, place)?,
+            None => self.check_no_motions()?,
+        }
         Ok(SweepSpec {
             title: self.title,
             axes: self.axes,
@@ -175,6 +213,7 @@ impl Draft {
             degrees_of_stability: self.degrees,
             best: self.best.is_some(),
             tolerance: self.tolerance,
+            simulation: self.simulation,
             units: self.units,
             text: text.to_owned(),
         })
@@ -235,6 +274,51 @@ impl Draft {
             .friction_law()
             .map(|_| ())
             .map_err(|e| SpecError::at(place.clone(), e.to_string()))
+    }
+}
+
+/// Motions: what fields of theirs need, and what has no effect without them.
+impl Draft {
+    /// The values of a parameter in the sweep: of its axis, or the fixed one.
+    fn values(&self, fixed: &Setting, parameter: Parameter) -> Vec<f64> {
+        let axis = self.axes.iter().find(|axis| axis.parameter == parameter);
+        axis.map_or_else(|| vec![fixed.get(parameter)], |axis| axis.values.clone())
+    }
+
+    fn check_motions(&self, fixed: &Setting, place: &Range<usize>) -> Result<(), SpecError> {
+        if self.given.law_place().is_none() {
+            let message = "this field needs a friction law: motions stick and slip by it";
+            return Err(SpecError::at(place.clone(), message)
+                .help("give [friction] and v0 instead of mu_prime and mu_k"));
+        }
+        self.given.check_start()?;
+        let gains = [Parameter::AlphaV, Parameter::AlphaN];
+        let mut gains = gains.into_iter().flat_map(|p| self.values(fixed, p));
+        let acts = gains.any(|gain| gain != 0.0);
+        if acts && self.values(fixed, Parameter::Tau).contains(&0.0) {
+            let message = "tau = 0 is outside its range: greater than 0 where gains act and motions are followed";
+            let place = self.given.place(Parameter::Tau).unwrap_or(place);
+            return Err(SpecError::at(place.clone(), message));
+        }
+        let phases = self.values(fixed, Parameter::SwitchOnPhase);
+        let latest = phases.into_iter().fold(0.0, f64::max);
+        let name = Parameter::SwitchOnPhase.name();
+        self.simulation.check_horizon(name, latest)
+    }
+
+    fn check_no_motions(&self) -> Result<(), SpecError> {
+        let start = Parameter::START.into_iter();
+        let start = start.filter_map(|p| Some((p.name(), self.given.place(p)?)));
+        let simulation = self.simulation_place.as_ref().map(|s| ("simulation", s));
+        match start.chain(simulation).next() {
+            Some((name, place)) => {
+                let message = format!("{name} has no effect on the fields that are asked for");
+                Err(SpecError::at(place.clone(), message).help(
+                    "motions are followed for the fields outcome, settle_time, n_min and peak_force",
+                ))
+            }
+            None => Ok(()),
+        }
     }
 }
 

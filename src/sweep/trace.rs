@@ -1,8 +1,7 @@
 //! A motion sampled over time, with its events: a case followed to its outcome and to the end of its trace.
 
 use super::case_file::{CaseSpec, Sampling};
-use crate::model::ModelError;
-use crate::slip::case::{Case, CaseUnits};
+use crate::slip::case::{Case, CaseError, CaseUnits};
 use crate::slip::motion::{Event, Mode, Motion};
 use crate::slip::outcome::{Observer, Outcome, Summary};
 
@@ -30,7 +29,7 @@ pub const EVENTS: [(Event, &str); 5] = [
 pub enum TraceError {
     /// The model refuses the case.
     #[error(transparent)]
-    Model(#[from] ModelError),
+    Case(#[from] CaseError),
     /// It would be too long.
     #[error("the trace would have more than {MOST_SAMPLES} samples")]
     TooLong,
@@ -181,7 +180,7 @@ struct Begun {
 }
 
 impl Recorder {
-    fn new(case: &Case, sampling: Sampling) -> Result<Self, ModelError> {
+    fn new(case: &Case, sampling: Sampling) -> Result<Self, CaseError> {
         Ok(Self {
             motion: case.motion()?,
             units: case.units(),

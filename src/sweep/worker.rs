@@ -1,11 +1,13 @@
 //! One thread's work: the cells of a tile, line by line, into buffers that are used again.
 
 use std::ops::Range;
+use std::sync::atomic::{AtomicBool, Ordering};
 
-use super::field::Field;
+use super::field::{Field, Storage};
 use super::parameter::{Parameter, Setting};
 use super::plan::Plan;
 use super::root_columns::{Line, RootColumns};
+use super::slip_columns::SlipColumns;
 use super::tile::{Tile, for_each_index};
 use crate::linear::Crossings;
 use crate::linear::row::Delays;
@@ -19,6 +21,8 @@ pub struct TileBuffers {
     pub status: Vec<u8>,
     /// Number of unstable roots, if asked for.
     pub n_unstable: Option<Vec<u16>>,
+    /// Number of the outcome, its place in [`crate::slip::outcome::Outcome::ALL`], if asked for.
+    pub outcome: Option<Vec<u8>>,
     /// The other fields that are asked for, in their order.
     pub columns: Vec<Column>,
 }
@@ -34,6 +38,8 @@ pub struct Column {
 
 /// Value of `n_unstable` in cells that are not computed.
 pub const N_UNSTABLE_FILL: u16 = u16::MAX;
+/// Value of `outcome` in cells that are not computed.
+pub const OUTCOME_FILL: u8 = u8::MAX;
 /// Value of `status` in cells that are not computed.
 pub const STATUS_FILL: u8 = u8::MAX;
 
@@ -52,9 +58,12 @@ impl TileBuffers {
             n_unstable: fields
                 .contains(&Field::NUnstable)
                 .then(|| vec![N_UNSTABLE_FILL; cells]),
+            outcome: fields
+                .contains(&Field::Outcome)
+                .then(|| vec![OUTCOME_FILL; cells]),
             columns: fields
                 .iter()
-                .filter(|f| !f.is_count())
+                .filter(|f| f.storage() == Storage::Real)
                 .map(column)
                 .collect(),
         }
@@ -64,6 +73,9 @@ impl TileBuffers {
         self.status.fill(STATUS_FILL);
         if let Some(n) = &mut self.n_unstable {
             n.fill(N_UNSTABLE_FILL);
+        }
+        if let Some(outcome) = &mut self.outcome {
+            outcome.fill(OUTCOME_FILL);
         }
         for column in &mut self.columns {
             column.cells.fill(f64::NAN);
@@ -94,6 +106,8 @@ pub struct Worker<'p> {
     row: RowBuffers,
     /// Follows roots, where a field needs them.
     roots: Option<RootColumns>,
+    /// Follows motions, where a field needs them.
+    slip: Option<SlipColumns<'p>>,
 }
 
 /// The groups of one line after the other. What does not change from line to line is not computed again.
@@ -192,11 +206,17 @@ impl<'p> Worker<'p> {
                 delay_margin: vec![0.0; longest],
             },
             roots: RootColumns::new(&plan.spec.fields),
+            slip: SlipColumns::new(&plan.spec),
         }
     }
 
     /// Computes every cell of `tile`.
     pub fn compute(&mut self, tile: &Tile) {
+        self.compute_until(tile, &AtomicBool::new(false));
+    }
+
+    /// As [`Worker::compute`], but no further motion is followed once `stop` is set. False if the tile is not complete.
+    pub fn compute_until(&mut self, tile: &Tile, stop: &AtomicBool) -> bool {
         let range = self.plan.delay_range(tile);
         if range != self.delay_range {
             self.delays = Delays::new(&self.plan.delays(range.clone()));
@@ -212,10 +232,14 @@ impl<'p> Worker<'p> {
         for_each_index(&tile.extent, self.plan.tau_axis, |inside| {
             let at: usize = inside.iter().zip(&self.strides).map(|(i, s)| i * s).sum();
             match self.lines.groups(&tile.offset, inside) {
-                Ok((groups, time_unit)) => self.fill_line(groups, time_unit, at),
+                Ok((groups, time_unit)) => {
+                    self.fill_line(groups, time_unit, at);
+                    self.fill_motions(groups, at, stop);
+                }
                 Err(_) => self.refuse_line(at),
             }
         });
+        self.slip.is_none() || !stop.load(Ordering::Relaxed)
     }
 
     /// Computes the cells of a line into the buffers from place `at` on.
@@ -304,6 +328,15 @@ impl<'p> Worker<'p> {
         self.unflagged = false;
     }
 
+    /// Computes the fields of motions, in a line whose status is there.
+    fn fill_motions(&mut self, groups: Groups, at: usize, stop: &AtomicBool) {
+        let Some(slip) = &mut self.slip else { return };
+        let line = (&self.lines.setting, groups);
+        let place = (at, self.stride);
+        slip.fill(line, self.delays.values(), &mut self.buffers, place, stop);
+        self.unflagged = false;
+    }
+
     /// A line outside the model's range: its cells keep fill values and say that nothing converged there.
     fn refuse_line(&mut self, at: usize) {
         let len = self.delays.values().len();
@@ -312,6 +345,9 @@ impl<'p> Worker<'p> {
             self.buffers.status[place] = NOT_CONVERGED;
             if let Some(n) = &mut self.buffers.n_unstable {
                 n[place] = N_UNSTABLE_FILL;
+            }
+            if let Some(outcome) = &mut self.buffers.outcome {
+                outcome[place] = OUTCOME_FILL;
             }
             for column in &mut self.buffers.columns {
                 column.cells[place] = f64::NAN;

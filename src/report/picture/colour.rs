@@ -24,6 +24,18 @@ pub const UNSTABLE: [Rgb; 4] = [
     Rgb(0x7a, 0x46, 0x08),
 ];
 
+/// Motions that slide, stick and slip, oscillate, lift off, diverge; undecided ones; where there is none. The first ones are
+/// as far apart for the colour-blind as in colours.
+pub const OUTCOMES: [Rgb; 7] = [
+    STABLE,
+    Rgb(0xdf, 0xc2, 0x7d),
+    Rgb(0x9e, 0x5a, 0x12),
+    Rgb(0x2c, 0x4a, 0x7c),
+    Rgb(0x22, 0x22, 0x22),
+    Rgb(0xb9, 0xb9, 0xb9),
+    Rgb(0xe8, 0xe8, 0xe8),
+];
+
 /// Viridis at nine equal steps.
 const VIRIDIS: [Rgb; 9] = [
     Rgb(68, 1, 84),
@@ -78,6 +90,16 @@ pub fn of_count(n: f64) -> Rgb {
         n if n < 1.0 => STABLE,
         n => UNSTABLE[((n / 2.0).ceil() as usize).clamp(1, UNSTABLE.len()) - 1],
     }
+}
+
+/// The colour of the outcome with this number.
+pub fn of_outcome(number: f64) -> Rgb {
+    let place = if number >= 0.0 {
+        number as usize
+    } else {
+        OUTCOMES.len()
+    };
+    OUTCOMES.get(place).copied().unwrap_or(NO_VALUE)
 }
 
 /// The colour of `value` where ±`range` are the ends: brown below zero, teal above.

@@ -30,7 +30,7 @@ pub fn draw(
     scene: &mut Scene,
 ) -> Result<(), PictureError> {
     let unit = map.field_unit(field);
-    let title = super::title(map, "Stability of sliding");
+    let title = super::title(map, super::untitled(field));
     let mut notes = vec![field_note(field, &unit)];
     notes.extend(view.notes(map));
     let mut body = page::head(scene, &title, &notes);

@@ -6,6 +6,7 @@ use super::page::Area;
 use super::scale::Scale;
 use super::scene::Scene;
 use super::text::{Rich, decimal_exponent, field_name, number, suffix};
+use crate::slip::outcome::Outcome;
 use crate::store::map_file::Plane;
 use crate::sweep::Field;
 
@@ -22,6 +23,8 @@ const LONGEST_RELAXATION: f64 = 100.0;
 enum Paint {
     /// A colour for each number of unstable roots.
     Counts,
+    /// A colour for each outcome.
+    Outcomes,
     /// Two colours that meet at zero and are full at ±`range`; `stable` is the sign of the values on the stable side.
     Signed { range: f64, stable: f64 },
     /// From dark to light along a scale; infinite values are those of unstable cells.
@@ -34,6 +37,7 @@ impl Paint {
         let largest = finite().fold(0.0, f64::max);
         match field {
             Field::NUnstable => Self::Counts,
+            Field::Outcome => Self::Outcomes,
             Field::DelayMargin => Self::Signed {
                 range: symmetric_range(finite()),
                 stable: 1.0,
@@ -55,7 +59,11 @@ impl Paint {
                 let longest = largest.clamp(1.5 * shortest, LONGEST_RELAXATION * shortest);
                 Self::Sized(Scale::logarithmic(shortest, rounded_up(longest)))
             }
-            Field::Frequency(_) | Field::CertificateMargin => {
+            Field::SettleTime => {
+                let longest = rounded_up(quantile(finite(), TOLD_APART));
+                Self::Sized(Scale::linear(0.0, longest))
+            }
+            Field::Frequency(_) | Field::CertificateMargin | Field::NMin | Field::PeakForce => {
                 Self::Sized(Scale::linear(0.0, rounded_up(largest)))
             }
         }
@@ -64,6 +72,7 @@ impl Paint {
     fn colour(&self, value: f64) -> Rgb {
         match *self {
             Self::Counts => colour::of_count(value),
+            Self::Outcomes => colour::of_outcome(value),
             Self::Signed { range, stable } => colour::diverging(stable * value, range),
             Self::Sized(_) if value.is_nan() => NO_VALUE,
             Self::Sized(_) if value.is_infinite() => UNSTABLE[0],
@@ -74,7 +83,7 @@ impl Paint {
     /// The scale of the bar; none where a list says everything.
     fn scale(&self) -> Option<Scale> {
         match *self {
-            Self::Counts => None,
+            Self::Counts | Self::Outcomes => None,
             Self::Signed { range, .. } => Some(Scale::linear(-range, range)),
             Self::Sized(scale) => Some(scale),
         }
@@ -87,7 +96,7 @@ impl Paint {
             entries.push((Swatch::Box(self.colour(value)), Rich::plain(&text)));
         };
         let (low, high) = match *self {
-            Self::Counts => return entries,
+            Self::Counts | Self::Outcomes => return entries,
             Self::Signed { range, .. } => (-range, range),
             Self::Sized(scale) => (f64::NEG_INFINITY, scale.value(1.0)),
         };
@@ -127,6 +136,7 @@ impl Key {
         let paint = Paint::of(field, &values);
         let mut legend = match paint {
             Paint::Counts => counts(&values),
+            Paint::Outcomes => outcomes(&values),
             _ => Legend::default(),
         };
         legend.entries.extend(paint.beyond(&values));
@@ -222,6 +232,22 @@ fn counts(values: &[f64]) -> Legend {
     }
 }
 
+/// The outcomes that there are.
+fn outcomes(values: &[f64]) -> Legend {
+    let entries = Outcome::ALL.into_iter().enumerate();
+    let entries = entries.map(|(i, outcome)| (i as f64, outcome));
+    Legend {
+        heading: vec![Rich::plain("outcome")],
+        entries: entries
+            .filter(|(number, _)| values.contains(number))
+            .map(|(number, outcome)| {
+                let swatch = Swatch::Box(colour::of_outcome(number));
+                (swatch, Rich::plain(outcome.name()))
+            })
+            .collect(),
+    }
+}
+
 /// The range of colours: the largest finite value of a stable cell, stable being positive, since far outside the stable
 /// region the distance to it matters less; but not so small that most of the others lie beyond. 1 where there is no value.
 fn symmetric_range(values: impl Iterator<Item = f64>) -> f64 {
@@ -289,6 +315,12 @@ mod tests {
         let cells = [2.0, 900.0, f64::INFINITY];
         let key = Key::new(Field::RelaxationTime, "s", &[plane(&cells)], false);
         assert_eq!(texts(key), ["200 or more", "∞, unstable"].map(Rich::plain));
+        let cells = [1.0, 3.0, 1.0, f64::NAN];
+        let key = Key::new(Field::Outcome, "1", &[plane(&cells)], false);
+        assert_eq!(
+            texts(key),
+            ["stick-slip", "lift-off", "no value"].map(Rich::plain)
+        );
     }
 
     /// Teal is stable, whichever sign that is.

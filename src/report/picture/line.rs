@@ -9,9 +9,11 @@ use super::scale::Scale;
 use super::scene::{Mark, Point, Scene};
 use super::text::{Rich, axis_title, field_title, number, suffix};
 use super::view::View;
+use crate::slip::outcome::Outcome;
 use crate::store::map_file::MapAxis;
 use crate::store::{MapFile, StoreError};
 use crate::sweep::Field;
+use crate::sweep::field::Storage;
 
 const WIDTH: f64 = 3.2;
 const SHADE: f64 = 0.25;
@@ -37,10 +39,17 @@ pub fn draw(
             .collect()
     };
     let lines = read(field)?;
-    let title = super::title(map, "Stability of sliding");
+    let title = super::title(map, super::untitled(field));
     let mut body = page::head(scene, &title, &view.notes(map));
     let u = scene.unit();
-    let legend = legend(map, view);
+    let mut legend = legend(map, view);
+    if field == Field::Outcome {
+        // What the numbers on the axis mean.
+        let meaning =
+            |(i, outcome): (usize, Outcome)| Rich::plain(&format!("{i}: {}", outcome.name()));
+        let meanings = Outcome::ALL.into_iter().enumerate().map(meaning);
+        legend.heading = meanings.chain(legend.heading).collect();
+    }
     let column = body.cut_right(legend.width(u), 30.0 * u);
     let axis = &map.axes()[view.x];
     let words = Words {
@@ -105,7 +114,11 @@ fn value_scale(field: Field, lines: &[Line]) -> Scale {
     };
     let low = finite().fold(0.0, f64::min);
     let high = finite().fold(0.0, f64::max);
-    if field.is_count() {
+    if field.storage() == Storage::Kind {
+        let most = Outcome::ALL.len() as f64;
+        return Scale::linear(-0.5, most - 0.5).with_smallest_step(1.0);
+    }
+    if field.storage() == Storage::Count {
         let high = f64::max(high, 2.0);
         return Scale::linear(-0.04 * high, 1.06 * high).with_smallest_step(2.0);
     }
@@ -123,7 +136,7 @@ fn stretches(panel: &Panel, line: &Line, field: Field) -> Vec<Vec<Point>> {
             done.push(std::mem::take(&mut open));
             continue;
         }
-        if field.is_count() {
+        if field.storage() != Storage::Real {
             open.extend([panel.at(edges[i], value), panel.at(edges[i + 1], value)]);
         } else {
             open.push(panel.at(x, value));

@@ -66,10 +66,11 @@ pub enum PictureKind {
 /// How a map is drawn.
 #[derive(Debug, Clone, PartialEq)]
 pub struct PictureOptions {
-    /// The field to show; by default the spectral abscissa where the map holds it, else the number of unstable roots.
+    /// The field to show; by default the outcome where the map holds it, else the spectral abscissa, else the number of
+    /// unstable roots.
     pub field: Option<Field>,
     /// The kind; by default boundaries where the map holds them for 2 to 12 values of one axis outside their plane, holds no
-    /// abscissa and no field is asked for, otherwise a heat map.
+    /// abscissa or outcome and no field is asked for, otherwise a heat map.
     pub kind: Option<PictureKind>,
     /// Values at which axes are held: the nearest on the axis. Several for one axis make as many panels or colours.
     pub at: Vec<(Parameter, f64)>,
@@ -207,7 +208,8 @@ fn compose(map: &MapFile, options: &PictureOptions, most: usize) -> Result<Scene
     let in_plane = view.is_boundary_plane(map);
     let curves = if in_plane { map.curves()? } else { Vec::new() };
     let fits = view.along.is_some() && view.of <= MOST_PANELS && view.outer_axes(map) == 1;
-    let by_default = fits && options.field.is_none() && !decays(map) && !curves.is_empty();
+    let by_default =
+        fits && options.field.is_none() && says_more(map).is_none() && !curves.is_empty();
     match options.kind {
         Some(PictureKind::Boundaries) if !in_plane => {
             return Err(no_curves(match map.boundary_plane() {
@@ -222,15 +224,16 @@ fn compose(map: &MapFile, options: &PictureOptions, most: usize) -> Result<Scene
     Ok(scene)
 }
 
-/// The map holds the rate at which disturbances decay.
-fn decays(map: &MapFile) -> bool {
-    map.fields().contains(&Field::ABSCISSA)
+/// A field of the map that says more than where sliding is stable: what becomes of motions, or the rate at which
+/// disturbances decay.
+fn says_more(map: &MapFile) -> Option<Field> {
+    let more = [Field::Outcome, Field::ABSCISSA];
+    more.into_iter().find(|field| map.fields().contains(field))
 }
 
 /// What says most about the map.
 fn default_field(map: &MapFile) -> Field {
-    let abscissa = decays(map).then_some(Field::ABSCISSA);
-    abscissa
+    says_more(map)
         .or_else(|| map.stability_field())
         .or_else(|| map.fields().first().copied())
         .unwrap_or(Field::NUnstable)
@@ -238,6 +241,15 @@ fn default_field(map: &MapFile) -> Field {
 
 fn no_curves(why: &'static str) -> PictureError {
     PictureError::NoCurves { why }
+}
+
+/// The title of a picture of `field` of a sweep without one.
+fn untitled(field: Field) -> &'static str {
+    if field.of_motion() {
+        "Motions of the block"
+    } else {
+        "Stability of sliding"
+    }
 }
 
 /// The title of the map's sweep, or `otherwise`.
@@ -396,16 +408,14 @@ mod tests {
     /// As a heat map and along a line, with cells without delay or control among them.
     #[test]
     fn every_field_is_drawn() {
-        let names: Vec<String> = Field::ALL
-            .iter()
-            .map(|f| format!("{:?}", f.name()))
-            .collect();
+        let linear = || Field::ALL.into_iter().filter(|f| !f.of_motion());
+        let names: Vec<String> = linear().map(|f| format!("{:?}", f.name())).collect();
         let case = Case::new(&format!(
             "fields = [{}]\n[axes]\nalpha_n = [-1.5, -1.0, -0.5, 0.0]\ntau = [0.0, 0.3, 0.6, 0.9, 6.0]\n[fixed]\nmu_prime = -0.1",
             names.join(", ")
         ));
         let mut pictures = HashSet::new();
-        for field in Field::ALL {
+        for field in linear() {
             for at in [
                 vec![],
                 vec![(Parameter::AlphaN, -1.0)],
@@ -420,10 +430,34 @@ mod tests {
                 pictures.insert(case.draw("map.png", &options).unwrap());
             }
         }
-        assert!(pictures.len() > 2 * Field::ALL.len());
+        assert!(pictures.len() > 2 * linear().count());
         let bytes = case.draw("map.svg", &PictureOptions::default()).unwrap();
         let text = String::from_utf8(bytes).unwrap();
         assert!(text.contains("spectral abscissa") && text.contains("stable below 0"));
+    }
+
+    /// As heat maps and along a line.
+    #[test]
+    fn fields_of_motions_are_drawn() {
+        let case = Case::new(
+            "fields = [\"outcome\", \"settle_time\", \"n_min\", \"peak_force\"]\n[axes]\na0 = [-0.4, 0.6, 1]\nx_dot0 = [0.1, 0.7]\n\
+             [fixed]\nv0 = 0.118\nalpha_n = -7\ntau = 1\n[friction]\nlaw = \"weakening\"\nmu0 = 0.5\nv_s = 0.5\n",
+        );
+        for &field in case.map.fields() {
+            for at in [vec![], vec![(Parameter::XDot0, 0.1)]] {
+                let options = PictureOptions {
+                    field: Some(field),
+                    at,
+                    ..PictureOptions::default()
+                };
+                case.draw("map.png", &options).unwrap();
+            }
+        }
+        let bytes = case.draw("map.svg", &PictureOptions::default()).unwrap();
+        let text = String::from_utf8(bytes).unwrap();
+        for label in ["Motions of the block", "sliding", "stick-slip", "lift-off"] {
+            assert!(text.contains(label), "{label}");
+        }
     }
 
     #[test]

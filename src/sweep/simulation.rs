@@ -1,0 +1,140 @@
+//! How far and how exactly motions are followed, and the motion of a setting: what sweep and case files share.
+
+use std::ops::{Range, RangeInclusive};
+
+use super::parameter::{LARGEST, Parameter, Setting};
+use super::toml_reader::{Entry, SpecError};
+use crate::model::{Control, ModelError};
+use crate::slip::case::{Case, Start};
+use crate::slip::motion::Accuracy;
+
+/// Horizon where the file gives none, from switch-on, in units of √(M/κ).
+const HORIZON: f64 = 1000.0;
+/// The most steps of a motion where the file does not say: about a second.
+const STEPS: u64 = 1_000_000;
+/// The most steps that a file may ask for.
+const MOST_STEPS: u64 = 1_000_000_000;
+/// Times and lengths that are greater than zero.
+pub(super) const POSITIVE: RangeInclusive<f64> = 1.0 / LARGEST..=LARGEST;
+
+/// The keys `horizon`, `tolerance` and `steps`: of a case file, and of the table `[simulation]` of a sweep file.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Simulation {
+    /// Until when the outcome is looked for, in time; none: 1000 √(M/κ) after switch-on.
+    pub horizon: Option<f64>,
+    /// Error allowed in a step, relative.
+    pub tolerance: f64,
+    /// The most steps.
+    pub steps: u64,
+    horizon_place: Option<Range<usize>>,
+}
+
+impl Default for Simulation {
+    fn default() -> Self {
+        Self {
+            horizon: None,
+            tolerance: Accuracy::default().tolerance,
+            steps: STEPS,
+            horizon_place: None,
+        }
+    }
+}
+
+impl Simulation {
+    /// Names of the keys.
+    pub(super) const KEYS: [&'static str; 3] = ["horizon", "tolerance", "steps"];
+
+    /// Takes the value of an entry that is one of the keys; false where it is none.
+    pub(super) fn read(&mut self, entry: &Entry) -> Result<bool, SpecError> {
+        match entry.key {
+            "horizon" => {
+                self.horizon = Some(entry.number_within(POSITIVE)?);
+                self.horizon_place = Some(entry.span.clone());
+            }
+            "tolerance" => self.tolerance = entry.number_within(1e-15..=1e-3)?,
+            "steps" => {
+                self.steps = match entry.whole()? {
+                    steps @ 1..=MOST_STEPS => steps,
+                    other => {
+                        let message = format!("{other} is outside its range: 1 to {MOST_STEPS}");
+                        return Err(entry.error(message));
+                    }
+                };
+            }
+            _ => return Ok(false),
+        }
+        Ok(true)
+    }
+
+    /// Reads the table `[simulation]`.
+    pub(super) fn read_table(&mut self, table: &Entry) -> Result<(), SpecError> {
+        for entry in table.table()? {
+            if !self.read(&entry)? {
+                return Err(entry.unknown(&Self::KEYS));
+            }
+        }
+        Ok(())
+    }
+
+    /// The horizon, where it is given, is later than `switch_on`, the value of `name`.
+    pub(super) fn check_horizon(&self, name: &str, switch_on: f64) -> Result<(), SpecError> {
+        match (&self.horizon, &self.horizon_place) {
+            (Some(horizon), Some(place)) if *horizon <= switch_on => {
+                let message =
+                    format!("horizon: {horizon} is not later than {name}, which is {switch_on}");
+                Err(SpecError::at(place.clone(), message))
+            }
+            _ => Ok(()),
+        }
+    }
+
+    /// The motion of `setting`, with control acting from `switch_on` on unless the setting has a phase for that. Where it
+    /// has no start the block slides at v0. None where it has no friction law.
+    ///
+    /// # Errors
+    /// When a parameter is outside the model's range.
+    pub fn case(&self, setting: &Setting, switch_on: f64) -> Result<Option<Case>, ModelError> {
+        let Some(law) = setting.friction_law()? else {
+            return Ok(None);
+        };
+        let oscillator = setting.oscillator()?;
+        let v0 = setting.get(Parameter::V0);
+        let given = |p: Parameter| Some(setting.get(p)).filter(|value| !value.is_nan());
+        let phase = given(Parameter::SwitchOnPhase);
+        let start = match phase {
+            Some(_) => Start::AfterRelease,
+            None => Start::State {
+                x_dot0: given(Parameter::XDot0).unwrap_or(v0),
+                a0: given(Parameter::A0).unwrap_or_else(|| {
+                    law.mu_k(v0) * (oscillator.normal_load() / oscillator.stiffness())
+                }),
+            },
+        };
+        // Without gains nothing is ever switched on.
+        let switch_on = match setting.control() == Control::default() {
+            true => f64::INFINITY,
+            false => phase.unwrap_or(switch_on),
+        };
+        let begun = if switch_on.is_finite() {
+            switch_on
+        } else {
+            0.0
+        };
+        let by_default = || begun + HORIZON * oscillator.time_unit();
+        Ok(Some(Case {
+            oscillator,
+            law,
+            control: setting.control(),
+            tau: setting.get(Parameter::Tau),
+            v0,
+            switch_on,
+            start,
+            horizon: self.horizon.unwrap_or_else(by_default),
+            steps: self.steps,
+            accuracy: Accuracy {
+                tolerance: self.tolerance,
+                ..Accuracy::default()
+            },
+        }))
+    }
+}

@@ -1,0 +1,171 @@
+//! The fields that come from motions: every cell's block is followed to its outcome.
+
+use std::sync::atomic::{AtomicBool, Ordering};
+
+use super::field::Field;
+use super::parameter::{Parameter, Setting};
+use super::simulation::Simulation;
+use super::spec::SweepSpec;
+use super::worker::TileBuffers;
+use crate::linear::status::NOT_CONVERGED;
+use crate::model::Groups;
+use crate::slip::case::{Case, CaseError};
+use crate::slip::cycle::NoCycle;
+use crate::slip::motion::Motion;
+use crate::slip::outcome::{Outcome, Summary};
+
+/// Fills the columns of one thread's tiles.
+pub(super) struct SlipColumns<'p> {
+    simulation: &'p Simulation,
+    /// The memory of all motions.
+    motion: Option<Motion>,
+    sliding: Sliding,
+}
+
+/// What is known of sliding in the cells of the line followed last. Lines that differ in nothing but the motions' start
+/// share it.
+#[derive(Default)]
+struct Sliding(Vec<Option<Known>>);
+
+/// The spectral abscissa of sliding at one place, if it is stable there.
+#[derive(Clone, Copy)]
+struct Known {
+    /// The groups, the delay and the unit of time.
+    of: (Groups, f64, f64),
+    abscissa: Option<f64>,
+}
+
+/// What is stored of a motion; NaN where there is no value.
+struct Cell {
+    outcome: Outcome,
+    settle_time: f64,
+    n_min: f64,
+    peak_force: f64,
+}
+
+impl Cell {
+    /// There is no motion.
+    const fn without(outcome: Outcome) -> Self {
+        Self {
+            outcome,
+            settle_time: f64::NAN,
+            n_min: f64::NAN,
+            peak_force: f64::NAN,
+        }
+    }
+
+    fn of(summary: &Summary) -> Self {
+        Self {
+            outcome: summary.outcome,
+            settle_time: summary.settle_time,
+            // Infinite where control never acted; not −0.
+            n_min: if summary.n_min.is_finite() {
+                summary.n_min + 0.0
+            } else {
+                f64::NAN
+            },
+            peak_force: summary.peak,
+        }
+    }
+
+    fn value(&self, field: Field) -> Option<f64> {
+        match field {
+            Field::SettleTime => Some(self.settle_time),
+            Field::NMin => Some(self.n_min),
+            Field::PeakForce => Some(self.peak_force),
+            _ => None,
+        }
+    }
+}
+
+impl<'p> SlipColumns<'p> {
+    /// For the fields of a sweep; none where none of them comes from motions.
+    pub fn new(spec: &'p SweepSpec) -> Option<Self> {
+        let wanted = spec.fields.iter().any(|field| field.of_motion());
+        wanted.then(|| Self {
+            simulation: &spec.simulation,
+            motion: None,
+            sliding: Sliding::default(),
+        })
+    }
+
+    /// Follows the motions of a line at `setting`, with its groups, and at `delays`, into `buffers` from place `at` on with
+    /// `stride` places from delay to delay. The status gains [`NOT_CONVERGED`] where a motion stays undecided. After `stop`
+    /// is set nothing more is followed.
+    pub fn fill(
+        &mut self,
+        (setting, groups): (&Setting, Groups),
+        delays: &[f64],
+        buffers: &mut TileBuffers,
+        (at, stride): (usize, usize),
+        stop: &AtomicBool,
+    ) {
+        let mut setting = setting.clone();
+        for (i, tau) in delays.iter().enumerate() {
+            if stop.load(Ordering::Relaxed) {
+                return;
+            }
+            setting.set(Parameter::Tau, *tau);
+            let cell = self.cell((&setting, groups), i);
+            let place = at + i * stride;
+            if cell.outcome == Outcome::Undecided {
+                buffers.status[place] |= NOT_CONVERGED;
+            }
+            if let Some(outcomes) = &mut buffers.outcome {
+                outcomes[place] = cell.outcome as u8;
+            }
+            for column in &mut buffers.columns {
+                if let Some(value) = cell.value(column.field) {
+                    column.cells[place] = value;
+                }
+            }
+        }
+    }
+
+    /// The cell at `setting`, the `i`-th of its line.
+    fn cell(&mut self, at: (&Setting, Groups), i: usize) -> Cell {
+        match self.follow(at, i) {
+            Ok(Some(summary)) => Cell::of(&summary),
+            Err(CaseError::NoCycle(NoCycle::NoStickSlip)) => Cell::without(Outcome::NoCycle),
+            // The sweep's values were checked: what is refused here is beyond what can be followed.
+            Ok(None) | Err(_) => Cell::without(Outcome::Undecided),
+        }
+    }
+
+    fn follow(
+        &mut self,
+        (setting, groups): (&Setting, Groups),
+        i: usize,
+    ) -> Result<Option<Summary>, CaseError> {
+        let Some(case) = self.simulation.case(setting, 0.0)? else {
+            return Ok(None);
+        };
+        let motion = match &mut self.motion {
+            Some(motion) => {
+                case.restart(motion)?;
+                motion
+            }
+            none => none.insert(case.motion()?),
+        };
+        let abscissa = self.sliding.at(groups, &case, i)?;
+        Ok(Some(case.follow(motion, abscissa, &mut ())))
+    }
+}
+
+impl Sliding {
+    /// The abscissa of the case with these groups, the `i`-th of its line.
+    fn at(&mut self, groups: Groups, case: &Case, i: usize) -> Result<Option<f64>, CaseError> {
+        if self.0.len() <= i {
+            self.0.resize(i + 1, None);
+        }
+        let of = (groups, case.tau, case.units().time);
+        match self.0[i] {
+            Some(known) if known.of == of => Ok(known.abscissa),
+            _ => {
+                let abscissa = case.stable_abscissa()?;
+                self.0[i] = Some(Known { of, abscissa });
+                Ok(abscissa)
+            }
+        }
+    }
+}
