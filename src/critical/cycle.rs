@@ -14,6 +14,8 @@ const MISSED: f64 = 1.6;
 pub struct Cycle {
     /// Minimum of ẋ that the slip would have reached beyond its stop, ≤ 0; 0 where the stop is a graze.
     pub depth: f64,
+    /// From the stop until ẋ would have been at that minimum.
+    pub to_minimum: f64,
     /// Duration of the slip.
     pub slip: f64,
     /// Duration of the stick after it; NaN where only the slip was followed.
@@ -40,7 +42,7 @@ pub enum Ride {
 /// `expected` is the duration of the slip from which the block is expected to stop, if one is known.
 pub fn ride(motion: &mut Motion, expected: Option<f64>, slip_only: bool) -> Ride {
     let start = motion.t;
-    let mut stopped: Option<(f64, f64)> = None;
+    let mut stopped: Option<(f64, (f64, f64))> = None;
     let mut n_min = f64::INFINITY;
     for _ in 0..MOST_STEPS {
         let before = motion.t;
@@ -52,20 +54,22 @@ pub fn ride(motion: &mut Motion, expected: Option<f64>, slip_only: bool) -> Ride
         match (event, stopped) {
             (Some(Event::LiftOff), _) => return Ride::LiftOff,
             (Some(Event::Stick), None) => {
-                let depth = motion.last_step().depth_beyond_stop();
-                stopped = Some((motion.t, depth));
+                let (to_minimum, depth) = motion.last_step().minimum_beyond_stop();
+                stopped = Some((motion.t, (to_minimum, depth)));
                 if slip_only {
                     return Ride::Cycle(Cycle {
                         depth,
+                        to_minimum,
                         slip: motion.t - start,
                         stick: f64::NAN,
                         n_min,
                     });
                 }
             }
-            (Some(Event::Release), Some((stop, depth))) if motion.mode() == Mode::Forwards => {
+            (Some(Event::Release), Some((stop, (to_minimum, depth)))) if motion.mode() == Mode::Forwards => {
                 return Ride::Cycle(Cycle {
                     depth,
+                    to_minimum,
                     slip: stop - start,
                     stick: motion.t - stop,
                     n_min,

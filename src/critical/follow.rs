@@ -51,6 +51,7 @@ pub enum Fate {
 #[derive(Debug, Clone, Copy, Default)]
 struct LastStop {
     t: f64,
+    to_minimum: f64,
     depth: f64,
     stops: u32,
 }
@@ -59,7 +60,7 @@ impl Observer for LastStop {
     fn step(&mut self, motion: &Motion, event: Option<Event>) {
         if event == Some(Event::Stick) {
             self.t = motion.t;
-            self.depth = motion.last_step().depth_beyond_stop();
+            (self.to_minimum, self.depth) = motion.last_step().minimum_beyond_stop();
             self.stops += 1;
         }
     }
@@ -74,7 +75,9 @@ pub struct Sustained {
     pub fate: Fate,
     /// The motion's summary.
     pub summary: Summary,
-    /// Depth of the last stop, see [`crate::slip::step::Step::depth_beyond_stop`].
+    /// Time from the last stop to where it would have gone, see [`crate::slip::step::Step::minimum_beyond_stop`].
+    pub to_minimum: f64,
+    /// Depth of that.
     pub depth: f64,
 }
 
@@ -150,6 +153,7 @@ fn hold(problem: &Problem, motion: &mut Motion, pace: &Pace) -> Sustained {
         v0,
         fate,
         summary,
+        to_minimum: last.to_minimum,
         depth: last.depth,
     }
 }

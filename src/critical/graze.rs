@@ -31,13 +31,17 @@ pub enum Found {
 }
 
 /// Where v0 starts, in order, in units of μ_S N0/√(κM).
-const STARTS: [f64; 4] = [3e-2, 3e-3, 1e-4, 1e-6];
+const STARTS: [f64; 4] = [6e-2, 6e-3, 1e-4, 1e-6];
 /// The largest relative step of v0.
 const LARGEST_STEP: f64 = 1.0;
-/// v_c is known to this, relative.
-const PRECISION: f64 = 1e-6;
+/// Nearer than this to the graze, relative, the rest of the way is told from the last two trials.
+const NEAR: f64 = 1e-4;
+/// The last trials are this far below and above the graze, relative: v_c is known to it.
+const PRECISION: f64 = 1e-5;
 /// The most cycles at one v0.
 const MOST_CYCLES: u32 = 12;
+/// How much the slip may lengthen on the last bit of the way, where it grows as a square root.
+const SAME_SLIP: f64 = 0.1;
 /// The most trials.
 const MOST_TRIALS: u32 = 80;
 
@@ -58,14 +62,21 @@ struct Slips<'p> {
 
 impl Road for Slips<'_> {
     fn trial(&mut self, v0: f64, expected: Option<f64>, _: f64) -> Ride {
-        let p = self.problem;
-        self.motion.set_v0(v0);
-        self.motion
-            .release_from(p.law.mu_s() * (1.0 + p.alpha_n * v0 * p.tau));
+        self.release(v0);
         ride(&mut self.motion, expected, true)
     }
 
     fn keep(&mut self) {}
+}
+
+impl Slips<'_> {
+    /// At the end of a stick that outlasted the delay.
+    fn release(&mut self, v0: f64) {
+        let p = self.problem;
+        self.motion.set_v0(v0);
+        self.motion
+            .release_from(p.law.mu_s() * (1.0 + p.alpha_n * v0 * p.tau));
+    }
 }
 
 /// Cycle after cycle.
@@ -133,22 +144,26 @@ fn by_one_slip(problem: &Problem, accuracy: Accuracy) -> Option<Found> {
             _ => None,
         }
     })?;
-    let climbed = climb(&mut road, v0, start);
-    let Climbed::Graze { v0, slip } = climbed else {
-        return None;
+    let (v0, slip) = match climb(&mut road, v0, start) {
+        Climbed::Graze { v0, slip } => (v0, Some(slip)),
+        Climbed::LiftOff(v0) => (v0, None),
+        Climbed::Unclear => return None,
     };
     // The stick after this slip, and so the one before it, outlast the delay; and beyond it the block slides.
-    let below = v0 * (1.0 - 10.0 * PRECISION);
-    road.motion.set_v0(below);
-    road.motion
-        .release_from(problem.law.mu_s() * (1.0 + problem.alpha_n * below * problem.tau));
+    road.release(v0 * (1.0 - PRECISION));
     let Ride::Cycle(cycle) = ride(&mut road.motion, None, false) else {
         return None;
     };
-    if cycle.stick < problem.tau || (cycle.slip / slip - 1.0).abs() > 0.01 {
+    if cycle.stick < problem.tau {
         return None;
     }
-    road.motion.set_v0(v0 * (1.0 + 10.0 * PRECISION));
+    let Some(slip) = slip else {
+        return Some(Found::LiftOff(v0, Method::GrazeSlip));
+    };
+    if (cycle.slip / slip - 1.0).abs() > SAME_SLIP {
+        return None;
+    }
+    road.motion.set_v0(v0 * (1.0 + PRECISION));
     if !slides(problem, &mut road.motion, slip) {
         return Some(Found::Unclear);
     }
@@ -182,15 +197,15 @@ fn by_orbit(problem: &Problem, accuracy: Accuracy) -> Found {
 }
 
 fn finish(problem: &Problem, road: &mut Orbit, v0: f64, slip: f64) -> Found {
-    let below = v0 * (1.0 - 10.0 * PRECISION);
+    let below = v0 * (1.0 - PRECISION);
     let Ride::Cycle(cycle) = road.trial(below, None, f64::INFINITY) else {
         return Found::Unclear;
     };
-    if (cycle.slip / slip - 1.0).abs() > 0.01 {
+    if (cycle.slip / slip - 1.0).abs() > SAME_SLIP {
         return Found::Unclear;
     }
     road.keep();
-    road.kept.set_v0(v0 * (1.0 + 20.0 * PRECISION));
+    road.kept.set_v0(v0 * (1.0 + PRECISION));
     if !slides(problem, &mut road.kept, slip) {
         return Found::Unclear;
     }
@@ -261,16 +276,39 @@ impl Place {
 }
 
 /// Where the end is near, cycles have to be settled to this.
-const SETTLED: f64 = 0.02;
+const SETTLED: f64 = 0.05;
 /// The share of the way to the expected end that is taken at once.
 const SHARE: f64 = 0.97;
 
-/// How settled a trial has to be after a step of v0: far from the end one cycle tells enough.
+/// How settled a trial has to be after a step of v0.
 fn needed(step: f64) -> f64 {
     match step {
-        0.3.. => f64::INFINITY,
+        0.3.. => 0.2,
         0.02.. => 0.1,
         _ => SETTLED,
+    }
+}
+
+/// How far the next trial may go, relative.
+#[derive(Debug, Clone, Copy)]
+struct Reach {
+    most: f64,
+    /// The v0 of the last trial that failed, unless one beyond it has not; and whether it lifted off.
+    failed: Option<(f64, bool)>,
+}
+
+impl Reach {
+    fn step(&self, v0: f64, gap: f64) -> f64 {
+        let ceiling = self.failed.map_or(f64::INFINITY, |(v, _)| 0.5 * (v / v0 - 1.0));
+        (SHARE * gap).min(self.most).min(ceiling)
+    }
+
+    fn succeeded(&mut self, v0: f64, step: f64) {
+        self.most = (2.0 * self.most).min(LARGEST_STEP);
+        if self.failed.is_some_and(|(failed, _)| failed <= v0) {
+            // What failed there was the size of the step.
+            (self.failed, self.most) = (None, 4.0 * step);
+        }
     }
 }
 
@@ -282,28 +320,38 @@ fn climb(road: &mut impl Road, start: f64, first: Cycle) -> Climbed {
         settled: f64::INFINITY,
         slopes: [f64::NAN; 2],
     };
-    let mut most = LARGEST_STEP;
-    let mut lifted = false;
+    let mut reach = Reach {
+        most: LARGEST_STEP,
+        failed: None,
+    };
+    let mut last = false;
     for _ in 0..MOST_TRIALS {
         let gaps = at.gaps();
         let gap = gaps[0].min(gaps[1]);
-        let mut step = (SHARE * gap).min(most);
-        if step < PRECISION {
-            if at.settled <= SETTLED {
-                return arrived(&at, gaps, lifted);
+        let mut step = reach.step(at.v0, gap);
+        let enough = if gaps[0] <= gaps[1] { NEAR } else { PRECISION };
+        if step < SHARE * enough {
+            if at.settled > SETTLED {
+                step = 0.0;
+            } else if last || gap < enough {
+                return arrived(&at, gaps, reach.failed.is_some_and(|(_, lifted)| lifted));
+            } else {
+                // Once more, beyond where the last one failed.
+                (last, step) = (true, 3.0 * enough);
             }
-            step = 0.0;
         }
         let (next, settled) = (at.v0 * (1.0 + step), needed(step));
         match road.trial(next, Some(at.cycle.slip), settled) {
             Ride::Cycle(there) => {
                 road.keep();
                 at = at.moved_to(next, there, settled);
-                most = (2.0 * most).min(LARGEST_STEP);
+                reach.succeeded(next, step);
+                last = false;
             }
+            // A start that is not sustained.
+            Ride::Pass | Ride::LiftOff if step == 0.0 => return Climbed::Unclear,
             missed @ (Ride::Pass | Ride::LiftOff) => {
-                lifted = missed == Ride::LiftOff;
-                most = 0.5 * step;
+                reach.failed = Some((next, missed == Ride::LiftOff));
             }
             Ride::Other => return Climbed::Unclear,
         }
@@ -313,8 +361,10 @@ fn climb(road: &mut impl Road, start: f64, first: Cycle) -> Climbed {
 
 /// What vanishes at the end of a climb; `lifted`: the last trial beyond it lifted off.
 fn arrived(at: &Place, [graze, lift]: [f64; 2], lifted: bool) -> Climbed {
-    let near = 10.0 * PRECISION;
-    if lift < near || (lifted && graze >= near) {
+    let near = 10.0 * NEAR;
+    if lift < near && lift < graze {
+        Climbed::LiftOff(at.v0 * (1.0 + lift))
+    } else if lifted && graze >= near {
         Climbed::LiftOff(at.v0)
     } else if graze < near {
         Climbed::Graze {

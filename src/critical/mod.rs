@@ -200,8 +200,9 @@ fn of_graze(graze: &Graze) -> Critical {
         end: End::Grazing,
         method: graze.method,
         v_liftoff: f64::NAN,
-        stick_time: graze.cycle.stick,
-        slip_time: graze.cycle.slip,
+        // At the graze itself the slip lasts until the minimum of ẋ.
+        stick_time: graze.cycle.stick - graze.cycle.to_minimum,
+        slip_time: graze.cycle.slip + graze.cycle.to_minimum,
         n_min: graze.cycle.n_min,
         decided: true,
     }
@@ -241,14 +242,22 @@ pub fn by_simulation(problem: &Problem, pace: &Pace, accuracy: Accuracy) -> Crit
             decided,
             ..nothing(0.0, End::Never, method)
         },
-        (Some(last), lost) => Critical {
-            vc: if lost.is_some() { last.v0 } else { f64::NAN },
-            stick_time: last.summary.stick_time,
-            slip_time: last.summary.slip_time,
-            n_min: last.summary.n_min,
-            decided,
-            ..nothing(f64::NAN, end(&last, lost.is_some()), method)
-        },
+        (Some(last), lost) => {
+            let end = end(&last, lost.is_some());
+            let longer = if end == End::Grazing {
+                last.to_minimum
+            } else {
+                0.0
+            };
+            Critical {
+                vc: if lost.is_some() { last.v0 } else { f64::NAN },
+                stick_time: last.summary.stick_time - longer,
+                slip_time: last.summary.slip_time + longer,
+                n_min: last.summary.n_min,
+                decided,
+                ..nothing(f64::NAN, end, method)
+            }
+        }
     }
 }
 

@@ -22,14 +22,15 @@ impl Step {
     }
 
     /// The minimum ẋ < 0 that a slip forwards which stops at the end of this step would have reached, had the friction gone
-    /// on as for ẋ > 0: a smooth function of the parameters that is zero where the stop is a graze.
+    /// on as for ẋ > 0, with the time from the stop to it: the minimum is a smooth function of the parameters that is zero
+    /// where the stop is a graze.
     #[must_use]
-    pub fn depth_beyond_stop(&self) -> f64 {
+    pub fn minimum_beyond_stop(&self) -> (f64, f64) {
         let about = shifted(Self::range(&self.u, self.order), self.length);
         let (fall, bend) = (-about[1], 2.0 * about[2]);
         if bend <= 0.0 {
             // It falls faster and faster: nowhere near a graze.
-            return -fall.abs();
+            return (f64::INFINITY, -fall.abs());
         }
         let parabola = fall / bend;
         let slope = derivative(&about[..=self.order], 1.0);
@@ -40,7 +41,7 @@ impl Step {
         for _ in 0..NEWTON_STEPS {
             let bend = value(bends, s);
             if bend <= 0.0 || s > self.radius {
-                return -0.5 * fall * parabola;
+                return (parabola, -0.5 * fall * parabola);
             }
             let correction = value(slope, s) / bend;
             s -= correction;
@@ -50,9 +51,9 @@ impl Step {
         }
         if (0.0..=self.radius).contains(&s) {
             let c = &about[1..=self.order];
-            s * value(c, s)
+            (s, s * value(c, s))
         } else {
-            -0.5 * fall * parabola
+            (parabola, -0.5 * fall * parabola)
         }
     }
 }
