@@ -9,6 +9,10 @@ use slipmap::critical::{Critical, End, Method, Problem, by_simulation, critical_
 use slipmap::model::FrictionLaw;
 use slipmap::slip::motion::Accuracy;
 
+#[path = "common/chance_problem.rs"]
+mod chance_problem;
+use chance_problem::Chance;
+
 fn problem(law: FrictionLaw, alpha_v: f64, alpha_n: f64, tau: f64) -> Problem {
     Problem {
         law,
@@ -162,37 +166,6 @@ fn survival_at_the_stop_is_re_entrant() {
     for (edge, above) in [(0.26695, false), (0.27661, true), (0.344467, false)] {
         assert_eq!(at_stop(edge - 2e-5), !above, "below {edge}");
         assert_eq!(at_stop(edge + 2e-5), above, "above {edge}");
-    }
-}
-
-/// Numbers by chance (SplitMix64).
-struct Chance(u64);
-
-impl Chance {
-    fn between(&mut self, low: f64, high: f64) -> f64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        z ^= z >> 31;
-        low + (high - low) * (z >> 11) as f64 / (1_u64 << 53) as f64
-    }
-
-    fn problem(&mut self) -> Problem {
-        let (mu0, v_s) = (self.between(0.3, 0.7), self.between(0.2, 1.5));
-        let law = if self.between(0.0, 1.0) < 0.2 {
-            FrictionLaw::coulomb(mu0, 1.0)
-        } else {
-            FrictionLaw::weakening(mu0, v_s, 1.0)
-        };
-        let (alpha_v, alpha_n) = (self.between(-1.0, 0.1), self.between(-5.0, 0.5));
-        let tau = self.between(0.05, 5.0);
-        let (alpha_v, alpha_n) = match self.between(0.0, 3.0) {
-            0.0..1.0 => (0.0, alpha_n),
-            1.0..2.0 => (alpha_v, 0.0),
-            _ => (0.5 * alpha_v, alpha_n),
-        };
-        problem(law.unwrap(), alpha_v, alpha_n, tau)
     }
 }
 

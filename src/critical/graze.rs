@@ -99,8 +99,7 @@ impl Road for Orbit {
             for (seen, gauge) in seen.iter_mut().zip(gauges(&cycle)) {
                 *seen = [seen[1], seen[2], gauge];
             }
-            let near = |s: &[f64; 3]| (s[2] - s[1]).abs() <= settled * s[2].abs();
-            if settled == f64::INFINITY || seen.iter().all(near) {
+            if settled == f64::INFINITY || seen.iter().all(|seen| come_to_rest(seen, settled)) {
                 return Ride::Cycle(Cycle {
                     depth: limit(seen[0]),
                     n_min: -limit(seen[1]),
@@ -228,6 +227,14 @@ fn gauges(cycle: &Cycle) -> [f64; 2] {
     [cycle.depth, -cycle.n_min]
 }
 
+/// Whether the last members of a sequence differ by no more than `settled`, relative, and by less and less: else the orbit
+/// that they seem to reach may be unstable.
+fn come_to_rest([first, second, third]: &[f64; 3], settled: f64) -> bool {
+    let (before, last) = ((second - first).abs(), (third - second).abs());
+    let falls = settled > SETTLED || last <= CONTRACTION * before || last <= NOISE * third.abs();
+    last <= settled * third.abs() && falls
+}
+
 /// What a sequence converges to, as its last three members tell (Aitken).
 fn limit([first, second, third]: [f64; 3]) -> f64 {
     let (before, last) = (second - first, third - second);
@@ -277,6 +284,10 @@ impl Place {
 
 /// Where the end is near, cycles have to be settled to this.
 const SETTLED: f64 = 0.05;
+/// The most by which cycles that come to rest differ from one to the next, compared with the difference before.
+const CONTRACTION: f64 = 0.8;
+/// Noise of the gauges, relative.
+const NOISE: f64 = 1e-6;
 /// The share of the way to the expected end that is taken at once.
 const SHARE: f64 = 0.97;
 

@@ -176,7 +176,7 @@ pub struct Critical {
 }
 
 /// Error allowed in a step on the way to a graze.
-const GRAZE_TOLERANCE: f64 = 1e-8;
+const GRAZE_TOLERANCE: f64 = 1e-6;
 /// Error allowed in a step where stick-slip is followed.
 const FOLLOW_TOLERANCE: f64 = 1e-9;
 

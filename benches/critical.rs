@@ -1,0 +1,93 @@
+//! Time of a critical velocity by each of its roads, one core.
+//!
+//! `cargo bench --bench critical`. Random problems (seed fixed): weakening and Coulomb friction under load, velocity and mixed
+//! control; `SLIPMAP_CELLS` asks for more than 300. Each cell is done as a map does it, and by simulation alone right after;
+//! medians, means and the slowest cell of every road.
+
+use std::time::Instant;
+
+use slipmap::critical::follow::Pace;
+use slipmap::critical::{Critical, End, Method, Problem, by_simulation, critical_velocity};
+use slipmap::slip::motion::Accuracy;
+
+#[path = "../tests/common/chance_problem.rs"]
+mod chance_problem;
+use chance_problem::Chance;
+
+struct Timed {
+    problem: Problem,
+    found: Critical,
+    micros: f64,
+    simulated_micros: f64,
+    simulated: Critical,
+    agrees: bool,
+}
+
+fn timed<T>(what: impl FnOnce() -> T) -> (T, f64) {
+    let start = Instant::now();
+    let result = what();
+    (result, start.elapsed().as_secs_f64() * 1e6)
+}
+
+fn main() {
+    let asked = std::env::var("SLIPMAP_CELLS").ok();
+    let cells: usize = asked.and_then(|n| n.parse().ok()).unwrap_or(300);
+    let mut chance = Chance(7);
+    let accuracy = Accuracy {
+        tolerance: 1e-9,
+        ..Accuracy::default()
+    };
+    let mut all = Vec::new();
+    for _ in 0..cells {
+        let problem = chance.problem();
+        let (found, micros) = timed(|| critical_velocity(&problem));
+        let (simulated, simulated_micros) =
+            timed(|| by_simulation(&problem, &Pace::default(), accuracy));
+        let value = |c: &Critical| if c.end == End::LiftOff { c.v_liftoff } else { c.vc };
+        let agrees = found.end == simulated.end
+            && (value(&found) / value(&simulated) - 1.0).abs() < 1e-4;
+        all.push(Timed {
+            problem,
+            found,
+            micros,
+            simulated_micros,
+            simulated,
+            agrees,
+        });
+    }
+    println!("{cells} cells; µs a cell: median, mean, slowest");
+    row("all, as in a map", all.iter().map(|t| (t, t.micros)));
+    for method in Method::ALL {
+        let those = || all.iter().filter(|t| t.found.method == method);
+        row(method.name(), those().map(|t| (t, t.micros)));
+        if method != Method::Simulation {
+            row("  these by simulation", those().map(|t| (t, t.simulated_micros)));
+            let (count, agree) = (those().count(), those().filter(|t| t.agrees).count());
+            println!("  {agree} of {count} agree with simulation to 1e-4");
+            for t in those().filter(|t| !t.agrees) {
+                println!("    {:?}\n      {:?}\n      {:?}", t.problem, t.found, t.simulated);
+            }
+        }
+    }
+    row("all by simulation", all.iter().map(|t| (t, t.simulated_micros)));
+}
+
+fn row<'t>(name: &str, times: impl Iterator<Item = (&'t Timed, f64)>) {
+    let mut times: Vec<_> = times.collect();
+    times.sort_by(|p, q| p.1.total_cmp(&q.1));
+    let Some((slowest, most)) = times.last() else {
+        return println!("{name:<24} none");
+    };
+    let mean = times.iter().map(|t| t.1).sum::<f64>() / times.len() as f64;
+    let p = &slowest.problem;
+    println!(
+        "{name:<24} {:>5} cells {:>9.1} {mean:>9.1} {most:>10.0}   {:?} alpha_v {:.3} alpha_n {:.3} tau {:.3}: {}",
+        times.len(),
+        times[times.len() / 2].1,
+        p.law.kind(),
+        p.alpha_v,
+        p.alpha_n,
+        p.tau,
+        slowest.found.end.name(),
+    );
+}
