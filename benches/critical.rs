@@ -43,9 +43,15 @@ fn main() {
         let (found, micros) = timed(|| critical_velocity(&problem));
         let (simulated, simulated_micros) =
             timed(|| by_simulation(&problem, &Pace::default(), accuracy));
-        let value = |c: &Critical| if c.end == End::LiftOff { c.v_liftoff } else { c.vc };
-        let agrees = found.end == simulated.end
-            && (value(&found) / value(&simulated) - 1.0).abs() < 1e-4;
+        let value = |c: &Critical| {
+            if c.end == End::LiftOff {
+                c.v_liftoff
+            } else {
+                c.vc
+            }
+        };
+        let agrees =
+            found.end == simulated.end && (value(&found) / value(&simulated) - 1.0).abs() < 1e-4;
         all.push(Timed {
             problem,
             found,
@@ -61,15 +67,24 @@ fn main() {
         let those = || all.iter().filter(|t| t.found.method == method);
         row(method.name(), those().map(|t| (t, t.micros)));
         if method != Method::Simulation {
-            row("  these by simulation", those().map(|t| (t, t.simulated_micros)));
+            row(
+                "  these by simulation",
+                those().map(|t| (t, t.simulated_micros)),
+            );
             let (count, agree) = (those().count(), those().filter(|t| t.agrees).count());
             println!("  {agree} of {count} agree with simulation to 1e-4");
             for t in those().filter(|t| !t.agrees) {
-                println!("    {:?}\n      {:?}\n      {:?}", t.problem, t.found, t.simulated);
+                println!(
+                    "    {:?}\n      {:?}\n      {:?}",
+                    t.problem, t.found, t.simulated
+                );
             }
         }
     }
-    row("all by simulation", all.iter().map(|t| (t, t.simulated_micros)));
+    row(
+        "all by simulation",
+        all.iter().map(|t| (t, t.simulated_micros)),
+    );
 }
 
 fn row<'t>(name: &str, times: impl Iterator<Item = (&'t Timed, f64)>) {

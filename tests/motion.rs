@@ -569,6 +569,7 @@ fn nothing_breaks_it() {
             steps: 2000,
             stable_abscissa: stable.then_some(-0.1),
             repeated: REPEATED,
+            cycles: usize::MAX,
         };
         let mut chatter = Chatter::default();
         let tolerance = at_tolerance(chance.log(1e-13, 1e-5));

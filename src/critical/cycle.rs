@@ -66,7 +66,9 @@ pub fn ride(motion: &mut Motion, expected: Option<f64>, slip_only: bool) -> Ride
                     });
                 }
             }
-            (Some(Event::Release), Some((stop, (to_minimum, depth)))) if motion.mode() == Mode::Forwards => {
+            (Some(Event::Release), Some((stop, (to_minimum, depth))))
+                if motion.mode() == Mode::Forwards =>
+            {
                 return Ride::Cycle(Cycle {
                     depth,
                     to_minimum,

@@ -82,6 +82,11 @@ pub struct Sustained {
 }
 
 impl Sustained {
+    /// Whether it is periodic with one slip in a period.
+    fn simple(&self) -> bool {
+        self.fate == Fate::Periodic && self.summary.slips == 1
+    }
+
     /// Whether stick-slip persists.
     #[must_use]
     pub fn persists(&self) -> bool {
@@ -128,6 +133,11 @@ fn start_sticking(problem: &Problem, v0: f64, accuracy: Accuracy) -> Motion {
     motion
 }
 
+/// Stick-slip that does not repeat within so many cycles, and one more for every unit of the delay, is irregular.
+const CYCLES: usize = 24;
+/// The most v0 that are tried.
+const MOST_TRIALS: u32 = 400;
+
 /// Follows the motion at its v0 until its fate is known.
 fn hold(problem: &Problem, motion: &mut Motion, pace: &Pace) -> Sustained {
     let v0 = motion.parameters().v0;
@@ -139,10 +149,12 @@ fn hold(problem: &Problem, motion: &mut Motion, pace: &Pace) -> Sustained {
         steps: pace.steps,
         stable_abscissa: problem.stable_abscissa(v0),
         repeated: pace.repeated,
+        cycles: CYCLES + problem.tau as usize,
     };
     let mut last = LastStop::default();
     let summary = follow(motion, &limits, &mut last);
-    let recent = motion.t - last.t < 0.25 * (motion.t - start);
+    let cycles = last.stops as usize >= limits.cycles;
+    let recent = cycles || motion.t - last.t < 0.25 * (motion.t - start);
     let fate = match summary.outcome {
         Outcome::StickSlip => Fate::Periodic,
         Outcome::Undecided if last.stops > 2 && recent => Fate::Irregular,
@@ -165,7 +177,10 @@ fn raise(problem: &Problem, mut motion: Motion, first: Sustained, pace: &Pace) -
     let mut n_min = first.summary.n_min;
     let mut most = pace.first;
     let end = pace.v_max * problem.law.mu_s();
-    while last.v0 < end {
+    for _ in 0..MOST_TRIALS {
+        if last.v0 >= end {
+            break;
+        }
         let step = expected_step(before, &last).clamp(pace.last, most.max(pace.last));
         trial.copy_from(&motion);
         trial.set_v0((last.v0 * (1.0 + step)).min(end));
@@ -193,7 +208,7 @@ fn raise(problem: &Problem, mut motion: Motion, first: Sustained, pace: &Pace) -
 
 /// The relative step to most of the way to where the depth of the stops is expected to vanish.
 fn expected_step(before: Option<Sustained>, last: &Sustained) -> f64 {
-    let Some(before) = before else {
+    let Some(before) = before.filter(|before| before.simple() && last.simple()) else {
         return f64::INFINITY;
     };
     let slope = (last.depth - before.depth) / (last.v0 - before.v0);

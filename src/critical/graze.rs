@@ -310,7 +310,9 @@ struct Reach {
 
 impl Reach {
     fn step(&self, v0: f64, gap: f64) -> f64 {
-        let ceiling = self.failed.map_or(f64::INFINITY, |(v, _)| 0.5 * (v / v0 - 1.0));
+        let ceiling = self
+            .failed
+            .map_or(f64::INFINITY, |(v, _)| 0.5 * (v / v0 - 1.0));
         (SHARE * gap).min(self.most).min(ceiling)
     }
 

@@ -146,6 +146,7 @@ impl<'p> Trials<'p> {
             steps: self.steps,
             stable_abscissa: self.problem.stable_abscissa(v0),
             repeated: 1e-6,
+            cycles: usize::MAX,
         };
         let summary = follow(&mut self.motion, &limits, &mut ());
         let end = self.motion.t;

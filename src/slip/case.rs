@@ -243,6 +243,7 @@ impl Case {
             steps: self.steps,
             stable_abscissa: stable_abscissa.map(|s| s * units.time),
             repeated: REPEATED,
+            cycles: usize::MAX,
         };
         let found = follow(motion, &limits, observer);
         Summary {

@@ -63,6 +63,8 @@ pub struct Limits {
     pub stable_abscissa: Option<f64>,
     /// How well cycles have to repeat, relative, to be periodic.
     pub repeated: f64,
+    /// The most cycles of stick-slip that are waited for to repeat.
+    pub cycles: usize,
 }
 
 /// A motion that was followed to its outcome. Times, lengths and forces as in [`super::motion`].
@@ -256,7 +258,9 @@ impl Watch {
         if self.outcome.is_some() {
             return self.outcome;
         }
-        let over = motion.t >= self.limits.horizon || self.steps >= self.limits.steps;
+        let limits = &self.limits;
+        let over =
+            motion.t >= limits.horizon || self.steps >= limits.steps || self.count >= limits.cycles;
         over.then_some(Outcome::Undecided)
     }
 
@@ -466,6 +470,7 @@ mod tests {
             steps: 1_000_000,
             stable_abscissa: count.stable().then_some(root.lambda.re),
             repeated: REPEATED,
+            cycles: usize::MAX,
         };
         let rest = p.law.mu_k(p.v0);
         let mut motion = Motion::new(p, Accuracy::default(), u, rest);
@@ -525,6 +530,7 @@ mod tests {
             steps: 100_000,
             stable_abscissa: None,
             repeated: REPEATED,
+            cycles: usize::MAX,
         };
         let mut motion = Motion::new(p, Accuracy::default(), 0.0, 0.0);
         let s = follow(&mut motion, &limits, &mut ());
@@ -544,6 +550,7 @@ mod tests {
                 steps: 1000,
                 stable_abscissa: None,
                 repeated: REPEATED,
+                cycles: usize::MAX,
             };
             let mut motion =
                 Motion::new(p.clone(), Accuracy::default(), 0.3, -0.6 + 0.012 * i as f64);
@@ -586,6 +593,7 @@ mod tests {
             steps: 100_000,
             stable_abscissa: None,
             repeated: REPEATED,
+            cycles: usize::MAX,
         };
         let s = follow(&mut motion, &limits, &mut ());
         assert_eq!(s.outcome, Outcome::Oscillation, "{s:?}");
