@@ -2,11 +2,16 @@
 //!
 //! `cargo bench --bench motion`. Smooth: the letter's Fig. 3 (a) parameters, sliding with control from the start at t = 0,
 //! ẋ = v0 + 0.05. Hybrid: Fig. 3 (a) and (b) from rest at a = 0, control from t = 70 on. All until t = 200. Errors are the
-//! largest ones of a (and of ẋ) at multiples of 0.1, and of event times, against this integrator at its tightest; where
-//! `PEERS` names a folder with the reference arrays of the peers' scripts (`out/ref_S.csv`, …), against those. Medians of
+//! largest ones of a (and of ẋ) at multiples of 0.1, and of event times, against this integrator at its tightest. Medians of
 //! rounds; a round is repeated until it takes some milliseconds.
+//!
+//! `-- --write-reference FOLDER` writes what it gives at its tightest: `smooth.csv`, `hybrid-3a.csv`, `hybrid-3b.csv` with a
+//! and ẋ in a line, and the times of events in `…-events.csv`. `-- --reference FOLDER` measures errors against such files
+//! and prints one line for each problem and tolerance, `program problem setting µs-per-unit error-of-a`: for
+//! `benches/peers/run.sh`, which compares other programs.
 
 use std::hint::black_box;
+use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use slipmap::model::FrictionLaw;
@@ -20,8 +25,6 @@ const REPEATED: usize = 10;
 
 struct Problem {
     name: &'static str,
-    /// In the names of the reference files.
-    key: &'static str,
     parameters: Parameters,
     u: f64,
     a: f64,
@@ -38,9 +41,8 @@ fn problems() -> [Problem; 3] {
         v0,
         switch_on,
     };
-    let problem = |name, key, parameters, u, a| Problem {
+    let problem = |name, parameters, u, a| Problem {
         name,
-        key,
         parameters,
         u,
         a,
@@ -51,9 +53,9 @@ fn problems() -> [Problem; 3] {
         letter(0.1, 0.0, -10.0, 0.5, 70.0),
     );
     [
-        problem("smooth", "S", smooth, 0.40, law.mu_k(0.35)),
-        problem("hybrid 3a", "H3a", a, 0.0, 0.0),
-        problem("hybrid 3b", "H3b", b, 0.0, 0.0),
+        problem("smooth", smooth, 0.40, law.mu_k(0.35)),
+        problem("hybrid-3a", a, 0.0, 0.0),
+        problem("hybrid-3b", b, 0.0, 0.0),
     ]
 }
 
@@ -99,26 +101,9 @@ impl Problem {
         samples
     }
 
-    fn reference(&self) -> Samples {
-        let Ok(folder) = std::env::var("PEERS") else {
-            return self.samples(1e-15);
-        };
-        let read = |key: &str| {
-            let path = format!("{folder}/out/ref_{key}.csv");
-            let text = std::fs::read_to_string(&path).unwrap_or_else(|e| panic!("{path}: {e}"));
-            let number = |x: &str| x.trim().parse::<f64>().expect("a number");
-            let rows = text.lines().map(|l| l.split(',').map(number).collect());
-            rows.collect::<Vec<Vec<f64>>>()
-        };
-        let states = read(self.key).into_iter().map(|row| [row[0], row[1]]);
-        let events = match self.key.strip_prefix('H') {
-            Some(letter) => read(&format!("E{letter}")).concat(),
-            None => Vec::new(),
-        };
-        Samples {
-            states: states.take(POINTS).collect(),
-            events,
-        }
+    /// This integrator at its tightest.
+    fn tightest(&self) -> Samples {
+        self.samples(1e-15)
     }
 
     /// Median of microseconds per unit of time.
@@ -161,10 +146,62 @@ impl Samples {
     }
 }
 
-fn main() {
+/// The files of a problem's reference in `folder`: states, and times of events.
+fn files(folder: &Path, problem: &str) -> [PathBuf; 2] {
+    ["", "-events"].map(|of| folder.join(format!("{problem}{of}.csv")))
+}
+
+fn write_reference(folder: &Path) {
+    for problem in problems() {
+        let samples = problem.tightest();
+        let states = samples.states.iter().map(|[a, u]| format!("{a:e},{u:e}\n"));
+        let events = samples.events.iter().map(|t| format!("{t:e}\n"));
+        let texts: [String; 2] = [states.collect(), events.collect()];
+        for (path, text) in files(folder, problem.name).iter().zip(texts) {
+            std::fs::write(path, text).unwrap_or_else(|e| panic!("{}: {e}", path.display()));
+        }
+    }
+}
+
+fn read_reference(folder: &Path, problem: &str) -> Samples {
+    let [states, events] = files(folder, problem).map(|path| {
+        let text = std::fs::read_to_string(&path);
+        let text = text.unwrap_or_else(|e| panic!("{}: {e}", path.display()));
+        let number = |x: &str| x.trim().parse::<f64>().expect("a number");
+        let rows = text.lines().map(|l| l.split(',').map(number).collect());
+        rows.collect::<Vec<Vec<f64>>>()
+    });
+    let states = states.into_iter().map(|row| [row[0], row[1]]);
+    Samples {
+        states: states.take(POINTS).collect(),
+        events: events.concat(),
+    }
+}
+
+/// The value of an option on the command line.
+fn option(name: &str) -> Option<String> {
+    let mut arguments = std::env::args().skip_while(|a| a != name);
+    arguments.next()?;
+    Some(arguments.next().unwrap_or_else(|| panic!("{name} FOLDER")))
+}
+
+fn print_lines(folder: &Path) {
+    for problem in problems() {
+        let reference = read_reference(folder, problem.name);
+        for exponent in 6..=12 {
+            let tolerance = 10.0_f64.powi(-exponent);
+            let [error, ..] = problem.samples(tolerance).distance(&reference);
+            let time = problem.time(tolerance);
+            let name = problem.name;
+            println!("slipmap {name} 1e-{exponent} {time:.5} {error:.3e}");
+        }
+    }
+}
+
+fn print_table() {
     println!("problem     tolerance  µs per unit  steps  error of a  of ẋ      of events");
     for problem in problems() {
-        let reference = problem.reference();
+        let reference = problem.tightest();
         for exponent in 6..=12 {
             let tolerance = 10.0_f64.powi(-exponent);
             let [a, u, event] = problem.samples(tolerance).distance(&reference);
@@ -174,5 +211,15 @@ fn main() {
                 problem.name
             );
         }
+    }
+}
+
+fn main() {
+    if let Some(folder) = option("--write-reference") {
+        write_reference(folder.as_ref());
+    } else if let Some(folder) = option("--reference") {
+        print_lines(folder.as_ref());
+    } else {
+        print_table();
     }
 }
