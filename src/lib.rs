@@ -10,6 +10,8 @@
 //! |---|---|
 //! | [`model`] | the oscillator, friction laws, dimensionless groups |
 //! | [`linear`] | linear stability of continuous sliding at a point, along a line, in a plane |
+//! | [`slip`] | the nonlinear oscillator: stick, slip, lift-off, delayed feedback |
+//! | [`critical`] | the critical velocity below which stick-slip survives |
 //! | [`sweep`] | sweep files, plans, the engine that computes maps |
 //! | [`store`] | maps on disk |
 //! | [`report`] | progress, pictures |

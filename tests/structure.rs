@@ -2,7 +2,9 @@
 
 use std::path::{Path, PathBuf};
 
-const LAYERS: [&str; 7] = ["model", "linear", "slip", "sweep", "store", "report", "cli"];
+const LAYERS: [&str; 8] = [
+    "model", "linear", "slip", "critical", "sweep", "store", "report", "cli",
+];
 
 fn sources(folder: &Path) -> Vec<PathBuf> {
     let mut files = Vec::new();
@@ -45,7 +47,7 @@ fn layers_use_only_those_below() {
 
 #[test]
 fn the_ground_layers_are_pure() {
-    for layer in ["model", "linear", "slip"] {
+    for layer in ["model", "linear", "slip", "critical"] {
         for path in sources(&Path::new("src").join(layer)) {
             for word in [
                 "std::fs",
