@@ -11,16 +11,15 @@ Lines are the exact boundaries that the maps hold; shaded is where their count o
 of the slopes have it so. Nothing is computed again.
 """
 
-import argparse
 import sys
-from pathlib import Path
 
 import matplotlib as mpl
 import matplotlib.pyplot as plt
 import numpy as np
 import xarray as xr
 
-FORMAT_VERSIONS = (1, 2)
+import figures
+
 # Size of the labels on the lines, in points.
 LABEL_SIZE = 7
 
@@ -30,34 +29,12 @@ PANELS = {
     "alpha_n": (r"$\alpha_N$", "load control"),
 }
 
-STYLE = {
-    "font.family": "serif",
-    "font.serif": ["STIX Two Text", "STIXGeneral", "Times New Roman", "DejaVu Serif"],
-    "mathtext.fontset": "stix",
-    "font.size": 9,
-    "axes.labelsize": 10,
-    "axes.linewidth": 0.6,
-    "xtick.labelsize": 8,
-    "ytick.labelsize": 8,
-    "xtick.direction": "in",
-    "ytick.direction": "in",
-    "xtick.top": True,
-    "ytick.right": True,
+STYLE = figures.STYLE | {
     "xtick.minor.visible": True,
     "ytick.minor.visible": True,
-    "xtick.major.width": 0.6,
-    "ytick.major.width": 0.6,
     "xtick.minor.width": 0.4,
     "ytick.minor.width": 0.4,
-    "lines.linewidth": 0.9,
-    "pdf.fonttype": 42,
-    "svg.fonttype": "path",
-    "savefig.dpi": 400,
 }
-
-
-class NoSuchMap(Exception):
-    """A file that this figure cannot be drawn from, with the reason."""
 
 
 class Panel:
@@ -68,15 +45,15 @@ class Panel:
         cells, curves = read(path)
         self.gain = next((name for name in PANELS if cells.sizes.get(name, 1) > 1), None)
         if self.gain is None:
-            raise NoSuchMap(f"{path}: neither alpha_v nor alpha_n is an axis of the map")
+            raise figures.NoFigure(f"{path}: neither alpha_v nor alpha_n is an axis of the map")
         missing = {"mu_prime", "tau"} - set(cells.n_unstable.dims)
         other = set(cells.n_unstable.dims) - {"mu_prime", "tau", self.gain}
         if missing or other:
-            raise NoSuchMap(
+            raise figures.NoFigure(
                 f"{path}: the axes are {', '.join(cells.n_unstable.dims)}; this figure needs mu_prime, tau and one gain"
             )
         if self.gain not in curves or "mu_prime" not in curves:
-            raise NoSuchMap(f"{path}: the boundaries are not those over {self.gain} and tau")
+            raise figures.NoFigure(f"{path}: the boundaries are not those over {self.gain} and tau")
         self.x = cells[self.gain].values
         self.tau = cells["tau"].values
         self.slopes = cells["mu_prime"].values
@@ -86,26 +63,13 @@ class Panel:
 
 def read(path):
     """The cells and the boundaries of a map, in memory."""
-    if not Path(path).is_file():
-        raise NoSuchMap(f"{path}: there is no such file")
-    options = {"engine": "netcdf4", "mask_and_scale": False}
+    cells = figures.read(path, "map")
+    if "n_unstable" not in cells:
+        raise figures.NoFigure(f"{path}: the map has no n_unstable; add it to the sweep's fields")
     try:
-        with xr.open_dataset(path, **options) as cells:
-            version = cells.attrs.get("slipmap_format_version")
-            if version is None:
-                raise NoSuchMap(f"{path}: not a map of slipmap")
-            if int(version) not in FORMAT_VERSIONS:
-                raise NoSuchMap(f"{path}: format {version} of a map; this program reads {FORMAT_VERSIONS[0]} to {FORMAT_VERSIONS[-1]}")
-            if "n_unstable" not in cells:
-                raise NoSuchMap(f"{path}: the map has no n_unstable; add it to the sweep's fields")
-            cells = cells.load()
+        return cells, figures.load(path, group="boundaries")
     except (OSError, ValueError) as error:
-        raise NoSuchMap(f"{path}: not a map of slipmap ({error})") from error
-    try:
-        with xr.open_dataset(path, group="boundaries", **options) as curves:
-            return cells, curves.load()
-    except (OSError, ValueError) as error:
-        raise NoSuchMap(f"{path}: the map has no boundaries; set boundaries = true in the sweep") from error
+        raise figures.NoFigure(f"{path}: the map has no boundaries; set boundaries = true in the sweep") from error
 
 
 def stable_pieces(curves, gain):
@@ -298,7 +262,8 @@ def crossings(start, end, segments):
     return int((side(a, b, start) * side(a, b, end) < 0).sum())
 
 
-def figure(panels):
+def figure(paths):
+    panels = [Panel(path) for path in paths]
     with mpl.rc_context(STYLE):
         fig, all_axes = plt.subplots(1, len(panels), figsize=(7.0, 2.9), layout="constrained")
         colour = colours({slope for panel in panels for slope in panel.slopes})
@@ -315,28 +280,5 @@ def figure(panels):
         return fig
 
 
-def arguments():
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("maps", nargs=2, metavar="MAP.h5", help="the map of panel (a), then that of (b)")
-    parser.add_argument("-o", "--output", default="fig2.pdf", metavar="FILE", help="pdf, png or svg [%(default)s]")
-    parsed = parser.parse_args()
-    if Path(parsed.output).suffix not in (".pdf", ".png", ".svg"):
-        parser.error(f"{parsed.output}: the name must end in .pdf, .png or .svg")
-    return parsed
-
-
-def main():
-    given = arguments()
-    try:
-        panels = [Panel(path) for path in given.maps]
-    except NoSuchMap as error:
-        print(f"error: {error}", file=sys.stderr)
-        return 2
-    with mpl.rc_context(STYLE):
-        figure(panels).savefig(given.output)
-    print(given.output)
-    return 0
-
-
 if __name__ == "__main__":
-    sys.exit(main())
+    sys.exit(figures.main(__doc__, STYLE, figure, ["the map of panel (a)", "the map of panel (b)"], "fig2.pdf"))

@@ -11,62 +11,19 @@ One column for each trace: the velocities of the block and of the pull, the elon
 shaded where the block sticks, dashed where control is switched on. Nothing is computed again.
 """
 
-import argparse
 import sys
-from pathlib import Path
 
 import matplotlib as mpl
 import matplotlib.pyplot as plt
 import numpy as np
-import xarray as xr
 
-FORMAT_VERSION = 1
+import figures
 
 BLOCK, PULL, STUCK = "#440154", "#35978f", "#ede6d6"
 
-STYLE = {
-    "font.family": "serif",
-    "font.serif": ["STIX Two Text", "STIXGeneral", "Times New Roman", "DejaVu Serif"],
-    "mathtext.fontset": "stix",
-    "font.size": 9,
-    "axes.labelsize": 10,
-    "axes.linewidth": 0.6,
-    "xtick.labelsize": 8,
-    "ytick.labelsize": 8,
-    "xtick.direction": "in",
-    "ytick.direction": "in",
-    "xtick.top": True,
-    "ytick.right": True,
-    "xtick.major.width": 0.6,
-    "ytick.major.width": 0.6,
-    "lines.linewidth": 0.9,
-    "pdf.fonttype": 42,
-    "svg.fonttype": "path",
-    "savefig.dpi": 400,
-}
-
-
-class NoSuchTrace(Exception):
-    """A file that this figure cannot be drawn from, with the reason."""
-
-
 def read(path):
     """The samples and the events of a trace, in memory."""
-    if not Path(path).is_file():
-        raise NoSuchTrace(f"{path}: there is no such file")
-    options = {"engine": "netcdf4", "mask_and_scale": False}
-    try:
-        with xr.open_dataset(path, **options) as trace:
-            version = trace.attrs.get("slipmap_trace_format_version")
-            if version is None:
-                raise NoSuchTrace(f"{path}: not a trace of slipmap")
-            if int(version) != FORMAT_VERSION:
-                raise NoSuchTrace(f"{path}: format {version} of a trace; this program reads {FORMAT_VERSION}")
-            trace = trace.load()
-        with xr.open_dataset(path, group="event", **options) as events:
-            return trace, events.load()
-    except (OSError, ValueError) as error:
-        raise NoSuchTrace(f"{path}: not a trace of slipmap ({error})") from error
+    return figures.read(path, "trace"), figures.load(path, group="event")
 
 
 def times(events, kind):
@@ -110,8 +67,9 @@ def draw(column, trace, events):
             axes.axvline(switched, color="0.35", linewidth=0.7, linestyle=(0, (4, 3)))
 
 
-def figure(traces):
-    with mpl.rc_context(STYLE):
+def figure(paths):
+    traces = [read(path) for path in paths]
+    with mpl.rc_context(figures.STYLE):
         fig, rows = plt.subplots(3, len(traces), figsize=(7.0, 4.2), sharex="col", layout="constrained", squeeze=False)
         for column, (trace, events), letter in zip(rows.T, traces, "ab", strict=True):
             draw(column, trace, events)
@@ -121,28 +79,6 @@ def figure(traces):
         return fig
 
 
-def arguments():
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("traces", nargs=2, metavar="TRACE.h5", help="the trace of column (a), then that of (b)")
-    parser.add_argument("-o", "--output", default="fig3.pdf", metavar="FILE", help="pdf, png or svg [%(default)s]")
-    parsed = parser.parse_args()
-    if Path(parsed.output).suffix not in (".pdf", ".png", ".svg"):
-        parser.error(f"{parsed.output}: the name must end in .pdf, .png or .svg")
-    return parsed
-
-
-def main():
-    given = arguments()
-    try:
-        traces = [read(path) for path in given.traces]
-    except NoSuchTrace as error:
-        print(f"error: {error}", file=sys.stderr)
-        return 2
-    with mpl.rc_context(STYLE):
-        figure(traces).savefig(given.output)
-    print(given.output)
-    return 0
-
-
 if __name__ == "__main__":
-    sys.exit(main())
+    columns = ["the trace of column (a)", "the trace of column (b)"]
+    sys.exit(figures.main(__doc__, figures.STYLE, figure, columns, "fig3.pdf"))

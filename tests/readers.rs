@@ -614,9 +614,9 @@ fn the_figure_refuses_what_is_no_such_map() {
     }
 }
 
-/// Traces in xarray, netCDF4 and ncdump, and the publication figure from them.
+/// Traces in xarray, netCDF4 and ncdump; the publication figures from them and from the map of Fig. 4.
 #[test]
-fn python_reads_traces_and_draws_figure_3() {
+fn python_reads_traces_and_draws_figures_3_and_4() {
     let folder = tempfile::tempdir().expect("a folder");
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
     let slipmap = env!("CARGO_BIN_EXE_slipmap");
@@ -634,16 +634,26 @@ fn python_reads_traces_and_draws_figure_3() {
         ));
         assert!(text(&header.stdout).contains("double x_dot(t)"));
     }
-    let script = root.join("scripts/plot_fig3.py");
-    let figure = |arguments: [&str; 4]| {
+    run(command(slipmap, folder.path(), ["run", "--quiet"]).arg(root.join("sweeps/fig4.toml")));
+    for (name, arguments) in [
+        ("fig3", &["fig3a.h5", "fig3b.h5"][..]),
+        ("fig4", &["fig4.h5"]),
+    ] {
+        let script = root.join(format!("scripts/plot_{name}.py"));
+        let picture = format!("{name}.png");
         let mut python = python(folder.path());
-        python.arg(&script).args(arguments).output().unwrap()
-    };
-    let drawn = figure(["fig3a.h5", "fig3b.h5", "-o", "fig3.png"]);
-    assert!(drawn.status.success(), "{}", text(&drawn.stderr));
-    let bytes = std::fs::read(folder.path().join("fig3.png")).unwrap();
-    assert!(bytes.starts_with(b"\x89PNG") && bytes.len() > 50_000);
-    let refused = figure(["fig3a.h5", "fig3a.json", "-o", "no.png"]);
-    assert_eq!(refused.status.code(), Some(2));
-    assert!(text(&refused.stderr).contains("fig3a.json"));
+        run(python.arg(script).args(arguments).args(["-o", &picture]));
+        let bytes = std::fs::read(folder.path().join(picture)).unwrap();
+        assert!(bytes.starts_with(b"\x89PNG") && bytes.len() > 50_000);
+    }
+    for (name, arguments) in [
+        ("fig3", &["fig3a.h5", "fig3a.json"][..]),
+        ("fig4", &["fig3a.json"]),
+    ] {
+        let script = root.join(format!("scripts/plot_{name}.py"));
+        let mut python = python(folder.path());
+        let refused = python.arg(script).args(arguments).output().unwrap();
+        assert_eq!(refused.status.code(), Some(2));
+        assert!(text(&refused.stderr).contains("fig3a.json"));
+    }
 }

@@ -37,6 +37,7 @@ pub fn main(args: &Args) -> Result<(), Failure> {
         ("revision", root::GIT_REVISION),
         ("history", root::HISTORY),
         ("plan", root::PLAN_HASH),
+        ("protocol", root::PROTOCOL),
         ("friction", root::FRICTION_LAW),
     ] {
         if let Some(text) = map.root_text(attribute).filter(|t| !t.is_empty()) {

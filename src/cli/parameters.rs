@@ -85,6 +85,7 @@ impl ParameterArgs {
             Parameter::VS => self.v_s,
             Parameter::MuS => self.mu_s,
             Parameter::XDot0 | Parameter::A0 | Parameter::SwitchOnPhase => None,
+            Parameter::Gamma | Parameter::MuRatio => None,
         }
     }
 

@@ -1,12 +1,13 @@
 //! `slipmap vc`: the critical velocity at one point.
 
+use std::collections::BTreeMap;
 use std::io::Write;
 
 use clap::ValueEnum;
 use serde::Serialize;
 use slipmap::critical::End;
-use slipmap::critical::limit::{CoulombLimit, strong, weak};
 use slipmap::critical::switch_on::{Phase, Scan};
+use slipmap::sweep::limit_columns::{LimitCell, LimitField};
 use slipmap::sweep::{Parameter, Setting, vc};
 
 use super::failure::Failure;
@@ -67,18 +68,14 @@ struct Found {
     decided: bool,
 }
 
-/// The JSON of the limit.
+/// The JSON of the limit: its parameters, and the fields of its maps by their names.
 #[derive(Debug, Serialize)]
 struct Limit {
     protocol: Protocol,
     gamma: f64,
     mu_ratio: f64,
-    vc_over_vtilde: f64,
-    #[serde(rename = "omega0_T")]
-    omega0_t: Option<f64>,
-    liftoff_over_vtilde: Option<f64>,
-    weak_control: f64,
-    strong_control: f64,
+    #[serde(flatten)]
+    fields: BTreeMap<&'static str, Option<f64>>,
 }
 
 /// Runs the subcommand.
@@ -179,16 +176,13 @@ impl Args {
         };
         let gamma = needed(self.gamma, "--gamma")?;
         let mu_ratio = needed(self.mu_ratio, "--mu-ratio")?;
-        let found = CoulombLimit::at(gamma, mu_ratio)?;
+        let found = LimitCell::at(gamma, mu_ratio)?;
+        let field = |field: LimitField| (field.name(), finite(found.value(field)));
         Ok(Limit {
             protocol: Protocol::Limit,
             gamma,
             mu_ratio,
-            vc_over_vtilde: found.vc_over_vtilde,
-            omega0_t: finite(found.omega0_t),
-            liftoff_over_vtilde: finite(found.liftoff_over_vtilde),
-            weak_control: weak(gamma),
-            strong_control: strong(gamma),
+            fields: LimitField::ALL.map(field).into(),
         })
     }
 

@@ -136,7 +136,7 @@ fn fill_file(
         .collect::<hdf5::Result<Vec<_>>>()?;
     let spec = &plan.spec;
     let scalars = put_scalars(file, &spec.fixed, &spec.units, |p| {
-        spec.axes.iter().any(|axis| axis.parameter == p)
+        spec.uses(p) && spec.axes.iter().all(|axis| axis.parameter != p)
     })?;
     let mut variables = Variables {
         file,
@@ -189,6 +189,9 @@ fn put_root(file: &File, plan: &Plan, provenance: &Provenance) -> hdf5::Result<(
     put_text(file, root::PLAN_HASH, &plan.hash())?;
     put_text(file, root::SWEEP, &plan.spec.text)?;
     put_numbers(file, root::MARGINAL_TOLERANCE, &[plan.spec.tolerance.0])?;
+    if let Some(protocol) = plan.spec.protocol {
+        put_text(file, root::PROTOCOL, protocol.name())?;
+    }
     put_friction(file, &plan.spec.fixed)
 }
 
@@ -205,18 +208,15 @@ pub(super) fn put_friction(file: &File, setting: &Setting) -> hdf5::Result<()> {
     Ok(())
 }
 
-/// The parameters that `setting` uses and that are no axes, as scalar coordinates. Returns their names.
+/// The values in `setting` of the parameters that are `scalar`, as scalar coordinates. Returns their names.
 pub(super) fn put_scalars(
     file: &File,
     setting: &Setting,
     units: &Units,
-    on_axis: impl Fn(Parameter) -> bool,
+    scalar: impl Fn(Parameter) -> bool,
 ) -> hdf5::Result<String> {
     let mut names = Vec::new();
-    for parameter in Parameter::ALL {
-        if !setting.uses(parameter) || on_axis(parameter) {
-            continue;
-        }
+    for parameter in Parameter::ALL.into_iter().filter(|&p| scalar(p)) {
         let dataset = named(file.new_dataset_builder())
             .empty::<f64>()
             .create(parameter.name())?;

@@ -47,6 +47,8 @@ pub mod root {
     pub const HISTORY: &str = "history";
     /// Tolerance of the marginal flag.
     pub const MARGINAL_TOLERANCE: &str = "marginal_tolerance";
+    /// Name of the [`crate::sweep::Protocol`], where there is one.
+    pub const PROTOCOL: &str = "protocol";
     /// Name of the friction law, where there is one.
     pub const FRICTION_LAW: &str = "friction_law";
     /// Speeds of the points of a friction law from a table.

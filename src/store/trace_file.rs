@@ -15,7 +15,7 @@ use super::output::Output;
 use super::schema::{self, trace};
 use crate::sweep::parameter::Units;
 use crate::sweep::trace::{EVENTS, MODES, Sample, TraceEvent};
-use crate::sweep::{CaseSpec, Parameter, Trace};
+use crate::sweep::{CaseSpec, Trace};
 
 /// Elements in a chunk.
 const CHUNK: usize = 1 << 13;
@@ -140,7 +140,9 @@ fn fill_file(
 ) -> hdf5::Result<()> {
     put_provenance(file, &spec.title, provenance)?;
     put_root(file, spec, trace)?;
-    let scalars = put_scalars(file, &spec.setting, &spec.units, Parameter::of_start)?;
+    let scalars = put_scalars(file, &spec.setting, &spec.units, |p| {
+        spec.setting.uses(p) && !p.of_start()
+    })?;
     let mut dimensions = Dimensions::default();
     let time = named(file.new_dataset_builder())
         .with_data(&column(trace, TIME.of))

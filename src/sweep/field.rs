@@ -1,5 +1,6 @@
 //! What a map can hold for each cell: every field's one name, meaning, unit and type.
 
+use super::limit_columns::LimitField;
 use super::parameter::{Parameter, Units};
 use crate::linear::track::MOST_ROOTS;
 
@@ -102,6 +103,8 @@ pub enum Field {
     NMin,
     /// The largest spring force since switch-on.
     PeakForce,
+    /// Of the limit of a short delay.
+    Limit(LimitField),
 }
 
 /// How a field is stored.
@@ -116,7 +119,7 @@ pub enum Storage {
 }
 
 impl Field {
-    const COUNT: usize = 12 + 2 * MOST_ROOTS;
+    const COUNT: usize = 12 + 2 * MOST_ROOTS + LimitField::ALL.len();
 
     /// All fields, in the order in which maps hold them.
     pub const ALL: [Self; Self::COUNT] = Self::all();
@@ -141,6 +144,11 @@ impl Field {
         all[rest + 6] = Self::SettleTime;
         all[rest + 7] = Self::NMin;
         all[rest + 8] = Self::PeakForce;
+        let mut i = 0;
+        while i < LimitField::ALL.len() {
+            all[rest + 9 + i] = Self::Limit(LimitField::ALL[i]);
+            i += 1;
+        }
         all
     }
 
@@ -165,6 +173,7 @@ impl Field {
             Self::SettleTime => "settle_time",
             Self::NMin => "n_min",
             Self::PeakForce => "peak_force",
+            Self::Limit(field) => field.name(),
         }
     }
 
@@ -211,6 +220,7 @@ impl Field {
             }
             Self::NMin => "smallest normal load since switch-on".into(),
             Self::PeakForce => "largest spring force since switch-on".into(),
+            Self::Limit(field) => field.long_name().into(),
         }
     }
 
@@ -233,6 +243,7 @@ impl Field {
             Self::SettleTime => "settle time".into(),
             Self::NMin => "smallest load".into(),
             Self::PeakForce => "peak force".into(),
+            Self::Limit(field) => field.short_name().into(),
         }
     }
 
@@ -258,6 +269,7 @@ impl Field {
                  no-cycle: no uncontrolled stick-slip at whose phase control could be switched on",
             ),
             Self::SettleTime => Some("no value where the motion does not come to slide"),
+            Self::Limit(field) => field.comment(),
             Self::NMin | Self::PeakForce => {
                 Some("until the outcome was known; where control never acts, since t = 0")
             }
@@ -269,7 +281,9 @@ impl Field {
     #[must_use]
     pub fn unit(self, units: &Units) -> String {
         match self {
-            Self::NUnstable | Self::CertificateMargin | Self::Outcome => units.of([0; 3]),
+            Self::NUnstable | Self::CertificateMargin | Self::Outcome | Self::Limit(_) => {
+                units.of([0; 3])
+            }
             Self::DelayMargin | Self::RelaxationTime | Self::SettleTime => units.time(),
             Self::NMin | Self::PeakForce => units.of([1, 0, 0]),
             Self::Abscissa(_) => units.of([0, 0, -1]),
@@ -300,12 +314,19 @@ impl Field {
         )
     }
 
+    /// True for fields of the limit of a short delay, which need [`Protocol::Limit`](super::Protocol::Limit).
+    #[must_use]
+    pub const fn of_limit(self) -> bool {
+        matches!(self, Self::Limit(_))
+    }
+
     /// Number of roots from the right, pairs counted once, that the field needs; 0 if the closed form gives it.
     #[must_use]
     pub const fn roots_needed(self) -> usize {
         match self {
             Self::NUnstable | Self::DelayMargin => 0,
             Self::Outcome | Self::SettleTime | Self::NMin | Self::PeakForce => 0,
+            Self::Limit(_) => 0,
             Self::Abscissa(rank) | Self::Frequency(rank) => rank.0 + 1,
             Self::RelaxationTime | Self::AbscissaSlope(_) | Self::CertificateMargin => 1,
         }
@@ -381,6 +402,7 @@ mod tests {
             ("settle_time", "s"),
             ("n_min", "N"),
             ("peak_force", "N"),
+            ("vc_over_vtilde", "1"),
         ] {
             let field = Field::from_name(name).expect("a field");
             assert_eq!(field.unit(&units), unit, "{name}");
@@ -394,7 +416,9 @@ mod tests {
             known_fields(),
             "n_unstable, outcome, delay_margin, abscissa, abscissa_2 … abscissa_8, frequency, \
              frequency_2 … frequency_8, relaxation_time, d_abscissa_d_tau, d_abscissa_d_alpha_v, \
-             d_abscissa_d_alpha_n, d_abscissa_d_mu_prime, certificate_margin, settle_time, n_min, peak_force"
+             d_abscissa_d_alpha_n, d_abscissa_d_mu_prime, certificate_margin, settle_time, n_min, peak_force, \
+             vc_over_vtilde, omega0_T, liftoff_over_vtilde, vc_weak_control, vc_strong_control, weak_control_error, \
+             strong_control_error"
         );
     }
 }

@@ -134,6 +134,11 @@ impl GivenParameters {
         found.map(|(_, place)| place)
     }
 
+    /// Every parameter that is given, with the place of its key, in the order of the file.
+    pub fn places(&self) -> impl Iterator<Item = &(Parameter, Range<usize>)> {
+        self.places.iter()
+    }
+
     /// The values that are given, and the defaults of all others.
     pub fn setting(&self) -> Setting {
         let mut setting = Setting::new(self.law.as_ref().map(|(law, _)| law.clone()));

@@ -39,6 +39,10 @@ pub enum Parameter {
     A0,
     /// Time from a release of uncontrolled stick-slip to switch-on.
     SwitchOnPhase,
+    /// γ = −μ_K α_N τ/(2√(κM)) of [`Protocol::Limit`](super::Protocol::Limit).
+    Gamma,
+    /// μ_K/μ_S of the same.
+    MuRatio,
 }
 
 /// Ranges that a parameter's values can be held to.
@@ -47,11 +51,12 @@ enum Range {
     Any,
     NotNegative,
     Positive,
+    Part,
 }
 
 impl Parameter {
     /// All parameters.
-    pub const ALL: [Self; 15] = [
+    pub const ALL: [Self; 17] = [
         Self::MuPrime,
         Self::AlphaV,
         Self::AlphaN,
@@ -67,10 +72,15 @@ impl Parameter {
         Self::XDot0,
         Self::A0,
         Self::SwitchOnPhase,
+        Self::Gamma,
+        Self::MuRatio,
     ];
 
     /// The start of a motion: where none is given it slides at v0.
     pub const START: [Self; 3] = [Self::XDot0, Self::A0, Self::SwitchOnPhase];
+
+    /// All parameters of the limit of a short delay.
+    pub const LIMIT: [Self; 2] = [Self::Gamma, Self::MuRatio];
 
     /// The name, the same word everywhere (flags write `-` for `_`).
     #[must_use]
@@ -91,6 +101,8 @@ impl Parameter {
             Self::XDot0 => "x_dot0",
             Self::A0 => "a0",
             Self::SwitchOnPhase => "switch_on_phase",
+            Self::Gamma => "gamma",
+            Self::MuRatio => "mu_ratio",
         }
     }
 
@@ -119,6 +131,8 @@ impl Parameter {
             Self::XDot0 => "velocity of the block at t = 0",
             Self::A0 => "elongation of the spring at t = 0 and before",
             Self::SwitchOnPhase => "time from release to switch-on",
+            Self::Gamma => "strength of load control",
+            Self::MuRatio => "kinetic over static friction coefficient",
         }
     }
 
@@ -141,6 +155,8 @@ impl Parameter {
             Self::XDot0 => "ẋ0",
             Self::A0 => "a0",
             Self::SwitchOnPhase => "φ",
+            Self::Gamma => "γ",
+            Self::MuRatio => "μ_K/μ_S",
         }
     }
 
@@ -153,7 +169,7 @@ impl Parameter {
             Self::Tau | Self::SwitchOnPhase => [0, 0, 1],
             Self::A0 => [0, 1, 0],
             Self::V0 | Self::VS | Self::XDot0 => [0, 1, -1],
-            Self::MuK | Self::Mu0 | Self::MuS => [0, 0, 0],
+            Self::MuK | Self::Mu0 | Self::MuS | Self::Gamma | Self::MuRatio => [0, 0, 0],
             Self::Mass => [1, -1, 2],
             Self::NormalLoad => [1, 0, 0],
         }
@@ -167,6 +183,7 @@ impl Parameter {
             Self::MuK | Self::Mass | Self::Stiffness | Self::NormalLoad | Self::MuS => Some(1.0),
             Self::MuPrime | Self::Tau | Self::V0 | Self::Mu0 | Self::VS => None,
             Self::XDot0 | Self::A0 | Self::SwitchOnPhase => None,
+            Self::Gamma | Self::MuRatio => None,
         }
     }
 
@@ -182,10 +199,17 @@ impl Parameter {
         matches!(self, Self::XDot0 | Self::A0 | Self::SwitchOnPhase)
     }
 
+    /// True for [`Parameter::LIMIT`].
+    #[must_use]
+    pub const fn of_limit(self) -> bool {
+        matches!(self, Self::Gamma | Self::MuRatio)
+    }
+
     const fn range(self) -> Range {
         match self {
             Self::MuPrime | Self::AlphaV | Self::AlphaN | Self::XDot0 | Self::A0 => Range::Any,
             Self::Tau | Self::SwitchOnPhase => Range::NotNegative,
+            Self::MuRatio => Range::Part,
             _ => Range::Positive,
         }
     }
@@ -197,6 +221,7 @@ impl Parameter {
             Range::Any => "a finite number of size at most 1e12",
             Range::NotNegative => "0 or more, at most 1e12",
             Range::Positive => "greater than 0, between 1e-12 and 1e12",
+            Range::Part => "greater than 0, between 1e-12 and 1",
         }
     }
 
@@ -210,6 +235,7 @@ impl Parameter {
                 Range::Any => true,
                 Range::NotNegative => value >= 0.0,
                 Range::Positive => value >= 1.0 / LARGEST,
+                Range::Part => (1.0 / LARGEST..=1.0).contains(&value),
             };
         if inside {
             Ok(value)
@@ -345,6 +371,9 @@ impl GivenError {
     pub fn message(self, law: Option<&LawKind>) -> String {
         match (self, law) {
             (Self::Missing(p), _) => format!("{} is not given", p.name()),
+            (Self::Unused(p), _) if p.of_limit() => {
+                format!("{} is a parameter of protocol = \"limit\"", p.name())
+            }
             (Self::Unused(p), Some(law)) => {
                 format!("{} has no meaning with the {} law", p.name(), law.name())
             }
@@ -357,6 +386,9 @@ impl GivenError {
     pub fn help(self) -> String {
         match self {
             Self::Missing(p) => format!("{}: {}, {}", p.name(), p.long_name(), p.allowed()),
+            Self::Unused(p) if p.of_limit() => {
+                "protocol = \"limit\" in a sweep file asks for v_c as the delay vanishes; its parameters are gamma and mu_ratio".into()
+            }
             Self::Unused(_) => {
                 "give either mu_prime (with mu_k) or a friction law with v0, not both".into()
             }
@@ -398,11 +430,13 @@ impl Setting {
         self.law.as_ref()
     }
 
-    /// True for the parameters on which a cell of this setting can depend; the start of a motion where it is set.
+    /// True for the parameters on which a cell of this setting can depend; the start of a motion where it is set. Not asked of
+    /// the limit of a short delay, see [`SweepSpec::uses`](super::SweepSpec::uses).
     #[must_use]
     pub fn uses(&self, parameter: Parameter) -> bool {
         match &self.law {
             _ if parameter.of_start() => !self.get(parameter).is_nan(),
+            _ if parameter.of_limit() => false,
             Some(law) => match parameter {
                 Parameter::MuPrime | Parameter::MuK => false,
                 Parameter::Mu0 | Parameter::VS => law.needs().contains(&parameter),

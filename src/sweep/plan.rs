@@ -177,7 +177,7 @@ impl Plan {
         for axis in &self.spec.axes {
             put(axis.parameter.name(), &axis.values);
         }
-        for parameter in Parameter::ALL.into_iter().filter(|&p| fixed.uses(p)) {
+        for parameter in Parameter::ALL.into_iter().filter(|&p| self.spec.uses(p)) {
             if !self.spec.axes.iter().any(|a| a.parameter == parameter) {
                 put(parameter.name(), &[fixed.get(parameter)]);
             }

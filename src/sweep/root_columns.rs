@@ -95,6 +95,7 @@ fn value(
     Some(match field {
         Field::NUnstable | Field::DelayMargin => return None,
         Field::Outcome | Field::SettleTime | Field::NMin | Field::PeakForce => return None,
+        Field::Limit(_) => return None,
         Field::Abscissa(rank) => real_part(rank.index()),
         Field::Frequency(rank) => match cell.roots.get(rank.index()) {
             Some(root) => root.lambda.im / time_unit,

@@ -2,6 +2,7 @@
 //!
 //! ```toml
 //! title = "Velocity control"              # optional
+//! protocol = "limit"                      # optional: v_c as the delay vanishes, over gamma and mu_ratio and nothing else
 //! fields = ["n_unstable", "abscissa"]     # optional, n_unstable by default; status is always there
 //! boundaries = true                       # optional: the exact crossing curves as polylines
 //! degree_of_stability = [0.05, 0.1]       # optional: also the curves max Re λ = −σ for these σ, in 1/time
@@ -43,7 +44,10 @@ use super::axis::{Axis, Spacing, plane_of_curves, spaced};
 use super::best::gain_plane;
 use super::field::{Field, known_fields};
 use super::given::{GivenParameters, read_units};
+use super::limit_columns::LimitField;
+use super::limit_spec::LimitDraft;
 use super::parameter::{Parameter, Setting, Units};
+use super::protocol::Protocol;
 use super::simulation::Simulation;
 pub use super::toml_reader::SpecError;
 use super::toml_reader::{Entry, entries, parse};
@@ -59,6 +63,8 @@ const LARGEST_DEGREE: f64 = 1e12;
 pub struct SweepSpec {
     /// Title for pictures and the map; may be empty.
     pub title: String,
+    /// Which critical velocity is asked for, if one is.
+    pub protocol: Option<Protocol>,
     /// Axes in the order of the file: the dimensions of the map.
     pub axes: Vec<Axis>,
     /// All other parameters.
@@ -81,6 +87,17 @@ pub struct SweepSpec {
     pub text: String,
 }
 
+impl SweepSpec {
+    /// True for the parameters on which a cell can depend.
+    #[must_use]
+    pub fn uses(&self, parameter: Parameter) -> bool {
+        match self.protocol {
+            Some(Protocol::Limit) => parameter.of_limit(),
+            None => self.fixed.uses(parameter),
+        }
+    }
+}
+
 impl std::str::FromStr for SweepSpec {
     type Err = SpecError;
 
@@ -92,8 +109,10 @@ impl std::str::FromStr for SweepSpec {
         let document = parse(text)?;
         let mut draft = Draft::default();
         for entry in entries(document.get_ref(), "") {
+            draft.limit.note_key(&entry);
             match entry.key {
                 "title" => draft.title = entry.string()?.to_owned(),
+                "protocol" => draft.protocol = Some(Protocol::read(&entry)?),
                 "fields" => draft.read_fields(&entry)?,
                 "boundaries" => draft.boundaries = Some(entry.boolean()?),
                 "degree_of_stability" => draft.read_degrees(&entry)?,
@@ -108,6 +127,7 @@ impl std::str::FromStr for SweepSpec {
                 _ => {
                     return Err(entry.unknown(&[
                         "title",
+                        "protocol",
                         "fields",
                         "boundaries",
                         "degree_of_stability",
@@ -130,6 +150,8 @@ impl std::str::FromStr for SweepSpec {
 #[derive(Default)]
 struct Draft {
     title: String,
+    protocol: Option<Protocol>,
+    limit: LimitDraft,
     fields: Option<Vec<Field>>,
     /// Where the first field of motions is asked for, if one is.
     motion_place: Option<Range<usize>>,
@@ -150,6 +172,7 @@ struct Draft {
 impl Draft {
     fn read_fields(&mut self, fields: &Entry) -> Result<(), SpecError> {
         self.fields = Some(read_fields(fields)?);
+        self.limit.note_fields(fields)?;
         let of_motion = |element: &Entry| {
             let name = element.string().unwrap_or_default();
             Field::from_name(name).is_some_and(Field::of_motion)
@@ -195,6 +218,32 @@ impl Draft {
                     .help("for example: [axes] tau = { from = 0, to = 12, points = 1201 }")
             });
         }
+        let (fixed, default_fields) = match self.protocol {
+            Some(Protocol::Limit) => (
+                self.limit.check(&self.given, self.axes_place.as_ref())?,
+                LimitField::ALL.map(Field::Limit).to_vec(),
+            ),
+            None => (self.check()?, vec![Field::NUnstable]),
+        };
+        Ok(SweepSpec {
+            title: self.title,
+            protocol: self.protocol,
+            axes: self.axes,
+            fixed,
+            fields: self.fields.unwrap_or(default_fields),
+            boundaries: self.boundaries,
+            degrees_of_stability: self.degrees,
+            best: self.best.is_some(),
+            tolerance: self.tolerance,
+            simulation: self.simulation,
+            units: self.units,
+            text: text.to_owned(),
+        })
+    }
+
+    /// Everything fits together in a sweep of sliding or of motions; gives the parameters that are no axes.
+    fn check(&self) -> Result<Setting, SpecError> {
+        self.limit.check_absent()?;
         self.given.check(None, self.axes_place.as_ref())?;
         self.check_degrees()?;
         self.check_best()?;
@@ -204,19 +253,7 @@ impl Draft {
             Some(place) => self.check_motions(&fixed, place)?,
             None => self.check_no_motions()?,
         }
-        Ok(SweepSpec {
-            title: self.title,
-            axes: self.axes,
-            fixed,
-            fields: self.fields.unwrap_or_else(|| vec![Field::NUnstable]),
-            boundaries: self.boundaries,
-            degrees_of_stability: self.degrees,
-            best: self.best.is_some(),
-            tolerance: self.tolerance,
-            simulation: self.simulation,
-            units: self.units,
-            text: text.to_owned(),
-        })
+        Ok(fixed)
     }
 
     /// There are boundaries beside which to trace degrees of stability.

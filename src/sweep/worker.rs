@@ -4,8 +4,10 @@ use std::ops::Range;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use super::field::{Field, Storage};
+use super::limit_columns;
 use super::parameter::{Parameter, Setting};
 use super::plan::Plan;
+use super::protocol::Protocol;
 use super::root_columns::{Line, RootColumns};
 use super::slip_columns::SlipColumns;
 use super::tile::{Tile, for_each_index};
@@ -217,6 +219,11 @@ impl<'p> Worker<'p> {
 
     /// As [`Worker::compute`], but no further motion is followed once `stop` is set. False if the tile is not complete.
     pub fn compute_until(&mut self, tile: &Tile, stop: &AtomicBool) -> bool {
+        if self.plan.spec.protocol == Some(Protocol::Limit) {
+            self.buffers.clear();
+            limit_columns::fill(self.plan, tile, &self.strides, &mut self.buffers);
+            return true;
+        }
         let range = self.plan.delay_range(tile);
         if range != self.delay_range {
             self.delays = Delays::new(&self.plan.delays(range.clone()));

@@ -15,6 +15,8 @@ pub const BOUNDARY_WIDTH: f64 = 1.8;
 /// The part of all slopes and further roots that the colours tell apart. Near double roots some slopes are beyond any scale,
 /// and as the delay vanishes all roots but the rightmost go to −∞.
 const TOLD_APART: f64 = 0.96;
+/// Decades of a velocity whose colours differ, and that a line shows: it falls to zero faster than any power.
+pub const DECADES: i32 = 5;
 /// The longest relaxation time that has a colour of its own, in units of the shortest one.
 const LONGEST_RELAXATION: f64 = 100.0;
 
@@ -63,9 +65,19 @@ impl Paint {
                 let longest = rounded_up(quantile(finite(), TOLD_APART));
                 Self::Sized(Scale::linear(0.0, longest))
             }
-            Field::Frequency(_) | Field::CertificateMargin | Field::NMin | Field::PeakForce => {
-                Self::Sized(Scale::linear(0.0, rounded_up(largest)))
+            Field::Limit(of) if of.is_velocity() => {
+                let scale = Scale::over_decades(finite(), DECADES);
+                Self::Sized(scale.unwrap_or(Scale::linear(0.0, 1.0)))
             }
+            Field::Limit(of) if of.is_error() => Self::Signed {
+                range: 1.0,
+                stable: 1.0,
+            },
+            Field::Limit(_)
+            | Field::Frequency(_)
+            | Field::CertificateMargin
+            | Field::NMin
+            | Field::PeakForce => Self::Sized(Scale::linear(0.0, rounded_up(largest))),
         }
     }
 
@@ -90,7 +102,7 @@ impl Paint {
     }
 
     /// What is beyond the ends of the bar.
-    fn beyond(&self, values: &[f64]) -> Vec<(Swatch, Rich)> {
+    fn beyond(&self, field: Field, values: &[f64]) -> Vec<(Swatch, Rich)> {
         let mut entries = Vec::new();
         let mut entry = |value: f64, text: String| {
             entries.push((Swatch::Box(self.colour(value)), Rich::plain(&text)));
@@ -98,6 +110,7 @@ impl Paint {
         let (low, high) = match *self {
             Self::Counts | Self::Outcomes => return entries,
             Self::Signed { range, .. } => (-range, range),
+            Self::Sized(scale) if scale.is_logarithmic() => (scale.value(0.0), scale.value(1.0)),
             Self::Sized(scale) => (f64::NEG_INFINITY, scale.value(1.0)),
         };
         if values.iter().any(|&v| v > high && v.is_finite()) {
@@ -108,8 +121,9 @@ impl Paint {
         }
         for infinite in [f64::INFINITY, f64::NEG_INFINITY] {
             if values.contains(&infinite) {
+                let unstable = field.tells_stable(infinite) == Some(false);
                 let meaning = match self {
-                    Self::Sized(_) => ", unstable",
+                    Self::Sized(_) if unstable => ", unstable",
                     _ => "",
                 };
                 entry(infinite, format!("{}{meaning}", number(infinite)));
@@ -139,7 +153,7 @@ impl Key {
             Paint::Outcomes => outcomes(&values),
             _ => Legend::default(),
         };
-        legend.entries.extend(paint.beyond(&values));
+        legend.entries.extend(paint.beyond(field, &values));
         if values.iter().any(|v| v.is_nan()) {
             let swatch = Swatch::Box(NO_VALUE);
             legend.entries.push((swatch, Rich::plain("no value")));

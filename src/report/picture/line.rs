@@ -1,13 +1,14 @@
-//! A field along the one axis that is left.
+//! Fields along the one axis that is left.
 
 use super::PictureError;
-use super::colour::{self, PAPER, SOFT_INK, STABLE};
+use super::colour::{self, PAPER, Rgb, SOFT_INK, STABLE};
+use super::key::DECADES;
 use super::legend::{Legend, Swatch};
 use super::page;
 use super::panels::{Panel, Panels, Words};
 use super::scale::Scale;
 use super::scene::{Mark, Point, Scene};
-use super::text::{Rich, axis_title, field_title, number, suffix};
+use super::text::{Rich, axis_title, field_name, field_title, number, suffix};
 use super::view::View;
 use crate::slip::outcome::Outcome;
 use crate::store::map_file::MapAxis;
@@ -16,45 +17,44 @@ use crate::sweep::Field;
 use crate::sweep::field::Storage;
 
 const WIDTH: f64 = 3.2;
+/// Dashes of approximations, (length, gap).
+const DASH: (f64, f64) = (9.0, 7.0);
 const SHADE: f64 = 0.25;
+/// Relative errors beyond this are not told apart.
+const LARGEST_ERROR: f64 = 1.0;
 
-/// The cells along one line.
+/// The cells along one line, and how they are drawn.
 struct Line {
+    field: Field,
     at: Vec<f64>,
     values: Vec<f64>,
+    swatch: Swatch,
+    /// What tells the line from the others.
+    name: Rich,
 }
 
-/// Draws `field` along the axis `view.x` at no more than `most` cells.
+/// Draws `fields` along the axis `view.x` at no more than `most` cells: a single one at every panel's values of the other axes,
+/// several ones, of the same unit, at those of the first.
 pub fn draw(
     map: &MapFile,
     view: &View,
-    field: Field,
+    fields: &[Field],
     most: usize,
     scene: &mut Scene,
 ) -> Result<(), PictureError> {
-    let read = |field: Field| -> Result<Vec<Line>, StoreError> {
-        let panels = view.panels.iter();
-        panels
-            .map(|index| read_line(map, view.x, index, field, most))
-            .collect()
+    let Some(&field) = fields.first() else {
+        return Ok(());
     };
-    let lines = read(field)?;
+    let lines = read_lines(map, view, fields, most)?;
     let title = super::title(map, super::untitled(field));
     let mut body = page::head(scene, &title, &view.notes(map));
     let u = scene.unit();
-    let mut legend = legend(map, view);
-    if field == Field::Outcome {
-        // What the numbers on the axis mean.
-        let meaning =
-            |(i, outcome): (usize, Outcome)| Rich::plain(&format!("{i}: {}", outcome.name()));
-        let meanings = Outcome::ALL.into_iter().enumerate().map(meaning);
-        legend.heading = meanings.chain(legend.heading).collect();
-    }
+    let legend = legend(map, view, &lines);
     let column = body.cut_right(legend.width(u), 30.0 * u);
     let axis = &map.axes()[view.x];
     let words = Words {
         x: axis_title(axis),
-        y: field_title(field, &map.field_unit(field)),
+        y: ordinate(map, fields),
         headings: vec![None],
     };
     let scales = (Scale::around(&axis.values), value_scale(field, &lines));
@@ -62,10 +62,10 @@ pub fn draw(
     let Some(panel) = panels.panels.first() else {
         return Ok(());
     };
-    let shown = map.stability_field().filter(|_| view.panels.len() == 1);
-    if let Some(stable) = shown {
-        for line in read(stable)? {
-            shade(panel, &line, stable, scene);
+    let stability = map.stability_field().filter(|_| lines.len() == 1);
+    if let Some(stable) = stability {
+        for line in read_lines(map, view, &[stable], most)? {
+            shade(panel, &line, scene);
         }
     }
     panels.draw_grid(scene);
@@ -78,11 +78,8 @@ pub fn draw(
             u,
         );
     }
-    for (i, line) in lines.iter().enumerate() {
-        let colour = colour::of_line(i, lines.len());
-        for stretch in stretches(panel, line, field) {
-            scene.path(stretch, colour, WIDTH * u);
-        }
+    for line in &lines {
+        draw_line(panel, line, scene);
     }
     panels.draw_axes(scene);
     let top = panel.area.top;
@@ -90,30 +87,70 @@ pub fn draw(
     Ok(())
 }
 
-fn read_line(
+fn read_lines(
     map: &MapFile,
-    axis: usize,
-    index: &[usize],
-    field: Field,
+    view: &View,
+    fields: &[Field],
     most: usize,
-) -> Result<Line, StoreError> {
-    let line = map.plane(field, index, (axis, axis), most)?;
-    Ok(Line {
-        values: line.cells,
-        at: line.columns,
-    })
+) -> Result<Vec<Line>, StoreError> {
+    let several = fields.len() > 1;
+    let panels = if several { 1 } else { view.panels.len() };
+    let n = fields.len() * panels;
+    let mut lines = Vec::with_capacity(n);
+    for &field in fields {
+        for index in view.panels.iter().take(panels) {
+            let cells = map.plane(field, index, (view.x, view.x), most)?;
+            lines.push(Line {
+                field,
+                at: cells.columns,
+                values: cells.cells,
+                swatch: swatch(field, colour::of_line(lines.len(), n)),
+                name: match view.along {
+                    Some(axis) if !several => {
+                        Rich::plain(&number(map.axes()[axis].values[index[axis]]))
+                    }
+                    _ => field_name(field),
+                },
+            });
+        }
+    }
+    Ok(lines)
+}
+
+/// Approximations are dashed.
+fn swatch(field: Field, colour: Rgb) -> Swatch {
+    match field {
+        Field::Limit(of) if of.approximates() => Swatch::Dashed(colour, WIDTH, DASH),
+        _ => Swatch::Line(colour, WIDTH, None),
+    }
+}
+
+/// The title of the axis of values.
+fn ordinate(map: &MapFile, fields: &[Field]) -> Rich {
+    match fields {
+        [Field::Limit(_), _, ..] => Rich::default().and_formula("pulling velocity  v_0/ṽ"),
+        [field, ..] => field_title(*field, &map.field_unit(*field)),
+        [] => Rich::default(),
+    }
 }
 
 fn value_scale(field: Field, lines: &[Line]) -> Scale {
     let finite = || {
-        lines
-            .iter()
-            .flat_map(|l| &l.values)
-            .copied()
-            .filter(|v| v.is_finite())
+        let values = lines.iter().flat_map(|l| &l.values).copied();
+        values.filter(|v| v.is_finite())
     };
-    let low = finite().fold(0.0, f64::min);
-    let high = finite().fold(0.0, f64::max);
+    let (mut low, mut high) = (finite().fold(0.0, f64::min), finite().fold(0.0, f64::max));
+    match field {
+        Field::Limit(of) if of.is_velocity() => {
+            if let Some(scale) = Scale::over_decades(finite(), DECADES) {
+                return scale;
+            }
+        }
+        Field::Limit(of) if of.is_error() => {
+            (low, high) = (low.max(-LARGEST_ERROR), high.min(LARGEST_ERROR));
+        }
+        _ => {}
+    }
     if field.storage() == Storage::Kind {
         let most = Outcome::ALL.len() as f64;
         return Scale::linear(-0.5, most - 0.5).with_smallest_step(1.0);
@@ -126,17 +163,32 @@ fn value_scale(field: Field, lines: &[Line]) -> Scale {
     Scale::linear(low - 0.05 * span, high + 0.05 * span)
 }
 
-/// The line in pixels, broken where there is no finite value: steps for counts, straight lines otherwise.
-fn stretches(panel: &Panel, line: &Line, field: Field) -> Vec<Vec<Point>> {
+fn draw_line(panel: &Panel, line: &Line, scene: &mut Scene) {
+    let u = scene.unit();
+    for stretch in stretches(panel, line) {
+        for points in between(&stretch, panel.area.top, panel.area.bottom) {
+            match line.swatch {
+                Swatch::Dashed(colour, width, dash) => {
+                    scene.dashed(&points, colour, width * u, dash);
+                }
+                Swatch::Line(colour, width, _) => scene.path(points, colour, width * u),
+                Swatch::Box(_) => {}
+            }
+        }
+    }
+}
+
+/// The line in pixels, broken where there is no value on the scale: steps for counts, straight lines otherwise.
+fn stretches(panel: &Panel, line: &Line) -> Vec<Vec<Point>> {
     let edges = panel.x.filling_edges(&line.at);
     let mut done = Vec::new();
     let mut open: Vec<Point> = Vec::new();
     for (i, (&x, &value)) in line.at.iter().zip(&line.values).enumerate() {
-        if !value.is_finite() {
+        if !panel.y.part(value).is_finite() {
             done.push(std::mem::take(&mut open));
             continue;
         }
-        if field.storage() != Storage::Real {
+        if line.field.storage() != Storage::Real {
             open.extend([panel.at(edges[i], value), panel.at(edges[i + 1], value)]);
         } else {
             open.push(panel.at(x, value));
@@ -146,10 +198,42 @@ fn stretches(panel: &Panel, line: &Line, field: Field) -> Vec<Vec<Point>> {
     done
 }
 
+/// The parts of a polyline between two heights.
+fn between(points: &[Point], top: f64, bottom: f64) -> Vec<Vec<Point>> {
+    let mut done = Vec::new();
+    let mut open: Vec<Point> = Vec::new();
+    for pair in points.windows(2) {
+        let (a, b) = (pair[0], pair[1]);
+        let part = |height: f64| (height - a.1) / (b.1 - a.1);
+        let (mut from, mut to) = (0.0, 1.0);
+        if a.1 != b.1 {
+            let (s, t) = (part(top), part(bottom));
+            (from, to) = (f64::max(from, s.min(t)), f64::min(to, s.max(t)));
+        }
+        let level = a.1 == b.1 && !(top..=bottom).contains(&a.1);
+        if level || from >= to {
+            done.push(std::mem::take(&mut open));
+            continue;
+        }
+        let on = |part: f64| (a.0 + part * (b.0 - a.0), a.1 + part * (b.1 - a.1));
+        if from > 0.0 || open.is_empty() {
+            done.push(std::mem::take(&mut open));
+            open.push(if from > 0.0 { on(from) } else { a });
+        }
+        open.push(if to < 1.0 { on(to) } else { b });
+        if to < 1.0 {
+            done.push(std::mem::take(&mut open));
+        }
+    }
+    done.push(open);
+    done.retain(|part| !part.is_empty());
+    done
+}
+
 /// Shades the cells in which sliding is stable.
-fn shade(panel: &Panel, line: &Line, field: Field, scene: &mut Scene) {
+fn shade(panel: &Panel, line: &Line, scene: &mut Scene) {
     let tint = colour::pale(STABLE, 2.0 * SHADE);
-    let colour = |&value: &f64| match field.tells_stable(value) {
+    let colour = |&value: &f64| match line.field.tells_stable(value) {
         Some(true) => tint,
         _ => PAPER,
     };
@@ -161,30 +245,48 @@ fn shade(panel: &Panel, line: &Line, field: Field, scene: &mut Scene) {
     });
 }
 
-fn legend(map: &MapFile, view: &View) -> Legend {
-    let Some(axis) = view.along else {
+fn legend(map: &MapFile, view: &View, lines: &[Line]) -> Legend {
+    let mut legend = Legend::default();
+    if lines.iter().any(|line| line.field == Field::Outcome) {
+        // What the numbers on the axis mean.
+        let meaning =
+            |(i, outcome): (usize, Outcome)| Rich::plain(&format!("{i}: {}", outcome.name()));
+        legend.heading = Outcome::ALL.into_iter().enumerate().map(meaning).collect();
+    }
+    if let Some(axis) = view.along {
+        let MapAxis {
+            parameter, unit, ..
+        } = &map.axes()[axis];
+        let unit = suffix(unit, " (", ")");
+        let heading = Rich::symbol(*parameter).and(&unit).and(" =");
+        legend.heading.push(heading);
+    }
+    if lines.len() > 1 {
+        legend.entries = lines.iter().map(|l| (l.swatch, l.name.clone())).collect();
+    } else if map.stability_field().is_some() {
         let tint = colour::pale(STABLE, 2.0 * SHADE);
-        return Legend {
-            heading: Vec::new(),
-            entries: vec![(Swatch::Box(tint), Rich::plain("stable"))],
-        };
-    };
-    let MapAxis {
-        parameter,
-        values,
-        unit,
-    } = &map.axes()[axis];
-    let n = view.panels.len();
-    let entry = |(i, panel): (usize, &Vec<usize>)| {
-        let swatch = Swatch::Line(colour::of_line(i, n), WIDTH, None);
-        (swatch, Rich::plain(&number(values[panel[axis]])))
-    };
-    Legend {
-        heading: vec![
-            Rich::symbol(*parameter)
-                .and(&suffix(unit, " (", ")"))
-                .and(" ="),
-        ],
-        entries: view.panels.iter().enumerate().map(entry).collect(),
+        legend.entries = vec![(Swatch::Box(tint), Rich::plain("stable"))];
+    }
+    legend
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_line_ends_at_the_frame() {
+        let line = [(0.0, -1.0), (1.0, 1.0), (2.0, 2.0), (3.0, 6.0), (4.0, 2.0)];
+        let parts = between(&line, 0.0, 4.0);
+        assert_eq!(
+            parts,
+            [
+                vec![(0.5, 0.0), (1.0, 1.0), (2.0, 2.0), (2.5, 4.0)],
+                vec![(3.5, 4.0), (4.0, 2.0)]
+            ]
+        );
+        let inside = [(0.0, 1.0), (1.0, 1.0), (2.0, 3.0)];
+        assert_eq!(between(&inside, 0.0, 4.0), [inside.to_vec()]);
+        assert!(between(&[(0.0, 5.0), (1.0, 5.0)], 0.0, 4.0).is_empty());
     }
 }

@@ -40,6 +40,7 @@ use std::path::Path;
 
 use crate::store::schema::root;
 use crate::store::{MapFile, Output, StoreError};
+use crate::sweep::limit_columns::LimitField;
 use crate::sweep::{CaseSpec, Field, Parameter, Trace};
 pub use error::PictureError;
 use scene::Scene;
@@ -202,7 +203,11 @@ fn compose(map: &MapFile, options: &PictureOptions, most: usize) -> Result<Scene
         if options.kind == Some(PictureKind::Boundaries) {
             return Err(no_curves("only one axis is left to draw along"));
         }
-        line::draw(map, &view, field, most, &mut scene)?;
+        let fields = match options.field {
+            Some(field) => vec![field],
+            None => shown_together(map, &view, field),
+        };
+        line::draw(map, &view, &fields, most, &mut scene)?;
         return Ok(scene);
     };
     let in_plane = view.is_boundary_plane(map);
@@ -239,13 +244,25 @@ fn default_field(map: &MapFile) -> Field {
         .unwrap_or(Field::NUnstable)
 }
 
+/// The fields that one line picture shows where none is asked for: the default one `field`, and those that it is compared with.
+fn shown_together(map: &MapFile, view: &View, field: Field) -> Vec<Field> {
+    if view.along.is_some() || !field.of_limit() {
+        return vec![field];
+    }
+    let velocities = LimitField::VELOCITIES.map(Field::Limit).into_iter();
+    let held: Vec<Field> = velocities.filter(|f| map.fields().contains(f)).collect();
+    if held.is_empty() { vec![field] } else { held }
+}
+
 fn no_curves(why: &'static str) -> PictureError {
     PictureError::NoCurves { why }
 }
 
 /// The title of a picture of `field` of a sweep without one.
 fn untitled(field: Field) -> &'static str {
-    if field.of_motion() {
+    if field.of_limit() {
+        "Critical velocity as the delay vanishes"
+    } else if field.of_motion() {
         "Motions of the block"
     } else {
         "Stability of sliding"
@@ -408,7 +425,10 @@ mod tests {
     /// As a heat map and along a line, with cells without delay or control among them.
     #[test]
     fn every_field_is_drawn() {
-        let linear = || Field::ALL.into_iter().filter(|f| !f.of_motion());
+        let linear = || {
+            let all = Field::ALL.into_iter();
+            all.filter(|f| !f.of_motion() && !f.of_limit())
+        };
         let names: Vec<String> = linear().map(|f| format!("{:?}", f.name())).collect();
         let case = Case::new(&format!(
             "fields = [{}]\n[axes]\nalpha_n = [-1.5, -1.0, -0.5, 0.0]\ntau = [0.0, 0.3, 0.6, 0.9, 6.0]\n[fixed]\nmu_prime = -0.1",

@@ -54,6 +54,22 @@ impl Scale {
         }
     }
 
+    /// A logarithmic scale over all positive `values`, or over the uppermost `decades` and a part of one where they are spread
+    /// wider; none where there is no positive one.
+    pub fn over_decades(values: impl Iterator<Item = f64>, decades: i32) -> Option<Self> {
+        let positive = values.filter(|v| v.is_finite() && *v > 0.0);
+        let (low, high) = positive.fold((f64::INFINITY, 0.0), |(low, high), v| {
+            (f64::min(low, v), f64::max(high, v))
+        });
+        let lowest = 10f64.powi(high.log10().floor() as i32 - decades);
+        (high > 0.0).then(|| Self::logarithmic(f64::max(low / 1.3, lowest), high * 1.3))
+    }
+
+    /// True for a logarithmic scale.
+    pub fn is_logarithmic(&self) -> bool {
+        self.log
+    }
+
     /// The same scale with ticks at least this far apart.
     pub fn with_smallest_step(self, smallest_step: f64) -> Self {
         Self {
@@ -178,6 +194,15 @@ mod tests {
         for linear in [&[1.0, 2.0, 3.0][..], &[-4.0, -2.0, -1.0], &[1.0, 4.0]] {
             assert!(!Scale::between(linear).log, "{linear:?}");
         }
+    }
+
+    #[test]
+    fn decades_end_at_a_power_of_ten() {
+        let scale = |values: &[f64]| Scale::over_decades(values.iter().copied(), 3);
+        let ends = |values: &[f64]| scale(values).map(|s| (s.value(0.0), s.value(1.0)));
+        assert_eq!(ends(&[1e-9, 0.0, 20.0]), Some((0.01, 26.0)));
+        assert_eq!(ends(&[1.3, 10.0, f64::INFINITY]), Some((1.0, 13.0)));
+        assert_eq!(scale(&[0.0, -1.0, f64::NAN]), None);
     }
 
     #[test]

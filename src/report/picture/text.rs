@@ -45,19 +45,25 @@ impl Rich {
         self
     }
 
-    /// The text followed by the symbol of a parameter: what follows `_`, and a 0, are subscripts.
+    /// The text followed by the symbol of a parameter; a 0 at its end is a subscript.
     pub fn and_symbol(self, parameter: Parameter) -> Self {
         let symbol = parameter.symbol();
-        let (base, subscript) = match symbol.split_once('_') {
-            Some(parts) => parts,
-            None => match symbol.strip_suffix('0') {
-                Some(base) => (base, "0"),
-                None => (symbol, ""),
-            },
-        };
-        let mut text = self.and(base);
-        if !subscript.is_empty() {
-            text.0.push((subscript.to_owned(), true));
+        match symbol.strip_suffix('0') {
+            Some(base) => self.and_formula(&format!("{base}_0")),
+            None => self.and_formula(symbol),
+        }
+    }
+
+    /// The text followed by `formula`, in which the letter behind each `_` is a subscript.
+    pub fn and_formula(self, formula: &str) -> Self {
+        let mut parts = formula.split('_');
+        let mut text = self.and(parts.next().unwrap_or_default());
+        for part in parts {
+            let letter = part.chars().next().map_or(0, char::len_utf8);
+            text.0.push((part[..letter].to_owned(), true));
+            if part.len() > letter {
+                text = text.and(&part[letter..]);
+            }
         }
         text
     }
@@ -123,6 +129,7 @@ pub fn field_name(field: Field) -> Rich {
             let parameter = slope.parameter();
             Rich::plain(name.trim_end_matches(parameter.symbol())).and_symbol(parameter)
         }
+        Field::Limit(_) => Rich::default().and_formula(&name),
         _ => Rich::plain(&name),
     }
 }
@@ -259,6 +266,10 @@ mod tests {
             [("v".into(), false), ("0".into(), true)]
         );
         assert_eq!(runs(Parameter::MuPrime), [("μ′".to_string(), false)]);
+        assert_eq!(
+            runs(Parameter::MuRatio),
+            [("μ", false), ("K", true), ("/μ", false), ("S", true)].map(|(t, low)| (t.into(), low))
+        );
         let text = Rich::symbol(Parameter::AlphaN);
         assert!(text.width(20.0) > Rich::plain("α").width(20.0));
     }

@@ -1,0 +1,98 @@
+//! What a sweep of the limit of a short delay may give: γ, μ_K/μ_S and fields of its own.
+
+use std::ops::Range;
+
+use super::field::Field;
+use super::given::GivenParameters;
+use super::limit_columns::LimitField;
+use super::parameter::{GivenError, Parameter, Setting};
+use super::protocol::Protocol;
+use super::toml_reader::{Entry, SpecError};
+
+/// Keys at the top of a sweep file that have a meaning in the limit.
+const KEYS: [&str; 5] = ["title", "protocol", "fields", "axes", "fixed"];
+
+/// Where the file gives what has a meaning in the limit only, or everywhere else only.
+#[derive(Default)]
+pub(super) struct LimitDraft {
+    /// The first key that has no meaning in the limit.
+    foreign_key: Option<(String, Range<usize>)>,
+    /// All fields that are asked for.
+    fields: Vec<(Field, Range<usize>)>,
+}
+
+impl LimitDraft {
+    /// Notes a key at the top of the file.
+    pub fn note_key(&mut self, entry: &Entry) {
+        if self.foreign_key.is_none() && !KEYS.contains(&entry.key) {
+            self.foreign_key = Some((entry.key.to_owned(), entry.key_span.clone()));
+        }
+    }
+
+    /// Notes the list of fields, which has been read.
+    pub fn note_fields(&mut self, list: &Entry) -> Result<(), SpecError> {
+        for element in list.array()? {
+            if let Some(field) = Field::from_name(element.string()?) {
+                self.fields.push((field, element.span));
+            }
+        }
+        Ok(())
+    }
+
+    /// The parameters of a sweep of the limit that are no axes; what is missing is told at `axes`.
+    pub fn check(
+        &self,
+        given: &GivenParameters,
+        axes: Option<&Range<usize>>,
+    ) -> Result<Setting, SpecError> {
+        let field = self.fields.iter().find(|(field, _)| !field.of_limit());
+        let mut parameters = given.places();
+        let parameter = parameters.find(|(parameter, _)| !parameter.of_limit());
+        let foreign = self.foreign_key.as_ref();
+        let foreign = foreign.map(|(key, place)| (key.as_str(), place));
+        let foreign = foreign
+            .or(field.map(|(field, place)| (field.name(), place)))
+            .or(parameter.map(|(parameter, place)| (parameter.name(), place)));
+        if let Some((name, place)) = foreign {
+            return Err(no_meaning(name, place));
+        }
+        for parameter in Parameter::LIMIT {
+            if given.place(parameter).is_none() {
+                let error = GivenError::Missing(parameter);
+                return Err(SpecError {
+                    message: error.message(None),
+                    span: axes.cloned(),
+                    help: Some(error.help()),
+                });
+            }
+        }
+        let mut setting = given.setting();
+        setting.set(Parameter::Tau, 0.0);
+        Ok(setting)
+    }
+
+    /// No field of the limit is asked for.
+    pub fn check_absent(&self) -> Result<(), SpecError> {
+        match self.fields.iter().find(|(field, _)| field.of_limit()) {
+            Some((field, place)) => {
+                let message = format!("{} is a field of protocol = \"limit\"", field.name());
+                Err(SpecError::at(place.clone(), message)
+                    .help("protocol = \"limit\" asks for v_c as the delay vanishes; its parameters are gamma and mu_ratio"))
+            }
+            None => Ok(()),
+        }
+    }
+}
+
+fn no_meaning(name: &str, place: &Range<usize>) -> SpecError {
+    let protocol = Protocol::Limit.name();
+    let fields = LimitField::ALL.map(LimitField::name).join(", ");
+    SpecError::at(
+        place.clone(),
+        format!("{name} has no meaning with protocol = \"{protocol}\""),
+    )
+    .help(format!(
+        "the limit is Coulomb friction under load control as the delay vanishes; all it takes is gamma, mu_ratio and the \
+         fields {fields}"
+    ))
+}
