@@ -101,10 +101,10 @@ const LONGEST_SLIP: f64 = 60.0;
 fn passed(motion: &Motion, since: f64, expected: f64) -> bool {
     let step = motion.last_step();
     let near = |t: f64| (t - expected).abs() < SAME_MINIMUM * expected;
-    if near(since) || near(since + step.length) {
-        if let Some((s, u)) = step.speed_minimum() {
-            return u > 0.0 && near(since + s);
-        }
+    if (near(since) || near(since + step.length))
+        && let Some((s, u)) = step.speed_minimum()
+    {
+        return u > 0.0 && near(since + s);
     }
     since + step.length > MISSED * expected
 }
