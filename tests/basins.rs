@@ -12,7 +12,7 @@ use serde_json::Value;
 use slipmap::model::FrictionLaw;
 use slipmap::slip::cycle::after_release;
 use slipmap::slip::motion::{Accuracy, Parameters};
-use slipmap::slip::outcome::{Limits, Outcome, follow};
+use slipmap::slip::outcome::{Limits, Outcome, REPEATED, follow};
 use slipmap::store::map_writer::Provenance;
 use slipmap::store::{MapWriter, Output};
 use slipmap::sweep::events::Silent;
@@ -85,6 +85,7 @@ fn survival_at_the_stop_phase_is_reentrant() {
             horizon: 3000.0,
             steps: 1_000_000,
             stable_abscissa: Some(-0.01),
+            repeated: REPEATED,
         };
         follow(&mut motion, &limits, &mut ()).outcome == Outcome::StickSlip
     };

@@ -9,7 +9,6 @@ use super::scale::Scale;
 use super::scene::{Mark, Point, Scene};
 use super::text::{Rich, axis_title, field_title, number, suffix};
 use super::view::View;
-use crate::slip::outcome::Outcome;
 use crate::store::map_file::MapAxis;
 use crate::store::{MapFile, StoreError};
 use crate::sweep::Field;
@@ -43,11 +42,10 @@ pub fn draw(
     let mut body = page::head(scene, &title, &view.notes(map));
     let u = scene.unit();
     let mut legend = legend(map, view);
-    if field == Field::Outcome {
+    if let Some(kinds) = field.kinds() {
         // What the numbers on the axis mean.
-        let meaning =
-            |(i, outcome): (usize, Outcome)| Rich::plain(&format!("{i}: {}", outcome.name()));
-        let meanings = Outcome::ALL.into_iter().enumerate().map(meaning);
+        let meaning = |(i, kind): (usize, &str)| Rich::plain(&format!("{i}: {kind}"));
+        let meanings = kinds.into_iter().enumerate().map(meaning);
         legend.heading = meanings.chain(legend.heading).collect();
     }
     let column = body.cut_right(legend.width(u), 30.0 * u);
@@ -114,9 +112,12 @@ fn value_scale(field: Field, lines: &[Line]) -> Scale {
     };
     let low = finite().fold(0.0, f64::min);
     let high = finite().fold(0.0, f64::max);
-    if field.storage() == Storage::Kind {
-        let most = Outcome::ALL.len() as f64;
+    if let Some(kinds) = field.kinds() {
+        let most = kinds.len() as f64;
         return Scale::linear(-0.5, most - 0.5).with_smallest_step(1.0);
+    }
+    if field.storage() == Storage::Few {
+        return Scale::linear(-0.5, high + 0.5).with_smallest_step(1.0);
     }
     if field.storage() == Storage::Count {
         let high = f64::max(high, 2.0);
