@@ -6,7 +6,6 @@ use std::path::PathBuf;
 use slipmap::linear::curves::StableSide;
 use slipmap::linear::status::FLAGS;
 use slipmap::report::numbers::{bytes, grouped, short};
-use slipmap::slip::outcome::Outcome;
 use slipmap::store::MapFile;
 use slipmap::store::schema::root;
 use slipmap::sweep::Field;
@@ -115,10 +114,10 @@ pub fn main(args: &Args) -> Result<(), Failure> {
 /// ", −0.3 to 1.2, 12 infinite, 3 without a value", or ", 12 sliding, 3 lift-off".
 fn values(map: &MapFile, field: Field) -> Result<String, Failure> {
     let mut text = String::new();
-    if field == Field::Outcome {
-        let counts = Outcome::ALL.into_iter().zip(map.outcome_counts()?);
-        for (outcome, cells) in counts.filter(|(_, cells)| *cells > 0) {
-            text += &format!(", {} {}", grouped(cells), outcome.name());
+    if let Some(kinds) = field.kinds() {
+        let counts = kinds.into_iter().zip(map.kind_counts(field)?);
+        for (kind, cells) in counts.filter(|(_, cells)| *cells > 0) {
+            text += &format!(", {} {kind}", grouped(cells));
         }
         return Ok(text);
     }

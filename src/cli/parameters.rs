@@ -64,6 +64,9 @@ pub struct ParameterArgs {
     /// v_s of the friction law
     #[arg(long, allow_hyphen_values = true)]
     v_s: Option<f64>,
+    /// Slope of the weakening law at rest, −μ0/v_s, instead of --mu0 or --v-s
+    #[arg(long, allow_hyphen_values = true, value_name = "B")]
+    mu_prime_rest: Option<f64>,
     /// μ_S, static friction coefficient [default: 1]
     #[arg(long, allow_hyphen_values = true)]
     mu_s: Option<f64>,
@@ -83,6 +86,7 @@ impl ParameterArgs {
             Parameter::NormalLoad => self.normal_load,
             Parameter::Mu0 => self.mu0,
             Parameter::VS => self.v_s,
+            Parameter::MuPrimeRest => self.mu_prime_rest,
             Parameter::MuS => self.mu_s,
             Parameter::XDot0 | Parameter::A0 | Parameter::SwitchOnPhase => None,
             Parameter::Gamma | Parameter::MuRatio => None,

@@ -19,7 +19,7 @@ pub struct Args {
     /// The picture to write, .png or .svg [default: the map's name with .png, beside it]
     #[arg(short, long, value_name = "PICTURE")]
     output: Option<PathBuf>,
-    /// What to show, a field of the map [default: outcome where the map holds it, else abscissa, else n_unstable]
+    /// What to show, a field of the map [default: the first held of class, vc, outcome, abscissa, n_unstable]
     #[arg(long, value_name = "NAME", value_parser = parse_field)]
     field: Option<Field>,
     /// Curves or cells [default: curves where the map holds them for a few values of one axis and no abscissa, and no --field

@@ -5,16 +5,13 @@ use std::io::Write;
 
 use clap::ValueEnum;
 use serde::Serialize;
-use slipmap::critical::End;
-use slipmap::critical::switch_on::{Phase, Scan};
+use slipmap::critical::switch_on::Phase;
+use slipmap::sweep::Setting;
 use slipmap::sweep::limit_columns::{LimitCell, LimitField};
-use slipmap::sweep::{Parameter, Setting, vc};
+use slipmap::sweep::vc::{self, PHASES};
 
 use super::failure::Failure;
 use super::parameters::ParameterArgs;
-
-/// Phases over one cycle for the worst case.
-const PHASES: u32 = 32;
 
 #[derive(Debug, clap::Args)]
 #[command(after_help = "Examples:
@@ -57,7 +54,7 @@ enum Protocol {
 #[derive(Debug, Serialize)]
 struct Found {
     vc: Option<f64>,
-    protocol: Protocol,
+    protocol: &'static str,
     outcome: &'static str,
     windows: Vec<[f64; 2]>,
     v_liftoff: Option<f64>,
@@ -86,11 +83,11 @@ pub fn main(args: &Args) -> Result<(), Failure> {
         Protocol::Limit => print(&mut out, args.json, &args.limit()?),
         protocol => {
             let setting = args.parameters.setting_without_v0()?;
-            let found = match protocol {
-                Protocol::SwitchOn => args.switch_on(&setting)?,
-                _ => follow(&setting)?,
+            let protocol = match protocol {
+                Protocol::SwitchOn => vc::Protocol::SwitchOn(args.phase()?),
+                _ => vc::Protocol::Follow,
             };
-            print(&mut out, args.json, &found)
+            print(&mut out, args.json, &found(&setting, protocol)?)
         }
     }
 }
@@ -117,23 +114,21 @@ fn finite(value: f64) -> Option<f64> {
     value.is_finite().then_some(value)
 }
 
-fn follow(setting: &Setting) -> Result<Found, Failure> {
-    let found = vc::follow(setting)?;
-    let window = match found.end {
-        End::Never | End::LiftOff | End::Persists => Vec::new(),
-        _ => vec![[0.0, found.vc]],
-    };
+/// What is found by a protocol of motions.
+fn found(setting: &Setting, protocol: vc::Protocol) -> Result<Found, Failure> {
+    let found = vc::find(setting, protocol)?;
+    let critical = found.critical;
     Ok(Found {
-        vc: finite(found.vc),
-        protocol: Protocol::Follow,
-        outcome: found.end.name(),
-        windows: window,
-        v_liftoff: finite(found.v_liftoff),
-        stick_time: finite(found.stick_time),
-        slip_time: finite(found.slip_time),
-        n_min: finite(found.n_min),
-        method: found.method.name(),
-        decided: found.decided,
+        vc: finite(critical.vc),
+        protocol: protocol.name(),
+        outcome: critical.end.name(),
+        windows: found.windows,
+        v_liftoff: finite(critical.v_liftoff),
+        stick_time: finite(critical.stick_time),
+        slip_time: finite(critical.slip_time),
+        n_min: finite(critical.n_min),
+        method: critical.method.name(),
+        decided: critical.decided,
     })
 }
 
@@ -202,30 +197,5 @@ impl Args {
                 })
             }
         }
-    }
-
-    fn switch_on(&self, setting: &Setting) -> Result<Found, Failure> {
-        let scan = Scan::default();
-        let found = vc::switch_on(setting, self.phase()?, &scan)?;
-        let largest = scan.v_max * setting.get(Parameter::MuS) * vc::problem(setting)?.1.velocity;
-        let top = found.top();
-        let outcome = match top {
-            None if found.v_liftoff.is_some() => "lift-off",
-            None => "never",
-            Some(top) if top >= largest * (1.0 - 1e-9) => "persists",
-            Some(_) => "lost",
-        };
-        Ok(Found {
-            vc: top.or((outcome == "never").then_some(0.0)),
-            protocol: Protocol::SwitchOn,
-            outcome,
-            windows: found.survives,
-            v_liftoff: found.v_liftoff,
-            stick_time: None,
-            slip_time: None,
-            n_min: None,
-            method: "simulation",
-            decided: found.decided,
-        })
     }
 }

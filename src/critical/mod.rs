@@ -99,11 +99,13 @@ pub enum End {
     Persists,
     /// No stick-slip is sustained at any v0 that was tried: v_c = 0.
     Never,
+    /// It does not survive switching on above v_c, whatever it becomes: by the protocol [`switch_on`] no more is known.
+    Lost,
 }
 
 impl End {
-    /// All, in the order of their numbers in a map.
-    pub const ALL: [Self; 7] = [
+    /// All.
+    pub const ALL: [Self; 8] = [
         Self::Grazing,
         Self::Fold,
         Self::PeriodDoubling,
@@ -111,6 +113,7 @@ impl End {
         Self::LiftOff,
         Self::Persists,
         Self::Never,
+        Self::Lost,
     ];
 
     /// The name in maps and messages.
@@ -124,6 +127,7 @@ impl End {
             Self::LiftOff => "lift-off",
             Self::Persists => "persists",
             Self::Never => "never",
+            Self::Lost => "lost",
         }
     }
 }

@@ -18,16 +18,20 @@ const COLOURS: [u8; 5] = [37, 230, 180, 136, 250];
 /// The same without colours.
 const SHADES: [char; 5] = ['█', ' ', '░', '▒', '?'];
 
-/// What the map looks like, in text of at most 19 lines and `width` columns; none where the map tells neither outcomes nor what is stable,
-/// or has fewer than two axes with more than one value. `colour`: with ANSI escapes, two rows of cells in each line.
+/// What the map looks like, in text of at most 19 lines and `width` columns; none where the map tells neither
+/// classes, outcomes nor what is stable, or has fewer than two axes with more than one value. `colour`: with ANSI escapes, two rows of cells in each line.
 ///
 /// Axes outside the plane are held at their middle value.
 ///
 /// # Errors
 /// When the map cannot be read.
 pub fn preview(map: &MapFile, width: usize, colour: bool) -> Result<Option<String>, StoreError> {
-    let outcome = map.fields().iter().copied().find(|f| *f == Field::Outcome);
-    let shown = outcome.or_else(|| map.stability_field());
+    let held = |field: &Field| map.fields().contains(field);
+    // How stick-slip ends is no matter of so few kinds.
+    let of_motions =
+        Some(Field::Outcome).filter(|f| held(f) && !map.fields().iter().any(|f| f.of_vc()));
+    let kinds = Some(Field::Class).filter(held).or(of_motions);
+    let shown = kinds.or_else(|| map.stability_field());
     let (Some((x, y)), Some(field)) = (plane_axes(map), shown) else {
         return Ok(None);
     };
@@ -55,9 +59,9 @@ pub fn preview(map: &MapFile, width: usize, colour: bool) -> Result<Option<Strin
     Ok(Some(captions.around(&picture, columns, colour)))
 }
 
-/// The least number of unstable roots that goes with a value. Outcomes are shown like 0, 2, 4 and 6 roots.
+/// The least number of unstable roots that goes with a value. Outcomes and classes are shown like 0, 2, 4 and 6 roots.
 fn as_count(field: Field, value: f64) -> f64 {
-    if field == Field::Outcome {
+    if field.storage() == Storage::Kind {
         return if value <= 3.0 { 2.0 * value } else { f64::NAN };
     }
     match field.tells_stable(value) {
@@ -161,8 +165,11 @@ impl Captions {
             bottom,
             kinds: match field.storage() {
                 Storage::Count => &["stable", "2", "4", "6 or more unstable roots"],
+                Storage::Kind if field == Field::Class => {
+                    &["stable", "bistable", "unstable", "lift-off", "others"]
+                }
                 Storage::Kind => &["sliding", "stick-slip", "oscillation", "lift-off", "others"],
-                Storage::Real => &["stable", "unstable"],
+                Storage::Real | Storage::Few => &["stable", "unstable"],
             },
         }
     }

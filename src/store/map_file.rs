@@ -9,7 +9,7 @@ use super::error::StoreError;
 use super::schema::{self, BOUNDARIES, DEGREE_OF_STABILITY, PLANE, STATUS, root};
 use crate::linear::Direction;
 use crate::linear::curves::{CurvePiece, StableSide, Vertex};
-use crate::sweep::engine::{N_UNSTABLE_FILL, OUTCOME_FILL};
+use crate::sweep::engine::{FEW_FILL, N_UNSTABLE_FILL};
 use crate::sweep::field::Storage;
 use crate::sweep::{Field, Parameter};
 
@@ -254,7 +254,7 @@ impl MapFile {
         match field.storage() {
             Storage::Real => self.read(dataset, slab),
             Storage::Count => Ok(numbers(self.read::<u16>(dataset, slab)?, N_UNSTABLE_FILL)),
-            Storage::Kind => Ok(numbers(self.read::<u8>(dataset, slab)?, OUTCOME_FILL)),
+            Storage::Kind | Storage::Few => Ok(numbers(self.read::<u8>(dataset, slab)?, FEW_FILL)),
         }
     }
 

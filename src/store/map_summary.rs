@@ -6,7 +6,6 @@ use super::error::StoreError;
 use super::map_file::MapFile;
 use super::schema::STATUS;
 use crate::linear::status::FLAGS;
-use crate::slip::outcome::Outcome;
 use crate::sweep::Field;
 
 /// What values a field has in a map.
@@ -50,16 +49,20 @@ impl MapFile {
         Ok(summary)
     }
 
-    /// Number of cells with each outcome, in the order of [`Outcome::ALL`], read piece by piece.
+    /// Number of cells with each kind of a field that has kinds, in the order of [`Field::kinds`], read piece by piece.
+    /// Empty for other fields.
     ///
     /// # Errors
-    /// When the map holds no outcomes, or is damaged.
-    pub fn outcome_counts(&self) -> Result<[u64; Outcome::ALL.len()], StoreError> {
-        let dataset = self.dataset(Field::Outcome.name())?;
-        let mut counts = [0; Outcome::ALL.len()];
+    /// When the map does not hold the field, or is damaged.
+    pub fn kind_counts(&self, field: Field) -> Result<Vec<u64>, StoreError> {
+        let dataset = self.dataset(field.name())?;
+        let mut counts = vec![0; field.kinds().map_or(0, |kinds| kinds.len())];
+        if counts.is_empty() {
+            return Ok(counts);
+        }
         for_each_chunk(&dataset, |slab| {
-            for outcome in self.read::<u8>(&dataset, slab)? {
-                if let Some(count) = counts.get_mut(usize::from(outcome)) {
+            for kind in self.read::<u8>(&dataset, slab)? {
+                if let Some(count) = counts.get_mut(usize::from(kind)) {
                     *count += 1;
                 }
             }

@@ -15,15 +15,16 @@ use super::error::StoreError;
 use super::netcdf::{DimensionId, Dimensions, named};
 use super::output::Output;
 use super::schema::{self, STATUS, root};
+use crate::critical::switch_on::Phase;
 use crate::linear::status::FLAGS;
-use crate::slip::outcome::Outcome;
 use crate::sweep::best::BestSettings;
 use crate::sweep::boundaries::BoundaryPlane;
-use crate::sweep::engine::{Encode, N_UNSTABLE_FILL, OUTCOME_FILL, STATUS_FILL, Sink, TileBuffers};
+use crate::sweep::engine::{Encode, FEW_FILL, N_UNSTABLE_FILL, STATUS_FILL, Sink, TileBuffers};
 use crate::sweep::field::Storage;
 use crate::sweep::parameter::LawKind;
 use crate::sweep::parameter::Units;
 use crate::sweep::tile::Tile;
+use crate::sweep::vc::{Protocol, Search};
 use crate::sweep::{Field, Parameter, Plan, Setting};
 
 /// Who made a map, for its root attributes.
@@ -236,6 +237,19 @@ pub(super) fn describe_parameter(
     put_text(dataset, "units", &units.of_parameter(parameter))
 }
 
+/// How critical velocities were looked for.
+fn put_search(dataset: &Dataset, search: &Search) -> hdf5::Result<()> {
+    let protocol = search.protocol;
+    put_text(dataset, schema::vc::PROTOCOL, protocol.name())?;
+    if let Protocol::SwitchOn(Phase::Worst(phases)) = protocol {
+        put_numbers(dataset, schema::vc::PHASES, &[phases])?;
+    }
+    put_numbers(dataset, schema::vc::V_MAX, &[protocol.v_max()])?;
+    let unit = "mu_s * normal_load / sqrt(stiffness * mass)";
+    put_text(dataset, schema::vc::V_MAX_UNIT, unit)?;
+    put_numbers(dataset, schema::vc::PRECISION, &[protocol.precision()])
+}
+
 /// Creates the datasets of the cells.
 struct Variables<'a> {
     file: &'a Group,
@@ -249,20 +263,24 @@ impl Variables<'_> {
     fn field(&mut self, field: Field) -> hdf5::Result<Dataset> {
         let dataset = match field.storage() {
             Storage::Count => self.variable(field.name(), N_UNSTABLE_FILL)?,
-            Storage::Kind => self.variable(field.name(), OUTCOME_FILL)?,
+            Storage::Kind | Storage::Few => self.variable(field.name(), FEW_FILL)?,
             Storage::Real => self.variable(field.name(), f64::NAN)?,
         };
-        match field {
-            Field::Outcome => put_flags(
-                &dataset,
-                &field.long_name(),
-                &Outcome::ALL.map(Outcome::name),
-            )?,
-            _ => put_text(&dataset, "long_name", &field.long_name())?,
+        let spec = &self.plan.spec;
+        let (long_name, comment) = match spec.critical {
+            Some(_) => field.described_at_vc(),
+            None => (field.long_name(), field.comment()),
+        };
+        match field.kinds() {
+            Some(kinds) => put_flags(&dataset, &long_name, &kinds)?,
+            None => put_text(&dataset, "long_name", &long_name)?,
         }
-        put_text(&dataset, "units", &field.unit(&self.plan.spec.units))?;
-        if let Some(comment) = field.comment() {
+        put_text(&dataset, "units", &field.unit(&spec.units))?;
+        if let Some(comment) = comment {
             put_text(&dataset, "comment", comment)?;
+        }
+        if let Some(search) = spec.critical.filter(|_| !field.of_sliding()) {
+            put_search(&dataset, &search)?;
         }
         put_text(&dataset, "ancillary_variables", STATUS)?;
         Ok(dataset)
@@ -318,12 +336,12 @@ impl Encode for TileEncoder {
     type Encoded = EncodedTile;
 
     fn encode(&mut self, buffers: &TileBuffers) -> EncodedTile {
-        let mut chunks = Vec::with_capacity(3 + buffers.columns.len());
+        let mut chunks = Vec::with_capacity(2 + buffers.kinds.len() + buffers.columns.len());
         if let Some(n) = &buffers.n_unstable {
             chunks.push(self.codec.encode(n));
         }
-        if let Some(outcome) = &buffers.outcome {
-            chunks.push(self.codec.encode(outcome));
+        for column in &buffers.kinds {
+            chunks.push(self.codec.encode(&column.cells));
         }
         for column in &buffers.columns {
             chunks.push(self.codec.encode(&column.cells));

@@ -91,3 +91,17 @@ pub const PLANE: &str = "plane";
 pub const DEGREE_OF_STABILITY: &str = "degree_of_stability";
 /// σ of the curves that meet in a corner.
 pub const CORNER_DEGREE_OF_STABILITY: &str = "corner_degree_of_stability";
+
+/// Attributes of fields of the critical velocity.
+pub mod vc {
+    /// Name of the protocol.
+    pub const PROTOCOL: &str = "protocol";
+    /// Of how many phases the worst counts, where it does.
+    pub const PHASES: &str = "phases";
+    /// The largest v0 at which stick-slip was looked for, in [`V_MAX_UNIT`].
+    pub const V_MAX: &str = "v_max";
+    /// The unit of that, in words of the map.
+    pub const V_MAX_UNIT: &str = "v_max_unit";
+    /// To what velocities are known, relative.
+    pub const PRECISION: &str = "precision";
+}

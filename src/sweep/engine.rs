@@ -11,7 +11,7 @@ use super::boundaries::{BoundaryPlane, planes, trace_plane};
 use super::events::{Event, Observer};
 use super::plan::Plan;
 use super::tile::Tile;
-pub use super::worker::{Column, N_UNSTABLE_FILL, OUTCOME_FILL, STATUS_FILL, TileBuffers, Worker};
+pub use super::worker::{Column, FEW_FILL, N_UNSTABLE_FILL, STATUS_FILL, TileBuffers, Worker};
 use crate::model::ModelError;
 
 /// Planes of crossing curves that are held in memory at a time.

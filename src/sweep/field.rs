@@ -2,7 +2,10 @@
 
 use super::limit_columns::LimitField;
 use super::parameter::{Parameter, Units};
+use super::vc::Class;
+use crate::critical::{End, Method};
 use crate::linear::track::MOST_ROOTS;
+use crate::slip::outcome::Outcome;
 
 /// Names of the real and imaginary parts of the roots, by their rank from the right, and the rank in words.
 const ABSCISSAE: [&str; MOST_ROOTS] = [
@@ -83,8 +86,15 @@ impl Slope {
 pub enum Field {
     /// Number of unstable roots.
     NUnstable,
-    /// Number of the [`crate::slip::outcome::Outcome`] of the motion.
+    /// What becomes of the motion or, beside fields of the critical velocity, of stick-slip there: a number of
+    /// [`OUTCOMES`].
     Outcome,
+    /// Number of the [`Method`] that gave the critical velocity.
+    Method,
+    /// Number of the [`Class`] of v0.
+    Class,
+    /// Number of windows of v0 in which stick-slip survives.
+    Windows,
     /// Signed distance in τ to the nearest change of stability.
     DelayMargin,
     /// Re λ of the root of that rank; −∞ where there are fewer roots. Of the first: the spectral abscissa.
@@ -103,8 +113,48 @@ pub enum Field {
     NMin,
     /// The largest spring force since switch-on.
     PeakForce,
+    /// The critical velocity; 0 where stick-slip is never sustained.
+    Vc,
+    /// The smallest v0 at which N ≤ 0 occurs.
+    VLiftoff,
+    /// Time stuck in a period at the critical velocity.
+    StickTime,
+    /// Time in slip in a period there.
+    SlipTime,
+    /// The velocity above which sliding is linearly stable and free of stick-slip.
+    VSmooth,
     /// Of the limit of a short delay.
     Limit(LimitField),
+}
+
+/// Names of all that a motion or stick-slip can come to, in the order of their numbers in maps: those of [`Outcome`], then
+/// those of [`End`] that are no outcome as well.
+pub const OUTCOMES: [&str; Outcome::ALL.len() + End::ALL.len() - 1] = {
+    let mut names = [""; Outcome::ALL.len() + End::ALL.len() - 1];
+    let mut i = 0;
+    while i < Outcome::ALL.len() {
+        names[i] = Outcome::ALL[i].name();
+        i += 1;
+    }
+    let mut j = 0;
+    while j < End::ALL.len() {
+        if !matches!(End::ALL[j], End::LiftOff) {
+            names[i] = End::ALL[j].name();
+            i += 1;
+        }
+        j += 1;
+    }
+    names
+};
+
+/// The place of an end in [`OUTCOMES`].
+pub(super) fn number_of_end(end: End) -> u8 {
+    let first = Outcome::ALL.len() as u8;
+    match end {
+        End::LiftOff => Outcome::LiftOff as u8,
+        _ if end < End::LiftOff => first + end as u8,
+        _ => first + end as u8 - 1,
+    }
 }
 
 /// How a field is stored.
@@ -114,12 +164,14 @@ pub enum Storage {
     Count,
     /// u8: one of few kinds.
     Kind,
+    /// u8: a small count, saturating.
+    Few,
     /// f64, NaN for no value.
     Real,
 }
 
 impl Field {
-    const COUNT: usize = 12 + 2 * MOST_ROOTS + LimitField::ALL.len();
+    const COUNT: usize = 20 + 2 * MOST_ROOTS + LimitField::ALL.len();
 
     /// All fields, in the order in which maps hold them.
     pub const ALL: [Self; Self::COUNT] = Self::all();
@@ -127,14 +179,17 @@ impl Field {
     const fn all() -> [Self; Self::COUNT] {
         let mut all = [Self::NUnstable; Self::COUNT];
         all[1] = Self::Outcome;
-        all[2] = Self::DelayMargin;
+        all[2] = Self::Method;
+        all[3] = Self::Class;
+        all[4] = Self::Windows;
+        all[5] = Self::DelayMargin;
         let mut rank = 0;
         while rank < MOST_ROOTS {
-            all[3 + rank] = Self::Abscissa(Rank(rank));
-            all[3 + MOST_ROOTS + rank] = Self::Frequency(Rank(rank));
+            all[6 + rank] = Self::Abscissa(Rank(rank));
+            all[6 + MOST_ROOTS + rank] = Self::Frequency(Rank(rank));
             rank += 1;
         }
-        let rest = 3 + 2 * MOST_ROOTS;
+        let rest = 6 + 2 * MOST_ROOTS;
         all[rest] = Self::RelaxationTime;
         all[rest + 1] = Self::AbscissaSlope(Slope::Tau);
         all[rest + 2] = Self::AbscissaSlope(Slope::AlphaV);
@@ -144,9 +199,14 @@ impl Field {
         all[rest + 6] = Self::SettleTime;
         all[rest + 7] = Self::NMin;
         all[rest + 8] = Self::PeakForce;
+        all[rest + 9] = Self::Vc;
+        all[rest + 10] = Self::VLiftoff;
+        all[rest + 11] = Self::StickTime;
+        all[rest + 12] = Self::SlipTime;
+        all[rest + 13] = Self::VSmooth;
         let mut i = 0;
         while i < LimitField::ALL.len() {
-            all[rest + 9 + i] = Self::Limit(LimitField::ALL[i]);
+            all[rest + 14 + i] = Self::Limit(LimitField::ALL[i]);
             i += 1;
         }
         all
@@ -174,6 +234,14 @@ impl Field {
             Self::NMin => "n_min",
             Self::PeakForce => "peak_force",
             Self::Limit(field) => field.name(),
+            Self::Vc => "vc",
+            Self::Method => "method",
+            Self::Class => "class",
+            Self::Windows => "windows",
+            Self::VLiftoff => "v_liftoff",
+            Self::StickTime => "stick_time",
+            Self::SlipTime => "slip_time",
+            Self::VSmooth => "v_smooth",
         }
     }
 
@@ -221,6 +289,16 @@ impl Field {
             Self::NMin => "smallest normal load since switch-on".into(),
             Self::PeakForce => "largest spring force since switch-on".into(),
             Self::Limit(field) => field.long_name().into(),
+            Self::Vc => "critical velocity, above which stick-slip does not survive".into(),
+            Self::Method => "what gave the critical velocity".into(),
+            Self::Class => "what the working velocity v0 is good for".into(),
+            Self::Windows => "number of windows of v0 in which stick-slip survives".into(),
+            Self::VLiftoff => "smallest v0 at which the normal load reaches 0".into(),
+            Self::StickTime => "time stuck in a period at the critical velocity".into(),
+            Self::SlipTime => "time in slip in a period at the critical velocity".into(),
+            Self::VSmooth => {
+                "velocity above which sliding is linearly stable and free of stick-slip".into()
+            }
         }
     }
 
@@ -244,6 +322,14 @@ impl Field {
             Self::NMin => "smallest load".into(),
             Self::PeakForce => "peak force".into(),
             Self::Limit(field) => field.short_name().into(),
+            Self::Vc => "critical velocity".into(),
+            Self::Method => "method".into(),
+            Self::Class => "at v0".into(),
+            Self::Windows => "windows of v0".into(),
+            Self::VLiftoff => "lift-off velocity".into(),
+            Self::StickTime => "stick time".into(),
+            Self::SlipTime => "slip time".into(),
+            Self::VSmooth => "smooth above".into(),
         }
     }
 
@@ -273,6 +359,41 @@ impl Field {
             Self::NMin | Self::PeakForce => {
                 Some("until the outcome was known; where control never acts, since t = 0")
             }
+            Self::Vc => Some(
+                "0 where stick-slip is not sustained at any v0; no value where N <= 0 ends it or it survives at v_max",
+            ),
+            Self::Class => Some(
+                "stable: sliding is linearly stable, without stick-slip beside it; bistable: stick-slip persists beside it; \
+                 lift-off: linearly stable, but stick-slip leads to N <= 0 at v0 or below; undecided: marginal, or not known",
+            ),
+            Self::Windows => Some("windows between the velocities that are tried may be missed"),
+            Self::StickTime | Self::SlipTime => Some("no value for the protocol switch-on"),
+            Self::VSmooth => {
+                Some("up to v_max; no value where sliding is not stable at v_max or there is no vc")
+            }
+            _ => None,
+        }
+    }
+
+    /// What there is of it to know beside fields of the critical velocity: its long name and comment.
+    #[must_use]
+    pub fn described_at_vc(self) -> (String, Option<&'static str>) {
+        match self {
+            Self::Outcome => (
+                "how stick-slip ends at the critical velocity".into(),
+                Some("lost: it does not survive switching on; persists: it survives at v_max"),
+            ),
+            _ => (self.long_name(), self.comment()),
+        }
+    }
+
+    /// The names of its kinds, in the order of their numbers; none where it is no [`Storage::Kind`].
+    #[must_use]
+    pub fn kinds(self) -> Option<Vec<&'static str>> {
+        match self {
+            Self::Outcome => Some(OUTCOMES.to_vec()),
+            Self::Method => Some(Method::ALL.map(Method::name).to_vec()),
+            Self::Class => Some(Class::ALL.map(Class::name).to_vec()),
             _ => None,
         }
     }
@@ -284,6 +405,9 @@ impl Field {
             Self::NUnstable | Self::CertificateMargin | Self::Outcome | Self::Limit(_) => {
                 units.of([0; 3])
             }
+            Self::Method | Self::Class | Self::Windows => units.of([0; 3]),
+            Self::Vc | Self::VLiftoff | Self::VSmooth => units.of([0, 1, -1]),
+            Self::StickTime | Self::SlipTime => units.time(),
             Self::DelayMargin | Self::RelaxationTime | Self::SettleTime => units.time(),
             Self::NMin | Self::PeakForce => units.of([1, 0, 0]),
             Self::Abscissa(_) => units.of([0, 0, -1]),
@@ -300,9 +424,32 @@ impl Field {
     pub const fn storage(self) -> Storage {
         match self {
             Self::NUnstable => Storage::Count,
-            Self::Outcome => Storage::Kind,
+            Self::Outcome | Self::Method | Self::Class => Storage::Kind,
+            Self::Windows => Storage::Few,
             _ => Storage::Real,
         }
+    }
+
+    /// True for fields of the critical velocity, which need a friction law; [`Field::Outcome`] is one beside them only.
+    #[must_use]
+    pub const fn of_vc(self) -> bool {
+        matches!(
+            self,
+            Self::Vc
+                | Self::Method
+                | Self::Class
+                | Self::Windows
+                | Self::VLiftoff
+                | Self::StickTime
+                | Self::SlipTime
+                | Self::VSmooth
+        )
+    }
+
+    /// True for fields of linear stability at v0 or at a given slope.
+    #[must_use]
+    pub const fn of_sliding(self) -> bool {
+        !self.of_motion() && !self.of_vc()
     }
 
     /// True for fields of the motion of the block, which need a friction law and depend on its start.
@@ -324,11 +471,9 @@ impl Field {
     #[must_use]
     pub const fn roots_needed(self) -> usize {
         match self {
-            Self::NUnstable | Self::DelayMargin => 0,
-            Self::Outcome | Self::SettleTime | Self::NMin | Self::PeakForce => 0,
-            Self::Limit(_) => 0,
             Self::Abscissa(rank) | Self::Frequency(rank) => rank.0 + 1,
             Self::RelaxationTime | Self::AbscissaSlope(_) | Self::CertificateMargin => 1,
+            _ => 0,
         }
     }
 
@@ -349,7 +494,7 @@ impl Field {
     pub const fn bytes(self) -> usize {
         match self.storage() {
             Storage::Count => size_of::<u16>(),
-            Storage::Kind => size_of::<u8>(),
+            Storage::Kind | Storage::Few => size_of::<u8>(),
             Storage::Real => size_of::<f64>(),
         }
     }
@@ -382,6 +527,16 @@ mod tests {
     }
 
     #[test]
+    fn every_end_has_the_number_of_its_name() {
+        for end in End::ALL {
+            assert_eq!(OUTCOMES[usize::from(number_of_end(end))], end.name());
+        }
+        for outcome in Outcome::ALL {
+            assert_eq!(OUTCOMES[outcome as usize], outcome.name());
+        }
+    }
+
+    #[test]
     fn units_follow_from_what_is_divided_by_what() {
         let names = ["N", "mm", "s"].map(String::from);
         let units = Units {
@@ -403,6 +558,8 @@ mod tests {
             ("n_min", "N"),
             ("peak_force", "N"),
             ("vc_over_vtilde", "1"),
+            ("vc", "mm s-1"),
+            ("slip_time", "s"),
         ] {
             let field = Field::from_name(name).expect("a field");
             assert_eq!(field.unit(&units), unit, "{name}");
@@ -414,9 +571,10 @@ mod tests {
     fn numbered_names_are_listed_as_ranges() {
         assert_eq!(
             known_fields(),
-            "n_unstable, outcome, delay_margin, abscissa, abscissa_2 … abscissa_8, frequency, \
+            "n_unstable, outcome, method, class, windows, delay_margin, abscissa, abscissa_2 … abscissa_8, frequency, \
              frequency_2 … frequency_8, relaxation_time, d_abscissa_d_tau, d_abscissa_d_alpha_v, \
              d_abscissa_d_alpha_n, d_abscissa_d_mu_prime, certificate_margin, settle_time, n_min, peak_force, \
+             vc, v_liftoff, stick_time, slip_time, v_smooth, \
              vc_over_vtilde, omega0_T, liftoff_over_vtilde, vc_weak_control, vc_strong_control, weak_control_error, \
              strong_control_error"
         );

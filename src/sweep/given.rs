@@ -79,7 +79,15 @@ impl GivenParameters {
 
     /// Reads the table `[friction]`.
     pub fn read_friction(&mut self, friction: &Entry) -> Result<(), SpecError> {
-        let names = ["law", "mu0", "v_s", "mu_s", "speeds", "mu_k"];
+        let names = [
+            "law",
+            "mu0",
+            "v_s",
+            "mu_prime_rest",
+            "mu_s",
+            "speeds",
+            "mu_k",
+        ];
         let mut law = None;
         for entry in friction.table()? {
             match Parameter::from_name(entry.key).filter(|p| p.of_friction_law()) {
@@ -159,10 +167,9 @@ impl GivenParameters {
         let there = |p: Parameter| self.place(p).is_some() || optional == Some(p);
         Setting::check_given(law, there).map_err(|error| {
             let span = match error {
-                GivenError::Unused(p) => self.place(p),
-                GivenError::Missing(Parameter::Mu0 | Parameter::VS | Parameter::V0) => {
-                    self.law_place()
-                }
+                GivenError::Unused(p) | GivenError::Follows(p) => self.place(p),
+                GivenError::Missing(Parameter::V0) => self.law_place(),
+                GivenError::Missing(p) if p.of_friction_law() => self.law_place(),
                 GivenError::Missing(_) => place,
             };
             SpecError {

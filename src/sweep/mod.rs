@@ -32,6 +32,7 @@ pub mod tile;
 mod toml_reader;
 pub mod trace;
 pub mod vc;
+mod vc_columns;
 mod worker;
 
 pub use axis::Axis;

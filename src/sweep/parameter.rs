@@ -1,5 +1,7 @@
 //! Every parameter of a sweep: its one name in flags, sweep files and maps, its meaning, unit and range.
 
+use std::cmp::Ordering;
+
 use crate::model::{Control, FrictionLaw, Groups, ModelError, Oscillator, SlidingPoint, Table};
 
 /// The largest size of any parameter, and one over the smallest of those that must be positive: far beyond any
@@ -31,6 +33,8 @@ pub enum Parameter {
     Mu0,
     /// v_s of a friction law.
     VS,
+    /// μ_K′(0⁺), the slope of the weakening law at rest: −μ0/v_s.
+    MuPrimeRest,
     /// μ_S, the static friction coefficient.
     MuS,
     /// ẋ at t = 0.
@@ -52,11 +56,12 @@ enum Range {
     NotNegative,
     Positive,
     Part,
+    Negative,
 }
 
 impl Parameter {
     /// All parameters.
-    pub const ALL: [Self; 17] = [
+    pub const ALL: [Self; 18] = [
         Self::MuPrime,
         Self::AlphaV,
         Self::AlphaN,
@@ -68,6 +73,7 @@ impl Parameter {
         Self::NormalLoad,
         Self::Mu0,
         Self::VS,
+        Self::MuPrimeRest,
         Self::MuS,
         Self::XDot0,
         Self::A0,
@@ -97,6 +103,7 @@ impl Parameter {
             Self::NormalLoad => "normal_load",
             Self::Mu0 => "mu0",
             Self::VS => "v_s",
+            Self::MuPrimeRest => "mu_prime_rest",
             Self::MuS => "mu_s",
             Self::XDot0 => "x_dot0",
             Self::A0 => "a0",
@@ -127,6 +134,7 @@ impl Parameter {
             Self::NormalLoad => "unperturbed normal load",
             Self::Mu0 => "kinetic friction coefficient mu0 of the friction law",
             Self::VS => "velocity scale of the friction law",
+            Self::MuPrimeRest => "slope of the kinetic friction coefficient at rest",
             Self::MuS => "static friction coefficient",
             Self::XDot0 => "velocity of the block at t = 0",
             Self::A0 => "elongation of the spring at t = 0 and before",
@@ -151,6 +159,7 @@ impl Parameter {
             Self::NormalLoad => "N0",
             Self::Mu0 => "μ0",
             Self::VS => "v_s",
+            Self::MuPrimeRest => "μ′(0)",
             Self::MuS => "μ_S",
             Self::XDot0 => "ẋ0",
             Self::A0 => "a0",
@@ -163,7 +172,7 @@ impl Parameter {
     /// Powers of force, length and time in its unit.
     pub(super) const fn dimension(self) -> [i32; 3] {
         match self {
-            Self::MuPrime => [0, -1, 1],
+            Self::MuPrime | Self::MuPrimeRest => [0, -1, 1],
             Self::AlphaV => [0, 0, -1],
             Self::AlphaN | Self::Stiffness => [1, -1, 0],
             Self::Tau | Self::SwitchOnPhase => [0, 0, 1],
@@ -181,7 +190,8 @@ impl Parameter {
         match self {
             Self::AlphaV | Self::AlphaN => Some(0.0),
             Self::MuK | Self::Mass | Self::Stiffness | Self::NormalLoad | Self::MuS => Some(1.0),
-            Self::MuPrime | Self::Tau | Self::V0 | Self::Mu0 | Self::VS => None,
+            Self::MuPrime | Self::Tau | Self::V0 => None,
+            Self::Mu0 | Self::VS | Self::MuPrimeRest => None,
             Self::XDot0 | Self::A0 | Self::SwitchOnPhase => None,
             Self::Gamma | Self::MuRatio => None,
         }
@@ -190,7 +200,7 @@ impl Parameter {
     /// True for the parameters that only a friction law has.
     #[must_use]
     pub const fn of_friction_law(self) -> bool {
-        matches!(self, Self::Mu0 | Self::VS | Self::MuS)
+        matches!(self, Self::Mu0 | Self::VS | Self::MuPrimeRest | Self::MuS)
     }
 
     /// True for [`Parameter::START`].
@@ -210,6 +220,7 @@ impl Parameter {
             Self::MuPrime | Self::AlphaV | Self::AlphaN | Self::XDot0 | Self::A0 => Range::Any,
             Self::Tau | Self::SwitchOnPhase => Range::NotNegative,
             Self::MuRatio => Range::Part,
+            Self::MuPrimeRest => Range::Negative,
             _ => Range::Positive,
         }
     }
@@ -222,6 +233,7 @@ impl Parameter {
             Range::NotNegative => "0 or more, at most 1e12",
             Range::Positive => "greater than 0, between 1e-12 and 1e12",
             Range::Part => "greater than 0, between 1e-12 and 1",
+            Range::Negative => "less than 0, between -1e12 and -1e-12",
         }
     }
 
@@ -236,6 +248,7 @@ impl Parameter {
                 Range::NotNegative => value >= 0.0,
                 Range::Positive => value >= 1.0 / LARGEST,
                 Range::Part => (1.0 / LARGEST..=1.0).contains(&value),
+                Range::Negative => value <= -1.0 / LARGEST,
             };
         if inside {
             Ok(value)
@@ -345,13 +358,23 @@ impl LawKind {
         formulas.chain([Self::TABLE]).collect::<Vec<_>>().join(", ")
     }
 
-    /// The parameters that the law needs, besides μ_S.
+    /// The parameters that describe the law, besides μ_S.
     #[must_use]
-    pub const fn needs(&self) -> &'static [Parameter] {
+    pub const fn parameters(&self) -> &'static [Parameter] {
         match self {
             Self::Coulomb => &[Parameter::Mu0],
-            Self::Weakening | Self::Stribeck => &[Parameter::Mu0, Parameter::VS],
+            Self::Weakening => &[Parameter::Mu0, Parameter::VS, Parameter::MuPrimeRest],
+            Self::Stribeck => &[Parameter::Mu0, Parameter::VS],
             Self::Table(_) => &[],
+        }
+    }
+
+    /// How many of [`LawKind::parameters`] have to be given: what one of them is follows from the others, if it is not all.
+    #[must_use]
+    pub const fn needed(&self) -> usize {
+        match self {
+            Self::Weakening => 2,
+            _ => self.parameters().len(),
         }
     }
 }
@@ -363,6 +386,8 @@ pub enum GivenError {
     Missing(Parameter),
     /// This one is given and would have no effect.
     Unused(Parameter),
+    /// This one is given and follows from others that are given too.
+    Follows(Parameter),
 }
 
 impl GivenError {
@@ -370,6 +395,20 @@ impl GivenError {
     #[must_use]
     pub fn message(self, law: Option<&LawKind>) -> String {
         match (self, law) {
+            (Self::Follows(p), _) => format!(
+                "{} is given as well as mu0 and v_s: it is -mu0/v_s",
+                p.name()
+            ),
+            (Self::Missing(p), Some(law))
+                if law.parameters().len() > law.needed() && p.of_friction_law() =>
+            {
+                let names: Vec<_> = law.parameters().iter().map(|p| p.name()).collect();
+                let (name, law) = (p.name(), law.name());
+                format!(
+                    "{name} is not given: the {law} law needs two of {}",
+                    names.join(", ")
+                )
+            }
             (Self::Missing(p), _) => format!("{} is not given", p.name()),
             (Self::Unused(p), _) if p.of_limit() => {
                 format!("{} is a parameter of protocol = \"limit\"", p.name())
@@ -388,6 +427,10 @@ impl GivenError {
             Self::Missing(p) => format!("{}: {}, {}", p.name(), p.long_name(), p.allowed()),
             Self::Unused(p) if p.of_limit() => {
                 "protocol = \"limit\" in a sweep file asks for v_c as the delay vanishes; its parameters are gamma and mu_ratio".into()
+            }
+            Self::Follows(_) => "give two of mu0, v_s, mu_prime_rest".into(),
+            Self::Unused(Parameter::MuPrimeRest) => {
+                "mu_prime_rest is the slope -mu0/v_s of the weakening law at rest".into()
             }
             Self::Unused(_) => {
                 "give either mu_prime (with mu_k) or a friction law with v0, not both".into()
@@ -430,19 +473,24 @@ impl Setting {
         self.law.as_ref()
     }
 
-    /// True for the parameters on which a cell of this setting can depend; the start of a motion where it is set. Not asked of
+    /// True for the parameters on which a cell of this setting depends: those that it takes and has a value of. Not asked of
     /// the limit of a short delay, see [`SweepSpec::uses`](super::SweepSpec::uses).
     #[must_use]
     pub fn uses(&self, parameter: Parameter) -> bool {
-        match &self.law {
-            _ if parameter.of_start() => !self.get(parameter).is_nan(),
+        let taken = parameter.of_start() || Self::takes(self.law.as_ref(), parameter);
+        taken && !self.get(parameter).is_nan()
+    }
+
+    /// True for the parameters that a setting with this law can have, its start left aside.
+    fn takes(law: Option<&LawKind>, parameter: Parameter) -> bool {
+        match (law, parameter) {
             _ if parameter.of_limit() => false,
-            Some(law) => match parameter {
-                Parameter::MuPrime | Parameter::MuK => false,
-                Parameter::Mu0 | Parameter::VS => law.needs().contains(&parameter),
-                _ => true,
-            },
-            None => !parameter.of_friction_law() && parameter != Parameter::V0,
+            (Some(_), Parameter::MuPrime | Parameter::MuK) => false,
+            (Some(law), Parameter::Mu0 | Parameter::VS | Parameter::MuPrimeRest) => {
+                law.parameters().contains(&parameter)
+            }
+            (Some(_), _) => true,
+            (None, _) => !parameter.of_friction_law() && parameter != Parameter::V0,
         }
     }
 
@@ -455,17 +503,44 @@ impl Setting {
         law: Option<&LawKind>,
         given: impl Fn(Parameter) -> bool,
     ) -> Result<(), GivenError> {
-        let setting = Self::new(law.cloned());
         for parameter in Parameter::ALL.into_iter().filter(|p| !p.of_start()) {
-            let used = setting.uses(parameter);
-            if given(parameter) && !used {
+            let taken = Self::takes(law, parameter);
+            if given(parameter) && !taken {
                 return Err(GivenError::Unused(parameter));
             }
-            if !given(parameter) && used && parameter.default_value().is_none() {
+            let of_law = law.is_some_and(|law| law.parameters().contains(&parameter));
+            let needed = taken && !of_law && parameter.default_value().is_none();
+            if needed && !given(parameter) {
                 return Err(GivenError::Missing(parameter));
             }
         }
-        Ok(())
+        law.map_or(Ok(()), |law| Self::check_law_given(law, given))
+    }
+
+    /// As many parameters of the law as it needs.
+    fn check_law_given(law: &LawKind, given: impl Fn(Parameter) -> bool) -> Result<(), GivenError> {
+        let parameters = law.parameters();
+        let there = parameters.iter().filter(|p| given(**p)).count();
+        match (there.cmp(&law.needed()), parameters) {
+            (Ordering::Less, _) => {
+                let missing = parameters.iter().find(|p| !given(**p));
+                missing.map_or(Ok(()), |p| Err(GivenError::Missing(*p)))
+            }
+            (Ordering::Greater, [.., last]) => Err(GivenError::Follows(*last)),
+            _ => Ok(()),
+        }
+    }
+
+    /// μ0 and v_s of the law, each given or from the other and the slope at rest.
+    fn mu0_and_v_s(&self) -> (f64, f64) {
+        let of = |p| self.get(p);
+        let (mu0, v_s) = (of(Parameter::Mu0), of(Parameter::VS));
+        let slope = of(Parameter::MuPrimeRest);
+        match (mu0.is_nan(), v_s.is_nan()) {
+            (true, false) => (-slope * v_s, v_s),
+            (false, true) => (mu0, -mu0 / slope),
+            _ => (mu0, v_s),
+        }
     }
 
     /// The friction law with its parameters.
@@ -473,7 +548,8 @@ impl Setting {
     /// # Errors
     /// When the law is ill-posed, see [`FrictionLaw`].
     pub fn friction_law(&self) -> Result<Option<FrictionLaw>, ModelError> {
-        let [mu0, v_s, mu_s] = [Parameter::Mu0, Parameter::VS, Parameter::MuS].map(|p| self.get(p));
+        let (mu0, v_s) = self.mu0_and_v_s();
+        let mu_s = self.get(Parameter::MuS);
         self.law
             .as_ref()
             .map(|law| match law {

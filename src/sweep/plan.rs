@@ -7,6 +7,8 @@ use super::best::gain_plane;
 use super::parameter::{LawKind, Parameter, Setting};
 use super::spec::{SpecError, SweepSpec};
 use super::tile::{Tile, TileGrid};
+use super::vc::Protocol;
+use crate::critical::switch_on::Phase;
 use crate::model::table::Column;
 
 /// Cells in a tile, about: small enough for a processor's cache, large enough to compress and write well.
@@ -16,6 +18,8 @@ const CELLS_PER_TILE: usize = 1 << 18;
 const CELLS_PER_ROOT_TILE: usize = 1 << 14;
 /// The same where motions are followed, which takes about a millisecond a cell.
 const CELLS_PER_MOTION_TILE: usize = 1 << 8;
+/// The same where critical velocities are looked for, which takes up to a second a cell.
+const CELLS_PER_CRITICAL_TILE: usize = 1 << 6;
 /// Delays in a tile at most, so that memory stays bounded on the longest line.
 const DELAYS_PER_TILE: usize = 1 << 17;
 /// Lines of delays are cut at multiples of this only: there tracking starts anew, and no value depends on the tiles.
@@ -44,7 +48,9 @@ impl Plan {
     /// # Errors
     /// When there are more cells than any machine could hold.
     pub fn new(spec: SweepSpec) -> Result<Self, SpecError> {
-        let cells = if follows_motions(&spec) {
+        let cells = if spec.critical.is_some() {
+            CELLS_PER_CRITICAL_TILE
+        } else if spec.follows_motions() {
             CELLS_PER_MOTION_TILE
         } else if follows_roots(&spec) {
             CELLS_PER_ROOT_TILE
@@ -76,7 +82,8 @@ impl Plan {
             .iter()
             .position(|axis| axis.parameter == Parameter::Tau);
         // Motions know nothing of the delay before: only roots keep lines in blocks.
-        let block = match follows_motions(&spec) && !follows_roots(&spec) {
+        let moves = spec.critical.is_some() || spec.follows_motions();
+        let block = match moves && !follows_roots(&spec) {
             true => 1,
             false => BLOCK_OF_DELAYS,
         };
@@ -194,17 +201,21 @@ impl Plan {
         if self.spec.best {
             put("best", &[]);
         }
-        if follows_motions(&self.spec) {
+        if let Some(search) = self.spec.critical {
+            let protocol = search.protocol;
+            let phases = match protocol {
+                Protocol::SwitchOn(Phase::Worst(phases)) => f64::from(phases),
+                _ => 0.0,
+            };
+            put(protocol.name(), &[phases, search.verify]);
+        }
+        if self.spec.follows_motions() {
             let how = &self.spec.simulation;
             let horizon = how.horizon.unwrap_or(0.0);
             put("simulation", &[horizon, how.tolerance, how.steps as f64]);
         }
         hash.finalize().iter().map(|b| format!("{b:02x}")).collect()
     }
-}
-
-fn follows_motions(spec: &SweepSpec) -> bool {
-    spec.fields.iter().any(|f| f.of_motion())
 }
 
 fn follows_roots(spec: &SweepSpec) -> bool {
@@ -239,7 +250,7 @@ fn part(length: usize, most: usize) -> usize {
 
 /// The plane of crossing curves; none where there is no such plane, or where it is not wanted.
 fn boundary_plane(spec: &SweepSpec) -> Option<(usize, usize)> {
-    let (p, tau) = plane_of_curves(&spec.axes)?;
+    let (p, tau) = plane_of_curves(&spec.axes).filter(|_| spec.has_sliding())?;
     let planes: u64 = spec
         .axes
         .iter()

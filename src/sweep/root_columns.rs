@@ -93,9 +93,6 @@ fn value(
         None => f64::NAN,
     };
     Some(match field {
-        Field::NUnstable | Field::DelayMargin => return None,
-        Field::Outcome | Field::SettleTime | Field::NMin | Field::PeakForce => return None,
-        Field::Limit(_) => return None,
         Field::Abscissa(rank) => real_part(rank.index()),
         Field::Frequency(rank) => match cell.roots.get(rank.index()) {
             Some(root) => root.lambda.im / time_unit,
@@ -105,6 +102,7 @@ fn value(
         Field::RelaxationTime => relaxation_time(real_part(0)),
         Field::AbscissaSlope(slope) => slopes[slope as usize],
         Field::CertificateMargin => cell.margin,
+        _ => return None,
     })
 }
 

@@ -81,8 +81,7 @@ impl Cell {
 impl<'p> SlipColumns<'p> {
     /// For the fields of a sweep; none where none of them comes from motions.
     pub fn new(spec: &'p SweepSpec) -> Option<Self> {
-        let wanted = spec.fields.iter().any(|field| field.of_motion());
-        wanted.then(|| Self {
+        spec.follows_motions().then(|| Self {
             simulation: &spec.simulation,
             motion: None,
             sliding: Sliding::default(),
@@ -111,8 +110,10 @@ impl<'p> SlipColumns<'p> {
             if cell.outcome == Outcome::Undecided {
                 buffers.status[place] |= NOT_CONVERGED;
             }
-            if let Some(outcomes) = &mut buffers.outcome {
-                outcomes[place] = cell.outcome as u8;
+            for column in &mut buffers.kinds {
+                if column.field == Field::Outcome {
+                    column.cells[place] = cell.outcome as u8;
+                }
             }
             for column in &mut buffers.columns {
                 if let Some(value) = cell.value(column.field) {

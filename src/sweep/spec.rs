@@ -7,6 +7,9 @@
 //! boundaries = true                       # optional: the exact crossing curves as polylines
 //! degree_of_stability = [0.05, 0.1]       # optional: also the curves max Re λ = −σ for these σ, in 1/time
 //! best = true                             # optional: the gain and delay of fastest decay in every plane of the two
+//! protocol = "follow"                     # optional, for fields of the critical velocity: or "switch-on"
+//! phase = "worst"                         # optional, with "switch-on": the worst phase; else switch_on_phase, 0 by default
+//! verify = 0.004                          # optional, with "follow": the share of cells that are recomputed by simulation
 //!
 //! [axes]                                  # in this order they are the dimensions of the map
 //! mu_prime = [-0.1, -0.2, -0.5]
@@ -19,7 +22,7 @@
 //! [friction]                              # optional, with v0 instead of mu_prime and mu_k
 //! law = "weakening"                       # or coulomb, stribeck; or table, with speeds and mu_k at them as lists
 //! mu0 = 0.5
-//! v_s = 0.5
+//! v_s = 0.5                               # with "weakening" also two of mu0, v_s and mu_prime_rest, here or as axes
 //!
 //! [start]                                 # optional, for fields of motions: where they start, if no axis says so
 //! x_dot0 = 0.1                            # and a0; or switch_on_phase, as in case files
@@ -38,6 +41,8 @@
 //! marginal = 1.4e-14
 //! ```
 
+mod vc_keys;
+
 use std::ops::Range;
 
 use super::axis::{Axis, Spacing, plane_of_curves, spaced};
@@ -51,7 +56,9 @@ use super::protocol::Protocol;
 use super::simulation::Simulation;
 pub use super::toml_reader::SpecError;
 use super::toml_reader::{Entry, entries, parse};
+use super::vc::Search;
 use crate::linear::MarginalTolerance;
+use vc_keys::VcKeys;
 
 /// More degrees of stability than this are refused.
 const MOST_DEGREES: usize = 16;
@@ -81,6 +88,8 @@ pub struct SweepSpec {
     pub tolerance: MarginalTolerance,
     /// How far and how exactly motions are followed.
     pub simulation: Simulation,
+    /// How critical velocities are looked for; none where no field asks for them.
+    pub critical: Option<Search>,
     /// Units of the parameters.
     pub units: Units,
     /// The text of the file.
@@ -95,6 +104,21 @@ impl SweepSpec {
             Some(Protocol::Limit) => parameter.of_limit(),
             None => self.fixed.uses(parameter),
         }
+    }
+
+    /// Whether there is a sliding state in each cell whose linear stability can be asked for: a friction law needs a v0.
+    #[must_use]
+    pub fn has_sliding(&self) -> bool {
+        let on_axis = self.axes.iter().any(|a| a.parameter == Parameter::V0);
+        let given =
+            self.fixed.law().is_none() || on_axis || !self.fixed.get(Parameter::V0).is_nan();
+        self.protocol.is_none() && given
+    }
+
+    /// Whether motions from a start are followed.
+    #[must_use]
+    pub fn follows_motions(&self) -> bool {
+        self.critical.is_none() && self.fields.iter().any(|f| f.of_motion())
     }
 }
 
@@ -112,7 +136,9 @@ impl std::str::FromStr for SweepSpec {
             draft.limit.note_key(&entry);
             match entry.key {
                 "title" => draft.title = entry.string()?.to_owned(),
-                "protocol" => draft.protocol = Some(Protocol::read(&entry)?),
+                "protocol" if entry.string()? == Protocol::Limit.name() => {
+                    draft.protocol = Some(Protocol::Limit);
+                }
                 "fields" => draft.read_fields(&entry)?,
                 "boundaries" => draft.boundaries = Some(entry.boolean()?),
                 "degree_of_stability" => draft.read_degrees(&entry)?,
@@ -124,28 +150,32 @@ impl std::str::FromStr for SweepSpec {
                 "simulation" => draft.read_simulation(&entry)?,
                 "units" => draft.units = read_units(&entry)?,
                 "tolerance" => draft.tolerance = read_tolerance(&entry)?,
-                _ => {
-                    return Err(entry.unknown(&[
-                        "title",
-                        "protocol",
-                        "fields",
-                        "boundaries",
-                        "degree_of_stability",
-                        "best",
-                        "axes",
-                        "fixed",
-                        "friction",
-                        "start",
-                        "simulation",
-                        "units",
-                        "tolerance",
-                    ]));
-                }
+                _ if draft.vc.read(&entry)? => {}
+                _ => return Err(entry.unknown(&KEYS)),
             }
         }
         draft.finish(text)
     }
 }
+
+/// The keys of a sweep file.
+const KEYS: [&str; 15] = [
+    "title",
+    "fields",
+    "boundaries",
+    "degree_of_stability",
+    "best",
+    VcKeys::KEYS[0],
+    VcKeys::KEYS[1],
+    VcKeys::KEYS[2],
+    "axes",
+    "fixed",
+    "friction",
+    "start",
+    "simulation",
+    "units",
+    "tolerance",
+];
 
 #[derive(Default)]
 struct Draft {
@@ -155,6 +185,11 @@ struct Draft {
     fields: Option<Vec<Field>>,
     /// Where the first field of motions is asked for, if one is.
     motion_place: Option<Range<usize>>,
+    /// The first of these that depends on where a motion starts, with its name.
+    start_place: Option<(&'static str, Range<usize>)>,
+    /// Where the first field of the critical velocity is asked for, if one is.
+    vc_place: Option<Range<usize>>,
+    vc: VcKeys,
     simulation: Simulation,
     simulation_place: Option<Range<usize>>,
     boundaries: Option<bool>,
@@ -173,11 +208,22 @@ impl Draft {
     fn read_fields(&mut self, fields: &Entry) -> Result<(), SpecError> {
         self.fields = Some(read_fields(fields)?);
         self.limit.note_fields(fields)?;
-        let of_motion = |element: &Entry| {
-            let name = element.string().unwrap_or_default();
-            Field::from_name(name).is_some_and(Field::of_motion)
-        };
-        self.motion_place = fields.array()?.into_iter().find(of_motion).map(|e| e.span);
+        for element in fields.array()? {
+            let Some(field) = Field::from_name(element.string()?) else {
+                continue;
+            };
+            let place = || Some(element.span.clone());
+            if field.of_vc() {
+                self.vc_place = self.vc_place.take().or_else(place);
+            }
+            if field.of_motion() {
+                self.motion_place = self.motion_place.take().or_else(place);
+            }
+            if field.of_motion() && field != Field::Outcome {
+                let named = || Some((field.name(), element.span.clone()));
+                self.start_place = self.start_place.take().or_else(named);
+            }
+        }
         Ok(())
     }
 
@@ -218,12 +264,16 @@ impl Draft {
                     .help("for example: [axes] tau = { from = 0, to = 12, points = 1201 }")
             });
         }
-        let (fixed, default_fields) = match self.protocol {
+        let (fixed, critical, default_fields) = match self.protocol {
             Some(Protocol::Limit) => (
                 self.limit.check(&self.given, self.axes_place.as_ref())?,
+                None,
                 LimitField::ALL.map(Field::Limit).to_vec(),
             ),
-            None => (self.check()?, vec![Field::NUnstable]),
+            None => {
+                let (fixed, critical) = self.check()?;
+                (fixed, critical, vec![Field::NUnstable])
+            }
         };
         Ok(SweepSpec {
             title: self.title,
@@ -236,24 +286,25 @@ impl Draft {
             best: self.best.is_some(),
             tolerance: self.tolerance,
             simulation: self.simulation,
+            critical,
             units: self.units,
             text: text.to_owned(),
         })
     }
 
-    /// Everything fits together in a sweep of sliding or of motions; gives the parameters that are no axes.
-    fn check(&self) -> Result<Setting, SpecError> {
+    /// Everything fits together in a sweep of sliding or of motions; gives the parameters that are no axes, and what is looked
+    /// for of the critical velocity.
+    fn check(&self) -> Result<(Setting, Option<Search>), SpecError> {
         self.limit.check_absent()?;
-        self.given.check(None, self.axes_place.as_ref())?;
+        let without_v0 = self.given.law_place().is_some() && !self.needs_v0();
+        let optional = without_v0.then_some(Parameter::V0);
+        self.given.check(optional, self.axes_place.as_ref())?;
         self.check_degrees()?;
         self.check_best()?;
         let fixed = self.given.setting();
         self.check_law(&fixed)?;
-        match &self.motion_place {
-            Some(place) => self.check_motions(&fixed, place)?,
-            None => self.check_no_motions()?,
-        }
-        Ok(fixed)
+        let critical = self.check_nonlinear(&fixed)?;
+        Ok((fixed, critical))
     }
 
     /// There are boundaries beside which to trace degrees of stability.
@@ -300,10 +351,10 @@ impl Draft {
         let mut worst = fixed.clone();
         for axis in &self.axes {
             let (smallest, largest) = axis.range();
-            let value = if axis.parameter == Parameter::Mu0 {
-                largest
-            } else {
-                smallest
+            // With a slope at rest, μ0 grows with v_s and with the slope's size.
+            let value = match axis.parameter {
+                Parameter::Mu0 | Parameter::VS => largest,
+                _ => smallest,
             };
             worst.set(axis.parameter, value);
         }
@@ -322,13 +373,30 @@ impl Draft {
         axis.map_or_else(|| vec![fixed.get(parameter)], |axis| axis.values.clone())
     }
 
-    fn check_motions(&self, fixed: &Setting, place: &Range<usize>) -> Result<(), SpecError> {
-        if self.given.law_place().is_none() {
-            let message = "this field needs a friction law: motions stick and slip by it";
-            return Err(SpecError::at(place.clone(), message)
-                .help("give [friction] and v0 instead of mu_prime and mu_k"));
+    /// Fields of the critical velocity or of motions have what they need; what is looked for.
+    fn check_nonlinear(&self, fixed: &Setting) -> Result<Option<Search>, SpecError> {
+        if let Some(place) = &self.vc_place {
+            return self.critical_search(fixed, place).map(Some);
         }
-        self.given.check_start()?;
+        self.check_no_search()?;
+        match &self.motion_place {
+            Some(place) => self.check_motions(fixed, place)?,
+            None => self.check_no_motions()?,
+        }
+        Ok(None)
+    }
+
+    fn check_law_is_there(&self, place: &Range<usize>, why: &str) -> Result<(), SpecError> {
+        if self.given.law_place().is_some() {
+            return Ok(());
+        }
+        let message = format!("this field needs a friction law: {why}");
+        Err(SpecError::at(place.clone(), message)
+            .help("give [friction] and v0 instead of mu_prime and mu_k"))
+    }
+
+    /// No gain acts without a delay.
+    fn check_delays(&self, fixed: &Setting, place: &Range<usize>) -> Result<(), SpecError> {
         let gains = [Parameter::AlphaV, Parameter::AlphaN];
         let mut gains = gains.into_iter().flat_map(|p| self.values(fixed, p));
         let acts = gains.any(|gain| gain != 0.0);
@@ -337,6 +405,13 @@ impl Draft {
             let place = self.given.place(Parameter::Tau).unwrap_or(place);
             return Err(SpecError::at(place.clone(), message));
         }
+        Ok(())
+    }
+
+    fn check_motions(&self, fixed: &Setting, place: &Range<usize>) -> Result<(), SpecError> {
+        self.check_law_is_there(place, "motions stick and slip by it")?;
+        self.given.check_start()?;
+        self.check_delays(fixed, place)?;
         let phases = self.values(fixed, Parameter::SwitchOnPhase);
         let latest = phases.into_iter().fold(0.0, f64::max);
         let name = Parameter::SwitchOnPhase.name();

@@ -1,11 +1,78 @@
-//! The critical velocity in the units of a setting.
+//! The critical velocity in the units of a setting, by one protocol or the other.
 
 use super::parameter::{Parameter, Setting};
-use crate::critical::switch_on::{self, Phase, Scan, Windows};
-use crate::critical::{Critical, Problem, critical_velocity};
+use crate::critical::follow::Pace;
+use crate::critical::switch_on::{self, Phase, Scan, Survival, Trials, Windows};
+use crate::critical::{Critical, End, Method, Problem, by_simulation, critical_velocity};
+use crate::linear::{Crossings, MarginalTolerance};
 use crate::model::ModelError;
 use crate::slip::case::CaseUnits;
 use crate::slip::motion::Accuracy;
+
+/// Phases over one cycle for the worst case.
+pub const PHASES: u32 = 32;
+
+/// Error allowed in a step where control is switched on.
+const SWITCH_ON_ACCURACY: f64 = 1e-9;
+
+/// Which question is asked.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Protocol {
+    /// From controlled stick-slip at low v0, raised until stick-slip ends.
+    Follow,
+    /// Control is switched on at a phase of uncontrolled stick-slip; the phase is in units of the setting.
+    SwitchOn(Phase),
+}
+
+impl Protocol {
+    /// Names of the protocols.
+    pub const NAMES: [&'static str; 2] = ["follow", "switch-on"];
+
+    /// The name in flags, sweep files and maps.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Follow => Self::NAMES[0],
+            Self::SwitchOn(_) => Self::NAMES[1],
+        }
+    }
+
+    /// The largest v0 at which stick-slip is looked for, in units of μ_S N0/√(κM).
+    #[must_use]
+    pub fn v_max(self) -> f64 {
+        match self {
+            Self::Follow => Pace::default().v_max,
+            Self::SwitchOn(_) => Scan::default().v_max,
+        }
+    }
+
+    /// To what v_c is known, relative.
+    #[must_use]
+    pub fn precision(self) -> f64 {
+        match self {
+            Self::Follow => Pace::default().last,
+            Self::SwitchOn(_) => Scan::default().precision,
+        }
+    }
+}
+
+/// How the critical velocities of a sweep are looked for.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Search {
+    /// Which question is asked; a setting's own phase of switch-on comes before the one here.
+    pub protocol: Protocol,
+    /// The share of cells that are recomputed by simulation, 0 to 1.
+    pub verify: f64,
+}
+
+/// The critical velocity of a setting, and what is known besides.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Found {
+    /// v_c and what there is at it, in units of the setting.
+    pub critical: Critical,
+    /// Where stick-slip survives: v0 from and to, increasing, in units of the setting.
+    pub windows: Vec<[f64; 2]>,
+}
 
 /// What is asked of a setting: its problem in the units of a motion, and those units.
 ///
@@ -40,18 +107,70 @@ pub fn problem(setting: &Setting) -> Result<(Problem, CaseUnits), ModelError> {
     Ok((problem, units))
 }
 
-/// The critical velocity of a setting by the protocol `follow`, in its units; its v0 means nothing.
+/// The critical velocity of a setting; its v0 means nothing.
 ///
 /// # Errors
 /// See [`problem`].
-pub fn follow(setting: &Setting) -> Result<Critical, ModelError> {
+pub fn find(setting: &Setting, protocol: Protocol) -> Result<Found, ModelError> {
     let (problem, units) = problem(setting)?;
-    Ok(in_units(&critical_velocity(&problem), &units))
+    Ok(find_in(&problem, &units, protocol))
+}
+
+/// The critical velocity of a problem, in `units`.
+#[must_use]
+pub fn find_in(problem: &Problem, units: &CaseUnits, protocol: Protocol) -> Found {
+    match protocol {
+        Protocol::Follow => followed(&in_units(&critical_velocity(problem), units)),
+        Protocol::SwitchOn(phase) => {
+            let accuracy = accuracy(SWITCH_ON_ACCURACY);
+            let scan = Scan::default();
+            let phase = in_motion_units(phase, units);
+            let windows = switch_on::windows(problem, phase, &scan, accuracy);
+            let v_max = scan.v_max * problem.law.mu_s();
+            switched_on(windows, v_max, units.velocity)
+        }
+    }
+}
+
+/// By the protocol `follow` there is one window, from rest to v_c.
+fn followed(critical: &Critical) -> Found {
+    let windows = match critical.end {
+        End::Never | End::LiftOff | End::Persists => Vec::new(),
+        _ => vec![[0.0, critical.vc]],
+    };
+    Found {
+        critical: *critical,
+        windows,
+    }
+}
+
+/// v_c is the topmost edge of the windows; there is none where the topmost window ends at `v_max` only.
+fn switched_on(found: Windows, v_max: f64, velocity: f64) -> Found {
+    let top = found.top();
+    let (vc, end) = match top {
+        None if found.v_liftoff.is_some() => (f64::NAN, End::LiftOff),
+        None => (0.0, End::Never),
+        Some(top) if top >= v_max * (1.0 - 1e-9) => (f64::NAN, End::Persists),
+        Some(top) => (top, End::Lost),
+    };
+    let edge = |v: f64| v * velocity;
+    Found {
+        critical: Critical {
+            vc: edge(vc),
+            end,
+            method: Method::Simulation,
+            v_liftoff: edge(found.v_liftoff.unwrap_or(f64::NAN)),
+            stick_time: f64::NAN,
+            slip_time: f64::NAN,
+            n_min: f64::NAN,
+            decided: found.decided,
+        },
+        windows: found.survives.iter().map(|w| w.map(edge)).collect(),
+    }
 }
 
 /// `found` in physical units.
-#[must_use]
-pub fn in_units(found: &Critical, units: &CaseUnits) -> Critical {
+fn in_units(found: &Critical, units: &CaseUnits) -> Critical {
     Critical {
         vc: found.vc * units.velocity,
         v_liftoff: found.v_liftoff * units.velocity,
@@ -62,24 +181,224 @@ pub fn in_units(found: &Critical, units: &CaseUnits) -> Critical {
     }
 }
 
-/// The windows of v0 in which stick-slip of a setting survives switching on, in its units; `phase` too is in its units.
-///
-/// # Errors
-/// See [`problem`].
-pub fn switch_on(setting: &Setting, phase: Phase, scan: &Scan) -> Result<Windows, ModelError> {
-    let (problem, units) = problem(setting)?;
-    let phase = match phase {
+fn in_motion_units(phase: Phase, units: &CaseUnits) -> Phase {
+    match phase {
         Phase::After(time) => Phase::After(time / units.time),
         worst => worst,
-    };
-    let accuracy = Accuracy {
-        tolerance: 1e-9,
-        ..Accuracy::default()
-    };
-    let mut found = switch_on::windows(&problem, phase, scan, accuracy);
-    for edge in found.survives.iter_mut().flatten() {
-        *edge *= units.velocity;
     }
-    found.v_liftoff = found.v_liftoff.map(|v| v * units.velocity);
-    Ok(found)
+}
+
+fn accuracy(tolerance: f64) -> Accuracy {
+    Accuracy {
+        tolerance,
+        ..Accuracy::default()
+    }
+}
+
+/// First step of v0 and error of a step of the integrator where a cell is recomputed: other ones than where it was computed.
+const SAMPLE_FIRST: f64 = 0.35;
+const SAMPLE_ACCURACY: f64 = 1e-10;
+/// Velocities of the two ways differ by no more than this, relative.
+pub const AGREEMENT: f64 = 1e-4;
+
+/// Whether simulation alone, with steps of its own, finds the same end of stick-slip at the same velocity as `found`, which
+/// is the answer for `problem` by the protocol `follow`, in `units`.
+#[must_use]
+pub fn simulation_agrees(problem: &Problem, units: &CaseUnits, found: &Critical) -> bool {
+    let pace = Pace {
+        first: SAMPLE_FIRST,
+        ..Pace::default()
+    };
+    let again = by_simulation(problem, &pace, accuracy(SAMPLE_ACCURACY));
+    let again = in_units(&again, units);
+    let near = |a: f64, b: f64| a.is_nan() && b.is_nan() || (a - b).abs() <= AGREEMENT * a.abs();
+    found.end == again.end && near(found.vc, again.vc) && near(found.v_liftoff, again.v_liftoff)
+}
+
+/// What a working velocity v0 is good for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum Class {
+    /// Sliding is linearly stable, and there is no stick-slip beside it.
+    Stable,
+    /// Sliding is linearly stable, and stick-slip persists beside it.
+    Bistable,
+    /// Sliding is linearly unstable.
+    Unstable,
+    /// Sliding is linearly stable, and the way there leads through N ≤ 0.
+    LiftOff,
+    /// Sliding is marginal, or what becomes of stick-slip is not known.
+    Undecided,
+}
+
+impl Class {
+    /// All, in the order of their numbers in a map.
+    pub const ALL: [Self; 5] = [
+        Self::Stable,
+        Self::Bistable,
+        Self::Unstable,
+        Self::LiftOff,
+        Self::Undecided,
+    ];
+
+    /// The name in maps.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Stable => "stable",
+            Self::Bistable => "bistable",
+            Self::Unstable => "unstable",
+            Self::LiftOff => "lift-off",
+            Self::Undecided => "undecided",
+        }
+    }
+
+    /// The class of `v0`, in units of the setting, where the critical velocity is `found` by `protocol`.
+    #[must_use]
+    pub fn at(
+        v0: f64,
+        (problem, units): (&Problem, &CaseUnits),
+        (protocol, found): (Protocol, &Found),
+        tolerance: MarginalTolerance,
+    ) -> Self {
+        let speed = v0 / units.velocity;
+        let count = Crossings::of(problem.groups(speed)).count(problem.tau, tolerance);
+        if count.marginal {
+            return Self::Undecided;
+        }
+        if !count.stable() {
+            return Self::Unstable;
+        }
+        match protocol {
+            Protocol::Follow => {
+                let v_max = protocol.v_max() * problem.law.mu_s() * units.velocity;
+                Self::beside_sliding(v0, &found.critical, v_max)
+            }
+            Protocol::SwitchOn(phase) => {
+                let phase = in_motion_units(phase, units);
+                let accuracy = accuracy(SWITCH_ON_ACCURACY);
+                let steps = Scan::default().steps;
+                match Trials::new(problem, phase, accuracy, steps).at(speed) {
+                    Survival::Survives => Self::Bistable,
+                    Survival::Ends | Survival::NoStickSlip => Self::Stable,
+                    Survival::LiftOff => Self::LiftOff,
+                    Survival::Undecided => Self::Undecided,
+                }
+            }
+        }
+    }
+
+    /// The same by the protocol `follow`, up to `v_max`, where sliding at `v0` is linearly stable.
+    fn beside_sliding(v0: f64, critical: &Critical, v_max: f64) -> Self {
+        match critical.end {
+            _ if !critical.decided => Self::Undecided,
+            End::LiftOff if v0 >= critical.v_liftoff => Self::LiftOff,
+            End::LiftOff => Self::Bistable,
+            End::Persists if v0 > v_max => Self::Undecided,
+            End::Persists => Self::Bistable,
+            _ if v0 > critical.vc => Self::Stable,
+            _ => Self::Bistable,
+        }
+    }
+}
+
+/// Velocities at which the count of unstable roots is taken, in each factor of ten.
+const COUNTS_PER_DECADE: f64 = 64.0;
+/// The smallest velocity at which it is, in units of μ_S N0/√(κM).
+const SMALLEST_COUNTED: f64 = 1e-6;
+
+/// The velocity above which, up to `v_max` (in units of μ_S N0/√(κM)), sliding is linearly stable and free of stick-slip,
+/// whose critical velocity is `vc`; in units of the setting, as `vc`. NaN where sliding is not stable at `v_max`, or there is
+/// no `vc`.
+#[must_use]
+pub fn v_smooth((problem, units): (&Problem, &CaseUnits), vc: f64, v_max: f64) -> f64 {
+    let unit = problem.law.mu_s();
+    let stable = |v0: f64| problem.count(v0).stable();
+    let (lowest, mut above) = (vc / units.velocity, v_max * unit);
+    if lowest.is_nan() || !stable(above) {
+        return f64::NAN;
+    }
+    let ratio = 10_f64.powf(-1.0 / COUNTS_PER_DECADE);
+    while above > lowest && above > SMALLEST_COUNTED * unit {
+        let below = (above * ratio).max(lowest);
+        if !stable(below) {
+            return change(below, above, stable) * units.velocity;
+        }
+        above = below;
+    }
+    vc
+}
+
+/// Where between `below`, at which `holds` does not, and `above`, at which it does, that changes.
+fn change(mut below: f64, mut above: f64, holds: impl Fn(f64) -> bool) -> f64 {
+    while above - below > f64::EPSILON * 8.0 * above {
+        let middle = 0.5 * (below + above);
+        if holds(middle) {
+            above = middle;
+        } else {
+            below = middle;
+        }
+    }
+    above
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn critical(end: End, vc: f64, v_liftoff: f64) -> Critical {
+        Critical {
+            vc,
+            end,
+            method: Method::Simulation,
+            v_liftoff,
+            stick_time: f64::NAN,
+            slip_time: f64::NAN,
+            n_min: f64::NAN,
+            decided: true,
+        }
+    }
+
+    #[test]
+    fn stick_slip_beside_stable_sliding() {
+        let none = f64::NAN;
+        for (end, vc, v_liftoff, at, class) in [
+            (End::Grazing, 0.3, none, 0.29, Class::Bistable),
+            (End::Grazing, 0.3, none, 0.31, Class::Stable),
+            (End::Never, 0.0, none, 1e-9, Class::Stable),
+            (End::LiftOff, none, 0.2, 0.1, Class::Bistable),
+            (End::LiftOff, none, 0.2, 0.2, Class::LiftOff),
+            (End::Persists, none, none, 5.0, Class::Bistable),
+            (End::Persists, none, none, 101.0, Class::Undecided),
+        ] {
+            let mut critical = critical(end, vc, v_liftoff);
+            assert_eq!(
+                Class::beside_sliding(at, &critical, 100.0),
+                class,
+                "{end:?} {at}"
+            );
+            critical.decided = false;
+            let unknown = Class::beside_sliding(at, &critical, 100.0);
+            assert_eq!(unknown, Class::Undecided);
+        }
+    }
+
+    /// The topmost window tells, and one that is open at the end of the range has no edge.
+    #[test]
+    fn windows_tell_the_critical_velocity() {
+        let windows = |survives: Vec<[f64; 2]>, v_liftoff| Windows {
+            survives,
+            v_liftoff,
+            decided: true,
+        };
+        let two = vec![[0.001, 0.2], [0.3, 0.4]];
+        let found = switched_on(windows(two, Some(0.25)), 10.0, 2.0);
+        assert_eq!((found.critical.vc, found.critical.end), (0.8, End::Lost));
+        assert_eq!(found.windows, [[0.002, 0.4], [0.6, 0.8]]);
+        let found = switched_on(windows(vec![[0.1, 10.0]], None), 10.0, 1.0);
+        assert!(found.critical.vc.is_nan() && found.critical.end == End::Persists);
+        let found = switched_on(windows(vec![], None), 10.0, 1.0);
+        assert!(found.critical.vc == 0.0 && found.critical.end == End::Never);
+        let found = switched_on(windows(vec![], Some(0.1)), 10.0, 1.0);
+        assert!(found.critical.vc.is_nan() && found.critical.end == End::LiftOff);
+    }
 }

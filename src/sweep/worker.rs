@@ -11,6 +11,7 @@ use super::protocol::Protocol;
 use super::root_columns::{Line, RootColumns};
 use super::slip_columns::SlipColumns;
 use super::tile::{Tile, for_each_index};
+use super::vc_columns::{Cells, VcColumns};
 use crate::linear::Crossings;
 use crate::linear::row::Delays;
 use crate::linear::status::NOT_CONVERGED;
@@ -23,25 +24,25 @@ pub struct TileBuffers {
     pub status: Vec<u8>,
     /// Number of unstable roots, if asked for.
     pub n_unstable: Option<Vec<u16>>,
-    /// Number of the outcome, its place in [`crate::slip::outcome::Outcome::ALL`], if asked for.
-    pub outcome: Option<Vec<u8>>,
+    /// The fields stored as u8 that are asked for, in their order: kinds and small counts.
+    pub kinds: Vec<Column<u8>>,
     /// The other fields that are asked for, in their order.
     pub columns: Vec<Column>,
 }
 
 /// The cells of one field.
 #[derive(Debug, Clone)]
-pub struct Column {
+pub struct Column<T = f64> {
     /// The field.
     pub field: Field,
-    /// Its value in each cell; NaN where there is none.
-    pub cells: Vec<f64>,
+    /// Its value in each cell; NaN or [`FEW_FILL`] where there is none.
+    pub cells: Vec<T>,
 }
 
 /// Value of `n_unstable` in cells that are not computed.
 pub const N_UNSTABLE_FILL: u16 = u16::MAX;
-/// Value of `outcome` in cells that are not computed.
-pub const OUTCOME_FILL: u8 = u8::MAX;
+/// Value of kinds and small counts in cells without a value.
+pub const FEW_FILL: u8 = u8::MAX;
 /// Value of `status` in cells that are not computed.
 pub const STATUS_FILL: u8 = u8::MAX;
 
@@ -51,23 +52,13 @@ impl TileBuffers {
     pub fn new(plan: &Plan) -> Self {
         let cells = plan.tiles.tile_cells();
         let fields = &plan.spec.fields;
-        let column = |&field: &Field| Column {
-            field,
-            cells: vec![f64::NAN; cells],
-        };
         Self {
             status: vec![STATUS_FILL; cells],
             n_unstable: fields
                 .contains(&Field::NUnstable)
                 .then(|| vec![N_UNSTABLE_FILL; cells]),
-            outcome: fields
-                .contains(&Field::Outcome)
-                .then(|| vec![OUTCOME_FILL; cells]),
-            columns: fields
-                .iter()
-                .filter(|f| f.storage() == Storage::Real)
-                .map(column)
-                .collect(),
+            kinds: columns(fields, &[Storage::Kind, Storage::Few], FEW_FILL, cells),
+            columns: columns(fields, &[Storage::Real], f64::NAN, cells),
         }
     }
 
@@ -76,13 +67,28 @@ impl TileBuffers {
         if let Some(n) = &mut self.n_unstable {
             n.fill(N_UNSTABLE_FILL);
         }
-        if let Some(outcome) = &mut self.outcome {
-            outcome.fill(OUTCOME_FILL);
+        for column in &mut self.kinds {
+            column.cells.fill(FEW_FILL);
         }
         for column in &mut self.columns {
             column.cells.fill(f64::NAN);
         }
     }
+}
+
+/// Columns of so many cells for the fields that are stored so.
+fn columns<T: Clone>(
+    fields: &[Field],
+    stored: &[Storage],
+    fill: T,
+    cells: usize,
+) -> Vec<Column<T>> {
+    let stored = fields.iter().filter(|f| stored.contains(&f.storage()));
+    let column = |&field: &Field| Column {
+        field,
+        cells: vec![fill.clone(); cells],
+    };
+    stored.map(column).collect()
 }
 
 /// The column of delay margins.
@@ -110,6 +116,12 @@ pub struct Worker<'p> {
     roots: Option<RootColumns>,
     /// Follows motions, where a field needs them.
     slip: Option<SlipColumns<'p>>,
+    /// Looks for critical velocities, where a field needs them.
+    vc: Option<VcColumns>,
+    /// Cells between neighbours along each axis in the whole map.
+    map_strides: Vec<u64>,
+    /// Whether cells have a sliding state.
+    slides: bool,
 }
 
 /// The groups of one line after the other. What does not change from line to line is not computed again.
@@ -133,9 +145,9 @@ impl<'p> Lines<'p> {
         }
     }
 
-    /// The groups of the line at `offset` + `inside`, and its unit of time.
+    /// Goes to the line at `offset` + `inside`.
     #[inline(always)]
-    fn groups(&mut self, offset: &[usize], inside: &[usize]) -> Result<(Groups, f64), ModelError> {
+    fn move_to(&mut self, offset: &[usize], inside: &[usize]) {
         for (axis, known) in self.index.iter_mut().enumerate() {
             let index = offset[axis] + inside[axis];
             if *known != index {
@@ -150,6 +162,11 @@ impl<'p> Lines<'p> {
                 }
             }
         }
+    }
+
+    /// The groups of the line, and its unit of time.
+    #[inline(always)]
+    fn groups(&mut self) -> Result<(Groups, f64), ModelError> {
         let setting = &self.setting;
         let uncontrolled = self
             .uncontrolled
@@ -209,6 +226,9 @@ impl<'p> Worker<'p> {
             },
             roots: RootColumns::new(&plan.spec.fields),
             slip: SlipColumns::new(&plan.spec),
+            vc: VcColumns::new(&plan.spec),
+            map_strides: map_strides(plan.shape()),
+            slides: plan.spec.has_sliding(),
         }
     }
 
@@ -238,15 +258,19 @@ impl<'p> Worker<'p> {
         self.unflagged = whole;
         for_each_index(&tile.extent, self.plan.tau_axis, |inside| {
             let at: usize = inside.iter().zip(&self.strides).map(|(i, s)| i * s).sum();
-            match self.lines.groups(&tile.offset, inside) {
+            self.lines.move_to(&tile.offset, inside);
+            match self.lines.groups() {
+                _ if !self.slides => self.fill_without_sliding(at),
                 Ok((groups, time_unit)) => {
                     self.fill_line(groups, time_unit, at);
                     self.fill_motions(groups, at, stop);
                 }
-                Err(_) => self.refuse_line(at),
+                Err(_) => return self.refuse_line(at),
             }
+            self.fill_critical(&tile.offset, inside, at, stop);
         });
-        self.slip.is_none() || !stop.load(Ordering::Relaxed)
+        let complete = self.slip.is_none() && self.vc.is_none();
+        complete || !stop.load(Ordering::Relaxed)
     }
 
     /// Computes the cells of a line into the buffers from place `at` on.
@@ -344,6 +368,35 @@ impl<'p> Worker<'p> {
         self.unflagged = false;
     }
 
+    /// A line in which nothing is known of sliding.
+    fn fill_without_sliding(&mut self, at: usize) {
+        let len = self.delays.values().len();
+        for place in (at..).step_by(self.stride).take(len) {
+            self.buffers.status[place] = 0;
+        }
+    }
+
+    /// Computes the fields of the critical velocity, in a line whose status is there.
+    fn fill_critical(&mut self, offset: &[usize], inside: &[usize], at: usize, stop: &AtomicBool) {
+        let Some(vc) = &mut self.vc else { return };
+        let index = offset.iter().zip(inside).map(|(o, i)| (o + i) as u64);
+        let cells = Cells {
+            at,
+            stride: self.stride,
+            first: index.zip(&self.map_strides).map(|(i, s)| i * s).sum(),
+            step: self.plan.tau_axis.map_or(1, |axis| self.map_strides[axis]),
+        };
+        let setting = &self.lines.setting;
+        vc.fill(
+            setting,
+            self.delays.values(),
+            &mut self.buffers,
+            cells,
+            stop,
+        );
+        self.unflagged = false;
+    }
+
     /// A line outside the model's range: its cells keep fill values and say that nothing converged there.
     fn refuse_line(&mut self, at: usize) {
         let len = self.delays.values().len();
@@ -353,14 +406,23 @@ impl<'p> Worker<'p> {
             if let Some(n) = &mut self.buffers.n_unstable {
                 n[place] = N_UNSTABLE_FILL;
             }
-            if let Some(outcome) = &mut self.buffers.outcome {
-                outcome[place] = OUTCOME_FILL;
+            for column in &mut self.buffers.kinds {
+                column.cells[place] = FEW_FILL;
             }
             for column in &mut self.buffers.columns {
                 column.cells[place] = f64::NAN;
             }
         }
     }
+}
+
+/// Cells between neighbours along each axis of a map, last axis fastest.
+fn map_strides(shape: &[usize]) -> Vec<u64> {
+    let mut strides = vec![1; shape.len()];
+    for axis in (1..shape.len()).rev() {
+        strides[axis - 1] = strides[axis] * shape[axis] as u64;
+    }
+    strides
 }
 
 fn scatter<T: Copy>(row: &[T], out: &mut [T], stride: usize) {

@@ -1,5 +1,7 @@
 //! Colours: perceptually ordered and readable by the colour-blind.
 
+use crate::sweep::Field;
+
 /// A colour of the screen.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct Rgb(pub u8, pub u8, pub u8);
@@ -25,8 +27,9 @@ pub const UNSTABLE: [Rgb; 4] = [
 ];
 
 /// Motions that slide, stick and slip, oscillate, lift off, diverge; undecided ones; where there is none. The first ones are
-/// as far apart for the colour-blind as in colours.
-pub const OUTCOMES: [Rgb; 7] = [
+/// as far apart for the colour-blind as in colours. Then ends of stick-slip: grazing, fold, period doubling, irregular,
+/// persists, never, lost.
+const OUTCOMES: [Rgb; 14] = [
     STABLE,
     Rgb(0xdf, 0xc2, 0x7d),
     Rgb(0x9e, 0x5a, 0x12),
@@ -34,6 +37,30 @@ pub const OUTCOMES: [Rgb; 7] = [
     Rgb(0x22, 0x22, 0x22),
     Rgb(0xb9, 0xb9, 0xb9),
     Rgb(0xe8, 0xe8, 0xe8),
+    Rgb(0x35, 0x97, 0x8f),
+    Rgb(0xdf, 0xc2, 0x7d),
+    Rgb(0xbf, 0x81, 0x2d),
+    Rgb(0x7a, 0x46, 0x08),
+    Rgb(0x22, 0x22, 0x22),
+    Rgb(0xd5, 0xee, 0xea),
+    Rgb(0x35, 0x97, 0x8f),
+];
+
+/// Working velocities that are stable, bistable, unstable, beyond a lift-off; undecided ones.
+const CLASSES: [Rgb; 5] = [
+    STABLE,
+    Rgb(0xc2, 0xe3, 0xf2),
+    Rgb(0xdf, 0xc2, 0x7d),
+    Rgb(0x2c, 0x4a, 0x7c),
+    NO_VALUE,
+];
+
+/// The critical velocity from one slip, from the orbit, from simulation; small counts from 0 on.
+const FEW: [Rgb; 4] = [
+    Rgb(0xc7, 0xea, 0xe5),
+    Rgb(0x35, 0x97, 0x8f),
+    Rgb(0xdf, 0xc2, 0x7d),
+    Rgb(0x7a, 0x46, 0x08),
 ];
 
 /// Viridis at nine equal steps.
@@ -92,14 +119,17 @@ pub fn of_count(n: f64) -> Rgb {
     }
 }
 
-/// The colour of the outcome with this number.
-pub fn of_outcome(number: f64) -> Rgb {
-    let place = if number >= 0.0 {
-        number as usize
-    } else {
-        OUTCOMES.len()
+/// The colour of the kind of `field` with this number, or of a small count.
+pub fn of_kind(field: Field, number: f64) -> Rgb {
+    let colours: &[Rgb] = match field {
+        Field::Outcome => &OUTCOMES,
+        Field::Class => &CLASSES,
+        _ => &FEW,
     };
-    OUTCOMES.get(place).copied().unwrap_or(NO_VALUE)
+    match number {
+        n if n.is_nan() => NO_VALUE,
+        n => colours[(n as usize).min(colours.len() - 1)],
+    }
 }
 
 /// The colour of `value` where ±`range` are the ends: brown below zero, teal above.

@@ -6,9 +6,9 @@ use super::page::Area;
 use super::scale::Scale;
 use super::scene::Scene;
 use super::text::{Rich, decimal_exponent, field_name, number, suffix};
-use crate::slip::outcome::Outcome;
 use crate::store::map_file::Plane;
 use crate::sweep::Field;
+use crate::sweep::field::Storage;
 
 /// Width of boundary lines.
 pub const BOUNDARY_WIDTH: f64 = 1.8;
@@ -20,13 +20,16 @@ pub const DECADES: i32 = 5;
 /// The longest relaxation time that has a colour of its own, in units of the shortest one.
 const LONGEST_RELAXATION: f64 = 100.0;
 
+/// The largest ratio of velocities, or of stick times, that are told apart.
+const LARGEST_RATIO: f64 = 1000.0;
+
 /// How values become colours.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Paint {
     /// A colour for each number of unstable roots.
     Counts,
-    /// A colour for each outcome.
-    Outcomes,
+    /// A colour for each kind of this field, or each of its small counts.
+    Kinds(Field),
     /// Two colours that meet at zero and are full at ±`range`; `stable` is the sign of the values on the stable side.
     Signed { range: f64, stable: f64 },
     /// From dark to light along a scale; infinite values are those of unstable cells.
@@ -39,7 +42,7 @@ impl Paint {
         let largest = finite().fold(0.0, f64::max);
         match field {
             Field::NUnstable => Self::Counts,
-            Field::Outcome => Self::Outcomes,
+            _ if matches!(field.storage(), Storage::Kind | Storage::Few) => Self::Kinds(field),
             Field::DelayMargin => Self::Signed {
                 range: symmetric_range(finite()),
                 stable: 1.0,
@@ -73,18 +76,23 @@ impl Paint {
                 range: 1.0,
                 stable: 1.0,
             },
-            Field::Limit(_)
-            | Field::Frequency(_)
-            | Field::CertificateMargin
-            | Field::NMin
-            | Field::PeakForce => Self::Sized(Scale::linear(0.0, rounded_up(largest))),
+            Field::Vc | Field::VLiftoff | Field::VSmooth | Field::StickTime => {
+                let positive = || finite().filter(|v| *v > 0.0);
+                let smallest = positive().fold(f64::INFINITY, f64::min);
+                let most = rounded_up(quantile(positive(), TOLD_APART));
+                Self::Sized(match smallest.max(most / LARGEST_RATIO) {
+                    least if least < 0.1 * most => Scale::logarithmic(least, most),
+                    _ => Scale::linear(0.0, most),
+                })
+            }
+            _ => Self::Sized(Scale::linear(0.0, rounded_up(largest))),
         }
     }
 
     fn colour(&self, value: f64) -> Rgb {
         match *self {
             Self::Counts => colour::of_count(value),
-            Self::Outcomes => colour::of_outcome(value),
+            Self::Kinds(field) => colour::of_kind(field, value),
             Self::Signed { range, stable } => colour::diverging(stable * value, range),
             Self::Sized(_) if value.is_nan() => NO_VALUE,
             Self::Sized(_) if value.is_infinite() => UNSTABLE[0],
@@ -95,7 +103,7 @@ impl Paint {
     /// The scale of the bar; none where a list says everything.
     fn scale(&self) -> Option<Scale> {
         match *self {
-            Self::Counts | Self::Outcomes => None,
+            Self::Counts | Self::Kinds(_) => None,
             Self::Signed { range, .. } => Some(Scale::linear(-range, range)),
             Self::Sized(scale) => Some(scale),
         }
@@ -108,15 +116,17 @@ impl Paint {
             entries.push((Swatch::Box(self.colour(value)), Rich::plain(&text)));
         };
         let (low, high) = match *self {
-            Self::Counts | Self::Outcomes => return entries,
+            Self::Counts | Self::Kinds(_) => return entries,
             Self::Signed { range, .. } => (-range, range),
             Self::Sized(scale) if scale.is_logarithmic() => (scale.value(0.0), scale.value(1.0)),
             Self::Sized(scale) => (f64::NEG_INFINITY, scale.value(1.0)),
         };
+        // Ends of a logarithmic bar are rounded.
+        let less = low - 1e-9 * low.abs();
         if values.iter().any(|&v| v > high && v.is_finite()) {
             entry(high, format!("{} or more", number(high)));
         }
-        if values.iter().any(|&v| v < low && v.is_finite()) {
+        if values.iter().any(|&v| v < less && v.is_finite()) {
             entry(low, format!("{} or less", number(low)));
         }
         for infinite in [f64::INFINITY, f64::NEG_INFINITY] {
@@ -150,7 +160,7 @@ impl Key {
         let paint = Paint::of(field, &values);
         let mut legend = match paint {
             Paint::Counts => counts(&values),
-            Paint::Outcomes => outcomes(&values),
+            Paint::Kinds(field) => kinds(field, &values),
             _ => Legend::default(),
         };
         legend.entries.extend(paint.beyond(field, &values));
@@ -246,17 +256,22 @@ fn counts(values: &[f64]) -> Legend {
     }
 }
 
-/// The outcomes that there are.
-fn outcomes(values: &[f64]) -> Legend {
-    let entries = Outcome::ALL.into_iter().enumerate();
-    let entries = entries.map(|(i, outcome)| (i as f64, outcome));
+/// The kinds that there are, or the small counts.
+fn kinds(field: Field, values: &[f64]) -> Legend {
+    let names = field.kinds().unwrap_or_default();
+    let most = values.iter().copied().fold(0.0, f64::max) as usize;
+    let name = |number: usize| {
+        names
+            .get(number)
+            .map_or(number.to_string(), |n| (*n).into())
+    };
     Legend {
-        heading: vec![Rich::plain("outcome")],
-        entries: entries
-            .filter(|(number, _)| values.contains(number))
-            .map(|(number, outcome)| {
-                let swatch = Swatch::Box(colour::of_outcome(number));
-                (swatch, Rich::plain(outcome.name()))
+        heading: vec![Rich::plain(&field.short_name())],
+        entries: (0..=most)
+            .filter(|number| values.contains(&(*number as f64)))
+            .map(|number| {
+                let swatch = Swatch::Box(colour::of_kind(field, number as f64));
+                (swatch, Rich::plain(&name(number)))
             })
             .collect(),
     }

@@ -10,7 +10,6 @@ use super::scale::Scale;
 use super::scene::{Mark, Point, Scene};
 use super::text::{Rich, axis_title, field_name, field_title, number, suffix};
 use super::view::View;
-use crate::slip::outcome::Outcome;
 use crate::store::map_file::MapAxis;
 use crate::store::{MapFile, StoreError};
 use crate::sweep::Field;
@@ -151,9 +150,12 @@ fn value_scale(field: Field, lines: &[Line]) -> Scale {
         }
         _ => {}
     }
-    if field.storage() == Storage::Kind {
-        let most = Outcome::ALL.len() as f64;
+    if let Some(kinds) = field.kinds() {
+        let most = kinds.len() as f64;
         return Scale::linear(-0.5, most - 0.5).with_smallest_step(1.0);
+    }
+    if field.storage() == Storage::Few {
+        return Scale::linear(-0.5, high + 0.5).with_smallest_step(1.0);
     }
     if field.storage() == Storage::Count {
         let high = f64::max(high, 2.0);
@@ -247,11 +249,10 @@ fn shade(panel: &Panel, line: &Line, scene: &mut Scene) {
 
 fn legend(map: &MapFile, view: &View, lines: &[Line]) -> Legend {
     let mut legend = Legend::default();
-    if lines.iter().any(|line| line.field == Field::Outcome) {
+    if let Some(kinds) = lines.iter().find_map(|line| line.field.kinds()) {
         // What the numbers on the axis mean.
-        let meaning =
-            |(i, outcome): (usize, Outcome)| Rich::plain(&format!("{i}: {}", outcome.name()));
-        legend.heading = Outcome::ALL.into_iter().enumerate().map(meaning).collect();
+        let meaning = |(i, kind): (usize, &str)| Rich::plain(&format!("{i}: {kind}"));
+        legend.heading = kinds.into_iter().enumerate().map(meaning).collect();
     }
     if let Some(axis) = view.along {
         let MapAxis {

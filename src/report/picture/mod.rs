@@ -67,11 +67,11 @@ pub enum PictureKind {
 /// How a map is drawn.
 #[derive(Debug, Clone, PartialEq)]
 pub struct PictureOptions {
-    /// The field to show; by default the outcome where the map holds it, else the spectral abscissa, else the number of
-    /// unstable roots.
+    /// The field to show; by default the class of v0 where the map holds it, else the critical velocity, the outcome, the
+    /// spectral abscissa, the number of unstable roots.
     pub field: Option<Field>,
-    /// The kind; by default boundaries where the map holds them for 2 to 12 values of one axis outside their plane, holds no
-    /// abscissa or outcome and no field is asked for, otherwise a heat map.
+    /// The kind; by default boundaries where the map holds them for 2 to 12 values of one axis outside their plane, holds none
+    /// of the first four and no field is asked for, otherwise a heat map.
     pub kind: Option<PictureKind>,
     /// Values at which axes are held: the nearest on the axis. Several for one axis make as many panels or colours.
     pub at: Vec<(Parameter, f64)>,
@@ -229,10 +229,10 @@ fn compose(map: &MapFile, options: &PictureOptions, most: usize) -> Result<Scene
     Ok(scene)
 }
 
-/// A field of the map that says more than where sliding is stable: what becomes of motions, or the rate at which
-/// disturbances decay.
+/// A field of the map that says more than where sliding is stable: what v0 is good for, the critical velocity, what becomes
+/// of motions, or the rate at which disturbances decay.
 fn says_more(map: &MapFile) -> Option<Field> {
-    let more = [Field::Outcome, Field::ABSCISSA];
+    let more = [Field::Class, Field::Vc, Field::Outcome, Field::ABSCISSA];
     more.into_iter().find(|field| map.fields().contains(field))
 }
 
@@ -262,6 +262,8 @@ fn no_curves(why: &'static str) -> PictureError {
 fn untitled(field: Field) -> &'static str {
     if field.of_limit() {
         "Critical velocity as the delay vanishes"
+    } else if field.of_vc() {
+        "The critical velocity"
     } else if field.of_motion() {
         "Motions of the block"
     } else {
@@ -425,10 +427,7 @@ mod tests {
     /// As a heat map and along a line, with cells without delay or control among them.
     #[test]
     fn every_field_is_drawn() {
-        let linear = || {
-            let all = Field::ALL.into_iter();
-            all.filter(|f| !f.of_motion() && !f.of_limit())
-        };
+        let linear = || Field::ALL.into_iter().filter(|f| f.of_sliding());
         let names: Vec<String> = linear().map(|f| format!("{:?}", f.name())).collect();
         let case = Case::new(&format!(
             "fields = [{}]\n[axes]\nalpha_n = [-1.5, -1.0, -0.5, 0.0]\ntau = [0.0, 0.3, 0.6, 0.9, 6.0]\n[fixed]\nmu_prime = -0.1",
@@ -476,6 +475,31 @@ mod tests {
         let bytes = case.draw("map.svg", &PictureOptions::default()).unwrap();
         let text = String::from_utf8(bytes).unwrap();
         for label in ["Motions of the block", "sliding", "stick-slip", "lift-off"] {
+            assert!(text.contains(label), "{label}");
+        }
+    }
+
+    /// As heat maps and along a line.
+    #[test]
+    fn fields_of_the_critical_velocity_are_drawn() {
+        let case = Case::new(
+            "fields = [\"n_unstable\", \"vc\", \"outcome\", \"method\", \"class\", \"windows\", \"v_liftoff\", \"stick_time\", \"v_smooth\"]\n\
+             [axes]\nmu_prime_rest = [-1, -0.5]\nalpha_n = [-9, 0, 2]\ntau = [0.4, 1]\n[fixed]\nv0 = 0.1\n\
+             [friction]\nlaw = \"weakening\"\nmu0 = 0.5\n",
+        );
+        for &field in case.map.fields() {
+            for at in [vec![], vec![(Parameter::Tau, 1.0)]] {
+                let options = PictureOptions {
+                    field: Some(field),
+                    at,
+                    ..PictureOptions::default()
+                };
+                case.draw("map.png", &options).unwrap();
+            }
+        }
+        let bytes = case.draw("map.svg", &PictureOptions::default()).unwrap();
+        let text = String::from_utf8(bytes).unwrap();
+        for label in ["The critical velocity", "bistable", "unstable", "boundary"] {
             assert!(text.contains(label), "{label}");
         }
     }

@@ -1,0 +1,233 @@
+//! The fields of the critical velocity: every cell's v_c is looked for, and a sample of them a second time.
+
+use std::sync::atomic::{AtomicBool, Ordering};
+
+use super::field::{Field, number_of_end};
+use super::parameter::{Parameter, Setting};
+use super::spec::SweepSpec;
+use super::vc::{self, Class, Found, Protocol, Search};
+use super::worker::{FEW_FILL, TileBuffers};
+use crate::critical::Problem;
+use crate::critical::switch_on::Phase;
+use crate::linear::MarginalTolerance;
+use crate::linear::status::{DISAGREE, NOT_CONVERGED, SAMPLED};
+use crate::model::ModelError;
+use crate::slip::case::CaseUnits;
+
+/// Fills the columns of one thread's tiles.
+pub(super) struct VcColumns {
+    search: Search,
+    tolerance: MarginalTolerance,
+    classed: bool,
+    smooth: bool,
+    /// The answers of the line looked at last. Lines that differ in nothing but v0 share them.
+    known: Vec<Option<Known>>,
+}
+
+/// An answer, and to what.
+struct Known {
+    problem: Problem,
+    units: CaseUnits,
+    phase: f64,
+    found: Found,
+}
+
+/// Where a line of cells is.
+#[derive(Clone, Copy)]
+pub(super) struct Cells {
+    /// In the buffers: the first cell, and the distance from cell to cell.
+    pub at: usize,
+    pub stride: usize,
+    /// In the whole map, all cells counted row by row: likewise.
+    pub first: u64,
+    pub step: u64,
+}
+
+/// What is stored of a cell.
+struct Cell<'f> {
+    found: &'f Found,
+    class: Option<Class>,
+    v_smooth: f64,
+    status: u8,
+}
+
+impl Cell<'_> {
+    fn value(&self, field: Field) -> Option<f64> {
+        let critical = &self.found.critical;
+        match field {
+            Field::Vc => Some(critical.vc),
+            Field::VLiftoff => Some(critical.v_liftoff),
+            Field::StickTime => Some(critical.stick_time),
+            Field::SlipTime => Some(critical.slip_time),
+            Field::VSmooth => Some(self.v_smooth),
+            _ => None,
+        }
+    }
+
+    fn number(&self, field: Field) -> Option<u8> {
+        match field {
+            Field::Outcome => Some(number_of_end(self.found.critical.end)),
+            Field::Method => Some(self.found.critical.method as u8),
+            Field::Class => self.class.map(|class| class as u8),
+            // More than that do not fit between the velocities that are tried.
+            Field::Windows => Some(self.found.windows.len().min(usize::from(FEW_FILL - 1)) as u8),
+            _ => None,
+        }
+    }
+}
+
+impl VcColumns {
+    /// For the fields of a sweep; none where none of them is of the critical velocity.
+    pub fn new(spec: &SweepSpec) -> Option<Self> {
+        Some(Self {
+            search: spec.critical?,
+            tolerance: spec.tolerance,
+            classed: spec.fields.contains(&Field::Class),
+            smooth: spec.fields.contains(&Field::VSmooth),
+            known: Vec::new(),
+        })
+    }
+
+    /// Looks for the critical velocities of a line at `setting` and at `delays`, into `buffers`. The status gains
+    /// [`NOT_CONVERGED`] where it stays unknown, [`SAMPLED`] and [`DISAGREE`]. After `stop` is set nothing more is looked for.
+    pub fn fill(
+        &mut self,
+        setting: &Setting,
+        delays: &[f64],
+        buffers: &mut TileBuffers,
+        cells: Cells,
+        stop: &AtomicBool,
+    ) {
+        let mut setting = setting.clone();
+        for (i, tau) in delays.iter().enumerate() {
+            if stop.load(Ordering::Relaxed) {
+                return;
+            }
+            setting.set(Parameter::Tau, *tau);
+            let place = cells.at + i * cells.stride;
+            let number = cells.first + i as u64 * cells.step;
+            match self.cell(&setting, i, number) {
+                Ok(cell) => store(&cell, buffers, place),
+                // The sweep's values were checked: what is refused here is beyond what can be followed.
+                Err(_) => store_nothing(buffers, place),
+            }
+        }
+    }
+
+    /// The cell at `setting`, the `i`-th of its line and the `number`-th of the map.
+    fn cell(&mut self, setting: &Setting, i: usize, number: u64) -> Result<Cell<'_>, ModelError> {
+        let (problem, units) = vc::problem(setting)?;
+        let protocol = match (self.search.protocol, setting.get(Parameter::SwitchOnPhase)) {
+            (Protocol::SwitchOn(Phase::After(_)), phase) if !phase.is_nan() => {
+                Protocol::SwitchOn(Phase::After(phase))
+            }
+            (protocol, _) => protocol,
+        };
+        let v0 = setting.get(Parameter::V0);
+        let (tolerance, classed, smooth) = (self.tolerance, self.classed, self.smooth);
+        let sampled = is_sampled(number, self.search.verify);
+        let at = (&problem, &units);
+        let found = self.found(at, protocol, setting.get(Parameter::SwitchOnPhase), i);
+        let vc = found.critical.vc;
+        let mut status = if found.critical.decided {
+            0
+        } else {
+            NOT_CONVERGED
+        };
+        if sampled {
+            status |= SAMPLED;
+            if !vc::simulation_agrees(&problem, &units, &found.critical) {
+                status |= DISAGREE;
+            }
+        }
+        Ok(Cell {
+            class: classed.then(|| Class::at(v0, at, (protocol, found), tolerance)),
+            v_smooth: match smooth {
+                true => vc::v_smooth(at, vc, protocol.v_max()),
+                false => f64::NAN,
+            },
+            found,
+            status,
+        })
+    }
+
+    /// The answer to a problem, the `i`-th of its line.
+    fn found(
+        &mut self,
+        (problem, units): (&Problem, &CaseUnits),
+        protocol: Protocol,
+        phase: f64,
+        i: usize,
+    ) -> &Found {
+        if self.known.len() <= i {
+            self.known.resize_with(i + 1, || None);
+        }
+        let known = &mut self.known[i];
+        let same = |k: &Known| {
+            k.problem == *problem && k.units == *units && k.phase.to_bits() == phase.to_bits()
+        };
+        if known.as_ref().is_some_and(|k| !same(k)) {
+            *known = None;
+        }
+        let known = known.get_or_insert_with(|| Known {
+            problem: problem.clone(),
+            units: *units,
+            phase,
+            found: vc::find_in(problem, units, protocol),
+        });
+        &known.found
+    }
+}
+
+fn store(cell: &Cell, buffers: &mut TileBuffers, place: usize) {
+    buffers.status[place] |= cell.status;
+    for column in &mut buffers.kinds {
+        if let Some(number) = cell.number(column.field) {
+            column.cells[place] = number;
+        }
+    }
+    for column in &mut buffers.columns {
+        if let Some(value) = cell.value(column.field) {
+            column.cells[place] = value;
+        }
+    }
+}
+
+fn store_nothing(buffers: &mut TileBuffers, place: usize) {
+    buffers.status[place] |= NOT_CONVERGED;
+    for column in buffers.kinds.iter_mut() {
+        column.cells[place] = FEW_FILL;
+    }
+    for column in buffers.columns.iter_mut().filter(|c| c.field.of_vc()) {
+        column.cells[place] = f64::NAN;
+    }
+}
+
+/// Whether a cell belongs to the sample of `share` of all cells: by its number alone.
+fn is_sampled(number: u64, share: f64) -> bool {
+    (mixed(number) >> 11) as f64 * 2_f64.powi(-53) < share
+}
+
+/// SplitMix64's finalizer: neighbouring numbers become unrelated ones.
+fn mixed(number: u64) -> u64 {
+    let mut z = number.wrapping_add(0x9e37_79b9_7f4a_7c15);
+    z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+    z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+    z ^ (z >> 31)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn samples_have_their_share() {
+        for share in [0.0, 0.004, 0.3, 1.0] {
+            let sampled = (0..100_000).filter(|&n| is_sampled(n, share)).count() as f64;
+            assert!(
+                (sampled / 1e5 - share).abs() < 1e-3 + 0.02 * share,
+                "{share}: {sampled}"
+            );
+        }
+    }
+}
