@@ -211,6 +211,7 @@ impl Args {
         let top = found.top();
         let outcome = match top {
             None if found.v_liftoff.is_some() => "lift-off",
+            None if !found.decided => "undecided",
             None => "never",
             Some(top) if top >= largest * (1.0 - 1e-9) => "persists",
             Some(_) => "lost",

@@ -103,6 +103,8 @@ pub struct Followed {
     pub lost: Option<Sustained>,
     /// The smallest N on the way.
     pub n_min: f64,
+    /// Whether the search came to its end: to the end of the range, or to two v0 as near as asked for.
+    pub complete: bool,
 }
 
 /// Follows stick-slip of `problem` from low v0 on.
@@ -123,6 +125,7 @@ pub fn critical_velocity(problem: &Problem, pace: &Pace, accuracy: Accuracy) -> 
         last: None,
         lost,
         n_min: lost.map_or(f64::NAN, |l| l.summary.n_min),
+        complete: true,
     }
 }
 
@@ -177,8 +180,10 @@ fn raise(problem: &Problem, mut motion: Motion, first: Sustained, pace: &Pace) -
     let mut n_min = first.summary.n_min;
     let mut most = pace.first;
     let end = pace.v_max * problem.law.mu_s();
+    let mut complete = false;
     for _ in 0..MOST_TRIALS {
         if last.v0 >= end {
+            complete = true;
             break;
         }
         let step = expected_step(before, &last).clamp(pace.last, most.max(pace.last));
@@ -195,6 +200,7 @@ fn raise(problem: &Problem, mut motion: Motion, first: Sustained, pace: &Pace) -
             lost = Some(there);
             most = 0.5 * step;
             if step <= pace.last {
+                complete = true;
                 break;
             }
         }
@@ -203,6 +209,7 @@ fn raise(problem: &Problem, mut motion: Motion, first: Sustained, pace: &Pace) -
         last: Some(last),
         lost,
         n_min,
+        complete,
     }
 }
 

@@ -116,6 +116,10 @@ impl<'p> Trials<'p> {
     /// Survives if it does at one phase; else what is told first of: lift-off, undecided, the end.
     fn worst(&mut self, v0: f64, phases: u32) -> Survival {
         let (mut worst, period) = self.once(v0, 0.0);
+        if period.is_nan() {
+            // Without an uncontrolled cycle there are no phases.
+            return worst;
+        }
         for i in 1..phases {
             if matches!(worst, Survival::Survives | Survival::NoStickSlip) {
                 return worst;
@@ -180,6 +184,7 @@ pub fn windows(problem: &Problem, phase: Phase, scan: &Scan, accuracy: Accuracy)
         decided: true,
     };
     let mut before = (v0(0), trials.at(v0(0)));
+    found.decided = before.1 != Survival::Undecided;
     let mut open = (before.1 == Survival::Survives).then_some(before.0);
     for i in 1..points {
         let here = (v0(i), trials.at(v0(i)));
