@@ -169,6 +169,27 @@ fn survival_at_the_stop_is_re_entrant() {
     }
 }
 
+/// A delay of too many cycles has no phases: nothing survives there by default.
+#[test]
+fn the_worst_phase_of_a_delay_too_long_is_undecided() {
+    let problem = letters(0.0, -10.0, 1e8);
+    for phase in [Phase::After(0.0), Phase::Worst(4)] {
+        let mut trials = Trials::new(&problem, phase, tolerance(1e-9), 50_000);
+        assert_eq!(trials.at(0.35), Survival::Undecided, "{phase:?}");
+    }
+}
+
+/// A search that is cut off says so.
+#[test]
+fn a_search_of_too_many_trials_is_undecided() {
+    let pace = Pace {
+        first: 1e-3,
+        ..Pace::default()
+    };
+    let found = by_simulation(&fig3a(), &pace, tolerance(1e-9));
+    assert!(!found.decided, "{found:?}");
+}
+
 /// `SLIPMAP_CASES` asks for more than a few.
 fn cases(default: usize) -> usize {
     let asked = std::env::var("SLIPMAP_CASES").ok();

@@ -5,6 +5,7 @@ use std::io::Write;
 
 use clap::ValueEnum;
 use serde::Serialize;
+use slipmap::critical::End;
 use slipmap::critical::switch_on::Phase;
 use slipmap::sweep::Setting;
 use slipmap::sweep::limit_columns::{LimitCell, LimitField};
@@ -121,7 +122,11 @@ fn found(setting: &Setting, protocol: vc::Protocol) -> Result<Found, Failure> {
     Ok(Found {
         vc: finite(critical.vc),
         protocol: protocol.name(),
-        outcome: critical.end.name(),
+        // Not told at some v0, and no stick-slip at the others.
+        outcome: match critical.end {
+            End::Never if !critical.decided => "undecided",
+            end => end.name(),
+        },
         windows: found.windows,
         v_liftoff: finite(critical.v_liftoff),
         stick_time: finite(critical.stick_time),

@@ -3,7 +3,7 @@
 use crate::slip::motion::{Event, Mode, Motion};
 
 /// The most steps of a cycle.
-const MOST_STEPS: u32 = 20_000;
+const MOST_STEPS: u32 = 5_000;
 /// How far from its expected time a minimum of ẋ still is the expected one, relative.
 const SAME_MINIMUM: f64 = 0.25;
 /// A slip that lasts that many times as long as expected has missed its stop.

@@ -20,6 +20,8 @@ pub struct Pace {
     pub repeated: f64,
     /// The most steps of the integrator at one v0.
     pub steps: u64,
+    /// The most at all v0 together: some seconds.
+    pub total_steps: u64,
 }
 
 impl Default for Pace {
@@ -30,6 +32,7 @@ impl Default for Pace {
             last: 1e-6,
             v_max: 100.0,
             steps: 50_000,
+            total_steps: 3_000_000,
         }
     }
 }
@@ -103,6 +106,8 @@ pub struct Followed {
     pub lost: Option<Sustained>,
     /// The smallest N on the way.
     pub n_min: f64,
+    /// Whether the search came to its end: to the end of the range, or to two v0 as near as asked for.
+    pub complete: bool,
 }
 
 /// Follows stick-slip of `problem` from low v0 on.
@@ -123,6 +128,7 @@ pub fn critical_velocity(problem: &Problem, pace: &Pace, accuracy: Accuracy) -> 
         last: None,
         lost,
         n_min: lost.map_or(f64::NAN, |l| l.summary.n_min),
+        complete: true,
     }
 }
 
@@ -177,15 +183,24 @@ fn raise(problem: &Problem, mut motion: Motion, first: Sustained, pace: &Pace) -
     let mut n_min = first.summary.n_min;
     let mut most = pace.first;
     let end = pace.v_max * problem.law.mu_s();
+    let mut complete = false;
+    let mut spent = first.summary.steps;
     for _ in 0..MOST_TRIALS {
         if last.v0 >= end {
+            complete = true;
             break;
         }
         let step = expected_step(before, &last).clamp(pace.last, most.max(pace.last));
         trial.copy_from(&motion);
         trial.set_v0((last.v0 * (1.0 + step)).min(end));
         let there = hold(problem, &mut trial, pace);
-        if there.persists() {
+        spent += there.summary.steps;
+        if spent > pace.total_steps {
+            break;
+        }
+        if there.persists() && jumped(&last, &there, step) {
+            most = 0.5 * step;
+        } else if there.persists() {
             motion.copy_from(&trial);
             n_min = n_min.min(there.summary.n_min);
             lost = lost.filter(|lost| lost.v0 > there.v0);
@@ -195,6 +210,7 @@ fn raise(problem: &Problem, mut motion: Motion, first: Sustained, pace: &Pace) -
             lost = Some(there);
             most = 0.5 * step;
             if step <= pace.last {
+                complete = true;
                 break;
             }
         }
@@ -203,7 +219,28 @@ fn raise(problem: &Problem, mut motion: Motion, first: Sustained, pace: &Pace) -
         last: Some(last),
         lost,
         n_min,
+        complete,
     }
+}
+
+/// Steps below this, relative, carry a motion along its attractor.
+const CAREFUL: f64 = 0.02;
+/// The largest step where cycles do not show whether it is the same attractor.
+const LARGEST_UNSEEN: f64 = 0.1;
+
+/// Whether a step of v0 may have thrown the motion from one kind of stick-slip to another: its cycle or its slip changed by more than
+/// such a step explains.
+fn jumped(last: &Sustained, there: &Sustained, step: f64) -> bool {
+    if step <= CAREFUL {
+        return false;
+    }
+    if !(last.simple() && there.simple()) {
+        return step > LARGEST_UNSEEN;
+    }
+    let (before, after) = (&last.summary, &there.summary);
+    let period = after.period / before.period;
+    let slip = after.slip_time / before.slip_time;
+    !(0.8 / (1.0 + step)..=1.25).contains(&period) || !(0.8..=1.4).contains(&slip)
 }
 
 /// The relative step to most of the way to where the depth of the stops is expected to vanish.

@@ -239,7 +239,7 @@ pub fn by_simulation(problem: &Problem, pace: &Pace, accuracy: Accuracy) -> Crit
     let followed = follow::critical_velocity(problem, pace, accuracy);
     let method = Method::Simulation;
     let undecided = |lost: &Sustained| lost.fate == Fate::Lost(Outcome::Undecided);
-    let decided = !followed.lost.as_ref().is_some_and(undecided);
+    let decided = followed.complete && !followed.lost.as_ref().is_some_and(undecided);
     match (followed.last, followed.lost) {
         (_, Some(lost)) if lost.fate == Fate::LiftOff => of_lift_off(lost.v0, method),
         (None, _) => Critical {
@@ -255,7 +255,8 @@ pub fn by_simulation(problem: &Problem, pace: &Pace, accuracy: Accuracy) -> Crit
             };
             Critical {
                 vc: if lost.is_some() { last.v0 } else { f64::NAN },
-                stick_time: last.summary.stick_time - longer,
+                // Rounding can leave less than none of a stick that vanishes.
+                stick_time: last.summary.stick_time - longer.min(last.summary.stick_time),
                 slip_time: last.summary.slip_time + longer,
                 n_min: last.summary.n_min,
                 decided,

@@ -29,6 +29,8 @@ pub struct Scan {
     pub precision: f64,
     /// The most steps of the integrator at one v0.
     pub steps: u64,
+    /// The most at all v0 together, some seconds: the scan ends there, undecided.
+    pub total_steps: u64,
 }
 
 impl Default for Scan {
@@ -39,6 +41,7 @@ impl Default for Scan {
             points: 401,
             precision: 1e-7,
             steps: 50_000,
+            total_steps: 5_000_000,
         }
     }
 }
@@ -77,6 +80,9 @@ impl Windows {
     }
 }
 
+/// About how many steps an uncontrolled cycle takes.
+const STEPS_OF_A_CYCLE: u64 = 40;
+
 /// Tries one v0 after the other in the memory of one motion.
 pub struct Trials<'p> {
     problem: &'p Problem,
@@ -84,6 +90,8 @@ pub struct Trials<'p> {
     accuracy: Accuracy,
     phase: Phase,
     steps: u64,
+    /// Steps taken, those of uncontrolled cycles at a guess.
+    spent: u64,
 }
 
 impl<'p> Trials<'p> {
@@ -96,6 +104,7 @@ impl<'p> Trials<'p> {
             accuracy,
             phase,
             steps,
+            spent: 0,
         }
     }
 
@@ -116,6 +125,10 @@ impl<'p> Trials<'p> {
     /// Survives if it does at one phase; else what is told first of: lift-off, undecided, the end.
     fn worst(&mut self, v0: f64, phases: u32) -> Survival {
         let (mut worst, period) = self.once(v0, 0.0);
+        if period.is_nan() {
+            // Without an uncontrolled cycle there are no phases.
+            return worst;
+        }
         for i in 1..phases {
             if matches!(worst, Survival::Survives | Survival::NoStickSlip) {
                 return worst;
@@ -149,6 +162,8 @@ impl<'p> Trials<'p> {
             cycles: usize::MAX,
         };
         let summary = follow(&mut self.motion, &limits, &mut ());
+        let cycles = 1.0 + self.problem.tau / cycle.period();
+        self.spent += summary.steps + STEPS_OF_A_CYCLE * cycles as u64;
         let end = self.motion.t;
         let survival = match summary.outcome {
             Outcome::StickSlip => Survival::Survives,
@@ -180,8 +195,13 @@ pub fn windows(problem: &Problem, phase: Phase, scan: &Scan, accuracy: Accuracy)
         decided: true,
     };
     let mut before = (v0(0), trials.at(v0(0)));
+    found.decided = before.1 != Survival::Undecided;
     let mut open = (before.1 == Survival::Survives).then_some(before.0);
     for i in 1..points {
+        if trials.spent > scan.total_steps {
+            found.decided = false;
+            break;
+        }
         let here = (v0(i), trials.at(v0(i)));
         found.decided &= here.1 != Survival::Undecided;
         if (before.1 == Survival::Survives) != (here.1 == Survival::Survives) {

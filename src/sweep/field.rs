@@ -449,7 +449,7 @@ impl Field {
     /// True for fields of linear stability at v0 or at a given slope.
     #[must_use]
     pub const fn of_sliding(self) -> bool {
-        !self.of_motion() && !self.of_vc()
+        !self.of_motion() && !self.of_vc() && !self.of_limit()
     }
 
     /// True for fields of the motion of the block, which need a friction law and depend on its start.

@@ -149,6 +149,7 @@ fn switched_on(found: Windows, v_max: f64, velocity: f64) -> Found {
     let top = found.top();
     let (vc, end) = match top {
         None if found.v_liftoff.is_some() => (f64::NAN, End::LiftOff),
+        None if !found.decided => (f64::NAN, End::Never),
         None => (0.0, End::Never),
         Some(top) if top >= v_max * (1.0 - 1e-9) => (f64::NAN, End::Persists),
         Some(top) => (top, End::Lost),
