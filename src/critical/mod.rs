@@ -179,6 +179,8 @@ pub struct Critical {
     pub decided: bool,
 }
 
+/// v_c by a graze is known to about this, relative.
+pub const GRAZE_PRECISION: f64 = 1e-4;
 /// Error allowed in a step on the way to a graze.
 const GRAZE_TOLERANCE: f64 = 1e-6;
 /// Error allowed in a step where stick-slip is followed.
@@ -239,7 +241,10 @@ pub fn by_simulation(problem: &Problem, pace: &Pace, accuracy: Accuracy) -> Crit
     let followed = follow::critical_velocity(problem, pace, accuracy);
     let method = Method::Simulation;
     let undecided = |lost: &Sustained| lost.fate == Fate::Lost(Outcome::Undecided);
-    let decided = followed.complete && !followed.lost.as_ref().is_some_and(undecided);
+    let vanishing = |last: &Sustained| last.summary.stick_time < VANISHING;
+    let decided = followed.complete
+        && !followed.lost.as_ref().is_some_and(undecided)
+        && !followed.last.as_ref().is_some_and(vanishing);
     match (followed.last, followed.lost) {
         (_, Some(lost)) if lost.fate == Fate::LiftOff => of_lift_off(lost.v0, method),
         (None, _) => Critical {
@@ -266,6 +271,8 @@ pub fn by_simulation(problem: &Problem, pace: &Pace, accuracy: Accuracy) -> Crit
     }
 }
 
+/// Sticks shorter than this, over √(M/κ), are lost to rounding as v0 grows: what they end in is not told.
+const VANISHING: f64 = 1e-6;
 /// Depth of a stop, over v0, below which it is a graze.
 const GRAZING: f64 = 1e-3;
 

@@ -3,7 +3,9 @@
 use super::parameter::{Parameter, Setting};
 use crate::critical::follow::Pace;
 use crate::critical::switch_on::{self, Phase, Scan, Survival, Trials, Windows};
-use crate::critical::{Critical, End, Method, Problem, by_simulation, critical_velocity};
+use crate::critical::{
+    Critical, End, GRAZE_PRECISION, Method, Problem, by_simulation, critical_velocity,
+};
 use crate::linear::{Crossings, MarginalTolerance};
 use crate::model::ModelError;
 use crate::slip::case::CaseUnits;
@@ -50,7 +52,7 @@ impl Protocol {
     #[must_use]
     pub fn precision(self) -> f64 {
         match self {
-            Self::Follow => Pace::default().last,
+            Self::Follow => GRAZE_PRECISION,
             Self::SwitchOn(_) => Scan::default().precision,
         }
     }

@@ -259,7 +259,8 @@ fn counts(values: &[f64]) -> Legend {
 /// The kinds that there are, or the small counts.
 fn kinds(field: Field, values: &[f64]) -> Legend {
     let names = field.kinds().unwrap_or_default();
-    let most = values.iter().copied().fold(0.0, f64::max) as usize;
+    let finite = values.iter().copied().filter(|v| v.is_finite());
+    let most = finite.fold(0.0, f64::max) as usize;
     let name = |number: usize| {
         names
             .get(number)
