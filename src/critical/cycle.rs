@@ -42,7 +42,7 @@ pub enum Ride {
 /// `expected` is the duration of the slip from which the block is expected to stop, if one is known.
 pub fn ride(motion: &mut Motion, expected: Option<f64>, slip_only: bool) -> Ride {
     let start = motion.t;
-    let mut stopped: Option<(f64, (f64, f64))> = None;
+    let mut stopped: Option<(f64, Cycle)> = None;
     let mut n_min = f64::INFINITY;
     for _ in 0..MOST_STEPS {
         let before = motion.t;
@@ -55,26 +55,23 @@ pub fn ride(motion: &mut Motion, expected: Option<f64>, slip_only: bool) -> Ride
             (Some(Event::LiftOff), _) => return Ride::LiftOff,
             (Some(Event::Stick), None) => {
                 let (to_minimum, depth) = motion.last_step().minimum_beyond_stop();
-                stopped = Some((motion.t, (to_minimum, depth)));
-                if slip_only {
-                    return Ride::Cycle(Cycle {
-                        depth,
-                        to_minimum,
-                        slip: motion.t - start,
-                        stick: f64::NAN,
-                        n_min,
-                    });
-                }
-            }
-            (Some(Event::Release), Some((stop, (to_minimum, depth))))
-                if motion.mode() == Mode::Forwards =>
-            {
-                return Ride::Cycle(Cycle {
+                let cycle = Cycle {
                     depth,
                     to_minimum,
-                    slip: stop - start,
+                    slip: motion.t - start,
+                    stick: f64::NAN,
+                    n_min,
+                };
+                if slip_only {
+                    return Ride::Cycle(cycle);
+                }
+                stopped = Some((motion.t, cycle));
+            }
+            (Some(Event::Release), Some((stop, cycle))) if motion.mode() == Mode::Forwards => {
+                return Ride::Cycle(Cycle {
                     stick: motion.t - stop,
                     n_min,
+                    ..cycle
                 });
             }
             (Some(_), _) => return Ride::Other,

@@ -104,8 +104,6 @@ pub struct Followed {
     pub last: Option<Sustained>,
     /// The smallest v0, above it, at which it does not; none where it persists to the end of the range.
     pub lost: Option<Sustained>,
-    /// The smallest N on the way.
-    pub n_min: f64,
     /// Whether the search came to its end: to the end of the range, or to two v0 as near as asked for.
     pub complete: bool,
 }
@@ -127,7 +125,6 @@ pub fn critical_velocity(problem: &Problem, pace: &Pace, accuracy: Accuracy) -> 
     Followed {
         last: None,
         lost,
-        n_min: lost.map_or(f64::NAN, |l| l.summary.n_min),
         complete: true,
     }
 }
@@ -147,11 +144,9 @@ const MOST_TRIALS: u32 = 400;
 /// Follows the motion at its v0 until its fate is known.
 fn hold(problem: &Problem, motion: &mut Motion, pace: &Pace) -> Sustained {
     let v0 = motion.parameters().v0;
-    let natural = 600.0 + 20.0 * problem.tau;
-    let longest_cycle = 2.0 * problem.law.mu_s() / v0 + 10.0;
     let start = motion.t;
     let limits = Limits {
-        horizon: start + natural + 30.0 * longest_cycle,
+        horizon: start + problem.patience(v0),
         steps: pace.steps,
         stable_abscissa: problem.stable_abscissa(v0),
         repeated: pace.repeated,
@@ -180,7 +175,6 @@ fn raise(problem: &Problem, mut motion: Motion, first: Sustained, pace: &Pace) -
     let mut trial = motion.clone();
     let (mut before, mut last) = (None, first);
     let mut lost: Option<Sustained> = None;
-    let mut n_min = first.summary.n_min;
     let mut most = pace.first;
     let end = pace.v_max * problem.law.mu_s();
     let mut complete = false;
@@ -202,7 +196,6 @@ fn raise(problem: &Problem, mut motion: Motion, first: Sustained, pace: &Pace) -
             most = 0.5 * step;
         } else if there.persists() {
             motion.copy_from(&trial);
-            n_min = n_min.min(there.summary.n_min);
             lost = lost.filter(|lost| lost.v0 > there.v0);
             (before, last) = (Some(last), there);
             most = (2.0 * most).min(pace.first);
@@ -218,7 +211,6 @@ fn raise(problem: &Problem, mut motion: Motion, first: Sustained, pace: &Pace) -
     Followed {
         last: Some(last),
         lost,
-        n_min,
         complete,
     }
 }

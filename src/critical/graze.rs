@@ -162,15 +162,12 @@ fn by_one_slip(problem: &Problem, accuracy: Accuracy) -> Option<Found> {
     if (cycle.slip / slip - 1.0).abs() > SAME_SLIP {
         return None;
     }
-    road.motion.set_v0(v0 * (1.0 + PRECISION));
-    if !slides(problem, &mut road.motion, slip) {
-        return Some(Found::Unclear);
-    }
-    Some(Found::Graze(Graze {
+    let graze = Graze {
         v0,
         cycle,
         method: Method::GrazeSlip,
-    }))
+    };
+    Some(if_it_ends(problem, &mut road.motion, slip, graze))
 }
 
 /// The second road.
@@ -204,15 +201,22 @@ fn finish(problem: &Problem, road: &mut Orbit, v0: f64, slip: f64) -> Found {
         return Found::Unclear;
     }
     road.keep();
-    road.kept.set_v0(v0 * (1.0 + PRECISION));
-    if !slides(problem, &mut road.kept, slip) {
-        return Found::Unclear;
-    }
-    Found::Graze(Graze {
+    let graze = Graze {
         v0,
         cycle,
         method: Method::GrazeOrbit,
-    })
+    };
+    if_it_ends(problem, &mut road.kept, slip, graze)
+}
+
+/// The graze, if just beyond it a block that is released now comes to slide.
+fn if_it_ends(problem: &Problem, motion: &mut Motion, slip: f64, graze: Graze) -> Found {
+    motion.set_v0(graze.v0 * (1.0 + PRECISION));
+    if slides(problem, motion, slip) {
+        Found::Graze(graze)
+    } else {
+        Found::Unclear
+    }
 }
 
 /// How a climb towards a graze ended.

@@ -51,6 +51,12 @@ impl Problem {
         }
     }
 
+    /// How long to wait for a motion's outcome at `v0`: transients, many delays, and thirty of the longest cycles.
+    fn patience(&self, v0: f64) -> f64 {
+        let longest_cycle = 2.0 * self.law.mu_s() / v0 + 10.0;
+        600.0 + 20.0 * self.tau + 30.0 * longest_cycle
+    }
+
     /// The groups of linear stability at `v0`.
     #[must_use]
     pub fn groups(&self, v0: f64) -> Groups {
@@ -189,14 +195,10 @@ const FOLLOW_TOLERANCE: f64 = 1e-9;
 /// The largest v0 at which stick-slip of `problem` persists while v0 is raised from low values: protocol `follow`.
 #[must_use]
 pub fn critical_velocity(problem: &Problem) -> Critical {
-    let accuracy = |tolerance| Accuracy {
-        tolerance,
-        ..Accuracy::default()
-    };
-    match graze::find(problem, accuracy(GRAZE_TOLERANCE)) {
+    match graze::find(problem, Accuracy::of(GRAZE_TOLERANCE)) {
         Found::Graze(graze) => of_graze(&graze),
         Found::LiftOff(v0, method) => of_lift_off(v0, method),
-        Found::Unclear => by_simulation(problem, &Pace::default(), accuracy(FOLLOW_TOLERANCE)),
+        Found::Unclear => by_simulation(problem, &Pace::default(), Accuracy::of(FOLLOW_TOLERANCE)),
     }
 }
 

@@ -153,9 +153,8 @@ impl<'p> Trials<'p> {
             Err(NoCycle::NoStickSlip) => return (Survival::NoStickSlip, f64::NAN),
             Err(NoCycle::LongDelay) => return (Survival::Undecided, f64::NAN),
         };
-        let longest_cycle = 2.0 * self.problem.law.mu_s() / v0 + 10.0;
         let limits = Limits {
-            horizon: cycle.period() + 600.0 + 20.0 * self.problem.tau + 30.0 * longest_cycle,
+            horizon: cycle.period() + self.problem.patience(v0),
             steps: self.steps,
             stable_abscissa: self.problem.stable_abscissa(v0),
             repeated: 1e-6,

@@ -73,6 +73,17 @@ pub struct Accuracy {
     pub step_on_kinks: bool,
 }
 
+impl Accuracy {
+    /// Of this tolerance.
+    #[must_use]
+    pub fn of(tolerance: f64) -> Self {
+        Self {
+            tolerance,
+            ..Self::default()
+        }
+    }
+}
+
 impl Default for Accuracy {
     fn default() -> Self {
         Self {

@@ -124,7 +124,7 @@ pub fn find_in(problem: &Problem, units: &CaseUnits, protocol: Protocol) -> Foun
     match protocol {
         Protocol::Follow => followed(&in_units(&critical_velocity(problem), units)),
         Protocol::SwitchOn(phase) => {
-            let accuracy = accuracy(SWITCH_ON_ACCURACY);
+            let accuracy = Accuracy::of(SWITCH_ON_ACCURACY);
             let scan = Scan::default();
             let phase = in_motion_units(phase, units);
             let windows = switch_on::windows(problem, phase, &scan, accuracy);
@@ -191,13 +191,6 @@ fn in_motion_units(phase: Phase, units: &CaseUnits) -> Phase {
     }
 }
 
-fn accuracy(tolerance: f64) -> Accuracy {
-    Accuracy {
-        tolerance,
-        ..Accuracy::default()
-    }
-}
-
 /// First step of v0 and error of a step of the integrator where a cell is recomputed: other ones than where it was computed.
 const SAMPLE_FIRST: f64 = 0.35;
 const SAMPLE_ACCURACY: f64 = 1e-10;
@@ -212,7 +205,7 @@ pub fn simulation_agrees(problem: &Problem, units: &CaseUnits, found: &Critical)
         first: SAMPLE_FIRST,
         ..Pace::default()
     };
-    let again = by_simulation(problem, &pace, accuracy(SAMPLE_ACCURACY));
+    let again = by_simulation(problem, &pace, Accuracy::of(SAMPLE_ACCURACY));
     let again = in_units(&again, units);
     let near = |a: f64, b: f64| a.is_nan() && b.is_nan() || (a - b).abs() <= AGREEMENT * a.abs();
     found.end == again.end && near(found.vc, again.vc) && near(found.v_liftoff, again.v_liftoff)
@@ -278,7 +271,7 @@ impl Class {
             }
             Protocol::SwitchOn(phase) => {
                 let phase = in_motion_units(phase, units);
-                let accuracy = accuracy(SWITCH_ON_ACCURACY);
+                let accuracy = Accuracy::of(SWITCH_ON_ACCURACY);
                 let steps = Scan::default().steps;
                 match Trials::new(problem, phase, accuracy, steps).at(speed) {
                     Survival::Survives => Self::Bistable,

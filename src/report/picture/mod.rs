@@ -455,15 +455,10 @@ mod tests {
         assert!(text.contains("spectral abscissa") && text.contains("stable below 0"));
     }
 
-    /// As heat maps and along a line.
-    #[test]
-    fn fields_of_motions_are_drawn() {
-        let case = Case::new(
-            "fields = [\"outcome\", \"settle_time\", \"n_min\", \"peak_force\"]\n[axes]\na0 = [-0.4, 0.6, 1]\nx_dot0 = [0.1, 0.7]\n\
-             [fixed]\nv0 = 0.118\nalpha_n = -7\ntau = 1\n[friction]\nlaw = \"weakening\"\nmu0 = 0.5\nv_s = 0.5\n",
-        );
+    /// As heat maps, and along a line at a value of one axis.
+    fn draw_every_field(case: &Case, line: (Parameter, f64)) {
         for &field in case.map.fields() {
-            for at in [vec![], vec![(Parameter::XDot0, 0.1)]] {
+            for at in [vec![], vec![line]] {
                 let options = PictureOptions {
                     field: Some(field),
                     at,
@@ -472,6 +467,15 @@ mod tests {
                 case.draw("map.png", &options).unwrap();
             }
         }
+    }
+
+    #[test]
+    fn fields_of_motions_are_drawn() {
+        let case = Case::new(
+            "fields = [\"outcome\", \"settle_time\", \"n_min\", \"peak_force\"]\n[axes]\na0 = [-0.4, 0.6, 1]\nx_dot0 = [0.1, 0.7]\n\
+             [fixed]\nv0 = 0.118\nalpha_n = -7\ntau = 1\n[friction]\nlaw = \"weakening\"\nmu0 = 0.5\nv_s = 0.5\n",
+        );
+        draw_every_field(&case, (Parameter::XDot0, 0.1));
         let bytes = case.draw("map.svg", &PictureOptions::default()).unwrap();
         let text = String::from_utf8(bytes).unwrap();
         for label in ["Motions of the block", "sliding", "stick-slip", "lift-off"] {
@@ -479,7 +483,6 @@ mod tests {
         }
     }
 
-    /// As heat maps and along a line.
     #[test]
     fn fields_of_the_critical_velocity_are_drawn() {
         let case = Case::new(
@@ -487,16 +490,7 @@ mod tests {
              [axes]\nmu_prime_rest = [-1, -0.5]\nalpha_n = [-9, 0, 2]\ntau = [0.4, 1]\n[fixed]\nv0 = 0.1\n\
              [friction]\nlaw = \"weakening\"\nmu0 = 0.5\n",
         );
-        for &field in case.map.fields() {
-            for at in [vec![], vec![(Parameter::Tau, 1.0)]] {
-                let options = PictureOptions {
-                    field: Some(field),
-                    at,
-                    ..PictureOptions::default()
-                };
-                case.draw("map.png", &options).unwrap();
-            }
-        }
+        draw_every_field(&case, (Parameter::Tau, 1.0));
         let bytes = case.draw("map.svg", &PictureOptions::default()).unwrap();
         let text = String::from_utf8(bytes).unwrap();
         for label in ["The critical velocity", "unstable", "boundary"] {
