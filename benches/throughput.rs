@@ -5,19 +5,22 @@
 //! 2. The same on one thread and on all.
 //! 3. A whole `run` of a 10⁹-cell count map, against writing the same bytes uncompressed to the same disk, both synced.
 //!
+//! 4. Tiles on disk, checked and put together, against pieces in memory: for the count map and for a map of decay rates.
+//!
 //! Alternatives take turns, and medians are printed: machines drift. `SLIPMAP_BENCH_CELLS=100` makes a 100³ grid.
 
 use std::fs::File;
 use std::io::Write;
 use std::path::Path;
+use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::time::Instant;
 
+use slipmap::store::map_maker::{Job, make, make_in_memory};
 use slipmap::store::map_writer::Provenance;
-use slipmap::store::{MapWriter, Output};
-use slipmap::sweep::engine::{TileBuffers, Worker, run};
+use slipmap::sweep::engine::{TileBuffers, Worker};
 use slipmap::sweep::events::Silent;
-use slipmap::sweep::{Plan, SweepSpec};
+use slipmap::sweep::{Order, Plan, SweepSpec};
 
 const ROUNDS: usize = 5;
 
@@ -26,6 +29,18 @@ fn plan(points: usize) -> Plan {
         "boundaries = false\n[axes]\nmu_prime = {{ from = -1.0, to = 0.2, points = {points} }}\n\
          alpha_n = {{ from = -3.0, to = 1.0, points = {points} }}\n\
          tau = {{ from = 0.01, to = 12.0, points = {points} }}\n[fixed]\nalpha_v = -0.1\n"
+    );
+    let spec: SweepSpec = text.parse().expect("the sweep is valid");
+    Plan::new(spec).expect("the plan is valid")
+}
+
+/// Decay rates in a plane of so many points that it takes some seconds.
+fn decay_plan(points: usize) -> Plan {
+    let points = points.max(2);
+    let text = format!(
+        "fields = [\"abscissa\", \"frequency\"]\nboundaries = false\n[axes]\n\
+         alpha_n = {{ from = -3.0, to = 1.0, points = {points} }}\n\
+         tau = {{ from = 0.01, to = 12.0, points = {points} }}\n[fixed]\nmu_prime = -0.3\n"
     );
     let spec: SweepSpec = text.parse().expect("the sweep is valid");
     Plan::new(spec).expect("the plan is valid")
@@ -103,13 +118,26 @@ fn fill_memory(plan: &Plan, threads: usize) -> f64 {
     start.elapsed().as_secs_f64()
 }
 
-fn store(plan: &Plan, folder: &Path, threads: usize) -> f64 {
+/// Seconds of a whole run, with tiles on disk until the map is put together.
+fn store(plan: &Arc<Plan>, folder: &Path, threads: usize) -> f64 {
+    let provenance = Provenance::default();
+    let job = Job {
+        map: &folder.join("map.h5"),
+        threads,
+        order: Order::Forward,
+        provenance: &provenance,
+    };
+    let stop = Arc::new(AtomicBool::new(false));
     let start = Instant::now();
-    let output = Output::claim(&folder.join("map.h5")).expect("the folder is writable");
-    let mut writer =
-        MapWriter::create(plan, output, &Provenance::default()).expect("the map can be created");
-    run(plan, threads, &mut writer, &Silent, &AtomicBool::new(false)).expect("the sweep runs");
-    writer.finish().expect("the map can be finished");
+    make(plan, &job, &Silent, &stop).expect("the sweep runs");
+    start.elapsed().as_secs_f64()
+}
+
+/// Seconds of the same with the pieces in memory: what tiles, their checksums and resuming cost is the difference.
+fn store_from_memory(plan: &Arc<Plan>, folder: &Path, threads: usize) -> f64 {
+    let map = folder.join("map.h5");
+    let start = Instant::now();
+    make_in_memory(plan, &map, threads, &Provenance::default()).expect("the sweep runs");
     start.elapsed().as_secs_f64()
 }
 
@@ -146,7 +174,7 @@ fn main() {
         .and_then(|n| n.parse().ok())
         .unwrap_or(1000);
     let all = std::thread::available_parallelism().map_or(1, usize::from);
-    let plan = plan(points);
+    let plan = Arc::new(plan(points));
     println!("{points}³ cells, {all} threads, medians of {ROUNDS} rounds");
     for threads in if all > 1 { vec![1, all] } else { vec![1] } {
         let (counted, filled, ratio) = against(|| count(&plan, threads), || fill(&plan, threads));
@@ -174,5 +202,15 @@ fn main() {
         || store(&plan, folder.path(), all),
         || write_raw(&plan, folder.path()),
     );
+    let decay = Arc::new(decay_plan(points));
+    for (name, plan) in [("count map", &plan), ("decay-rate map", &decay)] {
+        let (on_disk, in_memory, ratio) = against(
+            || store(plan, folder.path(), all),
+            || store_from_memory(plan, folder.path(), all),
+        );
+        println!(
+            "tiles on disk against in memory, {name}: {on_disk:.3} s / {in_memory:.3} s = {ratio:.3}"
+        );
+    }
     println!("run against raw write, {all} threads: {stored:.3} s / {raw:.3} s = {ratio:.2}");
 }

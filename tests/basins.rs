@@ -4,7 +4,6 @@
 mod program;
 
 use std::path::Path;
-use std::sync::atomic::AtomicBool;
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use program::{Folder, err, expect, out};
@@ -13,10 +12,11 @@ use slipmap::model::FrictionLaw;
 use slipmap::slip::cycle::after_release;
 use slipmap::slip::motion::{Accuracy, Parameters};
 use slipmap::slip::outcome::{Limits, Outcome, REPEATED, follow};
-use slipmap::store::map_writer::Provenance;
-use slipmap::store::{MapWriter, Output};
-use slipmap::sweep::events::Silent;
-use slipmap::sweep::{Plan, SweepSpec, engine};
+use slipmap::sweep::{Plan, SweepSpec};
+
+#[path = "common/map.rs"]
+mod map;
+use map::write;
 
 const LAW: &str = "[friction]\nlaw = \"weakening\"\nmu0 = 0.5\nv_s = 0.5\n";
 
@@ -24,13 +24,6 @@ const LAW: &str = "[friction]\nlaw = \"weakening\"\nmu0 = 0.5\nv_s = 0.5\n";
 fn alone() -> MutexGuard<'static, ()> {
     static ONE: Mutex<()> = Mutex::new(());
     ONE.lock().unwrap_or_else(PoisonError::into_inner)
-}
-
-fn write(plan: &Plan, threads: usize, path: &Path) {
-    let output = Output::claim(path).unwrap();
-    let mut writer = MapWriter::create(plan, output, &Provenance::default()).unwrap();
-    engine::run(plan, threads, &mut writer, &Silent, &AtomicBool::new(false)).unwrap();
-    writer.finish().unwrap();
 }
 
 fn outcomes(path: &Path) -> Vec<Outcome> {

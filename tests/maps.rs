@@ -3,27 +3,19 @@
 #[allow(dead_code, reason = "not every test binary uses all of it")]
 mod common;
 
-use std::path::Path;
-use std::sync::atomic::AtomicBool;
-
 use slipmap::linear::Crossings;
 use slipmap::linear::curves::StableSide;
 use slipmap::linear::status::MARGINAL;
-use slipmap::store::map_writer::Provenance;
-use slipmap::store::{MapFile, MapWriter, Output};
+use slipmap::store::MapFile;
 use slipmap::sweep::best::{best_of_plane, best_planes};
-use slipmap::sweep::events::Silent;
 use slipmap::sweep::{Parameter, Plan, engine};
+
+#[path = "common/map.rs"]
+mod map;
+use map::write;
 
 fn plan(text: &str) -> Plan {
     Plan::new(text.parse().unwrap_or_else(|e| panic!("{e}\n{text}"))).unwrap()
-}
-
-fn write(plan: &Plan, threads: usize, path: &Path) {
-    let output = Output::claim(path).unwrap();
-    let mut writer = MapWriter::create(plan, output, &Provenance::default()).unwrap();
-    engine::run(plan, threads, &mut writer, &Silent, &AtomicBool::new(false)).unwrap();
-    writer.finish().unwrap();
 }
 
 /// Indices of a cell along every axis.

@@ -1,28 +1,22 @@
 //! Maps of roots: every cell is what a point there has, for any order of axes, number of threads and size of tiles.
 
 use std::path::Path;
-use std::sync::atomic::AtomicBool;
 
 use slipmap::linear::rightmost::Rightmost;
 use slipmap::linear::status::{CERTIFIED, DISAGREE, MARGINAL, NOT_CONVERGED};
 use slipmap::linear::{Crossings, MarginalTolerance};
-use slipmap::store::map_writer::Provenance;
-use slipmap::store::{MapFile, MapWriter, Output};
-use slipmap::sweep::events::Silent;
+use slipmap::store::MapFile;
 use slipmap::sweep::field::Storage;
 use slipmap::sweep::plan::BLOCK_OF_DELAYS;
 use slipmap::sweep::{Field, Parameter, Plan, Setting, engine};
 
+#[path = "common/map.rs"]
+mod map;
+use map::write;
+
 const ALL: &str = "[\"n_unstable\", \"delay_margin\", \"abscissa\", \"abscissa_2\", \"abscissa_8\", \"frequency\", \
                    \"frequency_2\", \"frequency_8\", \"relaxation_time\", \"d_abscissa_d_tau\", \"d_abscissa_d_alpha_v\", \
                    \"d_abscissa_d_alpha_n\", \"d_abscissa_d_mu_prime\"]";
-
-fn write(plan: &Plan, threads: usize, path: &Path) {
-    let output = Output::claim(path).unwrap();
-    let mut writer = MapWriter::create(plan, output, &Provenance::default()).unwrap();
-    engine::run(plan, threads, &mut writer, &Silent, &AtomicBool::new(false)).unwrap();
-    writer.finish().unwrap();
-}
 
 /// Sweeps with delays last, first, in the middle and not at all; without delay and without control; in other units.
 const SWEEPS: [&str; 4] = [

@@ -4,17 +4,22 @@
 mod program;
 
 use std::path::Path;
+use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use program::{Folder, err, out};
 use serde_json::Value;
 use slipmap::linear::status::{DISAGREE, NOT_CONVERGED, SAMPLED};
-use slipmap::store::map_writer::Provenance;
-use slipmap::store::{MapFile, MapWriter, Output};
+use slipmap::store::MapFile;
+use slipmap::store::source::InMemory;
 use slipmap::sweep::events::Silent;
 use slipmap::sweep::field::OUTCOMES;
-use slipmap::sweep::{Field, Parameter, Plan, RunError, SweepSpec, engine};
+use slipmap::sweep::{Field, Parameter, Plan, RunError, SweepSpec, Todo, engine};
+
+#[path = "common/map.rs"]
+mod map;
+use map::write;
 
 const LAW: &str = "[friction]\nlaw = \"weakening\"\nmu0 = 0.5\nv_s = 0.5\n";
 const VC: &str =
@@ -46,13 +51,6 @@ fn sweeps() -> [String; 3] {
 
 fn plan(text: &str) -> Plan {
     Plan::new(text.parse().unwrap()).unwrap()
-}
-
-fn write(plan: &Plan, threads: usize, path: &Path) {
-    let output = Output::claim(path).unwrap();
-    let mut writer = MapWriter::create(plan, output, &Provenance::default()).unwrap();
-    engine::run(plan, threads, &mut writer, &Silent, &AtomicBool::new(false)).unwrap();
-    writer.finish().unwrap();
 }
 
 /// The cells of a field as bits.
@@ -204,7 +202,7 @@ fn classes_and_samples() {
     let status = bits(&map, "status");
     let having = |flag: u8| status.iter().filter(|s| *s & u64::from(flag) != 0).count();
     assert!((4..=14).contains(&having(SAMPLED)), "{}", having(SAMPLED));
-    let counts = MapFile::open(&map).unwrap().status_counts().unwrap();
+    let counts = MapFile::open(&map).unwrap().status_counts().unwrap().0;
     assert_eq!(counts[5], having(SAMPLED) as u64);
     for s in &status {
         let both = u64::from(SAMPLED | DISAGREE);
@@ -276,16 +274,13 @@ fn values_of(map: &Path) -> Vec<f64> {
 
 #[test]
 fn a_stop_is_heeded_between_cells() {
-    let _alone = alone();
-    let folder = tempfile::tempdir().unwrap();
-    let path = folder.path().join("map.h5");
-    let plan = plan(&sweeps()[2]);
-    let output = Output::claim(&path).unwrap();
-    let mut writer = MapWriter::create(&plan, output, &Provenance::default()).unwrap();
-    let stopped = engine::run(&plan, 1, &mut writer, &Silent, &AtomicBool::new(true));
+    let plan = Arc::new(plan(&sweeps()[2]));
+    let stop = Arc::new(AtomicBool::new(true));
+    let mut pieces = InMemory::default();
+    let stopped = engine::run(&plan, Todo::all(&plan), 1, &mut pieces, &Silent, &stop);
     assert!(matches!(stopped, Err(RunError::Interrupted)));
     let mut worker = engine::Worker::new(&plan);
-    assert!(!worker.compute_until(&plan.tiles.tile(0), &AtomicBool::new(true)));
+    assert!(!worker.compute_until(&plan.tiles.tile(0), &stop));
 }
 
 #[test]

@@ -32,6 +32,11 @@ impl Failure {
         Self::Failed(Report::new(MietteDiagnostic::new(message)))
     }
 
+    /// The same with advice.
+    pub fn failed_with_help(message: impl Into<String>, help: impl Into<String>) -> Self {
+        Self::Failed(Report::new(MietteDiagnostic::new(message).with_help(help)))
+    }
+
     /// Bad input, in words.
     pub fn bad_input(message: impl Into<String>) -> Self {
         Self::BadInput(Report::new(MietteDiagnostic::new(message)))

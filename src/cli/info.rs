@@ -11,6 +11,7 @@ use slipmap::store::schema::root;
 use slipmap::sweep::Field;
 
 use super::failure::Failure;
+use super::open::open;
 
 #[derive(Debug, clap::Args)]
 pub struct Args {
@@ -23,7 +24,7 @@ pub struct Args {
 }
 
 pub fn main(args: &Args) -> Result<(), Failure> {
-    let map = MapFile::open(&args.map)?;
+    let map = open(&args.map)?;
     let mut out = std::io::stdout().lock();
     if args.sweep {
         write!(out, "{}", map.root_text(root::SWEEP).unwrap_or_default())?;
@@ -55,6 +56,9 @@ pub fn main(args: &Args) -> Result<(), Failure> {
         row("fixed", format!("{:<12} {value}", parameter.name()))?;
     }
     row("cells", grouped(map.cells()))?;
+    if map.is_partial() {
+        row("missing", format!("{} cells", grouped(map.cells_missing())))?;
+    }
     for (name, size, on_disk) in map.sizes()? {
         let values = match Field::from_name(name) {
             Some(field) => values(&map, field)?,
@@ -63,7 +67,7 @@ pub fn main(args: &Args) -> Result<(), Failure> {
         let sizes = format!("{}, {} on disk", bytes(size), bytes(on_disk));
         row("field", format!("{name:<22} {sizes}{values}"))?;
     }
-    for ((_, name), count) in FLAGS.iter().zip(map.status_counts()?) {
+    for ((_, name), count) in FLAGS.iter().zip(map.status_counts()?.0) {
         if count > 0 {
             row("status", format!("{name:<14} {} cells", grouped(count)))?;
         }

@@ -3,6 +3,8 @@
 mod best;
 mod failure;
 mod info;
+mod merge;
+mod open;
 mod output;
 mod parameters;
 mod plan;
@@ -11,6 +13,7 @@ mod point;
 mod run;
 mod say;
 mod simulate;
+mod status;
 mod sweep_file;
 mod vc;
 
@@ -33,6 +36,10 @@ struct Cli {
 enum Command {
     /// Compute a map: from a sweep file to HDF5 and a picture
     Run(run::Args),
+    /// Put the shards of a map together
+    Merge(merge::Args),
+    /// Say how far a map is, from another terminal
+    Status(status::Args),
     /// Say what a sweep would cost, without running it
     Plan(plan::Args),
     /// Everything about one point of parameter space
@@ -53,6 +60,8 @@ enum Command {
 pub fn main() -> ExitCode {
     let result = match Cli::parse().command {
         Command::Run(args) => run::main(&args),
+        Command::Merge(args) => merge::main(&args),
+        Command::Status(args) => status::main(&args),
         Command::Plan(args) => plan::main(&args),
         Command::Point(args) => point::main(&args),
         Command::Best(args) => best::main(&args),

@@ -3,9 +3,12 @@
 use std::path::{Path, PathBuf};
 use std::time::SystemTime;
 
+use slipmap::report::numbers::grouped;
+use slipmap::store::assembly::Assembled;
 use slipmap::store::map_writer::Provenance;
 
 use super::failure::Failure;
+use super::say;
 
 /// The file to write: `given`, or the name of `input` with .h5 in the current folder. `kind`: map or trace.
 pub fn output_path(given: Option<&Path>, input: &Path, kind: &str) -> Result<PathBuf, Failure> {
@@ -44,5 +47,27 @@ pub fn provenance(command: &str, input: &Path) -> Provenance {
         program_version: env!("CARGO_PKG_VERSION").into(),
         git_revision: env!("SLIPMAP_GIT_REVISION").into(),
         history: format!("{now} slipmap {command} {}", input.display()),
+    }
+}
+
+/// Says what besides cells a map holds, on standard error.
+pub fn tell_assembled(assembled: &Assembled, quiet: bool) {
+    if quiet {
+        return;
+    }
+    if assembled.curves > 0 {
+        let (curves, corners) = (grouped(assembled.curves), grouped(assembled.corners));
+        say::remark(format_args!("{curves} crossing curves, {corners} corners"));
+    }
+    if assembled.planes_left_out > 0 {
+        let planes = grouped(assembled.planes_left_out);
+        say::remark(format_args!(
+            "warning: no curves in {planes} planes, where there are too many to trace"
+        ));
+    }
+    match assembled.best_planes {
+        0 => {}
+        1 => say::remark("the best setting"),
+        planes => say::remark(format_args!("best settings in {} planes", grouped(planes))),
     }
 }

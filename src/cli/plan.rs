@@ -1,22 +1,25 @@
-//! `slipmap plan`: what a sweep would cost.
+//! `slipmap plan`: what a sweep would cost, from a timed sample of its own pieces.
 
 use std::io::Write;
 use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
-use slipmap::report::numbers::{bytes, grouped, prefixed, seconds};
-use slipmap::store::map_writer::TileEncoder;
+use slipmap::report::numbers::{bytes, grouped, seconds};
+use slipmap::store::tiles::RecordEncoder;
+use slipmap::sweep::Piece;
 use slipmap::sweep::Plan;
 use slipmap::sweep::best::{best_of_plane, best_planes};
 use slipmap::sweep::boundaries::{planes, trace_plane};
-use slipmap::sweep::engine::{Encode, Worker};
+use slipmap::sweep::engine::{Computed, Encode, Worker};
 
 use super::failure::Failure;
 use super::run::{default_threads, parse_threads};
 use super::sweep_file::read_plan;
 
-/// How long the timed sample takes, about.
-const SAMPLE: Duration = Duration::from_millis(300);
+/// A sample ends after so long, once it has this many pieces; or after the longest time, whatever it has.
+const SAMPLE: Duration = Duration::from_millis(500);
+const ENOUGH: usize = 12;
+const LONGEST_SAMPLE: Duration = Duration::from_secs(6);
 
 #[derive(Debug, clap::Args)]
 pub struct Args {
@@ -31,8 +34,7 @@ pub struct Args {
 pub fn main(args: &Args) -> Result<(), Failure> {
     let plan = read_plan(&args.sweep)?;
     let threads = args.threads.unwrap_or_else(default_threads);
-    let per_cell = sample(&plan);
-    let per_plane = sample_planes(&plan)?;
+    let costs = Costs::of(&plan)?;
     let mut out = std::io::stdout().lock();
     for axis in &plan.spec.axes {
         let (first, last) = (axis.values[0], axis.values[axis.len() - 1]);
@@ -57,69 +59,136 @@ pub fn main(args: &Args) -> Result<(), Failure> {
         "boundaries  in {} planes",
         grouped(plan.boundary_planes())
     )?;
-    let best = best_planes(&plan);
     if plan.best_plane().is_some() {
-        writeln!(out, "best        in {} planes", grouped(best.len() as u64))?;
+        writeln!(out, "best        in {} planes", grouped(plan.best_planes()))?;
     }
     let size = plan.cells() * plan.bytes_per_cell();
-    writeln!(out, "bytes       {} before compression", bytes(size))?;
-    let in_memory = cells * plan.bytes_per_cell() * 4 * threads as u64;
-    writeln!(out, "memory      about {}", bytes(in_memory + (30 << 20)))?;
-    let curves = per_plane * plan.boundary_planes() as f64 / threads as f64;
-    let searches = sample_best(&plan, &best) * best.len() as f64 / threads as f64;
-    let total = per_cell * plan.cells() as f64 / threads as f64 + curves + searches;
+    let stored = costs.bytes.total();
     writeln!(
         out,
-        "time        about {} on {threads} threads ({} cells/s a thread in a timed sample)",
-        seconds(total),
-        prefixed(1.0 / per_cell),
+        "bytes       {} before compression, about {} on disk, twice that for a moment at the end",
+        bytes(size),
+        bytes(stored as u64),
+    )?;
+    let in_memory = cells * plan.bytes_per_cell() * 4 * threads as u64;
+    writeln!(out, "memory      about {}", bytes(in_memory + (30 << 20)))?;
+    let (total, spread) = costs.seconds();
+    let threads_told = threads as f64;
+    writeln!(
+        out,
+        "time        about {} on {threads} threads, {} to {}: {} of {} tiles timed",
+        seconds(total / threads_told),
+        seconds((total - spread).max(0.0) / threads_told),
+        seconds((total + spread) / threads_told),
+        costs.tiles.values.len(),
+        grouped(tiles),
     )?;
     Ok(())
 }
 
-/// Seconds per plane of crossing curves on one thread, from planes spread over the sweep.
-fn sample_planes(plan: &Plan) -> Result<f64, Failure> {
-    let planes = planes(plan);
-    let start = Instant::now();
-    let mut done = 0;
-    while start.elapsed() < SAMPLE && done < planes.len() {
-        let index = (spread(done) * planes.len() as f64) as usize;
-        std::hint::black_box(trace_plane(plan, &planes[index])?);
-        done += 1;
-    }
-    Ok(start.elapsed().as_secs_f64() / done.max(1) as f64)
+/// What was measured of some pieces of a kind, and how many there are of it.
+struct Sample {
+    values: Vec<f64>,
+    of: usize,
 }
 
-/// Seconds per plane whose best settings are looked for, on one thread.
-fn sample_best(plan: &Plan, planes: &[Vec<usize>]) -> f64 {
-    let start = Instant::now();
-    let mut done = 0;
-    while start.elapsed() < SAMPLE && done < planes.len() {
-        let index = (spread(done) * planes.len() as f64) as usize;
-        std::hint::black_box(best_of_plane(plan, &planes[index]));
-        done += 1;
+impl Sample {
+    /// Measures pieces spread over all `of`.
+    fn take(
+        of: usize,
+        mut measured: impl FnMut(usize) -> Result<f64, Failure>,
+    ) -> Result<Self, Failure> {
+        let start = Instant::now();
+        let mut values = Vec::new();
+        while values.len() < of {
+            let elapsed = start.elapsed();
+            if elapsed > LONGEST_SAMPLE || (elapsed > SAMPLE && values.len() >= ENOUGH) {
+                break;
+            }
+            let number = (spread(values.len()) * of as f64) as usize;
+            values.push(measured(number)?);
+        }
+        Ok(Self { values, of })
     }
-    start.elapsed().as_secs_f64() / done.max(1) as f64
+
+    fn mean(&self) -> f64 {
+        self.values.iter().sum::<f64>() / self.values.len().max(1) as f64
+    }
+
+    fn total(&self) -> f64 {
+        self.mean() * self.of as f64
+    }
+
+    /// Twice the standard error of the total; that of one piece is its value.
+    fn spread(&self) -> f64 {
+        let (n, mean) = (self.values.len() as f64, self.mean());
+        if self.values.len() == self.of {
+            return 0.0;
+        }
+        let squares: f64 = self.values.iter().map(|v| (v - mean).powi(2)).sum();
+        let variance = if n > 1.0 {
+            squares / (n - 1.0)
+        } else {
+            mean * mean
+        };
+        2.0 * self.of as f64 * (variance / n.max(1.0)).sqrt()
+    }
+}
+
+/// What pieces cost on one thread: seconds, and bytes of tiles.
+struct Costs {
+    tiles: Sample,
+    curves: Sample,
+    best: Sample,
+    bytes: Sample,
+}
+
+impl Costs {
+    fn of(plan: &Plan) -> Result<Self, Failure> {
+        let mut worker = Worker::new(plan);
+        let mut encoder = RecordEncoder::default();
+        let mut stored = Vec::new();
+        let tiles = Sample::take(plan.tiles.len(), |number| {
+            let start = Instant::now();
+            worker.compute(&plan.tiles.tile(number));
+            let piece = Piece::Tile(number as u64);
+            let record = encoder.encode(piece, Computed::Tile(&worker.buffers));
+            stored.push(record.payload.len() as f64);
+            Ok(start.elapsed().as_secs_f64())
+        })?;
+        let curve_planes = planes(plan);
+        let curves = Sample::take(curve_planes.len(), |number| {
+            let start = Instant::now();
+            std::hint::black_box(trace_plane(plan, &curve_planes[number])?);
+            Ok(start.elapsed().as_secs_f64())
+        })?;
+        let of_best = best_planes(plan);
+        let best = Sample::take(of_best.len(), |number| {
+            let start = Instant::now();
+            std::hint::black_box(best_of_plane(plan, &of_best[number]));
+            Ok(start.elapsed().as_secs_f64())
+        })?;
+        let bytes = Sample {
+            values: stored,
+            of: plan.tiles.len(),
+        };
+        Ok(Self {
+            tiles,
+            curves,
+            best,
+            bytes,
+        })
+    }
+
+    /// Seconds of all pieces on one thread, and how far off that may be.
+    fn seconds(&self) -> (f64, f64) {
+        let all = [&self.tiles, &self.curves, &self.best];
+        let squares: f64 = all.iter().map(|s| s.spread().powi(2)).sum();
+        (all.iter().map(|s| s.total()).sum(), squares.sqrt())
+    }
 }
 
 /// A number in [0, 1) for each sample: multiples of the golden ratio fall evenly, wherever the sampling ends.
 fn spread(sample: usize) -> f64 {
     (sample as f64 * 0.618_033_988_749_895).fract()
-}
-
-/// Seconds per cell on one thread, from tiles spread over the map: computed and compressed, not written.
-fn sample(plan: &Plan) -> f64 {
-    let mut worker = Worker::new(plan);
-    let mut encoder = TileEncoder::default();
-    let start = Instant::now();
-    let (mut cells, mut done) = (0, 0);
-    let tiles = plan.tiles.len();
-    while start.elapsed() < SAMPLE && done < tiles {
-        let tile = plan.tiles.tile((spread(done) * tiles as f64) as usize);
-        worker.compute(&tile);
-        std::hint::black_box(encoder.encode(&worker.buffers));
-        cells += tile.cells();
-        done += 1;
-    }
-    start.elapsed().as_secs_f64() / cells as f64
 }

@@ -4,11 +4,11 @@ use std::path::{Path, PathBuf};
 
 use clap::ValueEnum;
 use slipmap::report::picture::{self, PictureError, PictureKind, PictureOptions};
-use slipmap::store::MapFile;
 use slipmap::sweep::field::known_fields;
 use slipmap::sweep::{Field, Parameter};
 
 use super::failure::Failure;
+use super::open::open;
 use super::say;
 
 #[derive(Debug, clap::Args)]
@@ -59,7 +59,7 @@ fn parse_at(text: &str) -> Result<(Parameter, f64), String> {
 }
 
 pub fn main(args: &Args) -> Result<(), Failure> {
-    let map = MapFile::open(&args.map)?;
+    let map = open(&args.map)?;
     let path = match &args.output {
         Some(path) => path.clone(),
         None => beside(&args.map),

@@ -1,20 +1,23 @@
-//! `slipmap run`: from a sweep file to a map and its picture.
+//! `slipmap run`: from a sweep file to a map and its picture, or to one shard of the map.
 
 use std::io::IsTerminal;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 
+use slipmap::report::log::{Both, Log};
 use slipmap::report::numbers::{bytes, grouped, prefixed, seconds};
 use slipmap::report::picture::{self, PictureError, PictureOptions};
 use slipmap::report::preview::preview;
 use slipmap::report::progress::Progress;
+use slipmap::store::map_maker::{self, Job};
 use slipmap::store::schema::root;
-use slipmap::store::{MapFile, MapWriter, Output, StoreError};
-use slipmap::sweep::{Plan, RunError, engine};
+use slipmap::store::tiles::shards;
+use slipmap::store::{MapFile, StoreError};
+use slipmap::sweep::{Order, Plan, RunError, Shard};
 
 use super::failure::Failure;
-use super::output::{output_path, provenance};
+use super::output::{self, output_path, provenance};
 use super::plot;
 use super::say;
 use super::sweep_file::read_plan;
@@ -36,7 +39,10 @@ pub struct Args {
     /// Threads to compute on [default: as many as the machine offers]
     #[arg(long, value_name = "N", value_parser = parse_threads)]
     threads: Option<usize>,
-    /// Start over, replacing a map that is already there
+    /// Compute only every N-th piece, from the I-th on; `slipmap merge` puts the shards together
+    #[arg(long, value_name = "I/N")]
+    shard: Option<Shard>,
+    /// Start over, replacing a map that is already there and dropping what an earlier run computed
     #[arg(long)]
     fresh: bool,
     /// Show no progress
@@ -69,32 +75,85 @@ pub fn main(args: &Args) -> Result<(), Failure> {
             path.display()
         ));
     }
+    if args.fresh {
+        shards::clear(&path)?;
+    }
     let signals = Signals::catch()?;
     let progress = Progress::new(args.quiet);
-    let threads = args.threads.unwrap_or_else(default_threads);
-    let output = Output::claim(&path)?;
-    let mut writer = MapWriter::create(&plan, output, &provenance("run", &args.sweep))?;
-    if let Err(error) = engine::run(&plan, threads, &mut writer, &progress, &signals.stop) {
-        progress.clear();
-        drop(writer);
-        return Err(failure(error, &path, &signals));
+    let log = Log::beside(&path, args.shard.unwrap_or(Shard::WHOLE));
+    let observers = Both(&progress, &log);
+    let provenance = provenance("run", &args.sweep);
+    let job = Job {
+        map: &path,
+        threads: args.threads.unwrap_or_else(default_threads),
+        order: Order::Forward,
+        provenance: &provenance,
+    };
+    let plan = Arc::new(plan);
+    match args.shard.filter(|shard| !shard.is_whole()) {
+        Some(shard) => run_shard(&plan, &job, shard, (&observers, &signals)),
+        None => run_whole(&plan, &job, (&observers, &signals), args.quiet),
     }
-    writer.finish()?;
-    let elapsed = progress.elapsed();
+}
+
+type Watched<'a> = (&'a Both<'a>, &'a Signals);
+
+fn run_shard(
+    plan: &Arc<Plan>,
+    job: &Job,
+    shard: Shard,
+    (observers, signals): Watched,
+) -> Result<(), Failure> {
+    let made = map_maker::make_shard(plan, job, shard, observers, &signals.stop);
+    made.map_err(|error| failure(error, job.map, (observers, signals)))?;
+    let (number, of) = shard.numbers();
+    let map = job.map.display();
+    say::result(format_args!(
+        "shard {number} of {of} is complete; when all are, `slipmap merge {map}` makes the map"
+    ))
+}
+
+fn run_whole(
+    plan: &Arc<Plan>,
+    job: &Job,
+    (observers, signals): Watched,
+    quiet: bool,
+) -> Result<(), Failure> {
+    refuse_shards(job.map)?;
+    let made = map_maker::make(plan, job, observers, &signals.stop);
+    let assembled = made.map_err(|error| failure(error, job.map, (observers, signals)))?;
+    let (elapsed, cells) = (observers.0.elapsed(), observers.0.computed());
+    output::tell_assembled(&assembled, quiet);
+    let path = job.map;
     let told = say::result(format_args!(
         "{}: {} cells in {} ({} cells/s), {}",
         path.display(),
-        grouped(plan.cells()),
+        grouped(cells),
         seconds(elapsed),
-        prefixed(plan.cells() as f64 / elapsed),
-        bytes(std::fs::metadata(&path).map_or(0, |m| m.len())),
+        prefixed(cells as f64 / elapsed),
+        bytes(std::fs::metadata(path).map_or(0, |m| m.len())),
     ));
-    show(&path, args.quiet);
+    show(path, quiet);
     told
 }
 
+/// Shards that are there are not computed a second time.
+fn refuse_shards(map: &Path) -> Result<(), Failure> {
+    let others = shards::present(map)?;
+    let Some((shard, _)) = others.iter().find(|(shard, _)| !shard.is_whole()) else {
+        return Ok(());
+    };
+    Err(Failure::bad_input_with_help(
+        format!(
+            "{} holds shards of this map ({shard})",
+            shards::root(map).display()
+        ),
+        "`slipmap merge` puts them together; --fresh drops them and starts over",
+    ))
+}
+
 /// Draws a complete map beside it, and on the terminal. What fails here is a warning: the map is there.
-fn show(path: &Path, quiet: bool) {
+pub fn show(path: &Path, quiet: bool) {
     let map = match MapFile::open(path) {
         Ok(map) => map,
         Err(error) => return say::remark(format_args!("warning: no picture: {error}")),
@@ -129,14 +188,15 @@ fn show(path: &Path, quiet: bool) {
 /// A remark if the map of this plan is there and `fresh` is not set; an error if what is there must not be replaced.
 ///
 /// `fresh` replaces maps only: another file under that name is more likely a slip than a wish.
-fn already_there(path: &Path, plan: &Plan, fresh: bool) -> Result<Option<String>, Failure> {
+pub fn already_there(path: &Path, plan: &Plan, fresh: bool) -> Result<Option<String>, Failure> {
     if !path.exists() {
         return Ok(None);
     }
     match MapFile::open(path) {
         Ok(_) if fresh => Ok(None),
         Ok(map) if map.root_text(root::PLAN_HASH).as_deref() == Some(&plan.hash()) => {
-            Ok(Some(what_differs(&map, plan)))
+            // One that was put together before its time is replaced by the complete one.
+            Ok((!map.is_partial()).then(|| what_differs(&map, plan)))
         }
         Ok(_) => Err(Failure::bad_input_with_help(
             format!(
@@ -169,18 +229,23 @@ fn what_differs(map: &MapFile, plan: &Plan) -> String {
     }
 }
 
-fn failure(error: RunError<StoreError>, path: &Path, signals: &Signals) -> Failure {
+fn failure(error: RunError<StoreError>, path: &Path, (observers, signals): Watched) -> Failure {
+    observers.0.clear();
+    observers.1.ended(&error.to_string());
+    let kept = "what is computed is kept, the same command goes on from there";
     match error {
         RunError::Interrupted => Failure::Interrupted {
-            message: format!(
-                "interrupted: {} was not written; the same command starts again",
-                path.display()
-            ),
+            message: format!("interrupted: {} is not complete; {kept}", path.display()),
             code: signals.code.load(Ordering::Relaxed) as u8,
         },
+        RunError::Sink(error @ (StoreError::Io { .. } | StoreError::Hdf5 { .. })) => {
+            Failure::failed_with_help(error.to_string(), kept)
+        }
         RunError::Sink(error) => error.into(),
         RunError::Model(error) => error.into(),
-        RunError::Threads { .. } => Failure::failed(error.to_string()),
+        error @ (RunError::Threads { .. } | RunError::ThreadLost) => {
+            Failure::failed(error.to_string())
+        }
     }
 }
 

@@ -1,5 +1,6 @@
 //! What a person sees: progress, summaries, pictures.
 
+pub mod log;
 pub mod numbers;
 pub mod picture;
 pub mod preview;

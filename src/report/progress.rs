@@ -15,8 +15,11 @@ const BETWEEN_LINES: Duration = Duration::from_secs(10);
 /// Shows the events of a sweep on standard error.
 pub struct Progress {
     bar: ProgressBar,
-    start: Instant,
+    /// Of the computing.
+    start: Cell<Instant>,
     cells: Cell<u64>,
+    /// Cells that were left at the start.
+    left: Cell<u64>,
     done: Cell<u64>,
     last_line: Cell<Instant>,
     quiet: bool,
@@ -33,18 +36,25 @@ impl Progress {
         };
         Self {
             bar,
-            start: Instant::now(),
+            start: Cell::new(Instant::now()),
             cells: Cell::new(0),
+            left: Cell::new(0),
             done: Cell::new(0),
             last_line: Cell::new(Instant::now()),
             quiet,
         }
     }
 
-    /// Seconds since the start.
+    /// Seconds since the computing began.
     #[must_use]
     pub fn elapsed(&self) -> f64 {
-        self.start.elapsed().as_secs_f64()
+        self.start.get().elapsed().as_secs_f64()
+    }
+
+    /// Cells that this run has computed.
+    #[must_use]
+    pub fn computed(&self) -> u64 {
+        self.done.get()
     }
 
     /// Takes the bar off the terminal.
@@ -61,15 +71,24 @@ impl Progress {
         }
     }
 
-    fn started(&self, cells: u64, threads: usize) {
+    fn started(&self, cells: u64, left: u64, threads: usize) {
         self.cells.set(cells);
+        self.left.set(left);
+        self.done.set(0);
+        self.start.set(Instant::now());
         self.bar.set_length(cells);
         self.bar.set_style(style());
+        self.bar.set_position(cells - left);
+        self.bar.reset_eta();
         let threads = match threads {
             1 => "1 thread".into(),
             n => format!("{n} threads"),
         };
-        self.line(&format!("{} cells on {threads}", grouped(cells)));
+        let cells_told = grouped(cells);
+        self.line(&match left == cells {
+            true => format!("{cells_told} cells on {threads}"),
+            false => format!("{cells_told} cells, {} left, on {threads}", grouped(left)),
+        });
     }
 
     fn advanced(&self, cells: u64) {
@@ -77,13 +96,13 @@ impl Progress {
         self.bar.inc(cells);
         if self.bar.is_hidden() && self.last_line.get().elapsed() >= BETWEEN_LINES {
             self.last_line.set(Instant::now());
-            let rate = self.done.get() as f64 / self.elapsed();
-            let left = (self.cells.get() - self.done.get()) as f64 / rate;
+            let rate = self.done.get() as f64 / self.start.get().elapsed().as_secs_f64();
+            let left = self.left.get().saturating_sub(self.done.get());
             self.line(&format!(
                 "{:.1} %, {} cells/s, {} left",
-                100.0 * self.done.get() as f64 / self.cells.get() as f64,
+                100.0 * (1.0 - left as f64 / self.cells.get().max(1) as f64),
                 prefixed(rate),
-                seconds(left),
+                seconds(left as f64 / rate),
             ));
         }
     }
@@ -101,29 +120,16 @@ fn style() -> ProgressStyle {
 impl Observer for Progress {
     fn event(&self, event: &Event) {
         match event {
-            Event::Started { cells, threads } => self.started(*cells, *threads),
-            Event::BoundariesTraced {
-                pieces,
-                corners,
-                planes_left_out,
-            } => {
-                self.line(&format!(
-                    "{} crossing curves, {} corners",
-                    grouped(*pieces),
-                    grouped(*corners)
-                ));
-                if *planes_left_out > 0 {
-                    self.line(&format!(
-                        "warning: no curves in {} planes, where there are too many to trace",
-                        grouped(*planes_left_out)
-                    ));
-                }
-            }
-            Event::BestFound { planes: 1 } => self.line("the best setting"),
-            Event::BestFound { planes } => {
-                self.line(&format!("best settings in {} planes", grouped(*planes)));
-            }
-            Event::TileDone { cells } => self.advanced(*cells),
+            Event::Damaged { file, why } => self.line(&format!(
+                "warning: {}: {why}; what it held is computed again",
+                file.display()
+            )),
+            Event::Started {
+                cells,
+                left,
+                threads,
+            } => self.started(*cells, *left, *threads),
+            Event::PieceDone { cells } => self.advanced(*cells),
             Event::Finished => self.clear(),
         }
     }

@@ -6,6 +6,7 @@
 use hdf5::plist::group_create::LinkCreationOrder;
 use hdf5::types::OwnedDynValue;
 use hdf5::{Dataset, Group, H5Type};
+use serde::{Deserialize, Serialize};
 
 use super::attributes::{put_numbers, put_text};
 use super::boundary_writer::put_flags;
@@ -16,19 +17,49 @@ use crate::linear::best::Kind;
 use crate::sweep::best::BestSettings;
 use crate::sweep::{Parameter, Plan};
 
+/// The best setting of one plane as the values of the group's variables, in their order; fill values where there is none.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub(super) struct BestRow {
+    numbers: [f64; 5],
+    flags: [i8; 2],
+    regions: i32,
+}
+
+impl BestRow {
+    pub fn of(found: Option<&BestSettings>) -> Self {
+        let Some(found) = found else {
+            return Self {
+                numbers: [f64::NAN; 5],
+                flags: [BEST_FLAG_FILL; 2],
+                regions: i32::from(BEST_FLAG_FILL),
+            };
+        };
+        let best = &found.overall;
+        let kind = Kind::ALL.iter().position(|&kind| kind == best.kind);
+        Self {
+            numbers: [
+                best.gain,
+                best.tau,
+                best.abscissa,
+                best.frequency(),
+                best.relaxation_time().unwrap_or(f64::NAN),
+            ],
+            flags: [
+                kind.map_or(BEST_FLAG_FILL, |kind| kind as i8),
+                i8::from(best.certified),
+            ],
+            regions: (found.regions.len() + found.regions_left_out) as i32,
+        }
+    }
+}
+
 /// A variable with the values of the planes so far.
 struct Column<T> {
     dataset: Dataset,
-    fill: T,
-    of: fn(&BestSettings) -> T,
     values: Vec<T>,
 }
 
 impl<T: H5Type + Copy> Column<T> {
-    fn push(&mut self, found: Option<&BestSettings>) {
-        self.values.push(found.map_or(self.fill, self.of));
-    }
-
     fn write(&self) -> hdf5::Result<()> {
         match self.values[..] {
             [value] if self.dataset.ndim() == 0 => self.dataset.write_scalar(&value),
@@ -58,7 +89,6 @@ impl Variables<'_> {
         name: &str,
         (long_name, unit): (&str, &str),
         fill: T,
-        of: fn(&BestSettings) -> T,
     ) -> hdf5::Result<Column<T>>
     where
         T: H5Type + Copy + Into<OwnedDynValue>,
@@ -78,8 +108,6 @@ impl Variables<'_> {
         put_text(&dataset, "units", unit)?;
         Ok(Column {
             dataset,
-            fill,
-            of,
             values: Vec::new(),
         })
     }
@@ -90,26 +118,21 @@ impl Variables<'_> {
         let (time, frequency) = (units.time(), units.angular_frequency());
         let of_gain = units.of_parameter(gain);
         let tau = Parameter::Tau;
-        let mut make = |name, about, of| self.make(name, about, f64::NAN, of);
+        let mut make = |name, about| self.make(name, about, f64::NAN);
         Ok(vec![
-            make(gain.name(), (gain.long_name(), &of_gain), |f| {
-                f.overall.gain
-            })?,
-            make(tau.name(), (tau.long_name(), &time), |f| f.overall.tau)?,
+            make(gain.name(), (gain.long_name(), &of_gain))?,
+            make(tau.name(), (tau.long_name(), &time))?,
             make(
                 names::ABSCISSA,
                 ("largest real part of a characteristic root", &rate),
-                |f| f.overall.abscissa,
             )?,
             make(
                 names::FREQUENCY,
                 ("lowest frequency among the rightmost roots", &frequency),
-                |f| f.overall.frequency(),
             )?,
             make(
                 names::RELAXATION_TIME,
                 ("relaxation time, where sliding is stable", &time),
-                |f| f.overall.relaxation_time().unwrap_or(f64::NAN),
             )?,
         ])
     }
@@ -119,12 +142,6 @@ impl Variables<'_> {
             names::KIND,
             ("what makes the setting the best", "1"),
             BEST_FLAG_FILL,
-            |f| {
-                Kind::ALL
-                    .iter()
-                    .position(|&k| k == f.overall.kind)
-                    .map_or(BEST_FLAG_FILL, |k| k as i8)
-            },
         )?;
         let numbers: Vec<i8> = (0..).take(Kind::ALL.len()).collect();
         let meanings = Kind::ALL
@@ -135,7 +152,6 @@ impl Variables<'_> {
             names::CERTIFIED,
             ("the argument principle confirms the abscissa", "1"),
             BEST_FLAG_FILL,
-            |f| i8::from(f.overall.certified),
         )?;
         put_flags(&certified.dataset, &[0, 1], "no yes")?;
         Ok(vec![kind, certified])
@@ -176,21 +192,19 @@ impl BestWriter {
                 names::REGIONS,
                 ("number of stable regions", "1"),
                 i32::from(BEST_FLAG_FILL),
-                |f| (f.regions.len() + f.regions_left_out) as i32,
             )?,
         })
     }
 
-    /// Takes the best settings of the next planes, in order.
-    pub fn append(&mut self, planes: &[Option<BestSettings>]) {
-        for found in planes {
-            let found = found.as_ref();
-            self.numbers
-                .iter_mut()
-                .for_each(|column| column.push(found));
-            self.flags.iter_mut().for_each(|column| column.push(found));
-            self.regions.push(found);
+    /// Takes the best setting of the next plane, in order.
+    pub fn append(&mut self, row: &BestRow) {
+        for (column, value) in self.numbers.iter_mut().zip(row.numbers) {
+            column.values.push(value);
         }
+        for (column, value) in self.flags.iter_mut().zip(row.flags) {
+            column.values.push(value);
+        }
+        self.regions.values.push(row.regions);
     }
 
     /// Writes what was taken. To be called once, when all planes are there.

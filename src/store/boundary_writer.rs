@@ -7,11 +7,9 @@ use hdf5::plist::group_create::LinkCreationOrder;
 use hdf5::{Dataset, Group, H5Type};
 
 use super::attributes::{put_numbers, put_text};
+use super::curve_rows::CurveRows;
 use super::netcdf::{DimensionId, Dimensions, named};
 use super::schema::{BOUNDARIES, CORNER_DEGREE_OF_STABILITY, DEGREE_OF_STABILITY, PLANE};
-use crate::linear::Direction;
-use crate::linear::curves::{Corner, CurvePiece, StableSide};
-use crate::sweep::boundaries::BoundaryPlane;
 use crate::sweep::{Parameter, Plan};
 
 /// Elements in a chunk of the appended datasets.
@@ -42,8 +40,6 @@ pub(super) struct BoundaryWriter {
     curve: DimensionId,
     vertex: DimensionId,
     corner: DimensionId,
-    /// Axes that tell the planes apart, with the index of each in the sweep.
-    outer: Vec<usize>,
     vertex_columns: [Column<f64>; 3],
     vertex_count: Column<i32>,
     branch: Column<i64>,
@@ -225,7 +221,6 @@ impl BoundaryWriter {
             curve,
             vertex,
             corner,
-            outer,
             vertex_columns,
             vertex_count,
             branch,
@@ -241,64 +236,24 @@ impl BoundaryWriter {
         })
     }
 
-    /// Appends the curves of the next planes.
-    pub fn append(&mut self, plan: &Plan, planes: &[BoundaryPlane]) -> hdf5::Result<()> {
-        for plane in planes {
-            let outer: Vec<f64> = self
-                .outer
-                .iter()
-                .map(|&axis| plan.spec.axes[axis].values[plane.index[axis]])
-                .collect();
-            for of in &plane.curves {
-                let Ok(curves) = &of.curves else { continue };
-                for piece in &curves.pieces {
-                    self.append_piece(piece, of.degree_of_stability, &outer);
-                }
-                for corner in &curves.corners {
-                    self.append_corner(corner, of.degree_of_stability, &outer);
-                }
-            }
+    /// Appends the curves of the next plane, which lies at the values `outer` of the axes outside of it.
+    pub fn append(&mut self, rows: &CurveRows, outer: &[f64]) -> hdf5::Result<()> {
+        self.vertex_count.waiting.extend(&rows.vertex_count);
+        self.branch.waiting.extend(&rows.branch);
+        self.direction.waiting.extend(&rows.direction);
+        self.stable_side.waiting.extend(&rows.stable_side);
+        self.degree.waiting.extend(&rows.degree);
+        repeat_each(&mut self.curve_outer, outer, rows.curves());
+        extend_each(&mut self.vertex_columns, &rows.vertices);
+        extend_each(&mut self.corner_columns, &rows.corners);
+        extend_each(&mut self.corner_branches, &rows.corner_branches);
+        self.corner_stable.waiting.extend(&rows.corner_stable);
+        self.corner_degree.waiting.extend(&rows.corner_degree);
+        repeat_each(&mut self.corner_outer, outer, rows.corners());
+        if self.vertex_columns[0].waiting.len() >= CHUNK {
+            self.flush()?;
         }
-        self.flush()
-    }
-
-    fn append_piece(&mut self, piece: &CurvePiece, degree: f64, outer: &[f64]) {
-        self.degree.waiting.push(degree);
-        self.vertex_count.waiting.push(piece.vertices.len() as i32);
-        self.branch.waiting.push(piece.branch as i64);
-        self.direction.waiting.push(match piece.direction {
-            Direction::Left => -1,
-            Direction::Touch => 0,
-            Direction::Right => 1,
-        });
-        self.stable_side.waiting.push(match piece.stable_side {
-            StableSide::Shorter => -1,
-            StableSide::Neither => 0,
-            StableSide::Longer => 1,
-        });
-        push_each(&mut self.curve_outer, outer);
-        for vertex in &piece.vertices {
-            push_each(
-                &mut self.vertex_columns,
-                &[vertex.p, vertex.tau, vertex.omega],
-            );
-        }
-    }
-
-    fn append_corner(&mut self, corner: &Corner, degree: f64, outer: &[f64]) {
-        self.corner_degree.waiting.push(degree);
-        push_each(
-            &mut self.corner_columns,
-            &[corner.p, corner.tau, corner.upper.0, corner.lower.0],
-        );
-        push_each(
-            &mut self.corner_branches,
-            &[corner.upper.1 as i64, corner.lower.1 as i64],
-        );
-        self.corner_stable
-            .waiting
-            .push(i8::from(corner.bounds_stable));
-        push_each(&mut self.corner_outer, outer);
+        Ok(())
     }
 
     fn flush(&mut self) -> hdf5::Result<()> {
@@ -322,7 +277,8 @@ impl BoundaryWriter {
     }
 
     /// Gives the dimensions the lengths that their data have come to.
-    pub fn finish(&self, dimensions: &Dimensions) -> hdf5::Result<()> {
+    pub fn finish(&mut self, dimensions: &Dimensions) -> hdf5::Result<()> {
+        self.flush()?;
         for (id, length) in [
             (self.curve, self.branch.dataset.size()),
             (self.vertex, self.vertex_columns[0].dataset.size()),
@@ -334,9 +290,15 @@ impl BoundaryWriter {
     }
 }
 
-fn push_each<T: Copy>(columns: &mut [Column<T>], values: &[T]) {
-    for (column, value) in columns.iter_mut().zip(values) {
-        column.waiting.push(*value);
+fn extend_each<T: Copy>(columns: &mut [Column<T>], values: &[Vec<T>]) {
+    for (column, values) in columns.iter_mut().zip(values) {
+        column.waiting.extend(values);
+    }
+}
+
+fn repeat_each(columns: &mut [Column<f64>], values: &[f64], times: usize) {
+    for (column, &value) in columns.iter_mut().zip(values) {
+        column.waiting.extend(std::iter::repeat_n(value, times));
     }
 }
 

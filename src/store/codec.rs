@@ -5,7 +5,10 @@
 use std::collections::HashMap;
 use std::sync::Arc;
 
-use zlib_rs::{DeflateConfig, ReturnCode, Strategy, compress_bound, compress_slice};
+use zlib_rs::{
+    DeflateConfig, InflateConfig, ReturnCode, Strategy, compress_bound, compress_slice,
+    decompress_slice,
+};
 
 /// The deflate level that the files name.
 pub(super) const DEFLATE_LEVEL: u8 = 1;
@@ -97,6 +100,15 @@ impl ChunkCodec {
     }
 }
 
+/// The `length` bytes of a chunk of single bytes; none where it is not such a chunk.
+pub(super) fn decode_bytes(chunk: &[u8], length: usize) -> Option<Vec<u8>> {
+    let mut out = vec![0; length];
+    match decompress_slice(&mut out, chunk, InflateConfig::default()) {
+        (whole, ReturnCode::Ok) if whole.len() == length => Some(out),
+        _ => None,
+    }
+}
+
 /// What tells a chunk of one repeated element from others; none for any other chunk.
 fn constant_key<T: Element>(values: &[T]) -> Option<(u64, usize)> {
     let first = *values.first()?;
@@ -124,6 +136,16 @@ mod tests {
         let mut out = Vec::new();
         shuffle(&[1, 2, 3, 4, 5, 6], 2, &mut out);
         assert_eq!(out, [1, 3, 5, 2, 4, 6]);
+    }
+
+    #[test]
+    fn bytes_come_back() {
+        let bytes: Vec<u8> = (0..5000_u32).map(|i| (i * i >> 7) as u8).collect();
+        let chunk = ChunkCodec::default().encode(&bytes);
+        assert_eq!(decode_bytes(&chunk, 5000), Some(bytes));
+        assert_eq!(decode_bytes(&chunk, 4999), None);
+        assert_eq!(decode_bytes(&chunk, 5001), None);
+        assert_eq!(decode_bytes(b"no chunk", 10), None);
     }
 
     #[test]

@@ -3,6 +3,8 @@
 use std::io;
 use std::path::{Path, PathBuf};
 
+use crate::sweep::pieces::Piece;
+
 /// What went wrong with a file.
 #[derive(Debug, thiserror::Error)]
 pub enum StoreError {
@@ -45,8 +47,50 @@ pub enum StoreError {
     /// Another run writes the same map.
     #[error("another run is writing {}", path.display())]
     Locked {
-        /// The map's final name.
+        /// The map's final name, or the folder of tiles.
         path: PathBuf,
+    },
+    /// A folder of tiles belongs to another sweep, program or format.
+    #[error("{} has tiles of something else: {difference}", path.display())]
+    OtherTiles {
+        /// The folder.
+        path: PathBuf,
+        /// The first difference.
+        difference: String,
+    },
+    /// A manifest cannot be read.
+    #[error("the manifest {} is damaged: {why}", path.display())]
+    Manifest {
+        /// The file.
+        path: PathBuf,
+        /// Where, in words.
+        why: String,
+    },
+    /// Something that is not slipmap's is where tiles go.
+    #[error("{} stands where the tiles go and is not by slipmap", path.display())]
+    Foreign {
+        /// What it is.
+        path: PathBuf,
+    },
+    /// A tile file is not as it was written.
+    #[error("the tile file {} is damaged", path.display())]
+    Damaged {
+        /// The file.
+        path: PathBuf,
+    },
+    /// A piece has the right checksum and makes no sense.
+    #[error("{piece:?} cannot be read, though its checksum fits")]
+    DamagedPiece {
+        /// Which one.
+        piece: Piece,
+    },
+    /// Pieces are missing.
+    #[error("{pieces} of {of} pieces of the map are missing")]
+    Incomplete {
+        /// How many.
+        pieces: u64,
+        /// Of how many.
+        of: u64,
     },
 }
 

@@ -145,6 +145,18 @@ impl MapFile {
         text(&self.file, name).ok()
     }
 
+    /// Whether some cells are not computed yet.
+    #[must_use]
+    pub fn is_partial(&self) -> bool {
+        self.cells_missing() > 0
+    }
+
+    /// Number of cells that are not computed yet.
+    #[must_use]
+    pub fn cells_missing(&self) -> u64 {
+        first_number(&self.file, root::CELLS_MISSING).unwrap_or(0)
+    }
+
     /// The unit of a field.
     #[must_use]
     pub fn field_unit(&self, field: Field) -> String {

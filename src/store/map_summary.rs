@@ -7,6 +7,7 @@ use super::map_file::MapFile;
 use super::schema::STATUS;
 use crate::linear::status::FLAGS;
 use crate::sweep::Field;
+use crate::sweep::engine::STATUS_FILL;
 
 /// What values a field has in a map.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -71,21 +72,24 @@ impl MapFile {
         Ok(counts)
     }
 
-    /// Number of cells with each bit of the status, in the order of [`crate::linear::status::FLAGS`], read piece by piece.
+    /// Number of computed cells with each bit of the status, in the order of [`crate::linear::status::FLAGS`], and without
+    /// any, read piece by piece.
     ///
     /// # Errors
     /// When the file is damaged.
-    pub fn status_counts(&self) -> Result<[u64; 6], StoreError> {
+    pub fn status_counts(&self) -> Result<([u64; FLAGS.len()], u64), StoreError> {
         let dataset = self.dataset(STATUS)?;
-        let mut counts = [0; 6];
+        let (mut counts, mut unflagged) = ([0; FLAGS.len()], 0);
         for_each_chunk(&dataset, |slab| {
-            let cells = self.read::<u8>(&dataset, slab)?;
+            let mut cells = self.read::<u8>(&dataset, slab)?;
+            cells.retain(|&status| status != STATUS_FILL);
             for (count, (mask, _)) in counts.iter_mut().zip(FLAGS) {
                 *count += cells.iter().filter(|&&s| s & mask != 0).count() as u64;
             }
+            unflagged += cells.iter().filter(|&&s| s == 0).count() as u64;
             Ok(())
         })?;
-        Ok(counts)
+        Ok((counts, unflagged))
     }
 }
 

@@ -1,4 +1,4 @@
-//! Writes a map as its tiles come.
+//! Writes a map from its pieces.
 
 use std::path::Path;
 
@@ -6,23 +6,24 @@ use hdf5::plist::file_create::{AttrCreationOrder, LinkCreationOrder};
 use hdf5::{Dataset, File, Group, H5Type};
 use hdf5_sys::h5d::H5Dwrite_chunk;
 use hdf5_sys::h5p::H5P_DEFAULT;
+use sha2::{Digest, Sha256};
 
 use super::attributes::{put_flags, put_numbers, put_text};
-use super::best_writer::BestWriter;
+use super::best_writer::{BestRow, BestWriter};
 use super::boundary_writer::BoundaryWriter;
-use super::codec::{Chunk, ChunkCodec, DEFLATE_LEVEL};
+use super::codec::DEFLATE_LEVEL;
+use super::curve_rows::{CurveRows, outer_values};
 use super::error::StoreError;
 use super::netcdf::{DimensionId, Dimensions, named};
 use super::output::Output;
 use super::schema::{self, STATUS, root};
 use crate::critical::switch_on::Phase;
 use crate::linear::status::FLAGS;
-use crate::sweep::best::BestSettings;
-use crate::sweep::boundaries::BoundaryPlane;
-use crate::sweep::engine::{Encode, FEW_FILL, N_UNSTABLE_FILL, STATUS_FILL, Sink, TileBuffers};
+use crate::sweep::engine::{FEW_FILL, N_UNSTABLE_FILL, STATUS_FILL};
 use crate::sweep::field::Storage;
 use crate::sweep::parameter::LawKind;
 use crate::sweep::parameter::Units;
+use crate::sweep::plan::in_hexadecimal;
 use crate::sweep::tile::Tile;
 use crate::sweep::vc::{Protocol, Search};
 use crate::sweep::{Field, Parameter, Plan, Setting};
@@ -38,7 +39,7 @@ pub struct Provenance {
     pub history: String,
 }
 
-/// A map on its way to disk: complete and under its final name after [`MapWriter::finish`], gone if dropped before.
+/// A map on its way to disk: under its final name after [`MapWriter::finish`], gone if dropped before.
 pub struct MapWriter<'p> {
     plan: &'p Plan,
     // Before `output`: the file is closed before its temporary name is removed.
@@ -46,9 +47,24 @@ pub struct MapWriter<'p> {
     dimensions: Dimensions,
     boundaries: Option<BoundaryWriter>,
     best: Option<BestWriter>,
-    /// The datasets in the order in which encoders give their chunks.
-    datasets: Vec<Dataset>,
+    /// The datasets of cells, in the order in which encoders give their chunks.
+    cells: Vec<Cells>,
     output: Output,
+}
+
+/// A dataset of cells, and the hash of its chunks so far.
+struct Cells {
+    dataset: Dataset,
+    chunks: Sha256,
+}
+
+impl Cells {
+    fn of(dataset: Dataset) -> Self {
+        Self {
+            dataset,
+            chunks: Sha256::new(),
+        }
+    }
 }
 
 impl<'p> MapWriter<'p> {
@@ -72,19 +88,66 @@ impl<'p> MapWriter<'p> {
             dimensions,
             boundaries,
             best,
-            datasets,
+            cells: datasets.into_iter().map(Cells::of).collect(),
             output,
         })
+    }
+
+    /// Appends the curves of the plane at `index`. Planes come in their order.
+    pub(super) fn put_curves(
+        &mut self,
+        index: &[usize],
+        rows: &CurveRows,
+    ) -> Result<(), StoreError> {
+        let Some(writer) = &mut self.boundaries else {
+            return Ok(());
+        };
+        let outer = outer_values(self.plan, index);
+        let appended = writer.append(rows, &outer);
+        appended.map_err(StoreError::hdf5("write", self.output.path()))
+    }
+
+    /// Appends the best setting of a plane. Planes come in their order.
+    pub(super) fn put_best(&mut self, row: &BestRow) {
+        if let Some(best) = &mut self.best {
+            best.append(row);
+        }
+    }
+
+    /// Puts the compressed chunks of a tile, in the order of the datasets. Tiles come in their order.
+    pub(super) fn put_tile(&mut self, tile: &Tile, chunks: &[&[u8]]) -> Result<(), StoreError> {
+        let offset: Vec<u64> = tile.offset.iter().map(|&o| o as u64).collect();
+        for (variable, chunk) in self.cells.iter_mut().zip(chunks) {
+            variable.chunks.update(chunk);
+            write_chunk(&variable.dataset, &offset, chunk)
+                .map_err(StoreError::hdf5("write", self.output.path()))?;
+        }
+        Ok(())
+    }
+
+    /// How many chunks a tile has.
+    pub(super) fn chunks_of_tile(&self) -> usize {
+        self.cells.len()
+    }
+
+    /// Says how many cells the map lacks.
+    pub(super) fn put_missing(&self, cells: u64) -> Result<(), StoreError> {
+        put_numbers(&self.file, root::CELLS_MISSING, &[cells])
+            .map_err(StoreError::hdf5("write", self.output.path()))
     }
 
     /// Closes the file, makes it durable and gives it its final name.
     ///
     /// # Errors
     /// When the system or the library refuses; nothing then stands under the final name that was not there before.
-    pub fn finish(self) -> Result<(), StoreError> {
+    pub fn finish(mut self) -> Result<(), StoreError> {
         let path = self.output.path().to_owned();
-        let close = || -> hdf5::Result<()> {
-            if let Some(boundaries) = &self.boundaries {
+        let mut close = || -> hdf5::Result<()> {
+            for variable in &self.cells {
+                let digest = in_hexadecimal(&variable.chunks.clone().finalize());
+                put_text(&variable.dataset, schema::CHUNKS_SHA256, &digest)?;
+            }
+            if let Some(boundaries) = &mut self.boundaries {
                 boundaries.finish(&self.dimensions)?;
             }
             if let Some(best) = &self.best {
@@ -95,7 +158,7 @@ impl<'p> MapWriter<'p> {
         };
         close().map_err(StoreError::hdf5("write", &path))?;
         // All handles, so that the file is closed before it is renamed.
-        drop((self.datasets, self.boundaries, self.best, self.dimensions));
+        drop((self.cells, self.boundaries, self.best, self.dimensions));
         self.file
             .close()
             .map_err(StoreError::hdf5("close", &path))?;
@@ -320,69 +383,6 @@ impl Variables<'_> {
         }
         self.dimensions.attach(&dataset, &self.axes)?;
         Ok(dataset)
-    }
-}
-
-/// Compresses tiles, one per thread.
-#[derive(Default)]
-pub struct TileEncoder {
-    codec: ChunkCodec,
-}
-
-/// The compressed chunks of a tile, in the order of the writer's datasets.
-pub struct EncodedTile(Vec<Chunk>);
-
-impl Encode for TileEncoder {
-    type Encoded = EncodedTile;
-
-    fn encode(&mut self, buffers: &TileBuffers) -> EncodedTile {
-        let mut chunks = Vec::with_capacity(2 + buffers.kinds.len() + buffers.columns.len());
-        if let Some(n) = &buffers.n_unstable {
-            chunks.push(self.codec.encode(n));
-        }
-        for column in &buffers.kinds {
-            chunks.push(self.codec.encode(&column.cells));
-        }
-        for column in &buffers.columns {
-            chunks.push(self.codec.encode(&column.cells));
-        }
-        chunks.push(self.codec.encode(&buffers.status));
-        EncodedTile(chunks)
-    }
-}
-
-impl Sink for MapWriter<'_> {
-    type Encoder = TileEncoder;
-    type Encoded = EncodedTile;
-    type Error = StoreError;
-
-    fn encoder(&self) -> TileEncoder {
-        TileEncoder::default()
-    }
-
-    fn write_boundaries(&mut self, planes: &[BoundaryPlane]) -> Result<(), StoreError> {
-        match &mut self.boundaries {
-            Some(writer) => writer
-                .append(self.plan, planes)
-                .map_err(StoreError::hdf5("write", self.output.path())),
-            None => Ok(()),
-        }
-    }
-
-    fn write_best(&mut self, planes: &[Option<BestSettings>]) -> Result<(), StoreError> {
-        if let Some(best) = &mut self.best {
-            best.append(planes);
-        }
-        Ok(())
-    }
-
-    fn write_tile(&mut self, tile: &Tile, encoded: EncodedTile) -> Result<(), StoreError> {
-        let offset: Vec<u64> = tile.offset.iter().map(|&o| o as u64).collect();
-        for (dataset, chunk) in self.datasets.iter().zip(encoded.0) {
-            write_chunk(dataset, &offset, &chunk)
-                .map_err(StoreError::hdf5("write", self.output.path()))?;
-        }
-        Ok(())
     }
 }
 

@@ -1,23 +1,31 @@
 //! Maps and traces on disk: HDF5 files that netCDF-4 readers open with named coordinates. The only place that knows HDF5.
 //!
 //! - [`schema`]: names, meanings and format version
-//! - [`map_writer`]: writes a map as its tiles come, under a temporary name until it is complete
+//! - [`tiles`]: finished pieces of a sweep in files of their own, checked when they are read
+//! - [`map_maker`]: computes what is missing, and puts the map together
+//! - [`assembly`]: from pieces to a map
+//! - [`map_writer`]: the map's file, under a temporary name until it is complete
 //! - [`map_file`]: reads maps
 //! - [`trace_file`]: writes motions sampled over time, and recognises them
 //! - [`output`]: the temporary name, the lock, the final rename
 
+pub mod assembly;
 mod attributes;
 mod best_reader;
 mod best_writer;
 mod boundary_writer;
 mod codec;
+mod curve_rows;
 mod error;
 pub mod map_file;
+pub mod map_maker;
 mod map_summary;
 pub mod map_writer;
 mod netcdf;
 pub mod output;
 pub mod schema;
+pub mod source;
+pub mod tiles;
 pub mod trace_file;
 
 pub use best_reader::MapBest;

@@ -45,6 +45,8 @@ pub mod root {
     pub const GIT_REVISION: &str = "git_revision";
     /// When and how the map was made.
     pub const HISTORY: &str = "history";
+    /// Number of cells that are not computed yet; absent in a complete map.
+    pub const CELLS_MISSING: &str = "cells_missing";
     /// Tolerance of the marginal flag.
     pub const MARGINAL_TOLERANCE: &str = "marginal_tolerance";
     /// Name of the [`crate::sweep::Protocol`], where there is one.
@@ -56,6 +58,9 @@ pub mod root {
     /// μ_K at these.
     pub const FRICTION_MU_K: &str = "friction_mu_k";
 }
+
+/// Attribute of datasets of cells: SHA-256 of the stored bytes of all chunks, one after the other, last dimension fastest.
+pub const CHUNKS_SHA256: &str = "chunks_sha256";
 
 /// Name of the status of each cell.
 pub const STATUS: &str = "status";

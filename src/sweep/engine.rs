@@ -1,65 +1,85 @@
-//! The sweep engine: tiles computed over threads, handed one by one to a sink.
+//! The sweep engine: the pieces of a sweep computed over threads, handed one by one to a sink.
 
-use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
-use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::mpsc::{Receiver, RecvTimeoutError, SyncSender, sync_channel};
+use std::time::{Duration, Instant};
 
-use rayon::prelude::*;
 use rayon::{ThreadPool, ThreadPoolBuilder};
 
 use super::best::{BestSettings, best_of_plane, best_planes};
 use super::boundaries::{BoundaryPlane, planes, trace_plane};
 use super::events::{Event, Observer};
+use super::pieces::{Piece, Todo};
 use super::plan::Plan;
-use super::tile::Tile;
 pub use super::worker::{Column, FEW_FILL, N_UNSTABLE_FILL, STATUS_FILL, TileBuffers, Worker};
 use crate::model::ModelError;
 
-/// Planes of crossing curves that are held in memory at a time.
-const PLANES_AT_ONCE: usize = 16;
-/// Tiles that wait for the sink, per thread.
-const TILES_WAITING: usize = 2;
+/// Pieces that wait for the sink, per thread.
+const PIECES_WAITING: usize = 2;
+/// How often the sink may look at its clock where no piece comes.
+const PAUSE: Duration = Duration::from_millis(200);
+/// How long pieces in hand may take to end once a stop is asked for; what takes longer is dropped.
+const GRACE: Duration = Duration::from_millis(1200);
 
-/// Where tiles go. Encoding happens on the computing threads, writing on the one that called [`run`].
+/// Where pieces go. Encoding happens on the computing threads, writing on the one that called [`run`].
 pub trait Sink {
-    /// Turns tiles into what is written; one per thread.
-    type Encoder: Encode<Encoded = Self::Encoded>;
-    /// A tile ready to be written.
-    type Encoded: Send;
+    /// Turns pieces into what is written; one per thread.
+    type Encoder: Encode;
     /// Why writing failed.
     type Error;
 
     /// A new encoder, for one thread.
     fn encoder(&self) -> Self::Encoder;
 
-    /// Takes the next planes of crossing curves, in order.
+    /// Takes a piece. Pieces come in no particular order.
     ///
     /// # Errors
     /// Ends the sweep.
-    fn write_boundaries(&mut self, planes: &[BoundaryPlane]) -> Result<(), Self::Error>;
+    fn write(
+        &mut self,
+        piece: Piece,
+        encoded: <Self::Encoder as Encode>::Encoded,
+    ) -> Result<(), Self::Error>;
 
-    /// Takes the best settings of the next planes, in order.
+    /// Called now and then, also where no piece comes.
     ///
     /// # Errors
     /// Ends the sweep.
-    fn write_best(&mut self, planes: &[Option<BestSettings>]) -> Result<(), Self::Error>;
+    fn pause(&mut self) -> Result<(), Self::Error> {
+        Ok(())
+    }
 
-    /// Takes a tile. Tiles come in no particular order.
+    /// Makes durable what was taken. Called at the end, however that comes.
     ///
     /// # Errors
-    /// Ends the sweep.
-    fn write_tile(&mut self, tile: &Tile, encoded: Self::Encoded) -> Result<(), Self::Error>;
+    /// Is the error of the sweep, where it had no other.
+    fn flush(&mut self) -> Result<(), Self::Error> {
+        Ok(())
+    }
 }
 
-/// Turns a computed tile into what a sink writes.
-pub trait Encode: Send {
-    /// A tile ready to be written.
-    type Encoded: Send;
-
-    /// Encodes the buffers of a tile.
-    fn encode(&mut self, buffers: &TileBuffers) -> Self::Encoded;
+/// What was computed of a piece.
+#[derive(Debug, Clone, Copy)]
+pub enum Computed<'a> {
+    /// The curves of a plane.
+    Curves(&'a BoundaryPlane),
+    /// The best settings of a plane; none where a parameter is outside the model's range.
+    Best(Option<&'a BestSettings>),
+    /// The cells of a tile.
+    Tile(&'a TileBuffers),
 }
 
-/// Why a sweep ended before its last tile.
+/// Turns a computed piece into what a sink writes.
+pub trait Encode: Send + 'static {
+    /// A piece ready to be written.
+    type Encoded: Send + 'static;
+
+    /// Encodes a piece.
+    fn encode(&mut self, piece: Piece, computed: Computed) -> Self::Encoded;
+}
+
+/// Why a sweep ended before its last piece.
 #[derive(Debug, thiserror::Error)]
 pub enum RunError<E> {
     /// It was asked to stop.
@@ -79,173 +99,160 @@ pub enum RunError<E> {
         /// What the system said.
         reason: String,
     },
+    /// A thread ended before its work was done, which is a fault of the program.
+    #[error("a computing thread ended early; this is a fault of slipmap")]
+    ThreadLost,
 }
 
-/// Computes every tile of `plan` on `threads` threads and hands them to `sink`; `stop` ends it at the next tile, where
-/// motions are followed at the next cell.
+/// Computes the pieces of `plan` that `todo` lists on `threads` threads and hands them to `sink`. `stop` ends it: within
+/// 1.2 s, since what takes longer than that to end is dropped.
 ///
-/// What a tile holds depends on the plan alone.
+/// What a piece holds depends on the plan alone.
 ///
 /// # Errors
-/// See [`RunError`].
+/// See [`RunError`]. Whatever the sink took before has been flushed then, if it could be.
 pub fn run<S: Sink>(
-    plan: &Plan,
+    plan: &Arc<Plan>,
+    todo: Todo,
     threads: usize,
     sink: &mut S,
     observer: &dyn Observer,
-    stop: &AtomicBool,
+    stop: &Arc<AtomicBool>,
 ) -> Result<(), RunError<S::Error>> {
-    let pool = ThreadPoolBuilder::new()
+    let left = todo.left().fold((0, 0), |(pieces, cells), piece| {
+        (pieces + 1, cells + cells_of(plan, piece))
+    });
+    observer.event(&Event::Started {
+        cells: plan.cells(),
+        left: left.1,
+        threads,
+    });
+    let received = if left.0 > 0 {
+        let receiver = start(plan, todo, threads, sink, stop)?;
+        receive(plan, receiver, sink, observer, stop)
+    } else {
+        Ok(0)
+    };
+    let flushed = sink.flush().map_err(RunError::Sink);
+    if received? < left.0 {
+        let stopped = stop.load(Ordering::Relaxed);
+        flushed?;
+        return Err(match stopped {
+            true => RunError::Interrupted,
+            false => RunError::ThreadLost,
+        });
+    }
+    flushed?;
+    observer.event(&Event::Finished);
+    Ok(())
+}
+
+fn cells_of(plan: &Plan, piece: Piece) -> u64 {
+    match piece {
+        Piece::Tile(number) => plan.tiles.tile(number as usize).cells(),
+        Piece::Curves(_) | Piece::Best(_) => 0,
+    }
+}
+
+/// A computed piece, or why it cannot be.
+type Sent<E> = Result<(Piece, E), ModelError>;
+
+/// Starts the threads. They hold what they need, so that nobody has to wait for one that is slow to stop.
+fn start<S: Sink>(
+    plan: &Arc<Plan>,
+    todo: Todo,
+    threads: usize,
+    sink: &S,
+    stop: &Arc<AtomicBool>,
+) -> Result<Receiver<Sent<<S::Encoder as Encode>::Encoded>>, RunError<S::Error>> {
+    let pool: ThreadPool = ThreadPoolBuilder::new()
         .num_threads(threads)
+        // A panic is told by the thread's missing work.
+        .panic_handler(|_| {})
         .build()
         .map_err(|error| RunError::Threads {
             threads,
             reason: error.to_string(),
         })?;
-    observer.event(&Event::Started {
-        cells: plan.cells(),
-        threads,
+    let (sender, receiver) = sync_channel(PIECES_WAITING * threads);
+    let todo = Arc::new(todo);
+    let at = Arc::new(Planes {
+        curves: planes(plan),
+        best: best_planes(plan),
     });
-    run_boundaries(plan, &pool, sink, observer, stop)?;
-    run_best(plan, &pool, sink, observer, stop)?;
-    run_tiles(plan, &pool, sink, observer, stop)?;
-    observer.event(&Event::Finished);
-    Ok(())
+    for _ in 0..threads {
+        let (plan, todo, at) = (Arc::clone(plan), Arc::clone(&todo), Arc::clone(&at));
+        let (stop, sender, encoder) = (Arc::clone(stop), sender.clone(), sink.encoder());
+        pool.spawn(move || work(&plan, &todo, &at, encoder, &sender, &stop));
+    }
+    Ok(receiver)
 }
 
-fn run_boundaries<S: Sink>(
+/// Where the planes of curves and of best settings lie.
+struct Planes {
+    curves: Vec<Vec<usize>>,
+    best: Vec<Vec<usize>>,
+}
+
+/// One thread's work, until nothing is left, a stop is asked for, or nobody listens any more.
+fn work<C: Encode>(
     plan: &Plan,
-    pool: &ThreadPool,
-    sink: &mut S,
-    observer: &dyn Observer,
+    todo: &Todo,
+    at: &Planes,
+    mut encoder: C,
+    sender: &SyncSender<Sent<C::Encoded>>,
     stop: &AtomicBool,
-) -> Result<(), RunError<S::Error>> {
-    let (mut pieces, mut corners, mut planes_left_out) = (0, 0, 0);
-    for batch in planes(plan).chunks(PLANES_AT_ONCE) {
-        if stop.load(Ordering::Relaxed) {
-            return Err(RunError::Interrupted);
-        }
-        let traced: Result<Vec<BoundaryPlane>, ModelError> = pool.install(|| {
-            batch
-                .par_iter()
-                .filter(|_| !stop.load(Ordering::Relaxed))
-                .map(|index| trace_plane(plan, index))
-                .collect()
-        });
-        let traced = traced?;
-        if traced.len() < batch.len() {
-            return Err(RunError::Interrupted);
-        }
-        for plane in &traced {
-            for curves in plane.curves.iter().filter_map(|of| of.curves.as_ref().ok()) {
-                pieces += curves.pieces.len() as u64;
-                corners += curves.corners.len() as u64;
+) {
+    let mut worker = Worker::new(plan);
+    while !stop.load(Ordering::Relaxed) {
+        let Some(piece) = todo.next() else { break };
+        let encoded = match piece {
+            Piece::Curves(n) => trace_plane(plan, &at.curves[n as usize])
+                .map(|plane| encoder.encode(piece, Computed::Curves(&plane))),
+            Piece::Best(n) => {
+                let found = best_of_plane(plan, &at.best[n as usize]);
+                Ok(encoder.encode(piece, Computed::Best(found.as_ref())))
             }
-            planes_left_out += u64::from(plane.curves.iter().any(|of| of.curves.is_err()));
-        }
-        sink.write_boundaries(&traced).map_err(RunError::Sink)?;
-    }
-    if plan.boundary_plane.is_some() {
-        observer.event(&Event::BoundariesTraced {
-            pieces,
-            corners,
-            planes_left_out,
-        });
-    }
-    Ok(())
-}
-
-fn run_best<S: Sink>(
-    plan: &Plan,
-    pool: &ThreadPool,
-    sink: &mut S,
-    observer: &dyn Observer,
-    stop: &AtomicBool,
-) -> Result<(), RunError<S::Error>> {
-    let planes = best_planes(plan);
-    for batch in planes.chunks(PLANES_AT_ONCE) {
-        let found: Vec<Option<BestSettings>> = pool.install(|| {
-            batch
-                .par_iter()
-                .filter(|_| !stop.load(Ordering::Relaxed))
-                .map(|index| best_of_plane(plan, index))
-                .collect()
-        });
-        if found.len() < batch.len() {
-            return Err(RunError::Interrupted);
-        }
-        sink.write_best(&found).map_err(RunError::Sink)?;
-    }
-    if plan.best_plane().is_some() {
-        observer.event(&Event::BestFound {
-            planes: planes.len() as u64,
-        });
-    }
-    Ok(())
-}
-
-fn run_tiles<S: Sink>(
-    plan: &Plan,
-    pool: &ThreadPool,
-    sink: &mut S,
-    observer: &dyn Observer,
-    stop: &AtomicBool,
-) -> Result<(), RunError<S::Error>> {
-    let threads = pool.current_num_threads();
-    let (sender, receiver) = sync_channel(TILES_WAITING * threads);
-    let encoders: Vec<S::Encoder> = (0..threads).map(|_| sink.encoder()).collect();
-    let failed = AtomicBool::new(false);
-    let next = AtomicUsize::new(0);
-    std::thread::scope(|scope| {
-        let (next, failed) = (&next, &failed);
-        let work = move |mut encoder: S::Encoder, sender: SyncSender<(Tile, S::Encoded)>| {
-            let mut worker = Worker::new(plan);
-            while !stop.load(Ordering::Relaxed) && !failed.load(Ordering::Relaxed) {
-                let number = next.fetch_add(1, Ordering::Relaxed);
-                if number >= plan.tiles.len() {
+            Piece::Tile(n) => {
+                if !worker.compute_until(&plan.tiles.tile(n as usize), stop) {
                     break;
                 }
-                let tile = plan.tiles.tile(number);
-                if !worker.compute_until(&tile, stop) {
-                    break;
-                }
-                if sender
-                    .send((tile, encoder.encode(&worker.buffers)))
-                    .is_err()
-                {
-                    break;
-                }
+                Ok(encoder.encode(piece, Computed::Tile(&worker.buffers)))
             }
         };
-        scope.spawn(move || {
-            pool.scope(|workers| {
-                for encoder in encoders {
-                    let sender = sender.clone();
-                    workers.spawn(move |_| work(encoder, sender));
-                }
-                drop(sender);
-            });
-        });
-        // Taken by value: when writing fails the channel closes, and no worker waits on it for ever.
-        write_all(receiver, sink, observer).inspect_err(|_| failed.store(true, Ordering::Relaxed))
-    })
-    .map_err(RunError::Sink)?;
-    if next.load(Ordering::Relaxed) < plan.tiles.len() || stop.load(Ordering::Relaxed) {
-        return Err(RunError::Interrupted);
+        if sender.send(encoded.map(|e| (piece, e))).is_err() {
+            break;
+        }
     }
-    Ok(())
 }
 
-fn write_all<S: Sink>(
-    receiver: Receiver<(Tile, S::Encoded)>,
+/// Hands pieces to the sink as they come, and says how many. After a stop only those that come in time.
+fn receive<S: Sink>(
+    plan: &Plan,
+    receiver: Receiver<Sent<<S::Encoder as Encode>::Encoded>>,
     sink: &mut S,
     observer: &dyn Observer,
-) -> Result<(), S::Error> {
-    for (tile, encoded) in receiver {
-        sink.write_tile(&tile, encoded)?;
-        observer.event(&Event::TileDone {
-            cells: tile.cells(),
-        });
+    stop: &AtomicBool,
+) -> Result<u64, RunError<S::Error>> {
+    let mut received = 0;
+    let mut stopped: Option<Instant> = None;
+    loop {
+        match receiver.recv_timeout(PAUSE) {
+            Ok(sent) => {
+                let (piece, encoded) = sent?;
+                sink.write(piece, encoded).map_err(RunError::Sink)?;
+                received += 1;
+                observer.event(&Event::PieceDone {
+                    cells: cells_of(plan, piece),
+                });
+            }
+            Err(RecvTimeoutError::Timeout) => sink.pause().map_err(RunError::Sink)?,
+            Err(RecvTimeoutError::Disconnected) => return Ok(received),
+        }
+        if stop.load(Ordering::Relaxed)
+            && stopped.get_or_insert_with(Instant::now).elapsed() > GRACE
+        {
+            return Ok(received);
+        }
     }
-    Ok(())
 }

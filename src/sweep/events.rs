@@ -1,35 +1,32 @@
 //! What a running sweep tells whoever watches it.
 
+use std::path::PathBuf;
+
 /// A step of a running sweep.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Event {
+    /// A file of finished tiles is not as it was written. What it held is computed again, as far as it is not sound.
+    Damaged {
+        /// The file.
+        file: PathBuf,
+        /// What is wrong, in words.
+        why: String,
+    },
     /// The sweep starts.
     Started {
-        /// Cells to compute.
+        /// Cells of the map.
         cells: u64,
+        /// Those of them that this run has to compute.
+        left: u64,
         /// Threads that compute them.
         threads: usize,
     },
-    /// The crossing curves are traced.
-    BoundariesTraced {
-        /// Pieces of curves.
-        pieces: u64,
-        /// Points where they meet.
-        corners: u64,
-        /// Planes without the curves of one degree of stability or more, because too many cross them to be traced.
-        planes_left_out: u64,
-    },
-    /// The best settings are found.
-    BestFound {
-        /// In so many planes.
-        planes: u64,
-    },
-    /// A tile is computed and handed over.
-    TileDone {
-        /// Its cells.
+    /// A piece is computed and handed over.
+    PieceDone {
+        /// Its cells; 0 where it is a plane of curves or best settings.
         cells: u64,
     },
-    /// All tiles are done.
+    /// Everything that this run had to compute is computed.
     Finished,
 }
 

@@ -26,6 +26,8 @@ const DELAYS_PER_TILE: usize = 1 << 17;
 pub const BLOCK_OF_DELAYS: usize = crate::linear::track::BLOCK;
 /// More cells than this are refused.
 const MOST_CELLS: u64 = 10_000_000_000_000;
+/// More tiles than this are refused: even their list would fill a machine's memory.
+const MOST_TILES: usize = 100_000_000;
 /// Planes up to which crossing curves are traced without being asked for.
 const PLANES_TRACED_UNASKED: u64 = 1000;
 
@@ -89,8 +91,16 @@ impl Plan {
         };
         let tile_shape = tile_shape(&shape, (tau_axis, block), cells_per_tile);
         let boundary_plane = boundary_plane(&spec);
+        let tiles = TileGrid::new(shape, tile_shape);
+        if tiles.len() > MOST_TILES {
+            return Err(SpecError::whole(format!(
+                "the map would be cut into {} tiles of {} cells; at most {MOST_TILES} are allowed: split the sweep",
+                tiles.len(),
+                tiles.tile_cells(),
+            )));
+        }
         Ok(Self {
-            tiles: TileGrid::new(shape, tile_shape),
+            tiles,
             tau_axis,
             boundary_plane,
             spec,
@@ -124,6 +134,15 @@ impl Plan {
                 let of_plane = (self.shape()[p] * self.shape()[tau]) as u64;
                 self.cells() / of_plane
             }
+            None => 0,
+        }
+    }
+
+    /// Number of planes whose best settings are looked for.
+    #[must_use]
+    pub fn best_planes(&self) -> u64 {
+        match self.best_plane() {
+            Some((gain, tau)) => self.cells() / (self.shape()[gain] * self.shape()[tau]) as u64,
             None => 0,
         }
     }
@@ -162,60 +181,98 @@ impl Plan {
         }
     }
 
-    /// A hash of everything on which the cells depend, in hexadecimal: equal plans have equal cells.
-    #[must_use]
-    pub fn hash(&self) -> String {
-        let mut hash = Sha256::new();
-        let mut put = |text: &str, values: &[f64]| {
-            hash.update((text.len() as u64).to_le_bytes());
-            hash.update(text);
-            hash.update((values.len() as u64).to_le_bytes());
-            for value in values {
-                hash.update(value.to_bits().to_le_bytes());
-            }
-        };
-        let fixed = &self.spec.fixed;
-        put(fixed.law().map_or("no law", LawKind::name), &[]);
+    /// Everything on which the cells depend, by name, with numbers where there are any; equal plans have equal cells.
+    fn facts(&self) -> Vec<(&str, Vec<f64>)> {
+        let spec = &self.spec;
+        let fixed = &spec.fixed;
+        let mut facts = vec![(fixed.law().map_or("no law", LawKind::name), Vec::new())];
         if let Some(LawKind::Table(table)) = fixed.law() {
-            put(Column::Speeds.name(), table.speeds());
-            put(Column::MuK.name(), table.mu_k());
+            facts.push((Column::Speeds.name(), table.speeds().to_vec()));
+            facts.push((Column::MuK.name(), table.mu_k().to_vec()));
         }
-        put("axes", &[self.spec.axes.len() as f64]);
-        for axis in &self.spec.axes {
-            put(axis.parameter.name(), &axis.values);
+        facts.push(("axes", vec![spec.axes.len() as f64]));
+        for axis in &spec.axes {
+            facts.push((axis.parameter.name(), axis.values.clone()));
         }
-        for parameter in Parameter::ALL.into_iter().filter(|&p| self.spec.uses(p)) {
-            if !self.spec.axes.iter().any(|a| a.parameter == parameter) {
-                put(parameter.name(), &[fixed.get(parameter)]);
+        for parameter in Parameter::ALL.into_iter().filter(|&p| spec.uses(p)) {
+            if !spec.axes.iter().any(|a| a.parameter == parameter) {
+                facts.push((parameter.name(), vec![fixed.get(parameter)]));
             }
         }
-        for field in &self.spec.fields {
-            put(field.name(), &[]);
-        }
-        put("marginal", &[self.spec.tolerance.0]);
-        put("boundaries", &[f64::from(self.boundary_plane.is_some())]);
+        facts.extend(spec.fields.iter().map(|f| (f.name(), Vec::new())));
+        facts.push(("marginal", vec![spec.tolerance.0]));
+        facts.push(("boundaries", vec![f64::from(self.boundary_plane.is_some())]));
         // Absent where there are none: maps of earlier versions stay equal.
-        if !self.spec.degrees_of_stability.is_empty() {
-            put("degree_of_stability", &self.spec.degrees_of_stability);
+        if !spec.degrees_of_stability.is_empty() {
+            facts.push(("degree_of_stability", spec.degrees_of_stability.clone()));
         }
-        if self.spec.best {
-            put("best", &[]);
+        if spec.best {
+            facts.push(("best", Vec::new()));
         }
-        if let Some(search) = self.spec.critical {
+        if let Some(search) = spec.critical {
             let protocol = search.protocol;
             let phases = match protocol {
                 Protocol::SwitchOn(Phase::Worst(phases)) => f64::from(phases),
                 _ => 0.0,
             };
-            put(protocol.name(), &[phases, search.verify]);
+            facts.push((protocol.name(), vec![phases, search.verify]));
         }
-        if self.spec.follows_motions() {
-            let how = &self.spec.simulation;
+        if spec.follows_motions() {
+            let how = &spec.simulation;
             let horizon = how.horizon.unwrap_or(0.0);
-            put("simulation", &[horizon, how.tolerance, how.steps as f64]);
+            let numbers = vec![horizon, how.tolerance, how.steps as f64];
+            facts.push(("simulation", numbers));
         }
-        hash.finalize().iter().map(|b| format!("{b:02x}")).collect()
+        facts
     }
+
+    /// A hash of everything on which the cells depend, in hexadecimal: equal plans have equal cells.
+    #[must_use]
+    pub fn hash(&self) -> String {
+        let mut hash = Sha256::new();
+        for (name, values) in self.facts() {
+            hash.update((name.len() as u64).to_le_bytes());
+            hash.update(name);
+            put_numbers(&mut hash, &values);
+        }
+        in_hexadecimal(&hash.finalize())
+    }
+
+    /// The same in words, to tell where two plans differ: every name with its numbers, long lists by their ends and a hash.
+    #[must_use]
+    pub fn description(&self) -> Vec<(String, String)> {
+        let described = |values: &[f64]| match values {
+            [] => "yes".to_owned(),
+            [one] => one.to_string(),
+            [first, .., last] => {
+                let mut hash = Sha256::new();
+                put_numbers(&mut hash, values);
+                let hash = in_hexadecimal(&hash.finalize());
+                format!(
+                    "{} numbers from {first} to {last}, #{}",
+                    values.len(),
+                    &hash[..8]
+                )
+            }
+        };
+        let facts = self.facts().into_iter();
+        facts
+            .map(|(name, values)| (name.to_owned(), described(&values)))
+            .collect()
+    }
+}
+
+fn put_numbers(hash: &mut Sha256, values: &[f64]) {
+    hash.update((values.len() as u64).to_le_bytes());
+    for value in values {
+        hash.update(value.to_bits().to_le_bytes());
+    }
+}
+
+/// Bytes as hexadecimal digits.
+#[must_use]
+pub fn in_hexadecimal(bytes: &[u8]) -> String {
+    bytes.iter().map(|b| format!("{b:02x}")).collect()
 }
 
 fn follows_roots(spec: &SweepSpec) -> bool {

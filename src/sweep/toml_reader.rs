@@ -26,7 +26,8 @@ impl SpecError {
         }
     }
 
-    pub(super) fn whole(message: impl Into<String>) -> Self {
+    /// An error of the sweep as a whole.
+    pub fn whole(message: impl Into<String>) -> Self {
         Self {
             message: message.into(),
             span: None,

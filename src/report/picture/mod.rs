@@ -281,17 +281,12 @@ fn title(map: &MapFile, otherwise: &str) -> String {
 mod tests {
     use std::collections::HashSet;
     use std::path::PathBuf;
+    use std::sync::Arc;
 
     use super::*;
-    use crate::store::MapWriter;
+    use crate::store::map_maker::make_in_memory;
     use crate::store::map_writer::Provenance;
-    use crate::sweep::{Event, Observer, Plan, SweepSpec, engine};
-
-    struct Silent;
-
-    impl Observer for Silent {
-        fn event(&self, _: &Event) {}
-    }
+    use crate::sweep::{Plan, SweepSpec};
 
     const FIG2: &str = "
         title = \"Velocity control\"
@@ -316,16 +311,7 @@ mod tests {
             let folder = tempfile::tempdir().unwrap();
             let path = folder.path().join("map.h5");
             let plan = Plan::new(sweep.parse::<SweepSpec>().unwrap()).unwrap();
-            let provenance = Provenance {
-                program_version: String::new(),
-                git_revision: String::new(),
-                history: String::new(),
-            };
-            let output = Output::claim(&path).unwrap();
-            let mut writer = MapWriter::create(&plan, output, &provenance).unwrap();
-            let stop = std::sync::atomic::AtomicBool::new(false);
-            engine::run(&plan, 1, &mut writer, &Silent, &stop).unwrap();
-            writer.finish().unwrap();
+            make_in_memory(&Arc::new(plan), &path, 1, &Provenance::default()).unwrap();
             let map = MapFile::open(&path).unwrap();
             Self { folder, map }
         }

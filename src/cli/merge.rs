@@ -1,0 +1,126 @@
+//! `slipmap merge`: the map of shards that were computed apart.
+
+use std::path::{Path, PathBuf};
+
+use slipmap::report::log::{Both, Log};
+use slipmap::report::numbers::{bytes, grouped};
+use slipmap::report::progress::Progress;
+use slipmap::store::assembly::{Assembled, Missing};
+use slipmap::store::tiles::shards;
+use slipmap::store::{StoreError, map_maker};
+use slipmap::sweep::{Plan, Shard};
+
+use super::failure::Failure;
+use super::output::{provenance, tell_assembled};
+use super::{run, say};
+
+#[derive(Debug, clap::Args)]
+pub struct Args {
+    /// The map that `run --shard` was given, or would have been by default
+    #[arg(value_name = "MAP.h5")]
+    map: PathBuf,
+    /// Folders of shards, where they were computed elsewhere [default: all in MAP.h5.tiles]
+    #[arg(value_name = "FOLDER")]
+    folders: Vec<PathBuf>,
+    /// Write the map here instead
+    #[arg(short, long, value_name = "MAP.h5")]
+    output: Option<PathBuf>,
+    /// Put together what there is: cells that are missing have fill values, and the shards stay
+    #[arg(long)]
+    partial: bool,
+    /// Replace a map that is already there
+    #[arg(long)]
+    fresh: bool,
+}
+
+pub fn main(args: &Args) -> Result<(), Failure> {
+    let folders = folders(args)?;
+    let target = args.output.as_ref().unwrap_or(&args.map);
+    let plan = plan_of(&folders[0])?;
+    if let Some(remark) = run::already_there(target, &plan, args.fresh)? {
+        return say::result(format_args!(
+            "{} is already complete{remark}",
+            target.display()
+        ));
+    }
+    let provenance = provenance("merge", &args.map);
+    let (progress, log) = (Progress::new(false), Log::beside(target, Shard::WHOLE));
+    let observer = Both(&progress, &log);
+    let missing = match args.partial {
+        true => Missing::Leave,
+        false => Missing::Refuse,
+    };
+    let merged = map_maker::merge(&plan, &folders, target, &provenance, (missing, &observer));
+    let assembled = merged.map_err(|error| failure(error, &args.map))?;
+    if assembled.pieces_missing == 0 && args.folders.is_empty() {
+        shards::remove_root(&args.map)?;
+    }
+    tell(target, &plan, &assembled)?;
+    run::show(target, false);
+    Ok(())
+}
+
+fn folders(args: &Args) -> Result<Vec<PathBuf>, Failure> {
+    if !args.folders.is_empty() {
+        return Ok(args.folders.clone());
+    }
+    let present = shards::present(&args.map)?;
+    if present.is_empty() {
+        return Err(Failure::bad_input_with_help(
+            format!(
+                "there are no shards in {}",
+                shards::root(&args.map).display()
+            ),
+            "`slipmap run SWEEP.toml -o MAP.h5 --shard I/N` computes one; folders from elsewhere are named after MAP.h5",
+        ));
+    }
+    Ok(present.into_iter().map(|(_, path)| path).collect())
+}
+
+fn plan_of(folder: &Path) -> Result<Plan, Failure> {
+    let manifest = shards::manifest(folder)?;
+    manifest.read_plan().map_err(|error| {
+        Failure::from(StoreError::Manifest {
+            path: folder.to_owned(),
+            why: error.message,
+        })
+    })
+}
+
+fn tell(target: &Path, plan: &Plan, assembled: &Assembled) -> Result<(), Failure> {
+    tell_assembled(assembled, false);
+    let size = bytes(std::fs::metadata(target).map_or(0, |m| m.len()));
+    let cells = grouped(plan.cells());
+    let missing = match assembled.cells_missing {
+        0 => String::new(),
+        missing => format!(", {} of them missing", grouped(missing)),
+    };
+    say::result(format_args!(
+        "{}: {cells} cells{missing}, {size}",
+        target.display()
+    ))
+}
+
+fn failure(error: StoreError, map: &Path) -> Failure {
+    let StoreError::Incomplete { .. } = error else {
+        return error.into();
+    };
+    let mut unfinished = Vec::new();
+    if let Ok(Some(survey)) = slipmap::store::tiles::Survey::of(map) {
+        let short = survey.shards.iter().filter(|s| s.pieces_done < s.pieces);
+        unfinished.extend(short.map(|s| s.shard.to_string()));
+        for of in survey.shards.iter().map(|s| s.shard.numbers().1).take(1) {
+            let there = |n: &u64| survey.shards.iter().any(|s| s.shard.numbers() == (*n, of));
+            let absent = (1..=of).filter(|n| !there(n));
+            unfinished.extend(absent.map(|number| format!("{number}/{of}")));
+        }
+    }
+    let help = match unfinished.is_empty() {
+        true => "run the shards that are missing; --partial puts together what there is".to_owned(),
+        false => format!(
+            "run these shards again: {}; --partial puts together what there is",
+            unfinished.join(", ")
+        ),
+    };
+    Failure::failed_with_help(error.to_string(), help)
+}

@@ -1,0 +1,220 @@
+//! `slipmap status`: how far a map is, from another terminal.
+
+use std::fs::File;
+use std::io::{BufRead, BufReader, Write};
+use std::path::{Path, PathBuf};
+use std::time::{Duration, SystemTime};
+
+use serde_json::{Value, json};
+use slipmap::linear::status::FLAGS;
+use slipmap::report::log::{self, Entry, Line};
+use slipmap::report::numbers::{grouped, prefixed, seconds};
+use slipmap::store::MapFile;
+use slipmap::store::tiles::Survey;
+use slipmap::store::tiles::survey::ShardSurvey;
+
+use super::failure::Failure;
+use super::say;
+
+#[derive(Debug, clap::Args)]
+pub struct Args {
+    /// The map, there or still to come
+    #[arg(value_name = "MAP.h5")]
+    map: PathBuf,
+    /// Print one JSON object instead
+    #[arg(long)]
+    json: bool,
+}
+
+pub fn main(args: &Args) -> Result<(), Failure> {
+    let status = match Survey::of(&args.map)? {
+        Some(survey) => of_tiles(&args.map, &survey),
+        None => of_map(&args.map)?,
+    };
+    if args.json {
+        return say::result(status.json());
+    }
+    status.print(&args.map)
+}
+
+/// What is told of a map.
+struct Status {
+    complete: bool,
+    cells: u64,
+    cells_done: u64,
+    /// Cells with each bit of the status, and without any.
+    flagged: [u64; FLAGS.len()],
+    unflagged: u64,
+    shards: Vec<ShardStatus>,
+}
+
+struct ShardStatus {
+    shard: String,
+    running: bool,
+    cells: u64,
+    cells_done: u64,
+    pieces: u64,
+    pieces_done: u64,
+    damaged_files: u64,
+    /// Cells per second of the run that works on it.
+    rate: Option<f64>,
+}
+
+impl ShardStatus {
+    fn seconds_left(&self) -> Option<f64> {
+        let rate = self.rate.filter(|rate| *rate > 0.0)?;
+        Some((self.cells - self.cells_done) as f64 / rate)
+    }
+}
+
+fn of_map(path: &Path) -> Result<Status, Failure> {
+    let map = MapFile::open(path)?;
+    let (flagged, unflagged) = map.status_counts()?;
+    let missing = map.cells_missing();
+    Ok(Status {
+        complete: missing == 0,
+        cells: map.cells(),
+        cells_done: map.cells() - missing.min(map.cells()),
+        flagged,
+        unflagged,
+        shards: Vec::new(),
+    })
+}
+
+fn of_tiles(map: &Path, survey: &Survey) -> Status {
+    let shard = |found: &ShardSurvey| ShardStatus {
+        shard: found.shard.to_string(),
+        running: found.running,
+        cells: found.cells,
+        cells_done: found.cells_done,
+        pieces: found.pieces,
+        pieces_done: found.pieces_done,
+        damaged_files: found.damaged.len() as u64,
+        rate: rate(map, found),
+    };
+    Status {
+        complete: false,
+        cells: survey.plan.cells(),
+        cells_done: survey.cells_done,
+        flagged: survey.flagged,
+        unflagged: survey.unflagged,
+        shards: survey.shards.iter().map(shard).collect(),
+    }
+}
+
+/// Cells per second since the run that works on a shard started, as its log and its tiles say.
+fn rate(map: &Path, found: &ShardSurvey) -> Option<f64> {
+    if !found.running {
+        return None;
+    }
+    let log = File::open(log::path(map, found.shard)).ok()?;
+    let lines = BufReader::new(log).lines().map_while(Result::ok);
+    let lines = lines.filter_map(|line| serde_json::from_str::<Line>(&line).ok());
+    let started = lines.filter_map(|line| match line.entry {
+        Entry::Started { cells_left, .. } => Some((line.time, cells_left)),
+        _ => None,
+    });
+    let (time, left) = started.last()?;
+    let since = humantime::parse_rfc3339(&time).ok()?;
+    let elapsed = SystemTime::now()
+        .duration_since(since)
+        .unwrap_or(Duration::ZERO);
+    let computed = found
+        .cells_done
+        .saturating_sub(found.cells.saturating_sub(left));
+    Some(computed as f64 / elapsed.as_secs_f64().max(1e-3))
+}
+
+impl Status {
+    fn running(&self) -> bool {
+        self.shards.iter().any(|shard| shard.running)
+    }
+
+    fn rate(&self) -> Option<f64> {
+        let rates: Vec<f64> = self.shards.iter().filter_map(|s| s.rate).collect();
+        (!rates.is_empty()).then(|| rates.iter().sum())
+    }
+
+    /// Until the slowest of the shards that are running is done.
+    fn seconds_left(&self) -> Option<f64> {
+        let left = self.shards.iter().filter_map(ShardStatus::seconds_left);
+        left.reduce(f64::max)
+    }
+
+    fn json(&self) -> Value {
+        let flags = FLAGS.iter().zip(self.flagged);
+        let mut by_status: serde_json::Map<String, Value> = flags
+            .map(|((_, name), count)| ((*name).to_owned(), count.into()))
+            .collect();
+        by_status.insert("unflagged".to_owned(), self.unflagged.into());
+        let shards: Vec<Value> = self
+            .shards
+            .iter()
+            .map(|s| {
+                json!({
+                    "shard": s.shard, "running": s.running, "cells": s.cells, "cells_done": s.cells_done,
+                    "pieces": s.pieces, "pieces_done": s.pieces_done, "damaged_files": s.damaged_files,
+                    "cells_per_second": s.rate, "seconds_left": s.seconds_left(),
+                })
+            })
+            .collect();
+        json!({
+            "complete": self.complete, "running": self.running(), "cells": self.cells, "cells_done": self.cells_done,
+            "cells_per_second": self.rate(), "seconds_left": self.seconds_left(), "cells_by_status": by_status,
+            "shards": shards,
+        })
+    }
+
+    fn print(&self, map: &Path) -> Result<(), Failure> {
+        let mut out = std::io::stdout().lock();
+        let mut row = |name: &str, text: String| writeln!(out, "{name:<12} {text}");
+        let state = match (self.complete, self.running()) {
+            (true, _) => "complete",
+            (false, true) => "running",
+            (false, false) => {
+                "not complete, and no run works on it; the command that began it goes on"
+            }
+        };
+        row("map", format!("{}: {state}", map.display()))?;
+        let share = 100.0 * self.cells_done as f64 / self.cells.max(1) as f64;
+        let (done, cells) = (grouped(self.cells_done), grouped(self.cells));
+        row(
+            "cells",
+            format!("{done} of {cells} are done ({share:.1} %)"),
+        )?;
+        if let Some(rate) = self.rate() {
+            let left = self.seconds_left().map_or("unknown".to_owned(), seconds);
+            row("rate", format!("{} cells/s, {left} left", prefixed(rate)))?;
+        }
+        for ((_, name), count) in FLAGS
+            .iter()
+            .zip(self.flagged)
+            .filter(|(_, count)| *count > 0)
+        {
+            row("status", format!("{name:<14} {} cells", grouped(count)))?;
+        }
+        row(
+            "status",
+            format!("{:<14} {} cells", "unflagged", grouped(self.unflagged)),
+        )?;
+        for s in self.shards.iter().filter(|_| self.shards.len() > 1) {
+            let state = if s.running { ", running" } else { "" };
+            let (done, pieces) = (grouped(s.pieces_done), grouped(s.pieces));
+            row(
+                "shard",
+                format!("{:<8} {done} of {pieces} pieces{state}", s.shard),
+            )?;
+        }
+        for s in self.shards.iter().filter(|s| s.damaged_files > 0) {
+            let files = grouped(s.damaged_files);
+            row(
+                "damaged",
+                format!(
+                    "{files} files of shard {}: the next run mends them",
+                    s.shard
+                ),
+            )?;
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,203 @@
+//! The log of a run: one JSON object a line, in a file beside the map.
+
+use std::cell::{Cell, RefCell};
+use std::fs::{File, OpenOptions};
+use std::io::Write;
+use std::path::{Path, PathBuf};
+use std::time::{Duration, Instant, SystemTime};
+
+use serde::{Deserialize, Serialize};
+
+use super::progress::Progress;
+use crate::sweep::{Event, Observer, Shard};
+
+/// Time between two lines of progress.
+const BETWEEN_LINES: Duration = Duration::from_secs(10);
+
+/// One line.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Line {
+    /// When, RFC 3339 in UTC.
+    pub time: String,
+    /// What happened.
+    #[serde(flatten)]
+    pub entry: Entry,
+}
+
+/// What a line tells.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(tag = "event", rename_all = "snake_case")]
+pub enum Entry {
+    /// A run starts.
+    Started {
+        /// The shard, I/N.
+        shard: String,
+        /// Version of the program.
+        program_version: String,
+        /// Its process.
+        process: u32,
+        /// Threads that compute.
+        threads: usize,
+        /// Cells of the map.
+        cells: u64,
+        /// Cells that this run has to compute.
+        cells_left: u64,
+    },
+    /// A file of tiles was damaged.
+    Damaged {
+        /// The file.
+        file: String,
+        /// What is wrong.
+        why: String,
+    },
+    /// Cells are computed.
+    Progress {
+        /// By this run so far.
+        cells_computed: u64,
+        /// That it has still to compute.
+        cells_left: u64,
+        /// Since its start, on average.
+        cells_per_second: f64,
+    },
+    /// Everything that this run had to compute is computed.
+    Finished {
+        /// How many cells that were.
+        cells_computed: u64,
+        /// How long it took.
+        seconds: f64,
+    },
+    /// The run ended before that.
+    Ended {
+        /// Why.
+        why: String,
+        /// How many cells it had computed.
+        cells_computed: u64,
+    },
+}
+
+/// Writes the log of one run. A log that cannot be written is missed by nobody but its reader: the run goes on.
+pub struct Log {
+    file: RefCell<Option<File>>,
+    shard: Shard,
+    start: Cell<Instant>,
+    last_line: Cell<Instant>,
+    computed: Cell<u64>,
+    left: Cell<u64>,
+}
+
+/// The log of a shard of `map`.
+#[must_use]
+pub fn path(map: &Path, shard: Shard) -> PathBuf {
+    let mut name = map.file_name().unwrap_or_default().to_owned();
+    if !shard.is_whole() {
+        let (number, of) = shard.numbers();
+        name.push(format!(".{number}-of-{of}"));
+    }
+    name.push(".log");
+    map.with_file_name(name)
+}
+
+impl Log {
+    /// A log beside `map`, appended to if it is there.
+    #[must_use]
+    pub fn beside(map: &Path, shard: Shard) -> Self {
+        let path = path(map, shard);
+        // A link or a folder by that name is left alone.
+        let regular = path.symlink_metadata().map_or(true, |m| m.is_file());
+        let open = || {
+            OpenOptions::new()
+                .create(true)
+                .append(true)
+                .open(&path)
+                .ok()
+        };
+        Self {
+            file: RefCell::new(regular.then(open).flatten()),
+            shard,
+            start: Cell::new(Instant::now()),
+            last_line: Cell::new(Instant::now()),
+            computed: Cell::new(0),
+            left: Cell::new(0),
+        }
+    }
+
+    /// The run ends before its time.
+    pub fn ended(&self, why: &str) {
+        self.put(Entry::Ended {
+            why: why.to_owned(),
+            cells_computed: self.computed.get(),
+        });
+    }
+
+    fn put(&self, entry: Entry) {
+        let line = Line {
+            time: humantime::format_rfc3339_millis(SystemTime::now()).to_string(),
+            entry,
+        };
+        let mut file = self.file.borrow_mut();
+        let written = file.as_mut().zip(serde_json::to_string(&line).ok());
+        if let Some((file, text)) = written
+            // One write a line: two runs do not mix theirs.
+            && file.write_all(format!("{text}\n").as_bytes()).is_err()
+        {
+            self.file.replace(None);
+        }
+    }
+
+    fn advanced(&self, cells: u64) {
+        self.computed.set(self.computed.get() + cells);
+        if self.last_line.get().elapsed() < BETWEEN_LINES {
+            return;
+        }
+        self.last_line.set(Instant::now());
+        let computed = self.computed.get();
+        self.put(Entry::Progress {
+            cells_computed: computed,
+            cells_left: self.left.get().saturating_sub(computed),
+            cells_per_second: computed as f64 / self.start.get().elapsed().as_secs_f64(),
+        });
+    }
+}
+
+impl Observer for Log {
+    fn event(&self, event: &Event) {
+        match event {
+            Event::Damaged { file, why } => self.put(Entry::Damaged {
+                file: file.display().to_string(),
+                why: why.clone(),
+            }),
+            Event::Started {
+                cells,
+                left,
+                threads,
+            } => {
+                self.start.set(Instant::now());
+                self.computed.set(0);
+                self.left.set(*left);
+                self.put(Entry::Started {
+                    shard: self.shard.to_string(),
+                    program_version: env!("CARGO_PKG_VERSION").to_owned(),
+                    process: std::process::id(),
+                    threads: *threads,
+                    cells: *cells,
+                    cells_left: *left,
+                });
+            }
+            Event::PieceDone { cells } => self.advanced(*cells),
+            Event::Finished => self.put(Entry::Finished {
+                cells_computed: self.computed.get(),
+                seconds: self.start.get().elapsed().as_secs_f64(),
+            }),
+        }
+    }
+}
+
+/// Progress on the terminal and the log.
+pub struct Both<'a>(pub &'a Progress, pub &'a Log);
+
+impl Observer for Both<'_> {
+    fn event(&self, event: &Event) {
+        self.0.event(event);
+        self.1.event(event);
+    }
+}

@@ -1,0 +1,98 @@
+//! From the pieces of a sweep to its map.
+
+use super::best_writer::BestRow;
+use super::error::StoreError;
+use super::map_writer::{MapWriter, Provenance};
+use super::output::Output;
+use super::source::Source;
+use super::tiles::record::Content;
+use crate::sweep::best::best_planes;
+use crate::sweep::boundaries::planes;
+use crate::sweep::pieces::{Piece, Pieces};
+use crate::sweep::plan::Plan;
+
+/// What to do where pieces are missing.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Missing {
+    /// Write no map.
+    Refuse,
+    /// Leave fill values, and say so in the map.
+    Leave,
+}
+
+/// What a map was put together from.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct Assembled {
+    /// Crossing curves and those of degrees of stability.
+    pub curves: u64,
+    /// Where they meet.
+    pub corners: u64,
+    /// Planes that lack curves because too many cross them.
+    pub planes_left_out: u64,
+    /// Planes with best settings.
+    pub best_planes: u64,
+    /// Pieces that are not there.
+    pub pieces_missing: u64,
+    /// Cells that are not there.
+    pub cells_missing: u64,
+}
+
+/// Writes the map of `plan` from the pieces that `source` gives, in the order of their numbers: equal pieces make equal files.
+///
+/// # Errors
+/// When a piece is damaged, when one is missing and has to be there, or when the system or the library refuses; nothing then
+/// stands under the map's name that was not there before.
+pub fn assemble(
+    plan: &Plan,
+    output: Output,
+    provenance: &Provenance,
+    source: &mut dyn Source,
+    missing: Missing,
+) -> Result<Assembled, StoreError> {
+    let mut writer = MapWriter::create(plan, output, provenance)?;
+    let mut assembled = Assembled::default();
+    let (curve_planes, best_planes) = (planes(plan), best_planes(plan));
+    let pieces = Pieces::of(plan);
+    for piece in (0..pieces.total()).map(|place| pieces.at(place)) {
+        let Some(payload) = source.read(piece)? else {
+            assembled.pieces_missing += 1;
+            match piece {
+                Piece::Curves(_) => {}
+                Piece::Best(_) => writer.put_best(&BestRow::of(None)),
+                Piece::Tile(number) => {
+                    assembled.cells_missing += plan.tiles.tile(number as usize).cells();
+                }
+            }
+            continue;
+        };
+        let damaged = || StoreError::DamagedPiece { piece };
+        match (piece, Content::read(piece, &payload).ok_or_else(damaged)?) {
+            (Piece::Curves(number), Content::Curves(rows)) => {
+                assembled.curves += rows.curves() as u64;
+                assembled.corners += rows.corners() as u64;
+                assembled.planes_left_out += u64::from(rows.left_out);
+                writer.put_curves(&curve_planes[number as usize], &rows)?;
+            }
+            (Piece::Best(_), Content::Best(row)) => writer.put_best(&row),
+            (Piece::Tile(number), Content::Tile(chunks)) => {
+                if chunks.len() != writer.chunks_of_tile() {
+                    return Err(damaged());
+                }
+                writer.put_tile(&plan.tiles.tile(number as usize), &chunks)?;
+            }
+            _ => return Err(damaged()),
+        }
+    }
+    assembled.best_planes = best_planes.len() as u64;
+    if assembled.pieces_missing > 0 {
+        if missing == Missing::Refuse {
+            return Err(StoreError::Incomplete {
+                pieces: assembled.pieces_missing,
+                of: pieces.total(),
+            });
+        }
+        writer.put_missing(assembled.cells_missing)?;
+    }
+    writer.finish()?;
+    Ok(assembled)
+}

@@ -1,0 +1,160 @@
+//! From a plan to its map: pieces that are not on disk yet are computed, then the map is put together.
+
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
+
+use super::assembly::{Assembled, Missing, assemble};
+use super::error::StoreError;
+use super::map_writer::Provenance;
+use super::output::Output;
+use super::source::InMemory;
+use super::tiles::shards::{self, Shards};
+use super::tiles::{Damaged, Manifest, TileFolder};
+use crate::sweep::events::{Event, Observer, Silent};
+use crate::sweep::pieces::{Order, Piece, Pieces, Shard, Todo};
+use crate::sweep::plan::Plan;
+use crate::sweep::{RunError, engine};
+
+/// How a sweep is run.
+#[derive(Debug, Clone)]
+pub struct Job<'a> {
+    /// The map's name.
+    pub map: &'a Path,
+    /// Threads that compute.
+    pub threads: usize,
+    /// In which order.
+    pub order: Order,
+    /// Who makes the map.
+    pub provenance: &'a Provenance,
+}
+
+/// Damage that shows only while a map is put together is mended that often.
+const MOST_REPAIRS: u32 = 3;
+
+/// Computes what the tiles beside the map lack, puts the map together, and removes the tiles.
+///
+/// # Errors
+/// See [`RunError`] and [`StoreError`]. Tiles that are finished stay, so that the next call goes on from there.
+pub fn make(
+    plan: &Arc<Plan>,
+    job: &Job,
+    observer: &dyn Observer,
+    stop: &Arc<AtomicBool>,
+) -> Result<Assembled, RunError<StoreError>> {
+    let output = Output::claim(job.map).map_err(RunError::Sink)?;
+    let mut folder = claimed(plan, job, Shard::WHOLE, observer).map_err(RunError::Sink)?;
+    let mut output = Some(output);
+    for repair in 0.. {
+        compute(plan, job, Shard::WHOLE, &mut folder, (observer, stop))?;
+        let claim = match output.take() {
+            Some(output) => output,
+            None => Output::claim(job.map).map_err(RunError::Sink)?,
+        };
+        match assemble(plan, claim, job.provenance, &mut folder, Missing::Refuse) {
+            Ok(assembled) => {
+                folder
+                    .remove()
+                    .and_then(|()| shards::remove_root(job.map))
+                    .map_err(RunError::Sink)?;
+                return Ok(assembled);
+            }
+            Err(StoreError::Damaged { .. } | StoreError::Incomplete { .. })
+                if repair < MOST_REPAIRS =>
+            {
+                tell(&folder.scan().map_err(RunError::Sink)?, observer);
+            }
+            Err(error) => return Err(RunError::Sink(error)),
+        }
+    }
+    unreachable!("the loop ends in one of its arms")
+}
+
+/// Computes what the tiles of one shard lack.
+///
+/// # Errors
+/// As [`make`].
+pub fn make_shard(
+    plan: &Arc<Plan>,
+    job: &Job,
+    shard: Shard,
+    observer: &dyn Observer,
+    stop: &Arc<AtomicBool>,
+) -> Result<(), RunError<StoreError>> {
+    let mut folder = claimed(plan, job, shard, observer).map_err(RunError::Sink)?;
+    compute(plan, job, shard, &mut folder, (observer, stop))
+}
+
+/// Puts a map together from the folders of its shards; removes them where the map is complete.
+///
+/// # Errors
+/// When a piece is missing and has to be there, folders do not belong together, or the system refuses.
+pub fn merge(
+    plan: &Plan,
+    folders: &[PathBuf],
+    map: &Path,
+    provenance: &Provenance,
+    (missing, observer): (Missing, &dyn Observer),
+) -> Result<Assembled, StoreError> {
+    let output = Output::claim(map)?;
+    let expected = Manifest::of(plan, Shard::WHOLE, provenance);
+    let (mut source, damaged) = Shards::claim(folders, &expected, Pieces::of(plan))?;
+    tell(&damaged, observer);
+    let assembled = assemble(plan, output, provenance, &mut source, missing)?;
+    if assembled.pieces_missing == 0 {
+        source.remove()?;
+    }
+    Ok(assembled)
+}
+
+/// Computes a map without leaving anything beside it: for small ones.
+///
+/// # Errors
+/// As [`make`].
+pub fn make_in_memory(
+    plan: &Arc<Plan>,
+    map: &Path,
+    threads: usize,
+    provenance: &Provenance,
+) -> Result<Assembled, RunError<StoreError>> {
+    let output = Output::claim(map).map_err(RunError::Sink)?;
+    let mut pieces = InMemory::default();
+    let stop = Arc::new(AtomicBool::new(false));
+    engine::run(plan, Todo::all(plan), threads, &mut pieces, &Silent, &stop)?;
+    assemble(plan, output, provenance, &mut pieces, Missing::Refuse).map_err(RunError::Sink)
+}
+
+fn claimed(
+    plan: &Plan,
+    job: &Job,
+    shard: Shard,
+    observer: &dyn Observer,
+) -> Result<TileFolder, StoreError> {
+    let manifest = Manifest::of(plan, shard, job.provenance);
+    let path = shards::folder_of(job.map, shard);
+    let (folder, damaged) = TileFolder::claim(&path, &manifest, Pieces::of(plan))?;
+    tell(&damaged, observer);
+    Ok(folder)
+}
+
+fn compute(
+    plan: &Arc<Plan>,
+    job: &Job,
+    shard: Shard,
+    folder: &mut TileFolder,
+    (observer, stop): (&dyn Observer, &Arc<AtomicBool>),
+) -> Result<(), RunError<StoreError>> {
+    let mut todo = Todo::new(Pieces::of(plan), shard, job.order);
+    let done: Vec<Piece> = folder.done().collect();
+    done.into_iter().for_each(|piece| todo.mark_done(piece));
+    engine::run(plan, todo, job.threads, folder, observer, stop)
+}
+
+fn tell(damaged: &[Damaged], observer: &dyn Observer) {
+    for broken in damaged {
+        observer.event(&Event::Damaged {
+            file: broken.file.clone(),
+            why: broken.why.clone(),
+        });
+    }
+}

@@ -1,0 +1,41 @@
+//! Where the pieces of a map come from.
+
+use std::collections::BTreeMap;
+
+use super::error::StoreError;
+use super::tiles::{Record, RecordEncoder};
+use crate::sweep::engine::Sink;
+use crate::sweep::pieces::Piece;
+
+/// Gives pieces as the bytes of their records.
+pub trait Source {
+    /// The bytes of a piece; none where it is not there.
+    ///
+    /// # Errors
+    /// When they cannot be read, or are not those that were written.
+    fn read(&mut self, piece: Piece) -> Result<Option<Vec<u8>>, StoreError>;
+}
+
+/// Pieces in memory: for maps that nobody has to wait for.
+#[derive(Debug, Default)]
+pub struct InMemory(BTreeMap<Piece, Vec<u8>>);
+
+impl Sink for InMemory {
+    type Encoder = RecordEncoder;
+    type Error = StoreError;
+
+    fn encoder(&self) -> RecordEncoder {
+        RecordEncoder::default()
+    }
+
+    fn write(&mut self, piece: Piece, record: Record) -> Result<(), StoreError> {
+        self.0.insert(piece, record.payload);
+        Ok(())
+    }
+}
+
+impl Source for InMemory {
+    fn read(&mut self, piece: Piece) -> Result<Option<Vec<u8>>, StoreError> {
+        Ok(self.0.remove(&piece))
+    }
+}

@@ -1,0 +1,301 @@
+//! One shard's folder, claimed by the process that fills it.
+
+use std::fs::{self, File, OpenOptions, TryLockError};
+use std::io::BufWriter;
+use std::path::{Path, PathBuf};
+use std::time::{Duration, Instant};
+
+use super::super::error::StoreError;
+use super::super::source::Source;
+use super::format;
+use super::manifest::{self, Manifest};
+use super::reader::{Damaged, TileReader};
+use super::record::{Record, RecordEncoder};
+use crate::sweep::engine::Sink;
+use crate::sweep::pieces::{Piece, Pieces};
+
+/// A file is written at least that often.
+const BETWEEN_FILES: Duration = Duration::from_secs(2);
+/// And when so many bytes wait.
+const BYTES_OF_A_FILE: usize = 16 << 20;
+
+const LOCK: &str = "lock";
+const PREFIX: &str = "tiles-";
+const SUFFIX: &str = ".bin";
+const PART: &str = ".part";
+/// Digits of a tile file's number.
+const DIGITS: usize = 10;
+
+/// The folder of one shard, claimed by this process.
+#[derive(Debug)]
+pub struct TileFolder {
+    reader: TileReader,
+    pieces: Pieces,
+    /// Number of the next file; none before had it.
+    next_number: u64,
+    waiting: Vec<Record>,
+    waiting_bytes: usize,
+    last_file: Instant,
+    /// Held as long as the folder is claimed.
+    _lock: File,
+}
+
+impl TileFolder {
+    /// Claims `path` for the tiles that `manifest` describes, checks what is there, and says what of it was damaged. Damaged
+    /// pieces are no longer in the folder afterwards; sound ones are kept. A lock left by a run that died does not block.
+    ///
+    /// # Errors
+    /// When another run works there, the folder or its manifest belong to something else, or the system refuses.
+    pub fn claim(
+        path: &Path,
+        manifest: &Manifest,
+        pieces: Pieces,
+    ) -> Result<(Self, Vec<Damaged>), StoreError> {
+        fs::create_dir_all(path).map_err(StoreError::io("create", path))?;
+        refuse_foreign(path)?;
+        let lock = lock(path)?;
+        check_manifest(path, manifest)?;
+        for part in listed(path, is_part)? {
+            remove(&part)?;
+        }
+        let (reader, damaged) = TileReader::of(path, manifest.layout(), pieces)?;
+        let mut folder = Self {
+            reader,
+            pieces,
+            next_number: last_number(path)?.map_or(0, |last| last.saturating_add(1)),
+            waiting: Vec::new(),
+            waiting_bytes: 0,
+            last_file: Instant::now(),
+            _lock: lock,
+        };
+        folder.mend(&damaged)?;
+        Ok((folder, damaged))
+    }
+
+    /// Looks at every byte in the folder again.
+    ///
+    /// # Errors
+    /// When the system refuses.
+    pub fn scan(&mut self) -> Result<Vec<Damaged>, StoreError> {
+        let (path, layout) = (self.reader.path().to_owned(), *self.reader.layout());
+        let (reader, damaged) = TileReader::of(&path, layout, self.pieces)?;
+        self.reader = reader;
+        self.mend(&damaged)?;
+        Ok(damaged)
+    }
+
+    /// Writes the sound pieces of damaged files anew, then removes these.
+    fn mend(&mut self, damaged: &[Damaged]) -> Result<(), StoreError> {
+        for broken in damaged {
+            self.waiting.extend(self.reader.records_of(&broken.file)?);
+        }
+        self.flush()?;
+        damaged.iter().try_for_each(|broken| remove(&broken.file))
+    }
+
+    /// The pieces that are there.
+    pub fn done(&self) -> impl Iterator<Item = Piece> {
+        self.reader.done()
+    }
+
+    /// Removes everything that slipmap put there, and the folder.
+    ///
+    /// # Errors
+    /// When the system refuses, also because something else is in the folder.
+    pub fn remove(self) -> Result<(), StoreError> {
+        clear(self.reader.path())
+    }
+
+    fn write_file(&mut self) -> Result<(), StoreError> {
+        let folder = self.reader.path();
+        let name = format!("{PREFIX}{:0DIGITS$}{SUFFIX}", self.next_number);
+        let (path, part) = (folder.join(&name), folder.join(format!(".{name}{PART}")));
+        let (layout, records) = (self.reader.layout(), &self.waiting);
+        write_synced(&part, |out| format::write(out, layout, records))?;
+        rename_synced(&part, &path)?;
+        let entries = format::entries(records);
+        self.reader.add(path, entries);
+        self.next_number += 1;
+        self.waiting.clear();
+        self.waiting_bytes = 0;
+        self.last_file = Instant::now();
+        Ok(())
+    }
+}
+
+impl Sink for TileFolder {
+    type Encoder = RecordEncoder;
+    type Error = StoreError;
+
+    fn encoder(&self) -> RecordEncoder {
+        RecordEncoder::default()
+    }
+
+    fn write(&mut self, _: Piece, record: Record) -> Result<(), StoreError> {
+        self.waiting_bytes += record.payload.len();
+        self.waiting.push(record);
+        self.pause()
+    }
+
+    fn pause(&mut self) -> Result<(), StoreError> {
+        let due =
+            self.last_file.elapsed() >= BETWEEN_FILES || self.waiting_bytes >= BYTES_OF_A_FILE;
+        if due { self.flush() } else { Ok(()) }
+    }
+
+    fn flush(&mut self) -> Result<(), StoreError> {
+        match self.waiting.is_empty() {
+            true => Ok(()),
+            false => self.write_file(),
+        }
+    }
+}
+
+impl Source for TileFolder {
+    fn read(&mut self, piece: Piece) -> Result<Option<Vec<u8>>, StoreError> {
+        self.reader.read(piece)
+    }
+}
+
+/// Writes a new file and makes it durable.
+pub(super) fn write_synced(
+    path: &Path,
+    write: impl FnOnce(&mut BufWriter<File>) -> std::io::Result<()>,
+) -> Result<(), StoreError> {
+    let written = || -> std::io::Result<()> {
+        let mut out = BufWriter::with_capacity(1 << 16, File::create(path)?);
+        write(&mut out)?;
+        let file = out
+            .into_inner()
+            .map_err(std::io::IntoInnerError::into_error)?;
+        file.sync_all()
+    };
+    written().map_err(|error| {
+        // What is half written is of no use, and on a full disk in the way.
+        let _ = fs::remove_file(path);
+        StoreError::io("write", path)(error)
+    })
+}
+
+/// Gives a durable file its final name, durably.
+pub(super) fn rename_synced(part: &Path, path: &Path) -> Result<(), StoreError> {
+    fs::rename(part, path).map_err(StoreError::io("rename to", path))?;
+    let folder = path.parent().unwrap_or(Path::new("."));
+    let synced = File::open(folder).and_then(|folder| folder.sync_all());
+    synced.map_err(StoreError::io("sync", folder))
+}
+
+/// Claims the folder.
+fn lock(folder: &Path) -> Result<File, StoreError> {
+    let path = folder.join(LOCK);
+    let open = OpenOptions::new()
+        .create(true)
+        .truncate(false)
+        .write(true)
+        .open(&path);
+    let lock = open.map_err(StoreError::io("write", &path))?;
+    match lock.try_lock() {
+        Ok(()) => Ok(lock),
+        Err(TryLockError::WouldBlock) => Err(StoreError::Locked {
+            path: folder.to_owned(),
+        }),
+        Err(TryLockError::Error(source)) => Err(StoreError::io("lock", &path)(source)),
+    }
+}
+
+/// Whether a run works in the folder at this moment.
+pub(super) fn is_claimed(folder: &Path) -> bool {
+    let lock = File::open(folder.join(LOCK));
+    lock.is_ok_and(|lock| matches!(lock.try_lock_shared(), Err(TryLockError::WouldBlock)))
+}
+
+/// Writes the manifest where there is none; else compares.
+fn check_manifest(folder: &Path, asked: &Manifest) -> Result<(), StoreError> {
+    let path = folder.join(manifest::NAME);
+    if !path.exists() {
+        let part = folder.join(format!(".{}{PART}", manifest::NAME));
+        let json = asked.to_json();
+        write_synced(&part, |out| std::io::Write::write_all(out, json.as_bytes()))?;
+        return rename_synced(&part, &path);
+    }
+    match Manifest::read(&path)?.difference(asked) {
+        None => Ok(()),
+        Some(difference) => Err(StoreError::OtherTiles {
+            path: folder.to_owned(),
+            difference,
+        }),
+    }
+}
+
+/// Number of a tile file's name.
+fn file_number(name: &str) -> Option<u64> {
+    let digits = name.strip_prefix(PREFIX)?.strip_suffix(SUFFIX)?;
+    let whole = digits.len() == DIGITS && digits.bytes().all(|b| b.is_ascii_digit());
+    digits.parse().ok().filter(|_| whole)
+}
+
+/// The largest number of a tile file that is there.
+fn last_number(folder: &Path) -> Result<Option<u64>, StoreError> {
+    let last = listed(folder, is_tile_file)?.pop();
+    Ok(last.and_then(|path| file_number(path.file_name()?.to_str()?)))
+}
+
+pub(super) fn is_tile_file(name: &str) -> bool {
+    file_number(name).is_some()
+}
+
+fn is_part(name: &str) -> bool {
+    name.starts_with('.') && name.ends_with(PART)
+}
+
+fn is_ours(name: &str) -> bool {
+    name == LOCK || name == manifest::NAME || is_part(name) || is_tile_file(name)
+}
+
+/// The entries of a folder with such names, sorted.
+pub(super) fn listed(
+    folder: &Path,
+    wanted: impl Fn(&str) -> bool,
+) -> Result<Vec<PathBuf>, StoreError> {
+    let entries = fs::read_dir(folder).map_err(StoreError::io("read", folder))?;
+    let mut paths = Vec::new();
+    for entry in entries {
+        let entry = entry.map_err(StoreError::io("read", folder))?;
+        if entry.file_name().to_str().is_some_and(&wanted) {
+            paths.push(entry.path());
+        }
+    }
+    paths.sort();
+    Ok(paths)
+}
+
+fn refuse_foreign(folder: &Path) -> Result<(), StoreError> {
+    let all = fs::read_dir(folder).map_err(StoreError::io("read", folder))?;
+    for entry in all {
+        let entry = entry.map_err(StoreError::io("read", folder))?;
+        if !entry.file_name().to_str().is_some_and(is_ours) {
+            return Err(StoreError::Foreign { path: entry.path() });
+        }
+    }
+    Ok(())
+}
+
+fn remove(path: &Path) -> Result<(), StoreError> {
+    fs::remove_file(path).map_err(StoreError::io("remove", path))
+}
+
+/// Removes the folder with everything of slipmap's in it; a folder that is not there is fine.
+pub(super) fn clear(folder: &Path) -> Result<(), StoreError> {
+    if !folder.exists() {
+        return Ok(());
+    }
+    refuse_foreign(folder)?;
+    // The manifest last: what is left of a removal that was cut short is still known for what it is.
+    for path in listed(folder, |name| is_ours(name) && name != manifest::NAME)? {
+        remove(&path)?;
+    }
+    for path in listed(folder, |name| name == manifest::NAME)? {
+        remove(&path)?;
+    }
+    fs::remove_dir(folder).map_err(StoreError::io("remove", folder))
+}

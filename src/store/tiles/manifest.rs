@@ -1,0 +1,159 @@
+//! What a folder of tiles belongs to, as JSON; and where that differs from what is asked for.
+
+use std::fs;
+use std::path::Path;
+
+use serde::{Deserialize, Serialize};
+
+use super::super::error::StoreError;
+use super::super::map_writer::Provenance;
+use super::super::schema;
+use super::record::{Digest, digest};
+use crate::sweep::plan::Plan;
+use crate::sweep::{Shard, SpecError, SweepSpec};
+
+/// Name of the file.
+pub const NAME: &str = "manifest.json";
+
+/// Version of the layout of tile files and their folder.
+pub const TILES_FORMAT_VERSION: u32 = 1;
+
+/// More bytes than this are no manifest.
+const MOST_BYTES: u64 = 64 << 20;
+
+/// What the tiles of a folder belong to.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Manifest {
+    /// [`TILES_FORMAT_VERSION`].
+    pub tiles_format_version: u32,
+    /// [`schema::FORMAT_VERSION`].
+    pub map_format_version: i32,
+    /// Version of the program.
+    pub program_version: String,
+    /// Its git revision.
+    pub git_revision: String,
+    /// [`Plan::hash`].
+    pub plan_hash: String,
+    /// The shard, I/N.
+    pub shard: String,
+    /// Cells of a tile along each axis.
+    pub tile_shape: Vec<usize>,
+    /// [`Plan::description`].
+    pub plan: Vec<(String, String)>,
+    /// The sweep file's text.
+    pub sweep: String,
+}
+
+impl Manifest {
+    /// Of a shard of a plan, computed by this program.
+    #[must_use]
+    pub fn of(plan: &Plan, shard: Shard, program: &Provenance) -> Self {
+        Self {
+            tiles_format_version: TILES_FORMAT_VERSION,
+            map_format_version: schema::FORMAT_VERSION,
+            program_version: program.program_version.clone(),
+            git_revision: program.git_revision.clone(),
+            plan_hash: plan.hash(),
+            shard: shard.to_string(),
+            tile_shape: plan.tiles.tile_shape().to_vec(),
+            plan: plan.description(),
+            sweep: plan.spec.text.clone(),
+        }
+    }
+
+    /// Reads a manifest.
+    ///
+    /// # Errors
+    /// When the text is no manifest, in words that say where.
+    pub fn parse(text: &str) -> Result<Self, String> {
+        serde_json::from_str(text).map_err(|error| error.to_string())
+    }
+
+    pub(super) fn read(path: &Path) -> Result<Self, StoreError> {
+        let damaged = |why: String| StoreError::Manifest {
+            path: path.to_owned(),
+            why,
+        };
+        let size = fs::metadata(path)
+            .map_err(StoreError::io("read", path))?
+            .len();
+        if size > MOST_BYTES {
+            return Err(damaged(format!("it has {size} bytes")));
+        }
+        let bytes = fs::read(path).map_err(StoreError::io("read", path))?;
+        let text = String::from_utf8(bytes).map_err(|error| damaged(error.to_string()))?;
+        Self::parse(&text).map_err(damaged)
+    }
+
+    pub(super) fn to_json(&self) -> String {
+        // Numbers and strings only: nothing here can be refused.
+        serde_json::to_string_pretty(self).unwrap_or_default() + "\n"
+    }
+
+    /// A hash of all that has to be equal for tiles to belong together: everything but the shard and the sweep's wording.
+    #[must_use]
+    pub fn layout(&self) -> Digest {
+        let all = (
+            (self.tiles_format_version, self.map_format_version),
+            (&self.program_version, &self.git_revision),
+            (&self.plan_hash, &self.tile_shape),
+        );
+        digest(serde_json::to_string(&all).unwrap_or_default().as_bytes())
+    }
+
+    /// The plan that the tiles are of.
+    ///
+    /// # Errors
+    /// When its text is no sweep, or not the one that it was.
+    pub fn read_plan(&self) -> Result<Plan, SpecError> {
+        let plan = Plan::new(self.sweep.parse::<SweepSpec>()?)?;
+        if plan.hash() != self.plan_hash {
+            let message = "its sweep and its plan_hash do not fit together".to_owned();
+            return Err(SpecError::whole(message));
+        }
+        Ok(plan)
+    }
+
+    /// The first thing in which tiles differ from what is asked for, in words; none where they belong together.
+    #[must_use]
+    pub fn difference(&self, asked: &Self) -> Option<String> {
+        let versions = |m: &Self| (m.tiles_format_version, m.map_format_version);
+        if versions(self) != versions(asked) {
+            let ((t, m), (tiles, map)) = (versions(self), versions(asked));
+            return Some(format!(
+                "the tiles have format version {t} (maps {m}), this program writes {tiles} (maps {map})"
+            ));
+        }
+        let program = |m: &Self| format!("slipmap {} ({})", m.program_version, m.git_revision);
+        if program(self) != program(asked) {
+            let (there, here) = (program(self), program(asked));
+            return Some(format!("the tiles are by {there}, this is {here}"));
+        }
+        if self.shard != asked.shard {
+            return Some(format!(
+                "the tiles are of shard {}, asked for is {}",
+                self.shard, asked.shard
+            ));
+        }
+        if self.plan_hash == asked.plan_hash && self.tile_shape == asked.tile_shape {
+            return None;
+        }
+        let only = |these: &Self, those: &Self| {
+            let mut facts = these.plan.iter();
+            facts.find(|fact| !those.plan.contains(fact)).cloned()
+        };
+        let found = |facts: &[(String, String)], name: &str| {
+            let fact = facts.iter().find(|(n, _)| n == name);
+            fact.map_or("none".to_owned(), |(_, value)| value.clone())
+        };
+        Some(match only(asked, self).or_else(|| only(self, asked)) {
+            Some((name, _)) => format!(
+                "{name}: {} in the tiles, {} in the sweep",
+                found(&self.plan, &name),
+                found(&asked.plan, &name),
+            ),
+            None => "the manifest was changed".to_owned(),
+        })
+    }
+}

@@ -1,0 +1,181 @@
+//! The tile files of one folder, checked and read; nothing is changed.
+
+use std::fs::{self, File};
+use std::io::{ErrorKind, Read, Seek, SeekFrom};
+use std::path::{Path, PathBuf};
+
+use super::super::error::StoreError;
+use super::super::source::Source;
+use super::folder::{is_tile_file, listed};
+use super::format::{self, Damage, Entry};
+use super::record::{Digest, Record, digest};
+use crate::sweep::pieces::{Piece, Pieces};
+
+/// More bytes than this are no tile file.
+const MOST_BYTES: u64 = 4 << 30;
+
+/// A tile file that is not as it was written.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Damaged {
+    /// The file.
+    pub file: PathBuf,
+    /// What is wrong, in words.
+    pub why: String,
+}
+
+/// A tile file and what it holds.
+#[derive(Debug)]
+struct TileFile {
+    path: PathBuf,
+    entries: Vec<Entry>,
+}
+
+/// What the tile files of a folder hold.
+#[derive(Debug)]
+pub struct TileReader {
+    path: PathBuf,
+    layout: Digest,
+    pieces: Pieces,
+    files: Vec<TileFile>,
+    /// Where each piece stands, by [`Pieces::place`]: file and entry.
+    index: Vec<Option<(u32, u32)>>,
+    open: Option<(u32, File)>,
+}
+
+impl TileReader {
+    /// Reads every byte in the folder `path`, and says which files are damaged. The sound pieces of these are there too.
+    ///
+    /// # Errors
+    /// When the system refuses.
+    pub fn of(
+        path: &Path,
+        layout: Digest,
+        pieces: Pieces,
+    ) -> Result<(Self, Vec<Damaged>), StoreError> {
+        let mut reader = Self {
+            path: path.to_owned(),
+            layout,
+            pieces,
+            files: Vec::new(),
+            index: vec![None; pieces.total() as usize],
+            open: None,
+        };
+        let mut damaged = Vec::new();
+        for file in listed(path, is_tile_file)? {
+            if let Some(why) = reader.take_in(&file)? {
+                damaged.push(Damaged { file, why });
+            }
+        }
+        Ok((reader, damaged))
+    }
+
+    /// Adds the sound pieces of a file. What is wrong with it, if something is.
+    fn take_in(&mut self, path: &Path) -> Result<Option<String>, StoreError> {
+        let bytes = match fs::metadata(path).map(|m| m.len()) {
+            Ok(length) if length > MOST_BYTES => return Ok(Some(format!("it has {length} bytes"))),
+            Ok(_) => fs::read(path),
+            Err(error) => Err(error),
+        };
+        let bytes = match bytes {
+            Ok(bytes) => bytes,
+            // Gone since the folder was listed: its run has just put the map together.
+            Err(error) if error.kind() == ErrorKind::NotFound => return Ok(None),
+            Err(error) => return Err(StoreError::io("read", path)(error)),
+        };
+        let entries = match format::index(&bytes, &self.layout) {
+            Ok(entries) => entries,
+            Err(damage) => return Ok(Some(damage.to_string())),
+        };
+        let all = entries.len();
+        let sound: Vec<Entry> = entries
+            .into_iter()
+            .filter(|e| self.pieces.place(e.piece).is_some() && format::is_sound(&bytes, e))
+            .collect();
+        let lost = all - sound.len();
+        self.add(path.to_owned(), sound);
+        Ok((lost > 0).then(|| format!("{}: {lost} of {all} pieces", Damage::Checksum)))
+    }
+
+    /// Adds a file whose entries are known to be sound.
+    pub(super) fn add(&mut self, path: PathBuf, entries: Vec<Entry>) {
+        let file = self.files.len() as u32;
+        for (number, entry) in entries.iter().enumerate() {
+            if let Some(place) = self.pieces.place(entry.piece) {
+                self.index[place as usize] = Some((file, number as u32));
+            }
+        }
+        self.files.push(TileFile { path, entries });
+    }
+
+    /// Where the folder is.
+    pub(super) fn path(&self) -> &Path {
+        &self.path
+    }
+
+    /// The hash of all that its tiles have in common.
+    pub(super) fn layout(&self) -> &Digest {
+        &self.layout
+    }
+
+    /// The pieces that are there.
+    pub fn done(&self) -> impl Iterator<Item = Piece> {
+        let places = self.index.iter().enumerate();
+        places
+            .filter(|(_, at)| at.is_some())
+            .map(|(place, _)| self.pieces.at(place as u64))
+    }
+
+    /// The sound records of a file.
+    pub(super) fn records_of(&mut self, path: &Path) -> Result<Vec<Record>, StoreError> {
+        let Some(file) = self.files.iter().position(|file| file.path == path) else {
+            return Ok(Vec::new());
+        };
+        let entries = self.files[file].entries.clone();
+        let record = |entry: Entry| {
+            let payload = self.payload(file as u32, &entry)?;
+            Ok(Record::new(entry.piece, payload))
+        };
+        entries.into_iter().map(record).collect()
+    }
+
+    fn payload(&mut self, file: u32, entry: &Entry) -> Result<Vec<u8>, StoreError> {
+        let path = &self.files[file as usize].path;
+        let open = match &mut self.open {
+            Some((number, open)) if *number == file => open,
+            other => {
+                let opened = File::open(path).map_err(StoreError::io("open", path))?;
+                &mut other.insert((file, opened)).1
+            }
+        };
+        let mut payload = vec![0; entry.at.len()];
+        open.seek(SeekFrom::Start(entry.at.start as u64))
+            .and_then(|_| open.read_exact(&mut payload))
+            .map_err(StoreError::io("read", path))?;
+        match digest(&payload) == entry.digest {
+            true => Ok(payload),
+            false => Err(StoreError::Damaged { path: path.clone() }),
+        }
+    }
+}
+
+impl Source for TileReader {
+    fn read(&mut self, piece: Piece) -> Result<Option<Vec<u8>>, StoreError> {
+        let place = self.pieces.place(piece);
+        let Some((file, number)) = place.and_then(|place| self.index[place as usize]) else {
+            return Ok(None);
+        };
+        let entry = self.files[file as usize].entries[number as usize].clone();
+        self.payload(file, &entry).map(Some)
+    }
+}
+
+impl Source for Vec<TileReader> {
+    fn read(&mut self, piece: Piece) -> Result<Option<Vec<u8>>, StoreError> {
+        for reader in self {
+            if let Some(payload) = reader.read(piece)? {
+                return Ok(Some(payload));
+            }
+        }
+        Ok(None)
+    }
+}

@@ -1,0 +1,146 @@
+//! The folders of all shards of a map.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use super::super::error::StoreError;
+use super::super::source::Source;
+use super::folder::{self, TileFolder};
+use super::manifest::{self, Manifest};
+use super::reader::Damaged;
+use crate::sweep::pieces::{Piece, Pieces, Shard};
+
+/// The folder beside `map` in which the folders of its shards are.
+#[must_use]
+pub fn root(map: &Path) -> PathBuf {
+    let mut name = map.file_name().unwrap_or_default().to_owned();
+    name.push(".tiles");
+    map.with_file_name(name)
+}
+
+/// The folder of a shard of `map`.
+#[must_use]
+pub fn folder_of(map: &Path, shard: Shard) -> PathBuf {
+    let (number, of) = shard.numbers();
+    root(map).join(format!("{number}-of-{of}"))
+}
+
+fn shard_of(name: &str) -> Option<Shard> {
+    let (number, of) = name.split_once("-of-")?;
+    format!("{number}/{of}").parse().ok()
+}
+
+/// The shards of `map` that have a folder, by number.
+///
+/// # Errors
+/// When the system refuses; not where there is no folder at all.
+pub fn present(map: &Path) -> Result<Vec<(Shard, PathBuf)>, StoreError> {
+    let root = root(map);
+    if !root.exists() {
+        return Ok(Vec::new());
+    }
+    let paths = folder::listed(&root, |name| shard_of(name).is_some())?;
+    let mut shards: Vec<(Shard, PathBuf)> = paths
+        .into_iter()
+        .filter_map(|path| Some((shard_of(path.file_name()?.to_str()?)?, path)))
+        .collect();
+    shards.sort_by_key(|(shard, _)| shard.numbers());
+    Ok(shards)
+}
+
+/// Whether a run works on a shard at this moment.
+#[must_use]
+pub fn is_running(folder: &Path) -> bool {
+    folder::is_claimed(folder)
+}
+
+/// The manifest of a shard's folder.
+///
+/// # Errors
+/// When there is none, or it is damaged.
+pub fn manifest(folder: &Path) -> Result<Manifest, StoreError> {
+    Manifest::read(&folder.join(manifest::NAME))
+}
+
+/// Removes the tiles of every shard of `map`.
+///
+/// # Errors
+/// When a run works on one of them, something that is not slipmap's is there, or the system refuses.
+pub fn clear(map: &Path) -> Result<(), StoreError> {
+    let shards = present(map)?;
+    if let Some((_, path)) = shards.iter().find(|(_, path)| is_running(path)) {
+        return Err(StoreError::Locked { path: path.clone() });
+    }
+    for (_, path) in &shards {
+        folder::clear(path)?;
+    }
+    remove_root(map)
+}
+
+/// Removes the folder of folders, which is empty.
+///
+/// # Errors
+/// When it is not empty, or the system refuses.
+pub fn remove_root(map: &Path) -> Result<(), StoreError> {
+    let root = root(map);
+    if !root.exists() {
+        return Ok(());
+    }
+    fs::remove_dir(&root).map_err(StoreError::io("remove", &root))
+}
+
+/// The folders of several shards, all claimed, as one source.
+#[derive(Debug)]
+pub struct Shards {
+    folders: Vec<TileFolder>,
+}
+
+impl Shards {
+    /// Claims the folders `paths`, whose tiles all have to belong to `expected` but for the shard.
+    ///
+    /// # Errors
+    /// See [`TileFolder::claim`].
+    pub fn claim(
+        paths: &[PathBuf],
+        expected: &Manifest,
+        pieces: Pieces,
+    ) -> Result<(Self, Vec<Damaged>), StoreError> {
+        let mut all = Vec::new();
+        let mut folders = Vec::new();
+        for path in paths {
+            let shard = manifest(path)?.shard;
+            let expected = Manifest {
+                shard,
+                ..expected.clone()
+            };
+            let (folder, damaged) = TileFolder::claim(path, &expected, pieces)?;
+            folders.push(folder);
+            all.extend(damaged);
+        }
+        Ok((Self { folders }, all))
+    }
+
+    /// The pieces that are in one of them at least.
+    pub fn done(&self) -> impl Iterator<Item = Piece> {
+        self.folders.iter().flat_map(TileFolder::done)
+    }
+
+    /// Removes them.
+    ///
+    /// # Errors
+    /// When the system refuses.
+    pub fn remove(self) -> Result<(), StoreError> {
+        self.folders.into_iter().try_for_each(TileFolder::remove)
+    }
+}
+
+impl Source for Shards {
+    fn read(&mut self, piece: Piece) -> Result<Option<Vec<u8>>, StoreError> {
+        for folder in &mut self.folders {
+            if let Some(payload) = folder.read(piece)? {
+                return Ok(Some(payload));
+            }
+        }
+        Ok(None)
+    }
+}

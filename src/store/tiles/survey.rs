@@ -1,0 +1,227 @@
+//! What the tiles beside a map hold, seen from outside: nothing is claimed and nothing changed.
+
+use std::fs;
+use std::io::ErrorKind;
+use std::path::{Path, PathBuf};
+
+use super::super::codec::decode_bytes;
+use super::super::error::StoreError;
+use super::folder::{is_tile_file, listed};
+use super::format;
+use super::manifest::Manifest;
+use super::record::Content;
+use super::shards;
+use crate::linear::status::FLAGS;
+use crate::sweep::pieces::{Piece, Pieces, Shard};
+use crate::sweep::plan::Plan;
+use crate::sweep::tile::Tile;
+
+/// What the tiles of all shards of a map hold.
+#[derive(Debug)]
+pub struct Survey {
+    /// The plan they are of.
+    pub plan: Plan,
+    /// Each shard.
+    pub shards: Vec<ShardSurvey>,
+    /// Cells with each bit of the status, in the order of [`FLAGS`]; those that several shards hold count once.
+    pub flagged: [u64; FLAGS.len()],
+    /// Cells without any.
+    pub unflagged: u64,
+    /// Pieces that some shard holds.
+    pub pieces_done: u64,
+    /// Cells that some shard holds.
+    pub cells_done: u64,
+}
+
+/// What the tiles of one shard hold.
+#[derive(Debug)]
+pub struct ShardSurvey {
+    /// Which one.
+    pub shard: Shard,
+    /// A run works on it at this moment.
+    pub running: bool,
+    /// Cells of the shard.
+    pub cells: u64,
+    /// Those that are there.
+    pub cells_done: u64,
+    /// Pieces of the shard.
+    pub pieces: u64,
+    /// Those that are there.
+    pub pieces_done: u64,
+    /// Files that are not as they were written; the next run computes what they held.
+    pub damaged: Vec<PathBuf>,
+}
+
+/// What is known of the pieces while files are read.
+struct Seen {
+    pieces: Pieces,
+    /// By place.
+    anywhere: Vec<bool>,
+    here: Vec<bool>,
+}
+
+impl Survey {
+    /// Looks at the tiles beside `map`; none where there are none.
+    ///
+    /// # Errors
+    /// When a manifest is damaged or missing, shards belong to different sweeps, or the system refuses.
+    pub fn of(map: &Path) -> Result<Option<Self>, StoreError> {
+        let present = shards::present(map)?;
+        let Some((_, first)) = present.first() else {
+            return Ok(None);
+        };
+        let manifest = shards::manifest(first)?;
+        let damaged = |error: crate::sweep::SpecError| StoreError::Manifest {
+            path: first.clone(),
+            why: error.message,
+        };
+        let plan = manifest.read_plan().map_err(damaged)?;
+        let pieces = Pieces::of(&plan);
+        let mut survey = Self {
+            plan,
+            shards: Vec::new(),
+            flagged: [0; FLAGS.len()],
+            unflagged: 0,
+            pieces_done: 0,
+            cells_done: 0,
+        };
+        let mut seen = Seen {
+            pieces,
+            anywhere: vec![false; pieces.total() as usize],
+            here: Vec::new(),
+        };
+        for (shard, path) in present {
+            survey.add_shard(shard, &path, &manifest, &mut seen)?;
+        }
+        Ok(Some(survey))
+    }
+
+    /// Whether nothing is missing.
+    #[must_use]
+    pub fn is_complete(&self) -> bool {
+        self.pieces_done == Pieces::of(&self.plan).total()
+    }
+
+    fn add_shard(
+        &mut self,
+        shard: Shard,
+        path: &Path,
+        expected: &Manifest,
+        seen: &mut Seen,
+    ) -> Result<(), StoreError> {
+        let manifest = shards::manifest(path)?;
+        let expected = Manifest {
+            shard: manifest.shard.clone(),
+            ..expected.clone()
+        };
+        if let Some(difference) = manifest.difference(&expected) {
+            return Err(StoreError::OtherTiles {
+                path: path.to_owned(),
+                difference,
+            });
+        }
+        let total = seen.pieces.total();
+        let places = (0..total).filter(|&place| shard.holds(place));
+        let cells = places.map(|place| self.cells(seen.pieces.at(place))).sum();
+        let mut found = ShardSurvey {
+            shard,
+            running: shards::is_running(path),
+            cells,
+            cells_done: 0,
+            pieces: shard.count(total),
+            pieces_done: 0,
+            damaged: Vec::new(),
+        };
+        seen.here = vec![false; total as usize];
+        for file in listed(path, is_tile_file)? {
+            self.add_file(&file, &manifest, &mut found, seen)?;
+        }
+        self.shards.push(found);
+        Ok(())
+    }
+
+    fn add_file(
+        &mut self,
+        file: &Path,
+        manifest: &Manifest,
+        found: &mut ShardSurvey,
+        seen: &mut Seen,
+    ) -> Result<(), StoreError> {
+        let bytes = match fs::read(file) {
+            Ok(bytes) => bytes,
+            // The run that wrote it has just put the map together.
+            Err(error) if error.kind() == ErrorKind::NotFound => return Ok(()),
+            Err(error) => return Err(StoreError::io("read", file)(error)),
+        };
+        let Ok(entries) = format::index(&bytes, &manifest.layout()) else {
+            found.damaged.push(file.to_owned());
+            return Ok(());
+        };
+        let mut damaged = false;
+        for entry in entries {
+            let sound = format::is_sound(&bytes, &entry);
+            let Some(place) = seen.pieces.place(entry.piece).filter(|_| sound) else {
+                damaged = true;
+                continue;
+            };
+            let (cells, place) = (self.cells(entry.piece), place as usize);
+            if !std::mem::replace(&mut seen.here[place], true) {
+                found.pieces_done += 1;
+                found.cells_done += cells;
+            }
+            if !std::mem::replace(&mut seen.anywhere[place], true) {
+                self.pieces_done += 1;
+                self.cells_done += cells;
+                self.count_flags(entry.piece, &bytes[entry.at]);
+            }
+        }
+        if damaged {
+            found.damaged.push(file.to_owned());
+        }
+        Ok(())
+    }
+
+    fn cells(&self, piece: Piece) -> u64 {
+        match piece {
+            Piece::Tile(number) => self.plan.tiles.tile(number as usize).cells(),
+            Piece::Curves(_) | Piece::Best(_) => 0,
+        }
+    }
+
+    fn count_flags(&mut self, piece: Piece, payload: &[u8]) {
+        let (Piece::Tile(number), Some(Content::Tile(chunks))) =
+            (piece, Content::read(piece, payload))
+        else {
+            return;
+        };
+        // The status comes last.
+        let cells = self.plan.tiles.tile_cells();
+        let Some(status) = chunks.last().and_then(|chunk| decode_bytes(chunk, cells)) else {
+            return;
+        };
+        let tile = self.plan.tiles.tile(number as usize);
+        let strides = self.plan.tiles.strides();
+        for_each_cell(&tile, &strides, |place| {
+            for (count, (mask, _)) in self.flagged.iter_mut().zip(FLAGS) {
+                *count += u64::from(status[place] & mask != 0);
+            }
+            self.unflagged += u64::from(status[place] == 0);
+        });
+    }
+}
+
+/// The place in memory of every cell of a tile that lies inside the map.
+fn for_each_cell(tile: &Tile, strides: &[usize], mut visit: impl FnMut(usize)) {
+    let Some((&inner, outer)) = tile.extent.split_last() else {
+        return visit(0);
+    };
+    let rows: usize = outer.iter().product();
+    for mut row in 0..rows {
+        let mut start = 0;
+        for (&extent, &stride) in outer.iter().zip(strides).rev() {
+            start += (row % extent) * stride;
+            row /= extent;
+        }
+        (start..start + inner).for_each(&mut visit);
+    }
+}
