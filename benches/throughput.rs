@@ -20,7 +20,7 @@ use slipmap::store::map_maker::{Job, make, make_in_memory};
 use slipmap::store::map_writer::Provenance;
 use slipmap::sweep::engine::{TileBuffers, Worker};
 use slipmap::sweep::events::Silent;
-use slipmap::sweep::{Order, Plan, SweepSpec};
+use slipmap::sweep::{Plan, SweepSpec};
 
 const ROUNDS: usize = 5;
 
@@ -121,12 +121,8 @@ fn fill_memory(plan: &Plan, threads: usize) -> f64 {
 /// Seconds of a whole run, with tiles on disk until the map is put together.
 fn store(plan: &Arc<Plan>, folder: &Path, threads: usize) -> f64 {
     let provenance = Provenance::default();
-    let job = Job {
-        map: &folder.join("map.h5"),
-        threads,
-        order: Order::Forward,
-        provenance: &provenance,
-    };
+    let map = folder.join("map.h5");
+    let job = Job::new(&map, threads, &provenance);
     let stop = Arc::new(AtomicBool::new(false));
     let start = Instant::now();
     make(plan, &job, &Silent, &stop).expect("the sweep runs");

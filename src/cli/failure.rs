@@ -88,9 +88,17 @@ impl Failure {
 
 impl From<StoreError> for Failure {
     fn from(error: StoreError) -> Self {
-        let report = Report::new(MietteDiagnostic::new(error.to_string()));
+        let mut diagnostic = MietteDiagnostic::new(error.to_string());
+        let other_tiles =
+            matches!(error, StoreError::OtherTiles { .. } | StoreError::Manifest { .. });
+        if other_tiles {
+            let help = "--fresh starts over, dropping the tiles; -o writes elsewhere";
+            diagnostic = diagnostic.with_help(help);
+        }
+        let report = Report::new(diagnostic);
         match error {
-            StoreError::NotAMap { .. }
+            _ if other_tiles => Self::BadInput(report),
+            StoreError::Foreign { .. } | StoreError::NotAMap { .. }
             | StoreError::NotATrace { .. }
             | StoreError::Io { action: "open", .. } => Self::BadInput(report),
             _ => Self::Failed(report),

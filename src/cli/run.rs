@@ -4,6 +4,7 @@ use std::io::IsTerminal;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+use std::time::Duration;
 
 use slipmap::report::log::{Both, Log};
 use slipmap::report::numbers::{bytes, grouped, prefixed, seconds};
@@ -14,7 +15,7 @@ use slipmap::store::map_maker::{self, Job};
 use slipmap::store::schema::root;
 use slipmap::store::tiles::shards;
 use slipmap::store::{MapFile, StoreError};
-use slipmap::sweep::{Order, Plan, RunError, Shard};
+use slipmap::sweep::{Plan, RunError, Shard};
 
 use super::failure::Failure;
 use super::output::{self, output_path, provenance};
@@ -45,6 +46,9 @@ pub struct Args {
     /// Start over, replacing a map that is already there and dropping what an earlier run computed
     #[arg(long)]
     fresh: bool,
+    /// Save what is computed every so many seconds
+    #[arg(long, value_name = "SECONDS", default_value = "2", value_parser = parse_seconds)]
+    save_every: Duration,
     /// Show no progress
     #[arg(short, long)]
     quiet: bool,
@@ -58,6 +62,17 @@ pub fn parse_threads(text: &str) -> Result<usize, String> {
         .ok_or_else(|| format!("expected a whole number from 1 to {MOST_THREADS}"))
 }
 
+/// Seconds of a `--save-every` flag.
+fn parse_seconds(text: &str) -> Result<Duration, String> {
+    let seconds = text
+        .parse::<f64>()
+        .ok()
+        .filter(|s| (0.0..=3600.0).contains(s));
+    seconds
+        .map(Duration::from_secs_f64)
+        .ok_or_else(|| "expected a number of seconds from 0 to 3600".to_owned())
+}
+
 /// As many threads as the machine offers to this process.
 pub fn default_threads() -> usize {
     std::thread::available_parallelism().map_or(1, usize::from)
@@ -67,6 +82,8 @@ pub fn main(args: &Args) -> Result<(), Failure> {
     let plan = read_plan(&args.sweep)?;
     let path = output_path(args.output.as_deref(), &args.sweep, "map")?;
     if let Some(remark) = already_there(&path, &plan, args.fresh)? {
+        // What a run that was killed after its map was complete had no time to remove.
+        drop(shards::clear(&path));
         if !plot::beside(&path).exists() {
             show(&path, args.quiet);
         }
@@ -84,10 +101,12 @@ pub fn main(args: &Args) -> Result<(), Failure> {
     let observers = Both(&progress, &log);
     let provenance = provenance("run", &args.sweep);
     let job = Job {
-        map: &path,
-        threads: args.threads.unwrap_or_else(default_threads),
-        order: Order::Forward,
-        provenance: &provenance,
+        save_every: args.save_every,
+        ..Job::new(
+            &path,
+            args.threads.unwrap_or_else(default_threads),
+            &provenance,
+        )
     };
     let plan = Arc::new(plan);
     match args.shard.filter(|shard| !shard.is_whole()) {

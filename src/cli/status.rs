@@ -171,6 +171,9 @@ impl Status {
         let state = match (self.complete, self.running()) {
             (true, _) => "complete",
             (false, true) => "running",
+            (false, false) if self.cells_done == self.cells && self.shards.len() > 1 => {
+                "all shards are complete; `slipmap merge` makes the map"
+            }
             (false, false) => {
                 "not complete, and no run works on it; the command that began it goes on"
             }

@@ -3,12 +3,14 @@
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
+use std::time::Duration;
 
 use super::assembly::{Assembled, Missing, assemble};
 use super::error::StoreError;
 use super::map_writer::Provenance;
 use super::output::Output;
 use super::source::InMemory;
+use super::tiles::folder::BETWEEN_FILES;
 use super::tiles::shards::{self, Shards};
 use super::tiles::{Damaged, Manifest, TileFolder};
 use crate::sweep::events::{Event, Observer, Silent};
@@ -25,8 +27,24 @@ pub struct Job<'a> {
     pub threads: usize,
     /// In which order.
     pub order: Order,
+    /// How often what is computed is saved.
+    pub save_every: Duration,
     /// Who makes the map.
     pub provenance: &'a Provenance,
+}
+
+impl<'a> Job<'a> {
+    /// On so many threads, everything else as usual.
+    #[must_use]
+    pub fn new(map: &'a Path, threads: usize, provenance: &'a Provenance) -> Self {
+        Self {
+            map,
+            threads,
+            order: Order::Forward,
+            save_every: BETWEEN_FILES,
+            provenance,
+        }
+    }
 }
 
 /// Damage that shows only while a map is put together is mended that often.
@@ -132,7 +150,8 @@ fn claimed(
 ) -> Result<TileFolder, StoreError> {
     let manifest = Manifest::of(plan, shard, job.provenance);
     let path = shards::folder_of(job.map, shard);
-    let (folder, damaged) = TileFolder::claim(&path, &manifest, Pieces::of(plan))?;
+    let (mut folder, damaged) = TileFolder::claim(&path, &manifest, Pieces::of(plan))?;
+    folder.save_every(job.save_every);
     tell(&damaged, observer);
     Ok(folder)
 }

@@ -1,19 +1,54 @@
 //! Maps for tests that look at what they hold.
 
+#![allow(dead_code, reason = "no test uses all of it")]
+
+use std::collections::BTreeMap;
 use std::path::Path;
 use std::sync::Arc;
 
+use hdf5::types::{FloatSize, IntSize, TypeDescriptor};
+use hdf5::{Dataset, Group};
 use slipmap::store::map_maker::make_in_memory;
 use slipmap::store::map_writer::Provenance;
 use slipmap::sweep::Plan;
 
 /// Computes the map of a plan.
 pub fn write(plan: &Plan, threads: usize, path: &Path) {
-    make_in_memory(
-        &Arc::new(plan.clone()),
-        path,
-        threads,
-        &Provenance::default(),
-    )
-    .unwrap();
+    let plan = Arc::new(plan.clone());
+    make_in_memory(&plan, path, threads, &Provenance::default()).unwrap();
+}
+
+/// The bytes of every dataset of a file, by name.
+pub fn datasets(path: &Path) -> BTreeMap<String, Vec<u8>> {
+    let mut all = BTreeMap::new();
+    collect(&hdf5::File::open(path).unwrap(), &mut all);
+    all
+}
+
+fn collect(group: &Group, all: &mut BTreeMap<String, Vec<u8>>) {
+    for dataset in group.datasets().unwrap() {
+        all.insert(dataset.name(), bytes(&dataset));
+    }
+    for inner in group.groups().unwrap() {
+        collect(&inner, all);
+    }
+}
+
+fn bytes(dataset: &Dataset) -> Vec<u8> {
+    macro_rules! raw {
+        ($kind:ty) => {{
+            let values = dataset.read_raw::<$kind>().unwrap();
+            values.iter().flat_map(|v| v.to_le_bytes()).collect()
+        }};
+    }
+    match dataset.dtype().unwrap().to_descriptor().unwrap() {
+        TypeDescriptor::Float(FloatSize::U8) => raw!(f64),
+        TypeDescriptor::Float(FloatSize::U4) => raw!(f32),
+        TypeDescriptor::Unsigned(IntSize::U1) => raw!(u8),
+        TypeDescriptor::Unsigned(IntSize::U2) => raw!(u16),
+        TypeDescriptor::Integer(IntSize::U1) => raw!(i8),
+        TypeDescriptor::Integer(IntSize::U4) => raw!(i32),
+        TypeDescriptor::Integer(IntSize::U8) => raw!(i64),
+        other => panic!("{} holds {other}", dataset.name()),
+    }
 }

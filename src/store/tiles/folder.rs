@@ -14,8 +14,8 @@ use super::record::{Record, RecordEncoder};
 use crate::sweep::engine::Sink;
 use crate::sweep::pieces::{Piece, Pieces};
 
-/// A file is written at least that often.
-const BETWEEN_FILES: Duration = Duration::from_secs(2);
+/// A file is written that often, unless asked for otherwise.
+pub const BETWEEN_FILES: Duration = Duration::from_secs(2);
 /// And when so many bytes wait.
 const BYTES_OF_A_FILE: usize = 16 << 20;
 
@@ -36,6 +36,7 @@ pub struct TileFolder {
     waiting: Vec<Record>,
     waiting_bytes: usize,
     last_file: Instant,
+    save_every: Duration,
     /// Held as long as the folder is claimed.
     _lock: File,
 }
@@ -66,10 +67,16 @@ impl TileFolder {
             waiting: Vec::new(),
             waiting_bytes: 0,
             last_file: Instant::now(),
+            save_every: BETWEEN_FILES,
             _lock: lock,
         };
         folder.mend(&damaged)?;
         Ok((folder, damaged))
+    }
+
+    /// A file is to be written that often while pieces come, instead of every two seconds.
+    pub fn save_every(&mut self, time: Duration) {
+        self.save_every = time;
     }
 
     /// Looks at every byte in the folder again.

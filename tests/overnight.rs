@@ -1,0 +1,636 @@
+//! Runs that are killed, stopped, starved of disk or robbed of their folders: nothing that is finished is lost, and what comes
+//! out is what an uninterrupted run makes.
+//!
+//! `SLIPMAP_KILLS=100` kills more often than the 20 times of the suite; `SLIPMAP_DAMAGES=1000` damages more files than 60.
+
+#![cfg(unix)]
+
+#[path = "common/map.rs"]
+mod map;
+#[path = "common/program.rs"]
+mod program;
+
+use std::path::{Path, PathBuf};
+use std::process::{Child, Command, Stdio};
+use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
+use std::sync::{Mutex, MutexGuard, PoisonError};
+use std::time::{Duration, Instant};
+
+use map::datasets;
+use program::{Folder, err, expect, out};
+use slipmap::store::assembly::Missing;
+use slipmap::store::map_maker::{Job, make, make_in_memory, make_shard, merge};
+use slipmap::store::map_writer::Provenance;
+use slipmap::store::tiles::shards;
+use slipmap::sweep::events::Silent;
+use slipmap::sweep::{Order, Plan, Shard};
+
+/// Curves, best settings and decay rates: every kind of piece, a second or two of work.
+const NIGHT: &str = "
+    fields = [\"n_unstable\", \"abscissa\", \"frequency\"]
+    best = true
+    [axes]
+    mu_prime = { from = -0.6, to = -0.1, points = 8 }
+    alpha_n = { from = -3.0, to = 1.0, points = 81 }
+    tau = { from = 0.05, to = 9.0, points = 600 }
+";
+
+/// More than anybody waits for.
+const LARGE: &str = "
+    fields = [\"n_unstable\", \"abscissa\", \"frequency\"]
+    boundaries = false
+    [axes]
+    alpha_n = { from = -3.0, to = 1.0, points = 100000 }
+    tau = { from = 0.05, to = 9.0, points = 10000 }
+    [fixed]
+    mu_prime = -0.3
+";
+
+/// One test at a time: they are timed, and a child that is just being started would hold the locks of another test's maps.
+fn alone() -> MutexGuard<'static, ()> {
+    static ONE: Mutex<()> = Mutex::new(());
+    ONE.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+fn asked(name: &str, otherwise: u64) -> u64 {
+    std::env::var(name)
+        .ok()
+        .and_then(|n| n.parse().ok())
+        .unwrap_or(otherwise)
+}
+
+/// SplitMix64.
+struct Chance(u64);
+
+impl Chance {
+    fn below(&mut self, n: u64) -> u64 {
+        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
+        let mut z = self.0;
+        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+        (z ^ (z >> 31)) % n
+    }
+}
+
+fn start(folder: &Folder, args: &[&str]) -> Child {
+    let mut command = folder.command(args);
+    command.stdout(Stdio::piped()).stderr(Stdio::piped());
+    command.spawn().unwrap()
+}
+
+fn send(signal: &str, child: &Child) {
+    // The shell's own kill: a bare machine has no other.
+    let kill = format!("kill {signal} {}", child.id());
+    let status = Command::new("sh").args(["-c", &kill]).status().unwrap();
+    assert!(status.success());
+}
+
+fn wait_for(what: &str, mut there: impl FnMut() -> bool) {
+    let start = Instant::now();
+    while !there() {
+        assert!(start.elapsed() < Duration::from_secs(30), "no {what}");
+        std::thread::sleep(Duration::from_millis(5));
+    }
+}
+
+/// The tile files of a map's folders.
+fn tile_files(map: &Path) -> Vec<PathBuf> {
+    let mut files = Vec::new();
+    for (_, folder) in shards::present(map).unwrap() {
+        for entry in std::fs::read_dir(folder).into_iter().flatten() {
+            let path = entry.unwrap().path();
+            files.extend(path.extension().is_some_and(|e| e == "bin").then_some(path));
+        }
+    }
+    files.sort();
+    files
+}
+
+fn cells_done(folder: &Folder, map: &str) -> u64 {
+    let output = folder.run(&["status", map, "--json"]);
+    let status: serde_json::Value = serde_json::from_str(&out(&output)).unwrap();
+    status["cells_done"].as_u64().unwrap()
+}
+
+fn uninterrupted() -> (Folder, Arc<Plan>) {
+    let folder = Folder::with(&[("night.toml", NIGHT)]);
+    let plan = Arc::new(Plan::new(NIGHT.parse().unwrap()).unwrap());
+    let path = folder.path().join("whole.h5");
+    make_in_memory(&plan, &path, 2, &Provenance::default()).unwrap();
+    (folder, plan)
+}
+
+#[test]
+fn killed_runs_go_on_and_end_as_uninterrupted_ones() {
+    let _alone = alone();
+    let (folder, _) = uninterrupted();
+    let expected = datasets(&folder.path().join("whole.h5"));
+    let map = folder.path().join("night.h5");
+    let kills = asked("SLIPMAP_KILLS", 20);
+    let (mut killed, mut complete, mut chance) = (0, 0, Chance(6));
+    let args = ["run", "night.toml", "--save-every", "0", "--threads", "2"];
+    while killed < kills {
+        let before = if tile_files(&map).is_empty() {
+            0
+        } else {
+            cells_done(&folder, "night.h5")
+        };
+        let mut child = start(&folder, &args);
+        std::thread::sleep(Duration::from_millis(5 + chance.below(400)));
+        if child.try_wait().unwrap().is_none() {
+            send("-KILL", &child);
+            killed += 1;
+        }
+        child.wait().unwrap();
+        if map.exists() {
+            complete += 1;
+            expect(&folder.run(&args), 0, "already complete");
+            assert_eq!(datasets(&map), expected, "after {killed} kills");
+            assert!(shards::present(&map).unwrap().is_empty());
+            std::fs::remove_file(&map).unwrap();
+        } else if !tile_files(&map).is_empty() {
+            assert!(
+                cells_done(&folder, "night.h5") >= before,
+                "after {killed} kills"
+            );
+        }
+    }
+    expect(&folder.run(&args), 0, "night.h5: ");
+    assert_eq!(datasets(&map), expected);
+    println!("{killed} kills, {complete} maps completed on the way");
+    assert!(!err(&folder.run(&["info", "night.h5"])).contains("error"));
+}
+
+#[test]
+fn threads_shards_and_order_make_no_difference() {
+    let _alone = alone();
+    let (folder, plan) = uninterrupted();
+    // Without a history, whole files have to be equal.
+    let expected = std::fs::read(folder.path().join("whole.h5")).unwrap();
+    let provenance = Provenance::default();
+    let stop = Arc::new(AtomicBool::new(false));
+    let map = folder.path().join("again.h5");
+    for (threads, order) in [
+        (1, Order::Forward),
+        (2, Order::Backward),
+        (3, Order::Spread),
+        (4, Order::Forward),
+    ] {
+        let job = Job {
+            order,
+            ..Job::new(&map, threads, &provenance)
+        };
+        make(&plan, &job, &Silent, &stop).unwrap();
+        assert!(
+            std::fs::read(&map).unwrap() == expected,
+            "{threads} {order:?}"
+        );
+        std::fs::remove_file(&map).unwrap();
+    }
+    for number in [3, 1, 7, 2, 6, 4, 5] {
+        let shard: Shard = format!("{number}/7").parse().unwrap();
+        let job = Job {
+            order: Order::Spread,
+            ..Job::new(&map, 2, &provenance)
+        };
+        make_shard(&plan, &job, shard, &Silent, &stop).unwrap();
+    }
+    let folders: Vec<PathBuf> = shards::present(&map)
+        .unwrap()
+        .into_iter()
+        .map(|(_, path)| path)
+        .collect();
+    assert_eq!(folders.len(), 7);
+    merge(
+        &plan,
+        &folders,
+        &map,
+        &provenance,
+        (Missing::Refuse, &Silent),
+    )
+    .unwrap();
+    assert!(std::fs::read(&map).unwrap() == expected, "7 shards");
+}
+
+#[test]
+fn signals_stop_a_run_soon_and_keep_what_is_done() {
+    let _alone = alone();
+    let folder = Folder::with(&[("large.toml", LARGE)]);
+    let map = folder.path().join("large.h5");
+    let mut done = 0;
+    for (signal, code) in [("-INT", 130), ("-TERM", 143)] {
+        let child = start(&folder, &["run", "large.toml", "--save-every", "0.1"]);
+        let before = tile_files(&map).len();
+        wait_for("tile file", || tile_files(&map).len() > before);
+        expect(
+            &folder.run(&["run", "large.toml"]),
+            1,
+            "another run is writing large.h5",
+        );
+        let status = folder.run(&["status", "large.h5"]);
+        expect(&status, 0, "large.h5: running");
+        expect(&status, 0, "cells/s");
+        let sent = Instant::now();
+        send(signal, &child);
+        let output = child.wait_with_output().unwrap();
+        assert!(
+            sent.elapsed() < Duration::from_secs(2),
+            "{:?}",
+            sent.elapsed()
+        );
+        expect(
+            &output,
+            code,
+            "large.h5 is not complete; what is computed is kept",
+        );
+        let now = cells_done(&folder, "large.h5");
+        assert!(now > done);
+        done = now;
+    }
+    assert!(!map.exists());
+    expect(
+        &folder.run(&["status", "large.h5"]),
+        0,
+        "no run works on it",
+    );
+    // What there is can be looked at.
+    expect(
+        &folder.run(&["plot", "large.h5"]),
+        0,
+        "large.h5 is not complete",
+    );
+    expect(&folder.run(&["info", "large.h5"]), 0, "missing");
+    expect(
+        &folder.run(&["merge", "large.h5"]),
+        1,
+        "run these shards again: 1/1",
+    );
+    expect(
+        &folder.run(&["merge", "large.h5", "--partial", "-o", "sofar.h5"]),
+        0,
+        "of them missing",
+    );
+    assert_eq!(cells_done(&folder, "sofar.h5"), done);
+    assert_eq!(
+        folder.files(),
+        [
+            "large.h5.log",
+            "large.h5.tiles",
+            "large.png",
+            "large.toml",
+            "sofar.h5",
+            "sofar.h5.log",
+            "sofar.png"
+        ]
+    );
+}
+
+/// Motions that go on for ever do not keep a run from stopping.
+#[test]
+fn slow_cells_do_not_delay_a_stop() {
+    let _alone = alone();
+    let slow = "fields = [\"outcome\"]\n[axes]\ntau = { from = 0.5, to = 3, points = 400 }\n[fixed]\nv0 = 0.1\nalpha_v = 0.3\n\
+                [friction]\nlaw = \"weakening\"\nmu0 = 0.5\nv_s = 0.5\n[simulation]\nhorizon = 1e9\n";
+    let folder = Folder::with(&[("slow.toml", slow)]);
+    let child = start(&folder, &["run", "slow.toml"]);
+    wait_for("manifest", || {
+        folder
+            .path()
+            .join("slow.h5.tiles/1-of-1/manifest.json")
+            .exists()
+    });
+    std::thread::sleep(Duration::from_millis(300));
+    let sent = Instant::now();
+    send("-TERM", &child);
+    let output = child.wait_with_output().unwrap();
+    assert!(
+        sent.elapsed() < Duration::from_secs(2),
+        "{:?}",
+        sent.elapsed()
+    );
+    expect(&output, 143, "the same command goes on");
+}
+
+/// A disk that takes no more: first a limit on the size of files, which fails in the same calls, then a small disk.
+#[test]
+fn a_full_disk_is_named_and_nothing_is_lost() {
+    let _alone = alone();
+    let folder = Folder::with(&[("large.toml", LARGE)]);
+    let program = env!("CARGO_BIN_EXE_slipmap");
+    let limited = format!("ulimit -f 60; exec '{program}' run large.toml --save-every 0.3");
+    let output = Command::new("sh")
+        .args(["-c", &limited])
+        .current_dir(folder.path())
+        .output()
+        .unwrap();
+    expect(&output, 1, "File too large");
+    expect(&output, 1, "the same command goes on");
+
+    let (folder, _) = uninterrupted();
+    std::fs::create_dir(folder.path().join("disk")).unwrap();
+    let script = format!(
+        "mount -t tmpfs -o size=1500k tmpfs disk || exit 77
+         '{program}' run night.toml -o disk/night.h5 --save-every 0; echo ended $?
+         '{program}' status disk/night.h5
+         '{program}' run night.toml -o disk/night.h5 --save-every 0; echo ended $?
+         mount -o remount,size=64m disk
+         '{program}' run night.toml -o disk/night.h5; echo ended $?
+         cp disk/night.h5 ."
+    );
+    let output = Command::new("unshare")
+        .args(["-rm", "sh", "-c", &script])
+        .current_dir(folder.path())
+        .output();
+    match output {
+        Ok(output) if output.status.success() => {
+            expect(&output, 0, "No space left on device");
+            expect(&output, 0, "ended 1");
+            expect(&output, 0, "ended 0");
+            let whole = datasets(&folder.path().join("whole.h5"));
+            assert_eq!(datasets(&folder.path().join("night.h5")), whole);
+        }
+        other => println!("no small disk can be mounted here, not tried: {other:?}"),
+    }
+}
+
+#[test]
+fn a_folder_that_vanishes_is_named() {
+    let _alone = alone();
+    let folder = Folder::with(&[("large.toml", LARGE)]);
+    let map = folder.path().join("large.h5");
+    let child = start(&folder, &["run", "large.toml", "--save-every", "0.1"]);
+    wait_for("tile file", || !tile_files(&map).is_empty());
+    std::fs::rename(shards::root(&map), folder.path().join("gone")).unwrap();
+    let output = child.wait_with_output().unwrap();
+    expect(&output, 1, "cannot write large.h5.tiles/1-of-1");
+    expect(&output, 1, "No such file or directory");
+    // Back again, nothing is lost.
+    std::fs::rename(folder.path().join("gone"), shards::root(&map)).unwrap();
+    assert!(cells_done(&folder, "large.h5") > 0);
+}
+
+#[test]
+fn a_folder_that_cannot_be_written_to_is_named() {
+    let _alone = alone();
+    let folder = Folder::with(&[("night.toml", NIGHT)]);
+    let program = env!("CARGO_BIN_EXE_slipmap");
+    std::fs::create_dir(folder.path().join("disk")).unwrap();
+    let script = format!(
+        "mount -t tmpfs tmpfs disk || exit 77
+         '{program}' run night.toml -o disk/night.h5 --save-every 0 & sleep 0.4; kill -KILL $!; wait
+         ls disk/night.h5.tiles/*
+         mount -o remount,ro disk || exit 77
+         '{program}' run night.toml -o disk/night.h5; echo ended $?
+         '{program}' status disk/night.h5; echo ended $?
+         mount -o remount,rw disk
+         '{program}' run night.toml -o disk/night.h5; echo ended $?"
+    );
+    let output = Command::new("unshare")
+        .args(["-rm", "sh", "-c", &script])
+        .current_dir(folder.path())
+        .output();
+    match output {
+        Ok(output) if output.status.success() => {
+            expect(&output, 0, "Read-only file system");
+            expect(&output, 0, "ended 1");
+            expect(&output, 0, "ended 0");
+        }
+        other => println!("nothing can be mounted here, not tried: {other:?}"),
+    }
+}
+
+/// Files that were cut short, flipped, lengthened, emptied, exchanged or lost: all are noticed, and the map is the same.
+#[test]
+fn damaged_tiles_are_noticed_and_computed_again() {
+    let _alone = alone();
+    let (folder, plan) = uninterrupted();
+    let expected = std::fs::read(folder.path().join("whole.h5")).unwrap();
+    let map = folder.path().join("night.h5");
+    let (provenance, stop) = (Provenance::default(), Arc::new(AtomicBool::new(false)));
+    let one: Shard = "1/2".parse().unwrap();
+    let job = Job {
+        save_every: Duration::ZERO,
+        ..Job::new(&map, 2, &provenance)
+    };
+    make_shard(&plan, &job, one, &Silent, &stop).unwrap();
+    make_shard(&plan, &job, "2/2".parse().unwrap(), &Silent, &stop).unwrap();
+    let kept = folder.path().join("kept");
+    copy(&shards::folder_of(&map, one), &kept);
+    let folders: Vec<PathBuf> = shards::present(&map)
+        .unwrap()
+        .into_iter()
+        .map(|(_, p)| p)
+        .collect();
+    let mut chance = Chance(11);
+    let (mut tried, mut noticed) = (0, 0);
+    let files = std::fs::read_dir(&kept).unwrap().count() as u64 - 2;
+    for _ in 0..asked("SLIPMAP_DAMAGES", 60).max(files) {
+        let victims = tile_files(&map);
+        let victims: Vec<&PathBuf> = victims
+            .iter()
+            .filter(|p| p.starts_with(&folders[0]))
+            .collect();
+        let file = victims[tried % victims.len()];
+        damage(file, &mut chance);
+        tried += 1;
+        let told = Told::default();
+        make_shard(&plan, &job, one, &told, &stop).unwrap();
+        noticed += told.0.take();
+    }
+    println!("{tried} files damaged, {noticed} noticed");
+    assert_eq!(noticed, tried);
+    merge(
+        &plan,
+        &folders,
+        &map,
+        &provenance,
+        (Missing::Refuse, &Silent),
+    )
+    .unwrap();
+    assert!(std::fs::read(&map).unwrap() == expected);
+}
+
+/// Counts damages that are told.
+#[derive(Default)]
+struct Told(std::cell::Cell<usize>);
+
+impl slipmap::sweep::Observer for Told {
+    fn event(&self, event: &slipmap::sweep::Event) {
+        if let slipmap::sweep::Event::Damaged { .. } = event {
+            self.0.set(self.0.get() + 1);
+        }
+    }
+}
+
+fn copy(from: &Path, to: &Path) {
+    std::fs::create_dir(to).unwrap();
+    for entry in std::fs::read_dir(from).unwrap() {
+        let path = entry.unwrap().path();
+        std::fs::copy(&path, to.join(path.file_name().unwrap())).unwrap();
+    }
+}
+
+fn damage(file: &Path, chance: &mut Chance) {
+    let mut bytes = std::fs::read(file).unwrap();
+    let at = chance.below(bytes.len() as u64) as usize;
+    match chance.below(4) {
+        0 => bytes.truncate(at),
+        1 => bytes[at] ^= 1 << chance.below(8),
+        2 => bytes[at..].fill(0xff),
+        _ => bytes.fill(0),
+    }
+    if bytes == std::fs::read(file).unwrap() {
+        bytes[at] ^= 1;
+    }
+    std::fs::write(file, bytes).unwrap();
+}
+
+#[test]
+fn a_manifest_of_something_else_is_refused_with_the_difference() {
+    let _alone = alone();
+    let folder = Folder::with(&[
+        ("large.toml", LARGE),
+        (
+            "other.toml",
+            &LARGE.replace("points = 10000 }", "points = 9999 }"),
+        ),
+        ("steeper.toml", &LARGE.replace("-0.3", "-0.4")),
+        ("fields.toml", &LARGE.replace(", \"frequency\"", "")),
+    ]);
+    let map = folder.path().join("large.h5");
+    let child = start(&folder, &["run", "large.toml", "--save-every", "0.1"]);
+    wait_for("tile file", || !tile_files(&map).is_empty());
+    send("-KILL", &child);
+    child.wait_with_output().unwrap();
+    for (sweep, says) in [
+        ("other.toml", "tau: 10000 numbers from 0.05 to 9"),
+        (
+            "steeper.toml",
+            "mu_prime: -0.3 in the tiles, -0.4 in the sweep",
+        ),
+        (
+            "fields.toml",
+            "frequency: yes in the tiles, none in the sweep",
+        ),
+    ] {
+        let output = folder.run(&["run", sweep, "-o", "large.h5"]);
+        expect(&output, 2, says);
+        expect(&output, 2, "--fresh starts over");
+    }
+    let manifest = folder.path().join("large.h5.tiles/1-of-1/manifest.json");
+    let text = std::fs::read_to_string(&manifest).unwrap();
+    let revision = text.lines().find(|l| l.contains("git_revision")).unwrap();
+    for (from, to, says) in [
+        (
+            "\"tiles_format_version\": 1",
+            "\"tiles_format_version\": 2",
+            "format version 2",
+        ),
+        (revision, "  \"git_revision\": \"0123\",", "(0123)"),
+        ("\"1/1\"", "\"1/2\"", "of shard 1/2, asked for is 1/1"),
+        (
+            "\"plan_hash\": \"",
+            "\"plan_hash\": \"00",
+            "the manifest was changed",
+        ),
+        ("{", "", "is damaged"),
+        ("\"plan\"", "\"plans\"", "is damaged: unknown field `plans`"),
+        (&text, "", "is damaged: EOF"),
+    ] {
+        std::fs::write(&manifest, text.replacen(from, to, 1)).unwrap();
+        expect(&folder.run(&["run", "large.toml"]), 2, says);
+    }
+    // Without its manifest a folder is still its own: its files say what they belong to.
+    std::fs::remove_file(&manifest).unwrap();
+    let before = tile_files(&map).len();
+    let child = start(&folder, &["run", "large.toml", "--save-every", "0.1"]);
+    wait_for("tile file", || tile_files(&map).len() > before);
+    // A folder that is being written to is not dropped.
+    expect(
+        &folder.run(&["run", "large.toml", "--fresh"]),
+        1,
+        "another run is writing",
+    );
+    send("-INT", &child);
+    child.wait_with_output().unwrap();
+    // What is not slipmap's is not touched.
+    std::fs::write(
+        folder.path().join("large.h5.tiles/1-of-1/notes.txt"),
+        "mine",
+    )
+    .unwrap();
+    for args in [
+        &["run", "large.toml"][..],
+        &["run", "large.toml", "--fresh"],
+    ] {
+        expect(
+            &folder.run(args),
+            2,
+            "notes.txt stands where the tiles go and is not by slipmap",
+        );
+    }
+    std::fs::remove_file(folder.path().join("large.h5.tiles/1-of-1/notes.txt")).unwrap();
+    std::fs::write(folder.path().join("large.toml"), NIGHT).unwrap();
+    expect(
+        &folder.run(&["run", "large.toml", "--fresh"]),
+        0,
+        "large.h5: 388 800 cells",
+    );
+    assert!(!shards::root(&map).exists());
+}
+
+#[test]
+fn shards_by_the_program() {
+    let _alone = alone();
+    let (folder, _) = uninterrupted();
+    for shard in ["1/3", "3/3"] {
+        let args = ["run", "night.toml", "--shard", shard];
+        expect(&folder.run(&args), 0, "is complete; when all are");
+    }
+    expect(
+        &folder.run(&["merge", "night.h5"]),
+        1,
+        "run these shards again: 2/3",
+    );
+    expect(
+        &folder.run(&["run", "night.toml"]),
+        2,
+        "holds shards of this map",
+    );
+    expect(&folder.run(&["status", "night.h5"]), 0, "3/3");
+    expect(
+        &folder.run(&["run", "night.toml", "--shard", "2/3"]),
+        0,
+        "shard 2 of 3",
+    );
+    expect(
+        &folder.run(&["status", "night.h5"]),
+        0,
+        "all shards are complete",
+    );
+    expect(
+        &folder.run(&["merge", "night.h5"]),
+        0,
+        "night.h5: 388 800 cells",
+    );
+    assert_eq!(
+        datasets(&folder.path().join("night.h5")),
+        datasets(&folder.path().join("whole.h5"))
+    );
+    assert!(!folder.path().join("night.h5.tiles").exists());
+    expect(
+        &folder.run(&["merge", "night.h5"]),
+        2,
+        "there are no shards in night.h5.tiles",
+    );
+    expect(
+        &folder.run(&["run", "night.toml", "--shard", "2/3"]),
+        0,
+        "already complete",
+    );
+    for bad in ["4/3", "0/3", "1", "x"] {
+        let args = ["run", "night.toml", "--shard", bad];
+        expect(&folder.run(&args), 2, "expected I/N with I from 1 to N");
+    }
+}
