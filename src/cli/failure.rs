@@ -89,8 +89,10 @@ impl Failure {
 impl From<StoreError> for Failure {
     fn from(error: StoreError) -> Self {
         let mut diagnostic = MietteDiagnostic::new(error.to_string());
-        let other_tiles =
-            matches!(error, StoreError::OtherTiles { .. } | StoreError::Manifest { .. });
+        let other_tiles = matches!(
+            error,
+            StoreError::OtherTiles { .. } | StoreError::Manifest { .. }
+        );
         if other_tiles {
             let help = "--fresh starts over, dropping the tiles; -o writes elsewhere";
             diagnostic = diagnostic.with_help(help);
@@ -98,7 +100,8 @@ impl From<StoreError> for Failure {
         let report = Report::new(diagnostic);
         match error {
             _ if other_tiles => Self::BadInput(report),
-            StoreError::Foreign { .. } | StoreError::NotAMap { .. }
+            StoreError::Foreign { .. }
+            | StoreError::NotAMap { .. }
             | StoreError::NotATrace { .. }
             | StoreError::Io { action: "open", .. } => Self::BadInput(report),
             _ => Self::Failed(report),

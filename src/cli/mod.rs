@@ -16,6 +16,7 @@ mod simulate;
 mod status;
 mod sweep_file;
 mod vc;
+mod verify;
 
 use std::process::ExitCode;
 
@@ -40,6 +41,8 @@ enum Command {
     Merge(merge::Args),
     /// Say how far a map is, from another terminal
     Status(status::Args),
+    /// Check a map: its checksums, its schema, and a sample of its cells by other methods
+    Verify(verify::Args),
     /// Say what a sweep would cost, without running it
     Plan(plan::Args),
     /// Everything about one point of parameter space
@@ -62,6 +65,7 @@ pub fn main() -> ExitCode {
         Command::Run(args) => run::main(&args),
         Command::Merge(args) => merge::main(&args),
         Command::Status(args) => status::main(&args),
+        Command::Verify(args) => verify::main(&args),
         Command::Plan(args) => plan::main(&args),
         Command::Point(args) => point::main(&args),
         Command::Best(args) => best::main(&args),

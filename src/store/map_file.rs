@@ -9,7 +9,7 @@ use super::error::StoreError;
 use super::schema::{self, BOUNDARIES, DEGREE_OF_STABILITY, PLANE, STATUS, root};
 use crate::linear::Direction;
 use crate::linear::curves::{CurvePiece, StableSide, Vertex};
-use crate::sweep::engine::{FEW_FILL, N_UNSTABLE_FILL};
+use crate::sweep::engine::{FEW_FILL, N_UNSTABLE_FILL, STATUS_FILL};
 use crate::sweep::field::Storage;
 use crate::sweep::{Field, Parameter};
 
@@ -256,6 +256,18 @@ impl MapFile {
         })
     }
 
+    /// One cell of a field as a number: NaN where it has no value.
+    pub(super) fn cell(&self, field: Field, index: &[usize]) -> Result<f64, StoreError> {
+        let cells = self.read_field(field, &self.dataset(field.name())?, at(index))?;
+        Ok(cells.first().copied().unwrap_or(f64::NAN))
+    }
+
+    /// The status of one cell.
+    pub(super) fn cell_status(&self, index: &[usize]) -> Result<u8, StoreError> {
+        let cells = self.read::<u8>(&self.dataset(STATUS)?, at(index))?;
+        Ok(cells.first().copied().unwrap_or(STATUS_FILL))
+    }
+
     /// Cells of a field as numbers: fill values are NaN.
     pub(super) fn read_field(
         &self,
@@ -366,6 +378,10 @@ impl MapFile {
         };
         read().map_err(StoreError::hdf5("read the boundaries of", &self.path))
     }
+}
+
+fn at(index: &[usize]) -> Vec<SliceOrIndex> {
+    index.iter().map(|&i| SliceOrIndex::Index(i)).collect()
 }
 
 fn read_axes(file: &File, path: &Path) -> Result<Vec<MapAxis>, StoreError> {

@@ -6,6 +6,7 @@
 //! - [`assembly`]: from pieces to a map
 //! - [`map_writer`]: the map's file, under a temporary name until it is complete
 //! - [`map_file`]: reads maps
+//! - [`map_check`]: whether a map is as it was written, and what other methods say of it
 //! - [`trace_file`]: writes motions sampled over time, and recognises them
 //! - [`output`]: the temporary name, the lock, the final rename
 
@@ -17,6 +18,7 @@ mod boundary_writer;
 mod codec;
 mod curve_rows;
 mod error;
+pub mod map_check;
 pub mod map_file;
 pub mod map_maker;
 mod map_summary;

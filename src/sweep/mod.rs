@@ -26,6 +26,7 @@ pub mod pieces;
 pub mod plan;
 mod protocol;
 mod root_columns;
+pub mod second_look;
 pub mod simulation;
 mod slip_columns;
 pub mod spec;

@@ -172,6 +172,12 @@ impl Plan {
         }
     }
 
+    /// The delay of the cell at `index`.
+    #[must_use]
+    pub fn delay(&self, index: &[usize]) -> f64 {
+        self.setting(index).get(Parameter::Tau)
+    }
+
     /// The part of the delays that `tile` covers, as indices.
     #[must_use]
     pub fn delay_range(&self, tile: &Tile) -> std::ops::Range<usize> {

@@ -1,0 +1,99 @@
+//! `slipmap verify`: whether a map is as it was written, and what other methods say of a sample of its cells.
+
+use std::io::Write;
+use std::path::PathBuf;
+
+use serde_json::{Value, json};
+use slipmap::report::numbers::grouped;
+use slipmap::store::MapFile;
+use slipmap::store::map_check::{Effort, Report, check};
+
+use super::failure::Failure;
+use super::say;
+
+/// More cells or tiles than this are not computed again.
+const MOST: u64 = 100_000_000;
+
+#[derive(Debug, clap::Args)]
+pub struct Args {
+    /// The map
+    #[arg(value_name = "MAP.h5")]
+    map: PathBuf,
+    /// Cells at which second methods look, spread over the map
+    #[arg(long, value_name = "N", default_value_t = 100, value_parser = clap::value_parser!(u64).range(..=MOST))]
+    cells: u64,
+    /// Tiles that are computed again, to be equal bit by bit
+    #[arg(long, value_name = "N", default_value_t = 2, value_parser = clap::value_parser!(u64).range(..=MOST))]
+    tiles: u64,
+    /// Print one JSON object instead
+    #[arg(long)]
+    json: bool,
+}
+
+pub fn main(args: &Args) -> Result<(), Failure> {
+    let map = MapFile::open(&args.map)?;
+    let effort = Effort {
+        cells: args.cells,
+        tiles: args.tiles,
+    };
+    let program = (env!("CARGO_PKG_VERSION"), env!("SLIPMAP_GIT_REVISION"));
+    let report = check(&map, program, effort)?;
+    if args.json {
+        say::result(to_json(&report))?;
+    } else {
+        print(args, &report)?;
+    }
+    match report.faults.len() {
+        0 => Ok(()),
+        1 => Err(Failure::failed(format!("{}: 1 fault", args.map.display()))),
+        n => Err(Failure::failed(format!(
+            "{}: {n} faults",
+            args.map.display()
+        ))),
+    }
+}
+
+fn to_json(report: &Report) -> Value {
+    let answers: Vec<Value> = report
+        .answers
+        .iter()
+        .map(|(question, [agree, differ, open])| {
+            json!({"question": question.name(), "agree": agree, "differ": differ, "open": open})
+        })
+        .collect();
+    json!({
+        "sound": report.faults.is_empty(), "faults": report.faults, "remarks": report.remarks,
+        "checksums": report.checksums, "cells": report.cells, "answers": answers, "tiles_equal": report.tiles_equal,
+    })
+}
+
+fn print(args: &Args, report: &Report) -> Result<(), Failure> {
+    let mut out = std::io::stdout().lock();
+    let mut row = |name: &str, text: String| writeln!(out, "{name:<12} {text}");
+    row(
+        "checksums",
+        format!("{} datasets as they were written", report.checksums),
+    )?;
+    row(
+        "cells",
+        format!("{} looked at by second methods", grouped(report.cells)),
+    )?;
+    for (question, [agree, differ, open]) in &report.answers {
+        let counts = format!("{agree} agree, {differ} differ, {open} open");
+        row("", format!("{:<38} {counts}", question.name()))?;
+    }
+    row(
+        "tiles",
+        format!(
+            "{} of {} computed again, bit by bit the same",
+            report.tiles_equal, args.tiles
+        ),
+    )?;
+    for remark in &report.remarks {
+        row("remark", remark.clone())?;
+    }
+    for fault in &report.faults {
+        row("fault", fault.clone())?;
+    }
+    Ok(())
+}

@@ -1,0 +1,359 @@
+//! Whether a map is as it was written, and what other methods say of it.
+
+use std::fs::File;
+use std::io::{Read, Seek, SeekFrom};
+
+use hdf5::Dataset;
+use hdf5_sys::h5::HADDR_UNDEF;
+use hdf5_sys::h5d::H5Dget_chunk_info_by_coord;
+use sha2::{Digest, Sha256};
+
+use super::attributes::text;
+use super::error::StoreError;
+use super::map_file::MapFile;
+use super::schema::{self, STATUS, root};
+use super::tiles::RecordEncoder;
+use super::tiles::record::Content;
+use crate::linear::status::FLAGS;
+use crate::sweep::engine::{Computed, Encode, STATUS_FILL, Worker};
+use crate::sweep::pieces::Piece;
+use crate::sweep::plan::{Plan, in_hexadecimal};
+use crate::sweep::second_look::{Answer, Question, Stored, second_look};
+use crate::sweep::{Field, SweepSpec};
+
+/// What was found out about a map.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Report {
+    /// Everything that is wrong, in words; empty for a sound map.
+    pub faults: Vec<String>,
+    /// What could not be checked, and why.
+    pub remarks: Vec<String>,
+    /// Datasets of cells whose checksums fit.
+    pub checksums: u64,
+    /// Cells at which second methods looked.
+    pub cells: u64,
+    /// For each question: answers that agree, that differ, that stay open.
+    pub answers: Vec<(Question, [u64; 3])>,
+    /// Tiles that were computed again, all their bytes equal.
+    pub tiles_equal: u64,
+}
+
+/// How much of a map is computed again.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Effort {
+    /// Cells at which second methods look.
+    pub cells: u64,
+    /// Tiles that are computed again, bit by bit.
+    pub tiles: u64,
+}
+
+/// Checks a map: its schema against its own sweep, its checksums, and samples of its cells; `program` is the version and revision
+/// of the program that runs.
+///
+/// # Errors
+/// When the map cannot be read at all.
+pub fn check(map: &MapFile, program: (&str, &str), effort: Effort) -> Result<Report, StoreError> {
+    let mut report = Report::default();
+    let Some(plan) = planned(map, &mut report) else {
+        return Ok(report);
+    };
+    check_schema(map, &plan, &mut report);
+    check_checksums(map, &plan, &mut report);
+    if map.is_partial() {
+        let missing = map.cells_missing();
+        report
+            .remarks
+            .push(format!("{missing} cells are not computed yet"));
+    }
+    // Values of a map whose bytes are wrong are not worth a look.
+    if report.faults.is_empty() {
+        check_statuses(map, &mut report)?;
+        look_at_cells(map, &plan, effort.cells, &mut report)?;
+        compute_tiles(map, &plan, program, effort.tiles, &mut report)?;
+    }
+    Ok(report)
+}
+
+fn planned(map: &MapFile, report: &mut Report) -> Option<Plan> {
+    let sweep = map.root_text(root::SWEEP).unwrap_or_default();
+    match sweep.parse::<SweepSpec>().and_then(Plan::new) {
+        Ok(plan) if map.root_text(root::PLAN_HASH).as_deref() == Some(&plan.hash()) => Some(plan),
+        Ok(_) => {
+            let fault = "the sweep in the map does not have the hash of its plan";
+            report.faults.push(fault.to_owned());
+            None
+        }
+        Err(error) => {
+            report.faults.push(format!(
+                "the sweep in the map cannot be read: {}",
+                error.message
+            ));
+            None
+        }
+    }
+}
+
+fn check_schema(map: &MapFile, plan: &Plan, report: &mut Report) {
+    let faults = &mut report.faults;
+    let axes = &plan.spec.axes;
+    if map.axes().len() != axes.len() {
+        faults.push(format!(
+            "it has {} axes, its sweep {}",
+            map.axes().len(),
+            axes.len()
+        ));
+    }
+    for (there, asked) in map.axes().iter().zip(axes) {
+        let same = |a: &[f64], b: &[f64]| {
+            a.len() == b.len() && a.iter().zip(b).all(|(a, b)| a.to_bits() == b.to_bits())
+        };
+        if there.parameter != asked.parameter || !same(&there.values, &asked.values) {
+            faults.push(format!(
+                "the axis {} is not that of the sweep",
+                there.parameter.name()
+            ));
+        }
+    }
+    for (parameter, value) in map.scalars() {
+        if value.to_bits() != plan.spec.fixed.get(parameter).to_bits() {
+            faults.push(format!("{} is not that of the sweep", parameter.name()));
+        }
+    }
+    for field in plan
+        .spec
+        .fields
+        .iter()
+        .filter(|f| !map.fields().contains(f))
+    {
+        faults.push(format!("the field {} is missing", field.name()));
+    }
+    for name in names(map) {
+        match map
+            .dataset(name)
+            .map(|dataset| (dataset.chunk(), text(&dataset, "units")))
+        {
+            Ok((Some(_), Ok(_))) => {}
+            Ok((None, _)) => faults.push(format!("{name} is not stored in chunks")),
+            Ok((_, Err(_))) => faults.push(format!("{name} has no units")),
+            Err(error) => faults.push(error.to_string()),
+        }
+    }
+    if let Err(error) = map.curves() {
+        faults.push(error.to_string());
+    }
+}
+
+/// The datasets of cells.
+fn names(map: &MapFile) -> impl Iterator<Item = &'static str> {
+    map.fields().iter().map(|f| f.name()).chain([STATUS])
+}
+
+fn check_checksums(map: &MapFile, plan: &Plan, report: &mut Report) {
+    let mut without = 0;
+    let mut file = match File::open(map.path()) {
+        Ok(file) => file,
+        Err(error) => return report.faults.push(format!("cannot be read: {error}")),
+    };
+    for name in names(map) {
+        let Ok(dataset) = map.dataset(name) else {
+            continue;
+        };
+        if dataset.chunk().as_deref() != Some(plan.tiles.tile_shape()) {
+            let remark =
+                format!("{name}: its chunks are not slipmap's, so its checksum says nothing");
+            report.remarks.push(remark);
+            continue;
+        }
+        let Ok(expected) = text(&dataset, schema::CHUNKS_SHA256) else {
+            without += 1;
+            continue;
+        };
+        match hash_of_chunks(&mut file, &dataset, plan) {
+            Some(found) if found == expected => report.checksums += 1,
+            Some(_) => report.faults.push(format!(
+                "{name}: its checksum does not fit: bytes have changed"
+            )),
+            None => report.faults.push(format!("{name}: chunks cannot be read")),
+        }
+    }
+    if without > 0 {
+        let remark = format!("{without} datasets have no checksum: an earlier version wrote them");
+        report.remarks.push(remark);
+    }
+}
+
+fn hash_of_chunks(file: &mut File, dataset: &Dataset, plan: &Plan) -> Option<String> {
+    let mut hash = Sha256::new();
+    for number in 0..plan.tiles.len() {
+        let offset = plan.tiles.tile(number).offset;
+        // A chunk that is not there has not been computed.
+        if let Some(chunk) = stored_chunk(file, dataset, &offset)? {
+            hash.update(&chunk);
+        }
+    }
+    Some(in_hexadecimal(&hash.finalize()))
+}
+
+/// The bytes of the chunk whose first cell is at `offset`, as they stand in the file; `Some(None)` where there is no chunk, none
+/// where it cannot be read.
+fn stored_chunk(file: &mut File, dataset: &Dataset, offset: &[usize]) -> Option<Option<Vec<u8>>> {
+    let offset: Vec<u64> = offset.iter().map(|&o| o as u64).collect();
+    let (mut filters, mut address, mut size) = (0, 0, 0);
+    let asked = hdf5::sync::sync(|| {
+        // SAFETY: the dataset is open and chunked, `offset` has one entry per dimension of it, and the three results are live.
+        unsafe {
+            H5Dget_chunk_info_by_coord(
+                dataset.id(),
+                offset.as_ptr(),
+                &raw mut filters,
+                &raw mut address,
+                &raw mut size,
+            )
+        }
+    });
+    if asked < 0 {
+        return None;
+    }
+    if size == 0 || address == HADDR_UNDEF {
+        return Some(None);
+    }
+    // A damaged size is no reason to ask for all memory.
+    let end = file.metadata().ok()?.len();
+    let within = address.checked_add(size).is_some_and(|last| last <= end);
+    let mut chunk = vec![0; usize::try_from(size).ok().filter(|_| within)?];
+    file.seek(SeekFrom::Start(address)).ok()?;
+    file.read_exact(&mut chunk).ok()?;
+    Some(Some(chunk))
+}
+
+fn check_statuses(map: &MapFile, report: &mut Report) -> Result<(), StoreError> {
+    let (counts, unflagged) = map.status_counts()?;
+    let known = counts.iter().copied().max().unwrap_or(0) + unflagged;
+    let computed = map.cells() - map.cells_missing().min(map.cells());
+    if known > computed && !map.is_partial() && counts.iter().sum::<u64>() + unflagged < computed {
+        report.faults.push("cells without a status".to_owned());
+    }
+    for ((_, name), count) in FLAGS
+        .iter()
+        .zip(counts)
+        .filter(|((_, name), n)| *name == "disagree" && *n > 0)
+    {
+        report
+            .remarks
+            .push(format!("{count} cells say {name} themselves"));
+    }
+    Ok(())
+}
+
+/// A number in [0, 1) for each sample: multiples of the golden ratio fall evenly.
+fn spread(sample: u64) -> f64 {
+    (sample as f64 * 0.618_033_988_749_895).fract()
+}
+
+fn look_at_cells(
+    map: &MapFile,
+    plan: &Plan,
+    cells: u64,
+    report: &mut Report,
+) -> Result<(), StoreError> {
+    for sample in 0..cells.min(plan.cells()) {
+        let number = (spread(sample) * plan.cells() as f64) as u64;
+        let index = index_of(number, plan.shape());
+        let status = map.cell_status(&index)?;
+        if status == STATUS_FILL {
+            continue;
+        }
+        let mut values = Vec::new();
+        for &field in &plan.spec.fields {
+            values.push((field, map.cell(field, &index)?));
+        }
+        let value = |field: Field| {
+            let found = values.iter().find(|(f, _)| *f == field);
+            found.map_or(f64::NAN, |(_, value)| *value)
+        };
+        let stored = Stored {
+            status,
+            value: &value,
+        };
+        report.cells += 1;
+        match second_look(plan, &index, &stored) {
+            Ok(answers) => tally(plan, &index, &answers, report),
+            Err(error) => report.remarks.push(format!("cell {index:?}: {error}")),
+        }
+    }
+    Ok(())
+}
+
+fn tally(plan: &Plan, index: &[usize], answers: &[(Question, Answer)], report: &mut Report) {
+    for &(question, answer) in answers {
+        let place = report.answers.iter().position(|(q, _)| *q == question);
+        let place = place.unwrap_or_else(|| {
+            report.answers.push((question, [0; 3]));
+            report.answers.len() - 1
+        });
+        report.answers[place].1[answer as usize] += 1;
+        if answer == Answer::Differs {
+            let axes = plan.spec.axes.iter().zip(index);
+            let at: Vec<String> = axes
+                .map(|(axis, &i)| format!("{} = {}", axis.parameter.name(), axis.values[i]))
+                .collect();
+            report
+                .faults
+                .push(format!("{} differs at {}", question.name(), at.join(", ")));
+        }
+    }
+}
+
+fn index_of(mut number: u64, shape: &[usize]) -> Vec<usize> {
+    let mut index = vec![0; shape.len()];
+    for (place, &length) in index.iter_mut().zip(shape).rev() {
+        *place = (number % length as u64) as usize;
+        number /= length as u64;
+    }
+    index
+}
+
+fn compute_tiles(
+    map: &MapFile,
+    plan: &Plan,
+    (version, revision): (&str, &str),
+    tiles: u64,
+    report: &mut Report,
+) -> Result<(), StoreError> {
+    let by = |name, this| map.root_text(name).as_deref() == Some(this);
+    if !by(root::PROGRAM_VERSION, version) || !by(root::GIT_REVISION, revision) {
+        let remark = "no tiles are compared bit by bit: another revision of slipmap computed them";
+        report.remarks.push(remark.to_owned());
+        return Ok(());
+    }
+    let mut file = File::open(map.path()).map_err(StoreError::io("open", map.path()))?;
+    let mut worker = Worker::new(plan);
+    let mut encoder = RecordEncoder::default();
+    for sample in 0..tiles.min(plan.tiles.len() as u64) {
+        let number = (spread(sample) * plan.tiles.len() as f64) as usize;
+        let tile = plan.tiles.tile(number);
+        worker.compute(&tile);
+        let piece = Piece::Tile(number as u64);
+        let record = encoder.encode(piece, Computed::Tile(&worker.buffers));
+        let Some(Content::Tile(chunks)) = Content::read(piece, &record.payload) else {
+            continue;
+        };
+        let mut equal = true;
+        let held = plan.spec.fields.iter().map(|f| f.name()).chain([STATUS]);
+        for (name, chunk) in held.zip(chunks) {
+            match stored_chunk(&mut file, &map.dataset(name)?, &tile.offset) {
+                Some(Some(stored)) if stored == chunk => {}
+                // Of a map that is not complete.
+                Some(None) if map.is_partial() => equal = false,
+                _ => {
+                    equal = false;
+                    report
+                        .faults
+                        .push(format!("{name}: tile {number} comes out differently"));
+                }
+            }
+        }
+        report.tiles_equal += u64::from(equal);
+    }
+    Ok(())
+}

@@ -1,0 +1,191 @@
+//! A cell of a map, looked at once more by methods that did not compute it.
+
+use super::field::{Field, number_of_end};
+use super::parameter::Setting;
+use super::plan::Plan;
+use super::vc::{self, Protocol};
+use crate::critical::{Critical, End, Method};
+use crate::linear::certificate::roots_right_of;
+use crate::linear::status::{DISAGREE, MARGINAL, NOT_CONVERGED, SATURATED};
+use crate::model::{Groups, ModelError};
+use crate::slip::outcome::Outcome;
+
+/// What a map holds of one cell.
+pub struct Stored<'a> {
+    /// The status.
+    pub status: u8,
+    /// A field's value as a number; NaN where it has none, and for fields that are not there.
+    pub value: &'a dyn Fn(Field) -> f64,
+}
+
+/// What a second method was asked.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Question {
+    /// The number of unstable roots, by the argument principle.
+    Count,
+    /// Whether a root has the abscissa, and none lies right of it, by the argument principle.
+    Abscissa,
+    /// What becomes of the motion, followed with a tenth of the error allowed in a step.
+    Outcome,
+    /// The critical velocity, by simulation with steps of its own.
+    CriticalVelocity,
+}
+
+impl Question {
+    /// All.
+    pub const ALL: [Self; 4] = [
+        Self::Count,
+        Self::Abscissa,
+        Self::Outcome,
+        Self::CriticalVelocity,
+    ];
+
+    /// In words: what is compared with what.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Count => "n_unstable, by the argument principle",
+            Self::Abscissa => "abscissa, by the argument principle",
+            Self::Outcome => "outcome, with smaller steps",
+            Self::CriticalVelocity => "vc, by simulation",
+        }
+    }
+}
+
+/// What a second method answered.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Answer {
+    /// It found the same.
+    Agrees,
+    /// It found something else.
+    Differs,
+    /// The cell says itself that it is marginal, not converged or in dispute, or the method cannot tell there.
+    Open,
+}
+
+/// Every question that can be asked of the cell at `index`, one index per axis, with its answer.
+///
+/// # Errors
+/// When a parameter of the cell is outside the model's range.
+pub fn second_look(
+    plan: &Plan,
+    index: &[usize],
+    stored: &Stored,
+) -> Result<Vec<(Question, Answer)>, ModelError> {
+    let setting = plan.setting(index);
+    let mut answers = Vec::new();
+    let holds = |field| plan.spec.fields.contains(&field);
+    if plan.spec.has_sliding() && (holds(Field::NUnstable) || holds(Field::ABSCISSA)) {
+        let (groups, unit) = setting.groups()?;
+        let tau = plan.delay(index) / unit;
+        if holds(Field::NUnstable) {
+            answers.push((Question::Count, count(groups, tau, stored)));
+        }
+        if holds(Field::ABSCISSA) {
+            answers.push((Question::Abscissa, abscissa(groups, (tau, unit), stored)));
+        }
+    }
+    if plan.spec.follows_motions() && holds(Field::Outcome) {
+        answers.push((Question::Outcome, outcome(plan, &setting, stored)?));
+    }
+    let follows = plan
+        .spec
+        .critical
+        .is_some_and(|search| search.protocol == Protocol::Follow);
+    if follows && holds(Field::Vc) && holds(Field::Outcome) {
+        answers.push((
+            Question::CriticalVelocity,
+            critical_velocity(&setting, stored, holds(Field::VLiftoff))?,
+        ));
+    }
+    Ok(answers)
+}
+
+fn told(same: bool) -> Answer {
+    if same {
+        Answer::Agrees
+    } else {
+        Answer::Differs
+    }
+}
+
+fn count(groups: Groups, tau: f64, stored: &Stored) -> Answer {
+    if stored.status & (MARGINAL | SATURATED) != 0 {
+        return Answer::Open;
+    }
+    match roots_right_of(groups, tau, 0.0) {
+        Some(roots) => told(roots as f64 == (stored.value)(Field::NUnstable)),
+        None => Answer::Open,
+    }
+}
+
+fn abscissa(groups: Groups, (tau, unit): (f64, f64), stored: &Stored) -> Answer {
+    let abscissa = (stored.value)(Field::ABSCISSA) * unit;
+    if stored.status & (NOT_CONVERGED | DISAGREE) != 0 || abscissa == f64::NEG_INFINITY {
+        return Answer::Open;
+    }
+    let margin = (stored.value)(Field::CertificateMargin);
+    let margin = margin.max(1e-12) * abscissa.abs().max(1.0);
+    let right = |line| roots_right_of(groups, tau, line);
+    match (right(abscissa + margin), right(abscissa - margin)) {
+        (Some(beyond), Some(reached)) => told(beyond == 0 && reached > 0),
+        // A NaN is no abscissa, and the status does not say why.
+        _ if abscissa.is_nan() => Answer::Differs,
+        _ => Answer::Open,
+    }
+}
+
+fn outcome(plan: &Plan, setting: &Setting, stored: &Stored) -> Result<Answer, ModelError> {
+    let mut finer = plan.spec.simulation.clone();
+    finer.tolerance /= 10.0;
+    let number = (stored.value)(Field::Outcome);
+    let undecided = Outcome::Undecided as u8;
+    if stored.status & NOT_CONVERGED != 0 || number == f64::from(undecided) {
+        return Ok(Answer::Open);
+    }
+    let Some(case) = finer.case(setting, 0.0)? else {
+        return Ok(Answer::Open);
+    };
+    let followed = case.motion().and_then(|mut motion| {
+        let abscissa = case.stable_abscissa()?;
+        Ok(case.follow(&mut motion, abscissa, &mut ()).outcome)
+    });
+    Ok(match followed {
+        Ok(Outcome::Undecided) => Answer::Open,
+        Ok(found) => told(f64::from(found as u8) == number),
+        Err(_) => told(number == f64::from(Outcome::NoCycle as u8)),
+    })
+}
+
+fn critical_velocity(
+    setting: &Setting,
+    stored: &Stored,
+    holds_liftoff: bool,
+) -> Result<Answer, ModelError> {
+    if stored.status & (NOT_CONVERGED | DISAGREE) != 0 {
+        return Ok(Answer::Open);
+    }
+    let number = (stored.value)(Field::Outcome);
+    let is_it = |end: &End| f64::from(number_of_end(*end)) == number;
+    let Some(end) = End::ALL.into_iter().find(is_it) else {
+        return Ok(Answer::Differs);
+    };
+    if end == End::LiftOff && !holds_liftoff {
+        return Ok(Answer::Open);
+    }
+    let (problem, units) = vc::problem(setting)?;
+    let found = Critical {
+        vc: (stored.value)(Field::Vc),
+        end,
+        method: Method::Simulation,
+        v_liftoff: match end {
+            End::LiftOff => (stored.value)(Field::VLiftoff),
+            _ => f64::NAN,
+        },
+        stick_time: f64::NAN,
+        slip_time: f64::NAN,
+        n_min: f64::NAN,
+        decided: true,
+    };
+    Ok(told(vc::simulation_agrees(&problem, &units, &found)))
+}
