@@ -635,7 +635,7 @@ fn mistakes_in_the_flags_of_best_are_answered() {
     ] {
         expect(&with(args), 2, says);
     }
-    expect(&folder.run(&["best"]), 2, "mu_prime is not given");
+    expect(&folder.run(&["best"]), 2, "--mu-prime is not given");
 }
 
 #[test]

@@ -614,6 +614,59 @@ fn the_figure_refuses_what_is_no_such_map() {
     }
 }
 
+/// A shipped sweep with other numbers of points, run.
+fn run_coarse(folder: &Path, name: &str, points: &[(&str, &str)]) {
+    let sweep = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("sweeps/{name}.toml"));
+    let mut text = std::fs::read_to_string(sweep).unwrap();
+    for (from, to) in points {
+        assert!(text.contains(from), "{name} {from}");
+        text = text.replace(from, to);
+    }
+    let file = format!("{name}.toml");
+    std::fs::write(folder.join(&file), text).unwrap();
+    let slipmap = env!("CARGO_BIN_EXE_slipmap");
+    run(command(slipmap, folder, ["run", "--quiet"]).arg(file));
+}
+
+/// The figures of the critical velocity, from coarse maps.
+#[test]
+fn python_draws_figures_of_the_critical_velocity() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let coarse = [
+        ("points = 173", "points = 19"),
+        ("points = 41", "points = 7"),
+    ];
+    run_coarse(folder.path(), "coulomb_load", &coarse);
+    run_coarse(folder.path(), "fig4", &[]);
+    for control in ["robust_velocity", "robust_load"] {
+        let coarse = [
+            ("points = 31", "points = 5"),
+            ("[-0.5, -1.0, -2.0]", "[-1.0]"),
+        ];
+        run_coarse(folder.path(), control, &coarse);
+    }
+    let script = |name: &str| {
+        let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+        let mut python = python(folder.path());
+        python.env("SLIPMAP", env!("CARGO_BIN_EXE_slipmap"));
+        python.arg(root.join(format!("scripts/plot_{name}.py")));
+        python
+    };
+    for (name, maps) in [
+        ("coulomb_load", ["coulomb_load.h5", "fig4.h5"]),
+        ("robustness", ["robust_velocity.h5", "robust_load.h5"]),
+    ] {
+        let picture = format!("{name}.png");
+        run(script(name).args(maps).args(["-o", &picture]));
+        let bytes = std::fs::read(folder.path().join(picture)).unwrap();
+        assert!(bytes.starts_with(b"\x89PNG") && bytes.len() > 50_000);
+        let [first, second] = maps;
+        let refused = script(name).args([second, first]).output().unwrap();
+        assert_eq!(refused.status.code(), Some(2));
+        assert!(text(&refused.stderr).contains("this figure needs"));
+    }
+}
+
 /// Traces in xarray, netCDF4 and ncdump; the publication figures from them and from the map of Fig. 4.
 #[test]
 fn python_reads_traces_and_draws_figures_3_and_4() {

@@ -206,7 +206,7 @@ const BAD: &[(&str, &str, &str)] = &[
     (
         "[axes]\ntau = { from = 0, to = 1, points = 3, spacing = \"log\" }\n",
         "{ from = 0, to = 1, points = 3, spacing = \"log\" }",
-        "needs from > 0",
+        "same side of 0",
     ),
     (
         "[axes]\ntau = { from = 1, to = 2, points = 3, spacing = \"cubic\" }\n",

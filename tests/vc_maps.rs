@@ -320,3 +320,96 @@ fn mistakes_are_shown_in_place() {
     }
     insta::assert_snapshot!("mistakes", shown);
 }
+
+/// The worst of 32 phases in a map is what `vc` says, and no phase of its own is worse.
+#[test]
+fn the_worst_phase_in_a_map() {
+    let _alone = alone();
+    let folder = Folder::new();
+    let map = folder.path().join("map.h5");
+    let sweep = |phase: &str, start: &str| {
+        format!(
+            "fields = [\"vc\", \"outcome\", \"windows\"]\nprotocol = \"switch-on\"\n{phase}[axes]\n{start}\
+             tau = [0.5]\n[fixed]\nalpha_n = -10\n{LAW}"
+        )
+    };
+    write(&plan(&sweep("phase = \"worst\"\n", "")), 1, &map);
+    let (worst, ends) = (values_of(&map)[0], names(&map, Field::Outcome));
+    assert_eq!(ends, ["lost"]);
+    let flags = [
+        "vc",
+        "--json",
+        "--protocol=switch-on",
+        "--phase=worst",
+        "--tau=0.5",
+    ];
+    let law = [
+        "--friction=weakening",
+        "--mu0=0.5",
+        "--v-s=0.5",
+        "--alpha-n=-10",
+    ];
+    let said = folder.run(&[&flags[..], &law].concat());
+    let said: Value = serde_json::from_slice(&said.stdout).unwrap();
+    assert!((said["vc"].as_f64().unwrap() - worst).abs() <= 1e-15 * worst);
+    write(
+        &plan(&sweep("", "switch_on_phase = [0.0, 2.0, 3.5]\n")),
+        1,
+        &map,
+    );
+    for one in values_of(&map) {
+        // The phases of the worst case are 32 of its own, so one between them may be a little worse.
+        assert!(one <= worst * 1.01, "{one} {worst}");
+    }
+}
+
+/// What is wrong is said by the flag that gives it, in numbers of readable length.
+#[test]
+fn vc_names_flags() {
+    let tables = [
+        ("large.csv", "0 0.5\n1e300 0.4\n"),
+        ("small.csv", "0 0.5\n1 1e-300\n"),
+    ];
+    let folder = Folder::with(&tables);
+    let weakening = "--friction weakening --mu0 0.5 --v-s 0.5";
+    let mut shown = String::new();
+    for flags in [
+        format!("{weakening} --alpha-v=-0.3"),
+        format!("{weakening} --alpha-v=-0.3 --tau 0"),
+        format!("{weakening} --alpha-v=-0.3 --tau=-1"),
+        format!("{weakening} --alpha-v=-1e300 --tau 1"),
+        format!("{weakening} --mu-prime-rest=-1"),
+        format!("{weakening} --v0 0.1"),
+        format!("{weakening} --gamma 0.1"),
+        "--friction weakening --mu0 2 --v-s 0.5".into(),
+        "--friction weakening --v-s 0.5".into(),
+        "--friction weakening --v-s 0.5 --mu-prime-rest=-3".into(),
+        "--friction coulomb --mu0 0.5 --v-s 0.5".into(),
+        "--friction table --table large.csv".into(),
+        "--friction table --table small.csv".into(),
+        "--protocol limit --gamma=-1 --mu-ratio 0.5".into(),
+        "--protocol limit --gamma 0.5 --mu-ratio 2".into(),
+    ] {
+        let arguments: Vec<&str> = std::iter::once("vc").chain(flags.split(' ')).collect();
+        let said = folder.run(&arguments);
+        assert_eq!(
+            (said.status.code(), out(&said).as_str()),
+            (Some(2), ""),
+            "{flags}"
+        );
+        shown += &format!("vc {flags}\n{}", err(&said));
+    }
+    insta::assert_snapshot!("vc_names_flags", shown);
+}
+
+/// Without gains there is no feedback, so no delay is asked for.
+#[test]
+fn vc_needs_no_delay_without_control() {
+    let folder = Folder::new();
+    let coulomb = ["vc", "--json", "--friction=coulomb", "--mu0=0.5"];
+    let said = out(&folder.run(&coulomb));
+    let value: Value = serde_json::from_str(&said).unwrap();
+    assert_eq!(value["outcome"], "persists");
+    let with = [&coulomb[..], &["--alpha-v=0", "--tau=3"]].concat();
+    assert_eq!(out(&folder.run(&with)), said);
+}

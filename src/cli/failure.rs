@@ -3,7 +3,7 @@
 use std::process::ExitCode;
 
 use miette::{LabeledSpan, MietteDiagnostic, NamedSource, Report};
-use slipmap::model::ModelError;
+use slipmap::model::{ModelError, Shown};
 use slipmap::store::StoreError;
 use slipmap::sweep::SpecError;
 
@@ -51,7 +51,8 @@ impl Failure {
     pub fn out_of_range(flag: &str, error: &ModelError) -> Self {
         Self::bad_input(format!(
             "{flag} {} is outside its range: {}",
-            error.value, error.allowed
+            Shown(error.value),
+            error.allowed
         ))
     }
 

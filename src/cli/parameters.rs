@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
+use slipmap::model::{ModelError, Shown};
 use slipmap::sweep::Parameter;
 use slipmap::sweep::parameter::{LawKind, Setting};
 
@@ -72,6 +73,11 @@ pub struct ParameterArgs {
     mu_s: Option<f64>,
 }
 
+/// The flag that gives a parameter.
+pub fn flag(parameter: Parameter) -> String {
+    format!("--{}", parameter.name().replace('_', "-"))
+}
+
 impl ParameterArgs {
     fn given(&self, parameter: Parameter) -> Option<f64> {
         match parameter {
@@ -117,11 +123,11 @@ impl ParameterArgs {
     /// The setting that the flags describe.
     pub fn setting(&self) -> Result<Setting, Failure> {
         let setting = self.setting_but(&[], "")?;
-        setting.sliding_point()?;
+        setting.sliding_point().map_err(|e| self.refused(&e))?;
         Ok(setting)
     }
 
-    /// The setting of a critical velocity: a friction law, and no v0.
+    /// The setting of a critical velocity: a friction law, no v0, and a delay only where control acts.
     pub fn setting_without_v0(&self) -> Result<Setting, Failure> {
         if self.friction.is_none() {
             return Err(Failure::bad_input_with_help(
@@ -129,9 +135,13 @@ impl ParameterArgs {
                 "for example: --friction weakening --mu0 0.5 --v-s 0.5",
             ));
         }
-        let setting =
-            self.setting_but(&[Parameter::V0], "leave it out: v0 is what is looked for")?;
-        setting.friction_law()?;
+        let unneeded = match (self.alpha_v, self.alpha_n) {
+            (None | Some(0.0), None | Some(0.0)) => Some((Parameter::Tau, 0.0)),
+            _ => None,
+        };
+        let help = "leave it out: v0 is what is looked for";
+        let setting = self.setting_with(unneeded, &[Parameter::V0], help)?;
+        setting.friction_law().map_err(|e| self.refused(&e))?;
         Ok(setting)
     }
 
@@ -144,29 +154,63 @@ impl ParameterArgs {
     /// The setting that the flags describe but for the parameters `searched`, which must not be given.
     /// `help` says why.
     pub fn setting_but(&self, searched: &[Parameter], help: &str) -> Result<Setting, Failure> {
+        self.setting_with(None, searched, help)
+    }
+
+    /// As [`ParameterArgs::setting_but`], with a value for a parameter that need not be given.
+    fn setting_with(
+        &self,
+        unneeded: Option<(Parameter, f64)>,
+        searched: &[Parameter],
+        help: &str,
+    ) -> Result<Setting, Failure> {
         let law = self.law()?;
-        let flag = |name: &str| format!("--{}", name.replace('_', "-"));
         for parameter in searched {
             if let Some(value) = self.given(*parameter) {
-                let name = parameter.name();
+                let (flag, name) = (flag(*parameter), parameter.name());
                 return Err(Failure::bad_input_with_help(
-                    format!("{} {value} would fix {name}, which is searched", flag(name)),
+                    format!("{flag} {value} would fix {name}, which is searched"),
                     help,
                 ));
             }
         }
-        let there = |p| searched.contains(&p) || self.given(p).is_some();
-        Setting::check_given(law.as_ref(), there)
-            .map_err(|e| Failure::bad_input_with_help(e.message(law.as_ref()), e.help()))?;
+        let without = |p| unneeded.is_some_and(|(unneeded, _)| unneeded == p);
+        let there = |p| searched.contains(&p) || without(p) || self.given(p).is_some();
+        Setting::check_given(law.as_ref(), there).map_err(|e| {
+            Failure::bad_input_with_help(e.message(law.as_ref(), flag), e.help(flag))
+        })?;
         let mut setting = Setting::new(law);
+        if let Some((parameter, value)) = unneeded {
+            setting.set(parameter, value);
+        }
         for parameter in Parameter::ALL {
             if let Some(value) = self.given(parameter) {
-                let value = parameter
-                    .check(value)
-                    .map_err(|e| Failure::out_of_range(&flag(e.parameter), &e))?;
+                let value = parameter.check(value).map_err(|e| self.refused(&e))?;
                 setting.set(parameter, value);
             }
         }
         Ok(setting)
+    }
+
+    /// What the model refuses, by the name of the flag that gave it.
+    pub fn refused(&self, error: &ModelError) -> Failure {
+        let named = |p: &Parameter| p.name() == error.parameter;
+        let Some(parameter) = Parameter::ALL.into_iter().find(named) else {
+            return Failure::bad_input(error.to_string());
+        };
+        if self.given(parameter).is_some() {
+            return Failure::out_of_range(&flag(parameter), error);
+        }
+        let follows = matches!(parameter, Parameter::Mu0 | Parameter::VS);
+        let from = match (follows, self.mu_prime_rest) {
+            (true, Some(_)) => format!(", which follows from {},", flag(Parameter::MuPrimeRest)),
+            _ => String::new(),
+        };
+        Failure::bad_input(format!(
+            "{} = {}{from} is outside its range: {}",
+            parameter.name(),
+            Shown(error.value),
+            error.allowed
+        ))
     }
 }

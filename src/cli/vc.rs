@@ -7,12 +7,12 @@ use clap::ValueEnum;
 use serde::Serialize;
 use slipmap::critical::End;
 use slipmap::critical::switch_on::Phase;
-use slipmap::sweep::Setting;
+use slipmap::sweep::Parameter;
 use slipmap::sweep::limit_columns::{LimitCell, LimitField};
 use slipmap::sweep::vc::{self, PHASES};
 
 use super::failure::Failure;
-use super::parameters::ParameterArgs;
+use super::parameters::{ParameterArgs, flag};
 
 #[derive(Debug, clap::Args)]
 #[command(after_help = "Examples:
@@ -88,7 +88,8 @@ pub fn main(args: &Args) -> Result<(), Failure> {
                 Protocol::SwitchOn => vc::Protocol::SwitchOn(args.phase()?),
                 _ => vc::Protocol::Follow,
             };
-            print(&mut out, args.json, &found(&setting, protocol)?)
+            let found = vc::find(&setting, protocol).map_err(|e| args.parameters.refused(&e))?;
+            print(&mut out, args.json, &told(found, protocol))
         }
     }
 }
@@ -116,10 +117,9 @@ fn finite(value: f64) -> Option<f64> {
 }
 
 /// What is found by a protocol of motions.
-fn found(setting: &Setting, protocol: vc::Protocol) -> Result<Found, Failure> {
-    let found = vc::find(setting, protocol)?;
+fn told(found: vc::Found, protocol: vc::Protocol) -> Found {
     let critical = found.critical;
-    Ok(Found {
+    Found {
         vc: finite(critical.vc),
         protocol: protocol.name(),
         // Not told at some v0, and no stick-slip at the others.
@@ -134,7 +134,7 @@ fn found(setting: &Setting, protocol: vc::Protocol) -> Result<Found, Failure> {
         n_min: finite(critical.n_min),
         method: critical.method.name(),
         decided: critical.decided,
-    })
+    }
 }
 
 impl Args {
@@ -176,7 +176,14 @@ impl Args {
         };
         let gamma = needed(self.gamma, "--gamma")?;
         let mu_ratio = needed(self.mu_ratio, "--mu-ratio")?;
-        let found = LimitCell::at(gamma, mu_ratio)?;
+        let found = LimitCell::at(gamma, mu_ratio).map_err(|e| {
+            let given = [Parameter::Gamma, Parameter::MuRatio];
+            let of = given.into_iter().find(|p| p.name() == e.parameter);
+            of.map_or_else(
+                || Failure::from(e.clone()),
+                |p| Failure::out_of_range(&flag(p), &e),
+            )
+        })?;
         let field = |field: LimitField| (field.name(), finite(found.value(field)));
         Ok(Limit {
             protocol: Protocol::Limit,

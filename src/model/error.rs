@@ -1,8 +1,26 @@
-//! What the model refuses.
+//! What the model refuses, and how numbers stand in messages.
+
+use std::fmt;
+
+/// A number in a message: of ordinary size as it is, else with a power of ten.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Shown(pub f64);
+
+impl fmt::Display for Shown {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self(value) = self;
+        let plain = *value == 0.0 || (1e-6..1e13).contains(&value.abs()) || !value.is_finite();
+        if plain {
+            write!(f, "{value}")
+        } else {
+            write!(f, "{value:e}")
+        }
+    }
+}
 
 /// A parameter outside the range in which the model has a meaning.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
-#[error("{parameter} = {value} is outside its range: {allowed}")]
+#[error("{parameter} = {} is outside its range: {allowed}", Shown(*value))]
 pub struct ModelError {
     /// Name of the parameter, the same word as in flags, sweep files and maps.
     pub parameter: &'static str,
@@ -39,5 +57,28 @@ impl ModelError {
             "a finite number greater than 0",
             value > 0.0,
         )
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Shown;
+
+    #[test]
+    fn numbers_in_messages_are_short() {
+        for (value, shown) in [
+            (0.0, "0"),
+            (-0.33, "-0.33"),
+            (1e12, "1000000000000"),
+            (-1e300, "-1e300"),
+            (2.5e-9, "2.5e-9"),
+            (f64::INFINITY, "inf"),
+            (f64::NAN, "NaN"),
+        ] {
+            assert_eq!(Shown(value).to_string(), shown);
+        }
+        for digits in [f64::MAX, f64::MIN_POSITIVE, -123_456_789.123_456_78] {
+            assert!(Shown(digits).to_string().len() <= 24);
+        }
     }
 }

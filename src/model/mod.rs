@@ -19,7 +19,7 @@ pub mod known_cases;
 mod oscillator;
 pub mod table;
 
-pub use error::ModelError;
+pub use error::{ModelError, Shown};
 pub use friction::FrictionLaw;
 pub use groups::Groups;
 pub use oscillator::{Control, Oscillator, SlidingPoint};

@@ -3,6 +3,8 @@
 use std::ops::RangeInclusive;
 use std::sync::Arc;
 
+use super::Shown;
+
 /// The most points of a table.
 pub const MOST_POINTS: usize = 4096;
 
@@ -74,7 +76,7 @@ pub enum TableError {
         mu_k: usize,
     },
     /// One value is out of its range.
-    #[error("{} = {value} is outside its range: {allowed}", column.name())]
+    #[error("{} = {} is outside its range: {allowed}", column.name(), Shown(*value))]
     Value {
         /// Where it stands.
         column: Column,

@@ -1,6 +1,7 @@
 //! The axes of a sweep.
 
 use super::parameter::Parameter;
+use crate::model::Shown;
 
 /// More points than this on one axis are refused.
 pub const MOST_POINTS: u64 = 10_000_000;
@@ -10,7 +11,7 @@ pub const MOST_POINTS: u64 = 10_000_000;
 pub enum Spacing {
     /// Equal steps.
     Linear,
-    /// Equal ratios.
+    /// Equal ratios; on one side of 0.
     Log,
 }
 
@@ -58,12 +59,16 @@ pub fn spaced(from: f64, to: f64, points: u64, spacing: Spacing) -> Result<Vec<f
     }
     if from.partial_cmp(&to) != Some(std::cmp::Ordering::Less) {
         return refuse(format!(
-            "the range is empty or reversed: from = {from} must be less than to = {to}"
+            "the range is empty or reversed: from = {} must be less than to = {}",
+            Shown(from),
+            Shown(to)
         ));
     }
-    if spacing == Spacing::Log && from <= 0.0 {
+    if spacing == Spacing::Log && from <= 0.0 && to >= 0.0 {
         return refuse(format!(
-            "a logarithmic axis needs from > 0, here from = {from}"
+            "a logarithmic axis needs from and to on the same side of 0, here from = {}, to = {}",
+            Shown(from),
+            Shown(to)
         ));
     }
     let last = points - 1;
@@ -79,7 +84,9 @@ pub fn spaced(from: f64, to: f64, points: u64, spacing: Spacing) -> Result<Vec<f
     let values: Vec<f64> = (0..points).map(value).collect();
     if values.windows(2).any(|w| w[0] >= w[1]) {
         return refuse(format!(
-            "{points} points between {from} and {to} are closer together than double precision resolves"
+            "{points} points between {} and {} are closer together than double precision resolves",
+            Shown(from),
+            Shown(to)
         ));
     }
     Ok(values)
@@ -141,6 +148,9 @@ mod tests {
         let values = spaced(1e-3, 1e3, 7, Spacing::Log).unwrap();
         assert_eq!((values[0], values[6]), (1e-3, 1e3));
         assert!((values[3] - 1.0).abs() < 1e-14);
+        let mirrored = spaced(-1e3, -1e-3, 7, Spacing::Log).unwrap();
+        assert_eq!((mirrored[0], mirrored[6]), (-1e3, -1e-3));
+        assert!((mirrored[3] + 1.0).abs() < 1e-14);
     }
 
     #[test]
@@ -151,7 +161,9 @@ mod tests {
             (f64::NAN, 1.0, 10, Spacing::Linear, "reversed"),
             (0.0, 1.0, 1, Spacing::Linear, "points = 1"),
             (0.0, 1.0, u64::MAX, Spacing::Linear, "outside its range"),
-            (0.0, 1.0, 10, Spacing::Log, "from > 0"),
+            (0.0, 1.0, 10, Spacing::Log, "same side of 0"),
+            (-1.0, 0.0, 10, Spacing::Log, "same side of 0"),
+            (-1.0, 1.0, 10, Spacing::Log, "same side of 0"),
             (1.0, 1.0 + 1e-15, 1000, Spacing::Linear, "double precision"),
         ] {
             let error = spaced(from, to, points, spacing).unwrap_err();

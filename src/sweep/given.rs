@@ -173,9 +173,9 @@ impl GivenParameters {
                 GivenError::Missing(_) => place,
             };
             SpecError {
-                message: error.message(law),
+                message: error.message(law, Parameter::key),
                 span: span.cloned(),
-                help: Some(error.help()),
+                help: Some(error.help(Parameter::key)),
             }
         })
     }

@@ -60,9 +60,9 @@ impl LimitDraft {
             if given.place(parameter).is_none() {
                 let error = GivenError::Missing(parameter);
                 return Err(SpecError {
-                    message: error.message(None),
+                    message: error.message(None, Parameter::key),
                     span: axes.cloned(),
-                    help: Some(error.help()),
+                    help: Some(error.help(Parameter::key)),
                 });
             }
         }

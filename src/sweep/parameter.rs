@@ -88,6 +88,12 @@ impl Parameter {
     /// All parameters of the limit of a short delay.
     pub const LIMIT: [Self; 2] = [Self::Gamma, Self::MuRatio];
 
+    /// The name as the key in a file.
+    #[must_use]
+    pub fn key(self) -> String {
+        self.name().into()
+    }
+
     /// The name, the same word everywhere (flags write `-` for `_`).
     #[must_use]
     pub const fn name(self) -> &'static str {
@@ -391,49 +397,56 @@ pub enum GivenError {
 }
 
 impl GivenError {
-    /// What is wrong, in words, for a setting with the friction law `law`.
+    /// What is wrong, in words, for a setting with the friction law `law`; `name` is how parameters are called where they are
+    /// given.
     #[must_use]
-    pub fn message(self, law: Option<&LawKind>) -> String {
+    pub fn message(self, law: Option<&LawKind>, name: fn(Parameter) -> String) -> String {
         match (self, law) {
-            (Self::Follows(p), _) => format!(
-                "{} is given as well as mu0 and v_s: it is -mu0/v_s",
-                p.name()
-            ),
+            (Self::Follows(p), _) => {
+                let [mu0, v_s] = [Parameter::Mu0, Parameter::VS].map(name);
+                let p = name(p);
+                format!("{p} is given as well as {mu0} and {v_s}: it is -mu0/v_s")
+            }
             (Self::Missing(p), Some(law))
                 if law.parameters().len() > law.needed() && p.of_friction_law() =>
             {
-                let names: Vec<_> = law.parameters().iter().map(|p| p.name()).collect();
-                let (name, law) = (p.name(), law.name());
+                let names: Vec<_> = law.parameters().iter().map(|p| name(*p)).collect();
+                let (p, law) = (name(p), law.name());
                 format!(
-                    "{name} is not given: the {law} law needs two of {}",
+                    "{p} is not given: the {law} law needs two of {}",
                     names.join(", ")
                 )
             }
-            (Self::Missing(p), _) => format!("{} is not given", p.name()),
+            (Self::Missing(p), _) => format!("{} is not given", name(p)),
             (Self::Unused(p), _) if p.of_limit() => {
-                format!("{} is a parameter of protocol = \"limit\"", p.name())
+                format!("{} is a parameter of protocol = \"limit\"", name(p))
             }
             (Self::Unused(p), Some(law)) => {
-                format!("{} has no meaning with the {} law", p.name(), law.name())
+                format!("{} has no meaning with the {} law", name(p), law.name())
             }
-            (Self::Unused(p), None) => format!("{} needs a friction law", p.name()),
+            (Self::Unused(p), None) => format!("{} needs a friction law", name(p)),
         }
     }
 
-    /// What could be done about it.
+    /// What could be done about it; `name` as in [`GivenError::message`].
     #[must_use]
-    pub fn help(self) -> String {
+    pub fn help(self, name: fn(Parameter) -> String) -> String {
+        use Parameter::{Mu0, MuK, MuPrime, MuPrimeRest, V0, VS};
         match self {
-            Self::Missing(p) => format!("{}: {}, {}", p.name(), p.long_name(), p.allowed()),
+            Self::Missing(p) => format!("{}: {}, {}", name(p), p.long_name(), p.allowed()),
             Self::Unused(p) if p.of_limit() => {
                 "protocol = \"limit\" in a sweep file asks for v_c as the delay vanishes; its parameters are gamma and mu_ratio".into()
             }
-            Self::Follows(_) => "give two of mu0, v_s, mu_prime_rest".into(),
-            Self::Unused(Parameter::MuPrimeRest) => {
-                "mu_prime_rest is the slope -mu0/v_s of the weakening law at rest".into()
+            Self::Follows(_) => {
+                format!("give two of {}", [Mu0, VS, MuPrimeRest].map(name).join(", "))
+            }
+            Self::Unused(MuPrimeRest) => {
+                let slope = name(MuPrimeRest);
+                format!("{slope} is the slope -mu0/v_s of the weakening law at rest")
             }
             Self::Unused(_) => {
-                "give either mu_prime (with mu_k) or a friction law with v0, not both".into()
+                let [mu_prime, mu_k, v0] = [MuPrime, MuK, V0].map(name);
+                format!("give either {mu_prime} (with {mu_k}) or a friction law with {v0}, not both")
             }
         }
     }

@@ -58,6 +58,7 @@ pub use super::toml_reader::SpecError;
 use super::toml_reader::{Entry, entries, parse};
 use super::vc::Search;
 use crate::linear::MarginalTolerance;
+use crate::model::Shown;
 use vc_keys::VcKeys;
 
 /// More degrees of stability than this are refused.
@@ -490,7 +491,8 @@ fn read_degrees(entry: &Entry) -> Result<Vec<f64>, SpecError> {
         let value = element.number()?;
         if !(1.0 / LARGEST_DEGREE..=LARGEST_DEGREE).contains(&value) {
             return Err(element.error(format!(
-                "{value} is outside its range: greater than 0, between 1e-12 and 1e12"
+                "{} is outside its range: greater than 0, between 1e-12 and 1e12",
+                Shown(value)
             )));
         }
         if degrees.last().is_some_and(|last| *last >= value) {

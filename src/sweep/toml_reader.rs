@@ -5,6 +5,8 @@ use std::ops::{Range, RangeInclusive};
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
+use crate::model::Shown;
+
 /// Why a text was refused, and where.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[error("{message}")]
@@ -152,7 +154,10 @@ impl<'t> Entry<'t> {
             return Ok(value);
         }
         let (from, to) = (range.start(), range.end());
-        Err(self.error(format!("{value} is outside its range: {from:e} to {to:e}")))
+        Err(self.error(format!(
+            "{} is outside its range: {from:e} to {to:e}",
+            Shown(value)
+        )))
     }
 
     /// A whole number, not negative.

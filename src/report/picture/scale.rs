@@ -17,7 +17,7 @@ pub struct Scale {
 }
 
 impl Scale {
-    /// The scale from the smallest to the largest of `values`, logarithmic if they are spaced so.
+    /// The scale from the smallest to the largest of `values`, logarithmic if they are spaced so, on either side of 0.
     pub fn between(values: &[f64]) -> Self {
         let (from, to) = ends(values);
         Self {
@@ -80,8 +80,11 @@ impl Scale {
 
     /// Where a value lies: 0 at the lower end, 1 at the upper one.
     pub fn part(&self, value: f64) -> f64 {
-        let way = |v: f64| if self.log { v.ln() } else { v };
-        (way(value) - way(self.from)) / (way(self.to) - way(self.from))
+        if self.log {
+            (value / self.from).ln() / (self.to / self.from).ln()
+        } else {
+            (value - self.from) / (self.to - self.from)
+        }
     }
 
     /// The value at a part of the way.
@@ -100,7 +103,10 @@ impl Scale {
 
     /// Ticks at round values, about `most` of them with a label.
     pub fn ticks(&self, most: usize) -> Vec<Tick> {
-        if self.log {
+        if self.log && self.to < 0.0 {
+            let mirrored = ticks::logarithmic(-self.to, -self.from, most).into_iter();
+            mirrored.rev().map(Tick::mirrored).collect()
+        } else if self.log {
             ticks::logarithmic(self.from, self.to, most)
         } else {
             ticks::linear(self.from, self.to, most, self.smallest_step)
@@ -111,7 +117,7 @@ impl Scale {
     pub fn edges(&self, values: &[f64]) -> Vec<f64> {
         let middle = |a: f64, b: f64| {
             if self.log {
-                (a * b).sqrt()
+                (a * b).sqrt().copysign(a)
             } else {
                 0.5 * (a + b)
             }
@@ -160,7 +166,8 @@ fn ends(values: &[f64]) -> (f64, f64) {
 
 fn log_spaced(values: &[f64]) -> bool {
     let (low, high) = ends(values);
-    if values.len() < 3 || low <= 0.0 || high / low < SMALLEST_SPAN {
+    let span = (high / low).max(low / high);
+    if values.len() < 3 || low * high <= 0.0 || span < SMALLEST_SPAN {
         return false;
     }
     let ratio = (values[values.len() - 1] / values[0]).powf(1.0 / (values.len() - 1) as f64);
@@ -191,9 +198,23 @@ mod tests {
         assert!((scale.part(0.1) - 1.0 / 3.0).abs() < 1e-12);
         assert!((scale.value(2.0 / 3.0) - 1.0).abs() < 1e-12);
         assert!((scale.edges(&values)[1] - 0.1f64.powf(1.5)).abs() < 1e-12);
-        for linear in [&[1.0, 2.0, 3.0][..], &[-4.0, -2.0, -1.0], &[1.0, 4.0]] {
+        for linear in [&[1.0, 2.0, 3.0][..], &[-4.0, -2.0, 1.0], &[1.0, 4.0]] {
             assert!(!Scale::between(linear).log, "{linear:?}");
         }
+    }
+
+    #[test]
+    fn negative_values_have_the_mirrored_scale() {
+        let values = [-10.0, -1.0, -0.1, -0.01];
+        let scale = Scale::between(&values);
+        assert!((scale.part(-1.0) - 1.0 / 3.0).abs() < 1e-12);
+        assert!((scale.value(2.0 / 3.0) + 0.1).abs() < 1e-12);
+        assert!((scale.edges(&values)[1] + 10f64.powf(0.5)).abs() < 1e-12);
+        let ticks = scale.ticks(5);
+        let labelled: Vec<_> = ticks.iter().filter(|t| t.label.is_some()).collect();
+        assert_eq!(labelled.iter().map(|t| t.value).collect::<Vec<_>>(), values);
+        assert_eq!(labelled[0].label.as_deref(), Some("−10"));
+        assert!(ticks.windows(2).all(|w| w[0].value < w[1].value));
     }
 
     #[test]

@@ -11,6 +11,16 @@ pub struct Tick {
     pub label: Option<String>,
 }
 
+impl Tick {
+    /// The tick at minus this one's value, which is positive.
+    pub fn mirrored(self) -> Self {
+        Self {
+            value: -self.value,
+            label: self.label.map(|label| format!("−{label}")),
+        }
+    }
+}
+
 /// Decades within which numbers are written without a power of ten.
 const PLAIN: std::ops::Range<i32> = -4..6;
 
