@@ -202,7 +202,11 @@ fn classes_and_samples() {
     let status = bits(&map, "status");
     let having = |flag: u8| status.iter().filter(|s| *s & u64::from(flag) != 0).count();
     assert!((4..=14).contains(&having(SAMPLED)), "{}", having(SAMPLED));
-    let counts = MapFile::open(&map).unwrap().status_counts().unwrap().0;
+    let counts = MapFile::open(&map)
+        .unwrap()
+        .status_counts()
+        .unwrap()
+        .flagged;
     assert_eq!(counts[5], having(SAMPLED) as u64);
     for s in &status {
         let both = u64::from(SAMPLED | DISAGREE);

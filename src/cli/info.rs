@@ -67,7 +67,7 @@ pub fn main(args: &Args) -> Result<(), Failure> {
         let sizes = format!("{}, {} on disk", bytes(size), bytes(on_disk));
         row("field", format!("{name:<22} {sizes}{values}"))?;
     }
-    for ((_, name), count) in FLAGS.iter().zip(map.status_counts()?.0) {
+    for ((_, name), count) in FLAGS.iter().zip(map.status_counts()?.flagged) {
         if count > 0 {
             row("status", format!("{name:<14} {} cells", grouped(count)))?;
         }

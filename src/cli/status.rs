@@ -9,9 +9,9 @@ use serde_json::{Value, json};
 use slipmap::linear::status::FLAGS;
 use slipmap::report::log::{self, Entry, Line};
 use slipmap::report::numbers::{grouped, prefixed, seconds};
-use slipmap::store::MapFile;
 use slipmap::store::tiles::Survey;
 use slipmap::store::tiles::survey::ShardSurvey;
+use slipmap::store::{MapFile, StatusCounts};
 
 use super::failure::Failure;
 use super::say;
@@ -42,9 +42,7 @@ struct Status {
     complete: bool,
     cells: u64,
     cells_done: u64,
-    /// Cells with each bit of the status, and without any.
-    flagged: [u64; FLAGS.len()],
-    unflagged: u64,
+    statuses: StatusCounts,
     shards: Vec<ShardStatus>,
 }
 
@@ -69,14 +67,12 @@ impl ShardStatus {
 
 fn of_map(path: &Path) -> Result<Status, Failure> {
     let map = MapFile::open(path)?;
-    let (flagged, unflagged) = map.status_counts()?;
     let missing = map.cells_missing();
     Ok(Status {
         complete: missing == 0,
         cells: map.cells(),
         cells_done: map.cells() - missing.min(map.cells()),
-        flagged,
-        unflagged,
+        statuses: map.status_counts()?,
         shards: Vec::new(),
     })
 }
@@ -96,8 +92,7 @@ fn of_tiles(map: &Path, survey: &Survey) -> Status {
         complete: false,
         cells: survey.plan.cells(),
         cells_done: survey.cells_done,
-        flagged: survey.flagged,
-        unflagged: survey.unflagged,
+        statuses: survey.statuses,
         shards: survey.shards.iter().map(shard).collect(),
     }
 }
@@ -142,11 +137,11 @@ impl Status {
     }
 
     fn json(&self) -> Value {
-        let flags = FLAGS.iter().zip(self.flagged);
+        let flags = FLAGS.iter().zip(self.statuses.flagged);
         let mut by_status: serde_json::Map<String, Value> = flags
             .map(|((_, name), count)| ((*name).to_owned(), count.into()))
             .collect();
-        by_status.insert("unflagged".to_owned(), self.unflagged.into());
+        by_status.insert("unflagged".to_owned(), self.statuses.unflagged.into());
         let shards: Vec<Value> = self
             .shards
             .iter()
@@ -191,14 +186,18 @@ impl Status {
         }
         for ((_, name), count) in FLAGS
             .iter()
-            .zip(self.flagged)
+            .zip(self.statuses.flagged)
             .filter(|(_, count)| *count > 0)
         {
             row("status", format!("{name:<14} {} cells", grouped(count)))?;
         }
         row(
             "status",
-            format!("{:<14} {} cells", "unflagged", grouped(self.unflagged)),
+            format!(
+                "{:<14} {} cells",
+                "unflagged",
+                grouped(self.statuses.unflagged)
+            ),
         )?;
         for s in self.shards.iter().filter(|_| self.shards.len() > 1) {
             let state = if s.running { ", running" } else { "" };

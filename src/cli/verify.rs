@@ -41,7 +41,7 @@ pub fn main(args: &Args) -> Result<(), Failure> {
     if args.json {
         say::result(to_json(&report))?;
     } else {
-        print(args, &report)?;
+        print(&report)?;
     }
     match report.faults.len() {
         0 => Ok(()),
@@ -63,32 +63,34 @@ fn to_json(report: &Report) -> Value {
         .collect();
     json!({
         "sound": report.faults.is_empty(), "faults": report.faults, "remarks": report.remarks,
-        "checksums": report.checksums, "cells": report.cells, "answers": answers, "tiles_equal": report.tiles_equal,
+        "checksums": report.checksums, "cells": report.cells, "answers": answers, "tiles": report.tiles,
+        "tiles_equal": report.tiles_equal,
     })
 }
 
-fn print(args: &Args, report: &Report) -> Result<(), Failure> {
+fn print(report: &Report) -> Result<(), Failure> {
     let mut out = std::io::stdout().lock();
     let mut row = |name: &str, text: String| writeln!(out, "{name:<12} {text}");
+    let datasets = report.checksums;
     row(
         "checksums",
-        format!("{} datasets as they were written", report.checksums),
+        format!("{datasets} datasets of cells are as they were written"),
     )?;
-    row(
-        "cells",
-        format!("{} looked at by second methods", grouped(report.cells)),
-    )?;
+    if report.cells > 0 {
+        let cells = grouped(report.cells);
+        row("cells", format!("{cells} looked at by second methods"))?;
+    }
     for (question, [agree, differ, open]) in &report.answers {
         let counts = format!("{agree} agree, {differ} differ, {open} open");
         row("", format!("{:<38} {counts}", question.name()))?;
     }
-    row(
-        "tiles",
-        format!(
-            "{} of {} computed again, bit by bit the same",
-            report.tiles_equal, args.tiles
-        ),
-    )?;
+    if report.tiles > 0 {
+        let (equal, of) = (report.tiles_equal, report.tiles);
+        row(
+            "tiles",
+            format!("{equal} of {of} computed again are the same, bit by bit"),
+        )?;
+    }
     for remark in &report.remarks {
         row("remark", remark.clone())?;
     }

@@ -14,7 +14,7 @@ use super::map_file::MapFile;
 use super::schema::{self, STATUS, root};
 use super::tiles::RecordEncoder;
 use super::tiles::record::Content;
-use crate::linear::status::FLAGS;
+use crate::linear::status::{DISAGREE, FLAGS};
 use crate::sweep::engine::{Computed, Encode, STATUS_FILL, Worker};
 use crate::sweep::pieces::Piece;
 use crate::sweep::plan::{Plan, in_hexadecimal};
@@ -34,7 +34,9 @@ pub struct Report {
     pub cells: u64,
     /// For each question: answers that agree, that differ, that stay open.
     pub answers: Vec<(Question, [u64; 3])>,
-    /// Tiles that were computed again, all their bytes equal.
+    /// Tiles that were computed again.
+    pub tiles: u64,
+    /// Those of them of which all bytes are equal.
     pub tiles_equal: u64,
 }
 
@@ -227,20 +229,20 @@ fn stored_chunk(file: &mut File, dataset: &Dataset, offset: &[usize]) -> Option<
 }
 
 fn check_statuses(map: &MapFile, report: &mut Report) -> Result<(), StoreError> {
-    let (counts, unflagged) = map.status_counts()?;
-    let known = counts.iter().copied().max().unwrap_or(0) + unflagged;
+    let found = map.status_counts()?;
     let computed = map.cells() - map.cells_missing().min(map.cells());
-    if known > computed && !map.is_partial() && counts.iter().sum::<u64>() + unflagged < computed {
-        report.faults.push("cells without a status".to_owned());
-    }
-    for ((_, name), count) in FLAGS
-        .iter()
-        .zip(counts)
-        .filter(|((_, name), n)| *name == "disagree" && *n > 0)
-    {
+    if found.computed != computed {
+        let (cells, of) = (found.computed, computed);
         report
-            .remarks
-            .push(format!("{count} cells say {name} themselves"));
+            .faults
+            .push(format!("{cells} cells have a status, {of} should"));
+    }
+    for (count, (mask, name)) in found.flagged.iter().zip(FLAGS) {
+        if mask == DISAGREE && *count > 0 {
+            report.remarks.push(format!(
+                "{count} cells say themselves that two methods {name}"
+            ));
+        }
     }
     Ok(())
 }
@@ -353,6 +355,7 @@ fn compute_tiles(
                 }
             }
         }
+        report.tiles += 1;
         report.tiles_equal += u64::from(equal);
     }
     Ok(())

@@ -20,6 +20,33 @@ pub struct FieldSummary {
     pub missing: u64,
 }
 
+/// What the statuses of cells say.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct StatusCounts {
+    /// Cells that are computed.
+    pub computed: u64,
+    /// Those without any flag.
+    pub unflagged: u64,
+    /// Those with each flag, in the order of [`FLAGS`].
+    pub flagged: [u64; FLAGS.len()],
+}
+
+impl StatusCounts {
+    /// Adds the statuses of more cells.
+    pub fn add(&mut self, cells: impl IntoIterator<Item = u8>) {
+        for status in cells {
+            if status == STATUS_FILL {
+                continue;
+            }
+            self.computed += 1;
+            self.unflagged += u64::from(status == 0);
+            for (count, (mask, _)) in self.flagged.iter_mut().zip(FLAGS) {
+                *count += u64::from(status & mask != 0);
+            }
+        }
+    }
+}
+
 impl FieldSummary {
     fn add(&mut self, cells: &[f64]) {
         for &value in cells {
@@ -72,24 +99,18 @@ impl MapFile {
         Ok(counts)
     }
 
-    /// Number of computed cells with each bit of the status, in the order of [`crate::linear::status::FLAGS`], and without
-    /// any, read piece by piece.
+    /// What the statuses of all cells say, read piece by piece.
     ///
     /// # Errors
     /// When the file is damaged.
-    pub fn status_counts(&self) -> Result<([u64; FLAGS.len()], u64), StoreError> {
+    pub fn status_counts(&self) -> Result<StatusCounts, StoreError> {
         let dataset = self.dataset(STATUS)?;
-        let (mut counts, mut unflagged) = ([0; FLAGS.len()], 0);
+        let mut counts = StatusCounts::default();
         for_each_chunk(&dataset, |slab| {
-            let mut cells = self.read::<u8>(&dataset, slab)?;
-            cells.retain(|&status| status != STATUS_FILL);
-            for (count, (mask, _)) in counts.iter_mut().zip(FLAGS) {
-                *count += cells.iter().filter(|&&s| s & mask != 0).count() as u64;
-            }
-            unflagged += cells.iter().filter(|&&s| s == 0).count() as u64;
+            counts.add(self.read::<u8>(&dataset, slab)?);
             Ok(())
         })?;
-        Ok((counts, unflagged))
+        Ok(counts)
     }
 }
 

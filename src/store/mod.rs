@@ -33,6 +33,6 @@ pub mod trace_file;
 pub use best_reader::MapBest;
 pub use error::StoreError;
 pub use map_file::MapFile;
-pub use map_summary::FieldSummary;
+pub use map_summary::{FieldSummary, StatusCounts};
 pub use map_writer::MapWriter;
 pub use output::Output;

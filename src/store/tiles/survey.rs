@@ -6,12 +6,12 @@ use std::path::{Path, PathBuf};
 
 use super::super::codec::decode_bytes;
 use super::super::error::StoreError;
+use super::super::map_summary::StatusCounts;
 use super::folder::{is_tile_file, listed};
 use super::format;
 use super::manifest::Manifest;
 use super::record::Content;
 use super::shards;
-use crate::linear::status::FLAGS;
 use crate::sweep::pieces::{Piece, Pieces, Shard};
 use crate::sweep::plan::Plan;
 use crate::sweep::tile::Tile;
@@ -23,10 +23,8 @@ pub struct Survey {
     pub plan: Plan,
     /// Each shard.
     pub shards: Vec<ShardSurvey>,
-    /// Cells with each bit of the status, in the order of [`FLAGS`]; those that several shards hold count once.
-    pub flagged: [u64; FLAGS.len()],
-    /// Cells without any.
-    pub unflagged: u64,
+    /// What the statuses of the cells say; those that several shards hold count once.
+    pub statuses: StatusCounts,
     /// Pieces that some shard holds.
     pub pieces_done: u64,
     /// Cells that some shard holds.
@@ -80,8 +78,7 @@ impl Survey {
         let mut survey = Self {
             plan,
             shards: Vec::new(),
-            flagged: [0; FLAGS.len()],
-            unflagged: 0,
+            statuses: StatusCounts::default(),
             pieces_done: 0,
             cells_done: 0,
         };
@@ -201,12 +198,7 @@ impl Survey {
         };
         let tile = self.plan.tiles.tile(number as usize);
         let strides = self.plan.tiles.strides();
-        for_each_cell(&tile, &strides, |place| {
-            for (count, (mask, _)) in self.flagged.iter_mut().zip(FLAGS) {
-                *count += u64::from(status[place] & mask != 0);
-            }
-            self.unflagged += u64::from(status[place] == 0);
-        });
+        for_each_cell(&tile, &strides, |place| self.statuses.add([status[place]]));
     }
 }
 

@@ -1,0 +1,225 @@
+//! `slipmap verify`: sound maps pass, and whatever is changed in one is found.
+
+#[path = "common/map.rs"]
+mod map;
+#[path = "common/program.rs"]
+mod program;
+
+use std::path::Path;
+
+use program::{Folder, expect, out};
+use slipmap::linear::status::{MARGINAL, NOT_CONVERGED};
+use slipmap::store::MapFile;
+use slipmap::store::map_check::{Effort, check};
+use slipmap::sweep::second_look::{Answer, Question, Stored, second_look};
+use slipmap::sweep::{Field, Plan};
+
+const DECAY: &str = "fields = [\"n_unstable\", \"abscissa\", \"frequency\"]\n[axes]\nmu_prime = [-0.3, -0.1]\n\
+                     alpha_n = { from = -3, to = 1, points = 23 }\ntau = { from = 0, to = 9, points = 31 }\n\
+                     [fixed]\nmass = 2.5\n";
+const VC: &str = "fields = [\"n_unstable\", \"vc\", \"outcome\", \"v_liftoff\"]\n[axes]\ntau = [0.5, 2]\nalpha_n = [-10, -1]\n\
+                  [fixed]\nv0 = 0.2\nnormal_load = 2\n[friction]\nlaw = \"weakening\"\nmu0 = 0.5\nv_s = 0.5\n";
+const OUTCOME: &str = "fields = [\"outcome\"]\n[axes]\ntau = [0.5, 1.5, 2.5]\n[fixed]\nv0 = 0.2\nalpha_n = -2\nx_dot0 = 0\n\
+                       [friction]\nlaw = \"weakening\"\nmu0 = 0.5\nv_s = 0.5\n";
+const LIMIT: &str = "protocol = \"limit\"\nfields = [\"vc_over_vtilde\"]\n[axes]\ngamma = { from = 0.1, to = 0.9, points = 10 }\n\
+                     [fixed]\nmu_ratio = 0.5\n";
+
+#[test]
+fn sound_maps_pass() {
+    for (text, questions) in [
+        (DECAY, &["abscissa, by", "n_unstable, by"][..]),
+        (
+            VC,
+            &["vc, by simulation 4 agree, 0 differ", "n_unstable, by"],
+        ),
+        (OUTCOME, &["outcome, with smaller steps 3 agree, 0 differ"]),
+        (LIMIT, &[]),
+    ] {
+        let folder = Folder::with(&[("map.toml", text)]);
+        expect(&folder.run(&["run", "map.toml"]), 0, "map.h5: ");
+        let verified = folder.run(&["verify", "map.h5"]);
+        expect(&verified, 0, "computed again are the same, bit by bit");
+        for question in questions {
+            expect(&verified, 0, question);
+        }
+        let json = folder.run(&["verify", "map.h5", "--json"]);
+        let json: serde_json::Value = serde_json::from_str(&out(&json)).unwrap();
+        assert_eq!(json["sound"], true, "{json}");
+        assert_eq!(json["faults"], serde_json::json!([]));
+    }
+}
+
+/// Every byte of every chunk is under a checksum, and a changed attribute or axis is noticed too.
+#[test]
+fn changed_maps_do_not() {
+    let folder = Folder::with(&[("map.toml", DECAY)]);
+    expect(&folder.run(&["run", "map.toml"]), 0, "map.h5: ");
+    let original = std::fs::read(folder.path().join("map.h5")).unwrap();
+    let changed = |change: &dyn Fn(&Path)| {
+        let path = folder.path().join("changed.h5");
+        std::fs::write(&path, &original).unwrap();
+        change(&path);
+        folder.run(&["verify", "changed.h5"])
+    };
+    for field in ["n_unstable", "abscissa", "status"] {
+        let flipped = changed(&|path| {
+            let place = hdf5::File::open(path).unwrap().dataset(field).unwrap();
+            let chunk = place.chunk_info(0).unwrap();
+            drop(place);
+            let mut bytes = std::fs::read(path).unwrap();
+            bytes[(chunk.addr + chunk.size / 2) as usize] ^= 8;
+            std::fs::write(path, bytes).unwrap();
+        });
+        expect(&flipped, 1, &format!("{field}: its checksum does not fit"));
+    }
+    let written = changed(&|path| {
+        let file = hdf5::File::open_rw(path).unwrap();
+        file.dataset("abscissa")
+            .unwrap()
+            .write_slice(
+                &[0.5],
+                hdf5::Hyperslab::from(vec![
+                    hdf5::SliceOrIndex::Index(0),
+                    hdf5::SliceOrIndex::Index(3),
+                    hdf5::SliceOrIndex::SliceCount {
+                        start: 4,
+                        step: 1,
+                        count: 1,
+                        block: 1,
+                    },
+                ]),
+            )
+            .unwrap();
+    });
+    expect(&written, 1, "abscissa: its checksum does not fit");
+    let axis = changed(&|path| {
+        let file = hdf5::File::open_rw(path).unwrap();
+        file.dataset("mu_prime")
+            .unwrap()
+            .write_raw(&[-0.3, -0.2])
+            .unwrap();
+    });
+    expect(&axis, 1, "the axis mu_prime is not that of the sweep");
+    let scalar = changed(&|path| {
+        let file = hdf5::File::open_rw(path).unwrap();
+        file.dataset("mass").unwrap().write_scalar(&2.0).unwrap();
+    });
+    expect(&scalar, 1, "mass is not that of the sweep");
+    let gone = changed(&|path| {
+        hdf5::File::open_rw(path)
+            .unwrap()
+            .unlink("frequency")
+            .unwrap();
+    });
+    expect(&gone, 1, "the field frequency is missing");
+    for (bad, code) in [("map.toml", 2), ("none.h5", 2)] {
+        expect(&folder.run(&["verify", bad]), code, bad);
+    }
+}
+
+fn plan(text: &str) -> Plan {
+    Plan::new(text.parse().unwrap()).unwrap()
+}
+
+/// What a second look says where `field` of a sound cell is `value` instead.
+fn looked(
+    plan: &Plan,
+    path: &Path,
+    change: (Field, f64),
+    status: u8,
+    question: Question,
+) -> Answer {
+    let map = MapFile::open(path).unwrap();
+    let last = plan.shape().len() - 1;
+    let index = vec![0; plan.shape().len()];
+    let value = |field: Field| match field {
+        field if field == change.0 => change.1,
+        _ if !map.fields().contains(&field) => f64::NAN,
+        _ => {
+            map.plane(field, &index, (last, last), usize::MAX)
+                .unwrap()
+                .cells[0]
+        }
+    };
+    let stored = Stored {
+        status,
+        value: &value,
+    };
+    let answers = second_look(plan, &index, &stored).unwrap();
+    answers.iter().find(|(q, _)| *q == question).unwrap().1
+}
+
+/// Second methods see wrong values, and keep quiet where the cell itself says that it is in doubt.
+#[test]
+fn wrong_values_are_seen_by_second_methods() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("map.h5");
+    for (text, field, wrong, question, doubt) in [
+        (DECAY, Field::NUnstable, 4.0, Question::Count, MARGINAL),
+        (
+            DECAY,
+            Field::ABSCISSA,
+            0.19,
+            Question::Abscissa,
+            NOT_CONVERGED,
+        ),
+        (
+            VC,
+            Field::Vc,
+            0.0431,
+            Question::CriticalVelocity,
+            NOT_CONVERGED,
+        ),
+        (
+            VC,
+            Field::Outcome,
+            0.0,
+            Question::CriticalVelocity,
+            NOT_CONVERGED,
+        ),
+        (
+            OUTCOME,
+            Field::Outcome,
+            2.0,
+            Question::Outcome,
+            NOT_CONVERGED,
+        ),
+    ] {
+        let plan = plan(text);
+        map::write(&plan, 2, &path);
+        // A field that no map of these has: nothing is changed.
+        let untouched = (Field::DelayMargin, 0.0);
+        assert_eq!(
+            looked(&plan, &path, untouched, 0, question),
+            Answer::Agrees,
+            "{field:?}"
+        );
+        assert_eq!(
+            looked(&plan, &path, (field, wrong), 0, question),
+            Answer::Differs,
+            "{field:?}"
+        );
+        assert_eq!(
+            looked(&plan, &path, (field, wrong), doubt, question),
+            Answer::Open,
+            "{field:?}"
+        );
+    }
+}
+
+#[test]
+fn a_map_of_another_revision_is_not_compared_bit_by_bit() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("map.h5");
+    map::write(&plan(DECAY), 2, &path);
+    let effort = Effort {
+        cells: 50,
+        tiles: 1,
+    };
+    let report = check(&MapFile::open(&path).unwrap(), ("0.0.1", "abc"), effort).unwrap();
+    assert!(report.faults.is_empty(), "{report:?}");
+    assert_eq!((report.tiles, report.cells), (0, 50));
+    assert!(report.remarks[0].contains("another revision"));
+    let report = check(&MapFile::open(&path).unwrap(), ("", ""), effort).unwrap();
+    assert_eq!(report.tiles_equal, 1, "{report:?}");
+}
