@@ -1,12 +1,14 @@
 //! Time of a critical velocity by each of its roads, one core.
 //!
 //! `cargo bench --bench critical`. Random problems (seed fixed): weakening and Coulomb friction under load, velocity and mixed
-//! control; `SLIPMAP_CELLS` asks for more than 300. Each cell is done as a map does it, and by simulation alone right after;
-//! medians, means and the slowest cell of every road.
+//! control; `SLIPMAP_CELLS` asks for more than 300. Each cell is done from scratch as `slipmap vc` does it, and by simulation
+//! alone right after, which waits for every outcome; medians, means and the slowest cell of every road. Then lines of 256 delays as a map does
+//! them, where cells start from their neighbours; every block is timed three times, and the least counts.
 
 use std::time::Instant;
 
 use slipmap::critical::follow::Pace;
+use slipmap::critical::line::{BLOCK, critical_velocities};
 use slipmap::critical::{Critical, End, Method, Problem, by_simulation, critical_velocity};
 use slipmap::slip::motion::Accuracy;
 
@@ -37,12 +39,15 @@ fn main() {
         tolerance: 1e-9,
         ..Accuracy::default()
     };
+    let patient = Pace {
+        patient: true,
+        ..Pace::default()
+    };
     let mut all = Vec::new();
     for _ in 0..cells {
         let problem = chance.problem();
         let (found, micros) = timed(|| critical_velocity(&problem));
-        let (simulated, simulated_micros) =
-            timed(|| by_simulation(&problem, &Pace::default(), accuracy));
+        let (simulated, simulated_micros) = timed(|| by_simulation(&problem, &patient, accuracy));
         let value = |c: &Critical| {
             if c.end == End::LiftOff {
                 c.v_liftoff
@@ -85,6 +90,46 @@ fn main() {
         "all by simulation",
         all.iter().map(|t| (t, t.simulated_micros)),
     );
+    lines(cells);
+}
+
+/// Delays of a line, from 0.05 to 5.
+const DELAYS: usize = 256;
+
+/// Lines as a map does them, with about as many blocks as there are `cells` of the other part.
+fn lines(cells: usize) {
+    let mut chance = Chance(8);
+    let (mut by_orbit, mut all) = (Vec::new(), Vec::new());
+    for _ in 0..cells.div_ceil(DELAYS / BLOCK * 4) {
+        let one = chance.problem();
+        let line: Vec<Problem> = (0..DELAYS)
+            .map(|i| Problem {
+                tau: 0.05 + 4.95 * i as f64 / (DELAYS - 1) as f64,
+                ..one.clone()
+            })
+            .collect();
+        for block in line.chunks(BLOCK) {
+            let once = || timed(|| critical_velocities(block, || false));
+            let mut runs = [once(), once(), once()];
+            runs.sort_by(|p, q| p.1.total_cmp(&q.1));
+            let (found, micros) = &runs[0];
+            let orbit = |c: &Option<Critical>| c.is_some_and(|c| c.method == Method::GrazeOrbit);
+            if found.iter().all(orbit) {
+                by_orbit.push(micros / block.len() as f64);
+            }
+            all.push(micros / block.len() as f64);
+        }
+    }
+    for (name, mut micros) in [("all blocks", all), ("blocks by the orbit", by_orbit)] {
+        micros.sort_by(f64::total_cmp);
+        let Some(most) = micros.last() else { continue };
+        let mean = micros.iter().sum::<f64>() / micros.len() as f64;
+        println!(
+            "lines, {name:<20} {:>4}: µs a cell: median {:.1}, mean {mean:.1}, slowest {most:.0}",
+            micros.len(),
+            micros[micros.len() / 2],
+        );
+    }
 }
 
 fn row<'t>(name: &str, times: impl Iterator<Item = (&'t Timed, f64)>) {

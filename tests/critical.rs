@@ -4,8 +4,11 @@
 
 use slipmap::critical::follow::Pace;
 use slipmap::critical::limit::CoulombLimit;
+use slipmap::critical::line::{BLOCK, critical_velocities};
 use slipmap::critical::switch_on::{Phase, Scan, Survival, Trials, windows};
-use slipmap::critical::{Critical, End, Method, Problem, by_simulation, critical_velocity};
+use slipmap::critical::{
+    Critical, End, GRAZE_PRECISION, Method, Problem, by_simulation, critical_velocity,
+};
 use slipmap::model::FrictionLaw;
 use slipmap::slip::motion::Accuracy;
 
@@ -39,8 +42,14 @@ fn tolerance(tolerance: f64) -> Accuracy {
     }
 }
 
+/// By simulation alone, with steps of its own, every loss of stick-slip waited for.
 fn simulated(problem: &Problem) -> Critical {
-    by_simulation(problem, &Pace::default(), tolerance(1e-9))
+    let pace = Pace {
+        first: 0.35,
+        patient: true,
+        ..Pace::default()
+    };
+    by_simulation(problem, &pace, tolerance(1e-9))
 }
 
 /// The rows of the reference: the problem, v_c and the smallest load there.
@@ -184,6 +193,7 @@ fn the_worst_phase_of_a_delay_too_long_is_undecided() {
 fn a_search_of_too_many_trials_is_undecided() {
     let pace = Pace {
         first: 1e-3,
+        patient: true,
         ..Pace::default()
     };
     let found = by_simulation(&fig3a(), &pace, tolerance(1e-9));
@@ -202,8 +212,11 @@ fn the_roads_agree() {
     let (mut claimed, mut worst) = (0, 0.0_f64);
     let mut others = Vec::new();
     let total = cases(120);
-    for _ in 0..total {
-        let problem = chance.problem();
+    for i in 0..total {
+        let problem = match i % 4 {
+            3 => chance.problem_of_other_laws(),
+            _ => chance.problem(),
+        };
         let fast = critical_velocity(&problem);
         if fast.method == Method::Simulation {
             continue;
@@ -233,4 +246,54 @@ fn the_roads_agree() {
     }
     assert!(4 * claimed > total, "{claimed}");
     assert!(others.len() * 200 <= claimed, "{}", others.len());
+}
+
+/// A cell that starts from its neighbour's orbit is what it is from scratch.
+#[test]
+fn lines_are_what_their_cells_are() {
+    let mut chance = Chance(20261122);
+    let (mut continued, mut worst) = (0, 0.0_f64);
+    for _ in 0..cases(120) / 20 {
+        let one = chance.problem();
+        let delay = |i: usize| 0.3 + 0.05 * i as f64;
+        let problems: Vec<Problem> = (0..BLOCK)
+            .map(|i| Problem {
+                tau: delay(i),
+                ..one.clone()
+            })
+            .collect();
+        let line = critical_velocities(&problems, || false);
+        for (problem, found) in problems.iter().zip(line) {
+            let found = found.unwrap();
+            let alone = critical_velocity(problem);
+            assert_eq!(found.end, alone.end, "{problem:?}\n{found:?}\n{alone:?}");
+            let values = [(found.vc, alone.vc), (found.v_liftoff, alone.v_liftoff)];
+            for (a, b) in values.into_iter().filter(|(a, _)| *a > 0.0) {
+                worst = worst.max((a / b - 1.0).abs());
+            }
+            continued += u32::from(found.method == Method::GrazeOrbit);
+        }
+    }
+    println!("{continued} cells by the orbit; worst difference {worst:.1e}");
+    assert!(
+        continued > 10 && worst < GRAZE_PRECISION,
+        "{continued} {worst}"
+    );
+    // A stop leaves cells out.
+    let none = critical_velocities(&[fig3a(), fig3a()], || true);
+    assert!(none.iter().all(Option::is_none));
+}
+
+/// Without control Coulomb friction keeps stick-slip at any v0. Under weakening friction the swing of a slip grows: from
+/// some v0 on the block slips backwards where it stuck, sticks become shorter, and at a finite v0 none is left.
+#[test]
+fn uncontrolled_stick_slip() {
+    let coulomb = problem(FrictionLaw::coulomb(0.6, 1.0).unwrap(), 0.0, 0.0, 1.0);
+    let found = critical_velocity(&coulomb);
+    assert!(found.decided && found.end == End::Persists && found.vc.is_nan());
+    let weakening = letters(0.0, 0.0, 1.0);
+    let [fast, slow] = [critical_velocity(&weakening), simulated(&weakening)];
+    assert!(fast.decided && slow.decided, "{fast:?} {slow:?}");
+    assert!((fast.vc / slow.vc - 1.0).abs() < 1e-4, "{fast:?} {slow:?}");
+    assert!(fast.stick_time < 1e-5 && fast.slip_time > 6.0, "{fast:?}");
 }

@@ -10,6 +10,7 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use program::{Folder, err, out};
 use serde_json::Value;
+use slipmap::critical::GRAZE_PRECISION;
 use slipmap::linear::status::{DISAGREE, NOT_CONVERGED, SAMPLED};
 use slipmap::store::MapFile;
 use slipmap::store::source::InMemory;
@@ -139,9 +140,13 @@ fn every_cell_is_what_vc_says() {
             assert_eq!(said["decided"], !undecided, "{flags:?}");
             for name in ["vc", "v_liftoff", "stick_time", "slip_time"] {
                 let value = values(&map, name)[cell];
-                // JSON is read to the last bit but one.
+                // A graze that starts from its neighbour's orbit is known to that; a slip at its end is longer by a root.
+                let allowed = match name {
+                    "vc" | "v_liftoff" => GRAZE_PRECISION,
+                    _ => 10.0 * GRAZE_PRECISION,
+                };
                 let expected = said[name].as_f64().unwrap_or(f64::NAN);
-                let near = (expected - value).abs() <= 1e-15 * value.abs();
+                let near = (expected - value).abs() <= allowed * value.abs();
                 assert!(near || expected.is_nan() && value.is_nan(), "{flags:?}");
             }
         }
@@ -153,11 +158,16 @@ fn maps_do_not_depend_on_threads_or_tiles() {
     let _alone = alone();
     let folder = tempfile::tempdir().unwrap();
     let [one, two] = ["one.h5", "two.h5"].map(|name| folder.path().join(name));
-    for text in sweeps() {
+    // Long enough for blocks in which cells start from their neighbours, the last one a short one.
+    let long = format!(
+        "fields = [{VC}]\n[axes]\ntau = {{ from = 0.5, to = 4.5, points = 75 }}\nalpha_n = [-1.5, -0.4]\n\
+         [fixed]\nalpha_v = -0.2\n{LAW}"
+    );
+    for text in sweeps().into_iter().chain([long]) {
         let spec: SweepSpec = text.parse().unwrap();
         let plan = Plan::new(spec.clone()).unwrap();
         write(&plan, 1, &one);
-        for (threads, cells) in [(2, 64), (2, 2)] {
+        for (threads, cells) in [(2, 64), (2, 2), (1, 1000)] {
             let plan = Plan::with_tiles_of(cells, spec.clone()).unwrap();
             write(&plan, threads, &two);
             for field in plan.spec.fields.iter().map(|f| f.name()).chain(["status"]) {

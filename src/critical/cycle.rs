@@ -4,8 +4,10 @@ use crate::slip::motion::{Event, Mode, Motion};
 
 /// The most steps of a cycle.
 const MOST_STEPS: u32 = 5_000;
-/// How far from its expected time a minimum of ẋ still is the expected one, relative.
+/// How far from its expected time a minimum of ẋ still is the expected one, relative to the slip.
 const SAME_MINIMUM: f64 = 0.25;
+/// A minimum of ẋ that much before the expected stop, relative, is another one.
+const ANOTHER: f64 = 0.1;
 /// A slip that lasts that many times as long as expected has missed its stop.
 const MISSED: f64 = 1.6;
 
@@ -24,6 +26,24 @@ pub struct Cycle {
     pub n_min: f64,
 }
 
+impl Cycle {
+    /// The stop that is expected after a small step of v0.
+    #[must_use]
+    pub fn stop(&self) -> Stop {
+        Stop {
+            slip: self.slip,
+            to_minimum: self.to_minimum,
+        }
+    }
+}
+
+/// A stop that is expected: the slip until then, and the time from there to the minimum of ẋ that it cuts off.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Stop {
+    slip: f64,
+    to_minimum: f64,
+}
+
 /// What became of a block that was released.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Ride {
@@ -39,8 +59,8 @@ pub enum Ride {
 
 /// Follows a block that was just released until its next release; or until it stops, if it is `slip_only`.
 ///
-/// `expected` is the duration of the slip from which the block is expected to stop, if one is known.
-pub fn ride(motion: &mut Motion, expected: Option<f64>, slip_only: bool) -> Ride {
+/// `expected` is the stop that is expected, if one is.
+pub fn ride(motion: &mut Motion, expected: Option<Stop>, slip_only: bool) -> Ride {
     let start = motion.t;
     let mut stopped: Option<(f64, Cycle)> = None;
     let mut n_min = f64::INFINITY;
@@ -94,14 +114,17 @@ pub fn ride(motion: &mut Motion, expected: Option<f64>, slip_only: bool) -> Ride
 /// Slips last less than this before anything is known of them, in units of √(M/κ).
 const LONGEST_SLIP: f64 = 60.0;
 
-/// Whether the last step of a slip, `since` its release, shows that the stop `expected` then does not come.
-fn passed(motion: &Motion, since: f64, expected: f64) -> bool {
+/// Whether the last step of a slip, `since` its release, shows that the stop `expected` does not come.
+fn passed(motion: &Motion, since: f64, expected: Stop) -> bool {
     let step = motion.last_step();
-    let near = |t: f64| (t - expected).abs() < SAME_MINIMUM * expected;
-    if (near(since) || near(since + step.length))
+    let slip = expected.slip;
+    let latest = slip + expected.to_minimum + SAME_MINIMUM * slip;
+    let at_stop = |t: f64| t > (1.0 - ANOTHER) * slip && t < latest;
+    if expected.to_minimum < slip
+        && at_stop(since + step.length)
         && let Some((s, u)) = step.speed_minimum()
     {
-        return u > 0.0 && near(since + s);
+        return u > 0.0 && at_stop(since + s);
     }
-    since + step.length > MISSED * expected
+    since + step.length > MISSED * slip
 }

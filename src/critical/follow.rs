@@ -1,8 +1,9 @@
 //! The critical velocity by simulation: stick-slip is followed while v0 is raised, carrying the state.
 
 use super::Problem;
-use crate::slip::motion::{Accuracy, Event, Motion};
-use crate::slip::outcome::{Limits, Observer, Outcome, Summary, follow};
+use super::stops::{Stops, Waiting};
+use crate::slip::motion::{Accuracy, Motion};
+use crate::slip::outcome::{Limits, Outcome, Summary, follow};
 
 /// Where v0 starts, in order, until stick-slip is sustained there; in units of μ_S N0/√(κM).
 pub const STARTS: [f64; 6] = [1e-2, 1e-1, 1e-3, 1e-4, 1e-5, 1e-6];
@@ -16,12 +17,15 @@ pub struct Pace {
     pub last: f64,
     /// v0 up to which stick-slip is followed, in units of μ_S N0/√(κM).
     pub v_max: f64,
-    /// How well cycles have to repeat, relative.
+    /// How well cycles have to repeat near the end, relative.
     pub repeated: f64,
     /// The most steps of the integrator at one v0.
     pub steps: u64,
     /// The most at all v0 together: some seconds.
     pub total_steps: u64,
+    /// Whether every loss of stick-slip is waited for until the outcome of the motion is known. Else it counts once the
+    /// minima of ẋ no longer fall, and only the last one is waited for longer.
+    pub patient: bool,
 }
 
 impl Default for Pace {
@@ -33,6 +37,7 @@ impl Default for Pace {
             v_max: 100.0,
             steps: 50_000,
             total_steps: 3_000_000,
+            patient: false,
         }
     }
 }
@@ -46,27 +51,10 @@ pub enum Fate {
     Irregular,
     /// N ≤ 0.
     LiftOff,
+    /// It slips on and on, and comes no nearer to a stop.
+    Slips,
     /// It sticks no more, or something else became of it.
     Lost(Outcome),
-}
-
-/// Sees how deep the last stop went beyond ẋ = 0, and when it was.
-#[derive(Debug, Clone, Copy, Default)]
-struct LastStop {
-    t: f64,
-    to_minimum: f64,
-    depth: f64,
-    stops: u32,
-}
-
-impl Observer for LastStop {
-    fn step(&mut self, motion: &Motion, event: Option<Event>) {
-        if event == Some(Event::Stick) {
-            self.t = motion.t;
-            (self.to_minimum, self.depth) = motion.last_step().minimum_beyond_stop();
-            self.stops += 1;
-        }
-    }
 }
 
 /// Stick-slip at one v0, followed to its fate.
@@ -78,16 +66,18 @@ pub struct Sustained {
     pub fate: Fate,
     /// The motion's summary.
     pub summary: Summary,
-    /// Time from the last stop to where it would have gone, see [`crate::slip::step::Step::minimum_beyond_stop`].
+    /// Time from the shallowest stop of the last period to where it would have gone, see
+    /// [`crate::slip::step::Step::minimum_beyond_stop`].
     pub to_minimum: f64,
     /// Depth of that.
     pub depth: f64,
 }
 
 impl Sustained {
-    /// Whether it is periodic with one slip in a period.
-    fn simple(&self) -> bool {
-        self.fate == Fate::Periodic && self.summary.slips == 1
+    /// Whether it and `other` are periodic with as many slips in a period.
+    fn alike(&self, other: &Self) -> bool {
+        let periodic = |s: &Self| s.fate == Fate::Periodic;
+        periodic(self) && periodic(other) && self.summary.slips == other.summary.slips
     }
 
     /// Whether stick-slip persists.
@@ -106,26 +96,54 @@ pub struct Followed {
     pub lost: Option<Sustained>,
     /// Whether the search came to its end: to the end of the range, or to two v0 as near as asked for.
     pub complete: bool,
+    /// Whether sticks become shorter such that none is left just beyond the last v0.
+    pub vanish: bool,
 }
 
 /// Follows stick-slip of `problem` from low v0 on.
 #[must_use]
 pub fn critical_velocity(problem: &Problem, pace: &Pace, accuracy: Accuracy) -> Followed {
     let scale = problem.law.mu_s();
-    let mut lost = None;
+    let mut lost: Option<Sustained> = None;
     for start in STARTS {
         let v0 = start * scale;
-        let mut motion = start_sticking(problem, v0, accuracy);
-        let sustained = hold(problem, &mut motion, pace);
-        if sustained.persists() {
-            return raise(problem, motion, sustained, pace);
+        let lifted = |lost: &Sustained| lost.fate == Fate::LiftOff && lost.v0 < v0;
+        if lost.as_ref().is_some_and(lifted) {
+            // What is asked for is the smallest v0 of lift-off.
+            continue;
         }
-        lost = lost.or(Some(sustained));
+        let motion = start_sticking(problem, v0, accuracy);
+        let followed = from(problem, motion, pace);
+        if followed.last.is_some() {
+            return followed;
+        }
+        let lifted = |lost: &Option<Sustained>| lost.is_some_and(|lost| lost.fate == Fate::LiftOff);
+        if lost.is_none() || lifted(&followed.lost) {
+            lost = followed.lost;
+        }
     }
     Followed {
         last: None,
         lost,
         complete: true,
+        vanish: false,
+    }
+}
+
+/// The same from a motion in stick-slip of `problem` on, at the v0 it has.
+#[must_use]
+pub fn from(problem: &Problem, mut motion: Motion, pace: &Pace) -> Followed {
+    let v0 = motion.parameters().v0;
+    let how = Holding::new(pace, f64::INFINITY);
+    let first = hold(problem, &mut motion, v0, &how);
+    if first.persists() {
+        return raise(problem, motion, first, pace);
+    }
+    Followed {
+        last: None,
+        lost: Some(first),
+        complete: true,
+        vanish: false,
     }
 }
 
@@ -136,89 +154,281 @@ fn start_sticking(problem: &Problem, v0: f64, accuracy: Accuracy) -> Motion {
     motion
 }
 
-/// Stick-slip that does not repeat within so many cycles, and one more for every unit of the delay, is irregular.
-const CYCLES: usize = 24;
 /// The most v0 that are tried.
 const MOST_TRIALS: u32 = 400;
+/// How well cycles have to repeat after a large step of v0.
+const ROUGHLY: f64 = 1e-4;
 
-/// Follows the motion at its v0 until its fate is known.
-fn hold(problem: &Problem, motion: &mut Motion, pace: &Pace) -> Sustained {
-    let v0 = motion.parameters().v0;
+/// How long a motion is followed at one v0.
+#[derive(Debug, Clone, Copy)]
+struct Holding {
+    repeated: f64,
+    steps: u64,
+    waiting: Waiting,
+}
+
+impl Holding {
+    /// After a relative step of v0.
+    fn new(pace: &Pace, step: f64) -> Self {
+        Self {
+            repeated: match step > CAREFUL && step.is_finite() && !pace.patient {
+                true => ROUGHLY.max(pace.repeated),
+                false => pace.repeated,
+            },
+            steps: pace.steps,
+            waiting: match pace.patient {
+                true => Waiting::Patient,
+                false => Waiting::Short,
+            },
+        }
+    }
+}
+
+/// What becomes of a motion at `v0`, waited for as long as at the end of a search.
+pub fn fate(problem: &Problem, motion: &mut Motion, v0: f64) -> Fate {
+    let how = Holding {
+        waiting: Waiting::Long,
+        ..Holding::new(&Pace::default(), 0.0)
+    };
+    hold(problem, motion, v0, &how).fate
+}
+
+/// Follows the motion at `v0` until its fate is known.
+fn hold(problem: &Problem, motion: &mut Motion, v0: f64, how: &Holding) -> Sustained {
+    if v0 != motion.parameters().v0 {
+        motion.set_v0(v0);
+    }
     let start = motion.t;
     let limits = Limits {
         horizon: start + problem.patience(v0),
-        steps: pace.steps,
-        stable_abscissa: problem.stable_abscissa(v0),
-        repeated: pace.repeated,
-        cycles: CYCLES + problem.tau as usize,
+        steps: how.steps,
+        stable_abscissa: match how.waiting {
+            Waiting::Patient => problem.stable_abscissa(v0),
+            _ => None,
+        },
+        repeated: how.repeated,
+        cycles: how.waiting.cycles() + problem.tau as usize,
     };
-    let mut last = LastStop::default();
-    let summary = follow(motion, &limits, &mut last);
-    let cycles = last.stops as usize >= limits.cycles;
-    let recent = cycles || motion.t - last.t < 0.25 * (motion.t - start);
+    let slides = problem.count(v0).stable();
+    let mut stops = Stops::new(motion, slides, how.waiting);
+    let summary = follow(motion, &limits, &mut stops);
+    let cycles = stops.count as usize >= limits.cycles;
+    let recent = cycles || motion.t - stops.last < 0.25 * (motion.t - start);
     let fate = match summary.outcome {
         Outcome::StickSlip => Fate::Periodic,
-        Outcome::Undecided if last.stops > 2 && recent => Fate::Irregular,
+        Outcome::Undecided if stops.count > 2 && recent => Fate::Irregular,
+        Outcome::Undecided if stops.far() => Fate::Lost(Outcome::Diverged),
+        Outcome::Undecided if stops.slips_on() => Fate::Slips,
         Outcome::LiftOff => Fate::LiftOff,
         outcome => Fate::Lost(outcome),
     };
+    let (to_minimum, depth) = stops.shallowest(summary.slips);
     Sustained {
         v0,
         fate,
         summary,
-        to_minimum: last.to_minimum,
-        depth: last.depth,
+        to_minimum,
+        depth,
     }
 }
 
-fn raise(problem: &Problem, mut motion: Motion, first: Sustained, pace: &Pace) -> Followed {
-    let mut trial = motion.clone();
-    let (mut before, mut last) = (None, first);
-    let mut lost: Option<Sustained> = None;
-    let mut most = pace.first;
-    let end = pace.v_max * problem.law.mu_s();
-    let mut complete = false;
-    let mut spent = first.summary.steps;
-    for _ in 0..MOST_TRIALS {
-        if last.v0 >= end {
-            complete = true;
-            break;
+/// A search while v0 is raised.
+struct Climb<'p> {
+    problem: &'p Problem,
+    pace: Pace,
+    /// The motion at `last`.
+    motion: Motion,
+    trial: Motion,
+    before: Option<Sustained>,
+    last: Sustained,
+    /// The smallest v0 above `last` at which stick-slip was lost, and the relative step that lost it.
+    lost: Option<(Sustained, f64)>,
+    /// The largest relative step for now.
+    most: f64,
+    /// The share of the way to where stick-slip is expected to end that is taken at once.
+    share: f64,
+    /// From where on, and how often since, stick-slip survived where it had been lost.
+    passed: (f64, u32),
+    /// Whether the last steps shortened the sticks as if none were left soon.
+    vanish: bool,
+    spent: u64,
+}
+
+fn raise(problem: &Problem, motion: Motion, first: Sustained, pace: &Pace) -> Followed {
+    let mut climb = Climb {
+        problem,
+        pace: *pace,
+        trial: motion.clone(),
+        motion,
+        before: None,
+        last: first,
+        lost: None,
+        most: pace.first,
+        share: SHARE,
+        passed: (0.0, 0),
+        vanish: false,
+        spent: first.summary.steps,
+    };
+    let complete = climb.run();
+    climb.classify();
+    Followed {
+        last: Some(climb.last),
+        lost: climb.lost.map(|(lost, _)| lost),
+        complete,
+        vanish: climb.vanish,
+    }
+}
+
+impl Climb<'_> {
+    /// Raises v0 until two v0 as near as asked for differ in their fate; false where that takes too long.
+    fn run(&mut self) -> bool {
+        let end = self.pace.v_max * self.problem.law.mu_s();
+        for _ in 0..MOST_TRIALS {
+            if self.last.v0 >= end {
+                return true;
+            }
+            let step = self.next_step();
+            if self.lost.is_some() && step < 0.75 * self.precision() {
+                if self.is_lost() {
+                    return !self.creeps();
+                }
+                continue;
+            }
+            let v0 = (self.last.v0 * (1.0 + step)).min(end);
+            // To the last bit, where it is tried once more.
+            let again = self.lost.map(|(lost, _)| lost.v0);
+            let again = again.filter(|lost| (v0 / lost - 1.0).abs() < 1e-12);
+            self.attempt(again.unwrap_or(v0), step);
+            if self.spent > self.pace.total_steps {
+                return false;
+            }
         }
-        let step = expected_step(before, &last).clamp(pace.last, most.max(pace.last));
-        trial.copy_from(&motion);
-        trial.set_v0((last.v0 * (1.0 + step)).min(end));
-        let there = hold(problem, &mut trial, pace);
-        spent += there.summary.steps;
-        if spent > pace.total_steps {
-            break;
-        }
-        if there.persists() && jumped(&last, &there, step) {
-            most = 0.5 * step;
-        } else if there.persists() {
-            motion.copy_from(&trial);
-            lost = lost.filter(|lost| lost.v0 > there.v0);
-            (before, last) = (Some(last), there);
-            most = (2.0 * most).min(pace.first);
-        } else {
-            lost = Some(there);
-            most = 0.5 * step;
-            if step <= pace.last {
-                complete = true;
-                break;
+        false
+    }
+
+    /// Looks longer whether irregular stick-slip repeats where it was last.
+    fn classify(&mut self) {
+        if self.last.fate == Fate::Irregular && !self.pace.patient {
+            let how = Holding {
+                waiting: Waiting::Long,
+                ..Holding::new(&self.pace, 0.0)
+            };
+            let again = hold(self.problem, &mut self.motion, self.last.v0, &how);
+            if again.persists() {
+                self.last = again;
             }
         }
     }
-    Followed {
-        last: Some(last),
-        lost,
-        complete,
+
+    /// Where cycles do not repeat, one v0 after the other persists and is lost by chance on the last bit of the way.
+    fn precision(&self) -> f64 {
+        match self.last.fate {
+            Fate::Irregular => self.pace.last.max(LAST_IRREGULAR),
+            _ => self.pace.last,
+        }
+    }
+
+    /// Whether stick-slip was lost again and again on a short way: steps however short throw it off by chance.
+    fn creeps(&self) -> bool {
+        self.passed.1 >= MOST_PASSED
+    }
+
+    /// Where it had been lost at `v0`, it was not from nearby.
+    fn pass(&mut self, v0: f64) {
+        let (from, times) = self.passed;
+        self.passed = match v0 > from * (1.0 + SHORT_WAY) {
+            true => (v0, 1),
+            false => (from, times + 1),
+        };
+        self.lost = None;
+    }
+
+    /// How far the next v0 is from the last, relative.
+    fn next_step(&self) -> f64 {
+        let mut step = self.share * expected_way(self.before, &self.last);
+        if self.last.fate == Fate::Irregular {
+            step = step.min(LARGEST_UNSEEN);
+        }
+        let step = step.clamp(self.pace.last, self.most.max(self.pace.last));
+        let Some((lost, by)) = &self.lost else {
+            return step;
+        };
+        let room = lost.v0 / self.last.v0 - 1.0;
+        if room <= NEARBY * *by && !self.creeps() {
+            // Once more from nearby: it may have been the size of the step that lost it.
+            return step.min(room);
+        }
+        step.min(0.5 * room)
+    }
+
+    /// Tries `v0`, a relative `step` away.
+    fn attempt(&mut self, v0: f64, step: f64) {
+        self.trial.copy_from(&self.motion);
+        let how = Holding::new(&self.pace, step);
+        let there = hold(self.problem, &mut self.trial, v0, &how);
+        self.spent += there.summary.steps;
+        if !there.persists() {
+            if self.lost.is_none_or(|(lost, _)| v0 <= lost.v0) {
+                self.lost = Some((there, step));
+            }
+            // Near its end stick-slip attracts from less and less far: steps have to shrink with the way that is left.
+            let taken = step / expected_way(self.before, &self.last);
+            if taken > LEAST_SHARE {
+                self.share = (0.5 * taken).clamp(LEAST_SHARE, self.share);
+            }
+            self.most = 0.5 * step;
+        } else if jumped(&self.last, &there, step) {
+            self.most = 0.5 * step;
+        } else {
+            std::mem::swap(&mut self.motion, &mut self.trial);
+            let passed = self.lost.is_some_and(|(lost, _)| lost.v0 <= v0);
+            if passed {
+                self.pass(v0);
+            }
+            self.vanish |= self.last.alike(&there) && vanishes(&self.last, &there);
+            (self.before, self.last) = (Some(self.last), there);
+            // What failed there was the size of the step: the steps from here on grow slowly.
+            self.most = if passed { 2.0 * step } else { 2.0 * self.most };
+            self.most = self.most.min(self.pace.first);
+        }
+    }
+
+    /// Whether stick-slip really is lost where it was last: waits longer. If not, goes on from there.
+    fn is_lost(&mut self) -> bool {
+        let slips = |(lost, _): &(Sustained, f64)| lost.fate == Fate::Slips;
+        let Some((lost, by)) = self.lost.filter(slips).filter(|_| !self.creeps()) else {
+            return true;
+        };
+        let how = Holding {
+            waiting: Waiting::Long,
+            ..Holding::new(&self.pace, by)
+        };
+        self.trial.copy_from(&self.motion);
+        let there = hold(self.problem, &mut self.trial, lost.v0, &how);
+        self.spent += there.summary.steps;
+        if !there.persists() {
+            self.lost = Some((there, by));
+            return true;
+        }
+        std::mem::swap(&mut self.motion, &mut self.trial);
+        self.most = 2.0 * (there.v0 / self.last.v0 - 1.0);
+        (self.before, self.last) = (None, there);
+        self.pass(there.v0);
+        false
     }
 }
 
 /// Steps below this, relative, carry a motion along its attractor.
 const CAREFUL: f64 = 0.02;
+/// Where stick-slip was lost is tried once more from this much nearer.
+const NEARBY: f64 = 0.15;
+/// Surviving so often where it had been lost, on so short a way, stick-slip creeps.
+const MOST_PASSED: u32 = 6;
+const SHORT_WAY: f64 = 1e-3;
 /// The largest step where cycles do not show whether it is the same attractor.
 const LARGEST_UNSEEN: f64 = 0.1;
+/// The last relative step from irregular stick-slip.
+const LAST_IRREGULAR: f64 = 1e-4;
 
 /// Whether a step of v0 may have thrown the motion from one kind of stick-slip to another: its cycle or its slip changed by more than
 /// such a step explains.
@@ -226,7 +436,7 @@ fn jumped(last: &Sustained, there: &Sustained, step: f64) -> bool {
     if step <= CAREFUL {
         return false;
     }
-    if !(last.simple() && there.simple()) {
+    if !last.alike(there) {
         return step > LARGEST_UNSEEN;
     }
     let (before, after) = (&last.summary, &there.summary);
@@ -235,15 +445,36 @@ fn jumped(last: &Sustained, there: &Sustained, step: f64) -> bool {
     !(0.8 / (1.0 + step)..=1.25).contains(&period) || !(0.8..=1.4).contains(&slip)
 }
 
-/// The relative step to most of the way to where the depth of the stops is expected to vanish.
-fn expected_step(before: Option<Sustained>, last: &Sustained) -> f64 {
-    let Some(before) = before.filter(|before| before.simple() && last.simple()) else {
+/// The relative way within which sticks that become shorter vanish.
+const SOON: f64 = 1e-2;
+
+/// Whether sticks, from one v0 to the next, become shorter such that none is left soon.
+fn vanishes(before: &Sustained, last: &Sustained) -> bool {
+    let loss = (before.summary.stick_time - last.summary.stick_time) / (last.v0 - before.v0);
+    loss > 0.0 && last.summary.stick_time / loss < SOON * last.v0
+}
+
+/// The share of the expected way that is taken at first, and at least.
+const SHARE: f64 = 0.9;
+const LEAST_SHARE: f64 = 0.2;
+
+/// The relative way to where the depth of the stops, the smallest load or the sticks are expected to vanish.
+fn expected_way(before: Option<Sustained>, last: &Sustained) -> f64 {
+    let Some(before) = before.filter(|before| before.alike(last)) else {
         return f64::INFINITY;
     };
-    let slope = (last.depth - before.depth) / (last.v0 - before.v0);
-    if slope > 0.0 {
-        -0.9 * last.depth / slope / last.v0
-    } else {
-        f64::INFINITY
-    }
+    let run = last.v0 - before.v0;
+    let gauges = [
+        (before.depth, last.depth),
+        (-before.summary.n_min, -last.summary.n_min),
+        (-before.summary.stick_time, -last.summary.stick_time),
+    ];
+    let steps = gauges.map(|(before, last_one)| {
+        let slope = (last_one - before) / run;
+        match slope > 0.0 {
+            true => -last_one / slope / last.v0,
+            false => f64::INFINITY,
+        }
+    });
+    steps.into_iter().fold(f64::INFINITY, f64::min)
 }

@@ -4,9 +4,14 @@
 //! tells: it starts from a = μ_S (1 + α_n v0 τ), which has grown evenly. Else the orbit itself is followed from cycle to
 //! cycle while v0 approaches the graze.
 
-use super::cycle::{Cycle, Ride, ride};
+use super::climb::{
+    Climbed, LARGEST_STEP, Place, Road, SETTLED, climb, come_to_rest, gauges, limit,
+};
+use super::cycle::{Cycle, Ride, Stop, ride};
+use super::follow::{self, Fate};
 use super::{Method, Problem};
 use crate::slip::motion::{Accuracy, Motion};
+use crate::slip::outcome::Outcome;
 
 /// A graze and the orbit there.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -20,39 +25,36 @@ pub struct Graze {
 }
 
 /// How the search ended.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone)]
 pub enum Found {
     /// At a graze, beyond which the block slides.
     Graze(Graze),
     /// N ≤ 0 from this v0 on.
     LiftOff(f64, Method),
-    /// Otherwise: simulation has to tell.
-    Unclear,
+    /// Otherwise: simulation has to tell, from this motion in stick-slip on, if there is one.
+    Unclear(Option<Box<Motion>>),
+}
+
+impl Found {
+    /// The v0 at which stick-slip ends, where that is known.
+    #[must_use]
+    pub fn end(&self) -> Option<f64> {
+        match self {
+            Self::Graze(graze) => Some(graze.v0),
+            Self::LiftOff(v0, _) => Some(*v0),
+            Self::Unclear(_) => None,
+        }
+    }
 }
 
 /// Where v0 starts, in order, in units of μ_S N0/√(κM).
 const STARTS: [f64; 4] = [6e-2, 6e-3, 1e-4, 1e-6];
-/// The largest relative step of v0.
-const LARGEST_STEP: f64 = 1.0;
-/// Nearer than this to the graze, relative, the rest of the way is told from the last two trials.
-const NEAR: f64 = 1e-4;
 /// The last trials are this far below and above the graze, relative: v_c is known to it.
 const PRECISION: f64 = 1e-5;
 /// The most cycles at one v0.
 const MOST_CYCLES: u32 = 12;
 /// How much the slip may lengthen on the last bit of the way, where it grows as a square root.
 const SAME_SLIP: f64 = 0.1;
-/// The most trials.
-const MOST_TRIALS: u32 = 80;
-
-/// Trials of stick-slip at one v0 after the other.
-trait Road {
-    /// What a block released at `v0` does, from where the last trial that was kept ended.
-    /// With memory, cycle after cycle until their depths differ by no more than `settled`, relative.
-    fn trial(&mut self, v0: f64, expected: Option<f64>, settled: f64) -> Ride;
-    /// Goes on from the end of the last trial.
-    fn keep(&mut self);
-}
 
 /// Slips that start without memory.
 struct Slips<'p> {
@@ -61,7 +63,7 @@ struct Slips<'p> {
 }
 
 impl Road for Slips<'_> {
-    fn trial(&mut self, v0: f64, expected: Option<f64>, _: f64) -> Ride {
+    fn trial(&mut self, v0: f64, expected: Option<Stop>, _: f64) -> Ride {
         self.release(v0);
         ride(&mut self.motion, expected, true)
     }
@@ -80,13 +82,14 @@ impl Slips<'_> {
 }
 
 /// Cycle after cycle.
+#[derive(Debug, Clone)]
 struct Orbit {
     kept: Motion,
     tried: Motion,
 }
 
 impl Road for Orbit {
-    fn trial(&mut self, v0: f64, mut expected: Option<f64>, settled: f64) -> Ride {
+    fn trial(&mut self, v0: f64, mut expected: Option<Stop>, settled: f64) -> Ride {
         self.tried.copy_from(&self.kept);
         self.tried.set_v0(v0);
         let mut seen = [[f64::NAN; 3]; 2];
@@ -95,7 +98,7 @@ impl Road for Orbit {
                 Ride::Cycle(cycle) => cycle,
                 other => return other,
             };
-            expected = expected.map(|_| cycle.slip);
+            expected = expected.map(|_| cycle.stop());
             for (seen, gauge) in seen.iter_mut().zip(gauges(&cycle)) {
                 *seen = [seen[1], seen[2], gauge];
             }
@@ -115,13 +118,14 @@ impl Road for Orbit {
     }
 }
 
-/// The graze of `problem`'s stick-slip.
+/// The graze of `problem`'s stick-slip; and, where the orbit itself was followed to its end, from where to go on to the next
+/// cell of a line.
 #[must_use]
-pub fn find(problem: &Problem, accuracy: Accuracy) -> Found {
+pub fn find(problem: &Problem, accuracy: Accuracy) -> (Found, Option<Track>) {
     if problem.alpha_v == 0.0
         && let Some(found) = by_one_slip(problem, accuracy)
     {
-        return found;
+        return (found, None);
     }
     by_orbit(problem, accuracy)
 }
@@ -143,7 +147,14 @@ fn by_one_slip(problem: &Problem, accuracy: Accuracy) -> Option<Found> {
             _ => None,
         }
     })?;
-    let (v0, slip) = match climb(&mut road, v0, start) {
+    let from = Place {
+        v0,
+        cycle: start,
+        settled: f64::INFINITY,
+        slopes: [f64::NAN; 2],
+        expected: f64::NAN,
+    };
+    let (v0, slip) = match climb(&mut road, from, LARGEST_STEP).0 {
         Climbed::Graze { v0, slip } => (v0, Some(slip)),
         Climbed::LiftOff(v0) => (v0, None),
         Climbed::Unclear => return None,
@@ -167,11 +178,113 @@ fn by_one_slip(problem: &Problem, accuracy: Accuracy) -> Option<Found> {
         cycle,
         method: Method::GrazeSlip,
     };
-    Some(if_it_ends(problem, &mut road.motion, slip, graze))
+    match beyond(problem, &mut road.motion, slip, &graze) {
+        Beyond::Ends => Some(Found::Graze(graze)),
+        Beyond::Persists => Some(Found::Unclear(Some(Box::new(road.motion)))),
+        Beyond::Unknown => None,
+    }
+}
+
+/// An orbit at its end, from which the next cell of a line starts.
+#[derive(Debug, Clone)]
+pub struct Track {
+    road: Orbit,
+    at: Place,
+    /// Delays and ends of the cells before, the last ones.
+    ends: Vec<(f64, f64)>,
+    /// Whether it ends by lift-off.
+    lifts: bool,
+    /// How far off the end was last expected, relative.
+    off: f64,
+}
+
+/// How far off an end is taken to be before anything is known.
+const FIRST_OFF: f64 = 0.02;
+/// The least and the largest distance from the expected end at which a cell starts, relative.
+const NEAREST: f64 = 3e-4;
+const FARTHEST: f64 = 0.1;
+/// The least one from lift-off, which the transient of a new start can bring about too early.
+const NEAREST_LIFT: f64 = 3e-3;
+/// The largest change of the delay from cell to cell, relative.
+const LARGEST_CHANGE: f64 = 0.5;
+/// How far from the last end, in its logarithm, the next one is looked for.
+const FARTHEST_LOG: f64 = 0.5;
+/// Ends that an expectation is made of.
+const KNOWN_ENDS: usize = 3;
+
+impl Track {
+    /// The end of stick-slip of `problem`, which differs by its delay alone from the one before; none where the orbit before
+    /// does not lead to a graze or to lift-off. After that the track is of no more use.
+    pub fn next(&mut self, problem: &Problem) -> Option<Found> {
+        let before = self.ends[self.ends.len() - 1].0;
+        if (problem.tau / before - 1.0).abs() > LARGEST_CHANGE {
+            return None;
+        }
+        let expected = self.expected(problem.tau);
+        self.road.kept.set_delay(problem.tau);
+        let nearest = if self.lifts { NEAREST_LIFT } else { NEAREST };
+        // An orbit that has to change starts with a transient.
+        let change = (expected / self.ends[self.ends.len() - 1].1 - 1.0).abs();
+        let off = (2.0 * self.off).max(0.15 * change).clamp(nearest, FARTHEST);
+        let from = [off, 4.0 * off, 2.0 * FARTHEST]
+            .into_iter()
+            .find_map(|off| {
+                let v0 = expected * (1.0 - off);
+                match self.road.trial(v0, Some(self.at.cycle.stop()), SETTLED) {
+                    Ride::Cycle(cycle) => Some(Place {
+                        v0,
+                        cycle,
+                        settled: SETTLED,
+                        slopes: self.at.slopes,
+                        expected: f64::NAN,
+                    }),
+                    _ => None,
+                }
+            })?;
+        self.road.keep();
+        let (climbed, at) = climb(&mut self.road, from, FARTHEST);
+        let found = finish(problem, &mut self.road, climbed);
+        let end = found.end()?;
+        self.off = (end / expected - 1.0).abs();
+        self.at = at;
+        self.lifts = matches!(found, Found::LiftOff(..));
+        if self.ends.len() == KNOWN_ENDS {
+            self.ends.remove(0);
+        }
+        self.ends.push((problem.tau, end));
+        Some(found)
+    }
+
+    /// Learns of the cell before, whose end was found otherwise: an end like its own expects the next one better.
+    pub fn recall(&mut self, tau: f64, end: f64) {
+        if self.ends.len() < KNOWN_ENDS && tau < self.ends[0].0 {
+            self.ends.insert(0, (tau, end));
+            self.off = NEAREST.max(0.25 * self.off);
+        }
+    }
+
+    /// The end at `tau`: its logarithm as the polynomial of that of the delay through the last ones (Neville).
+    fn expected(&self, tau: f64) -> f64 {
+        let n = self.ends.len();
+        let mut logs = [(0.0, 0.0); KNOWN_ENDS];
+        for (log, end) in logs.iter_mut().zip(&self.ends) {
+            *log = (end.0.ln(), end.1.ln());
+        }
+        let (x, mut p) = (tau.ln(), logs.map(|log| log.1));
+        for k in 1..n {
+            for i in 0..n - k {
+                let (low, high) = (logs[i].0, logs[i + k].0);
+                p[i] = ((x - high) * p[i] + (low - x) * p[i + 1]) / (low - high);
+            }
+        }
+        // Not far from the last one, whatever the polynomial does.
+        let last = logs[n - 1].1;
+        p[0].clamp(last - FARTHEST_LOG, last + FARTHEST_LOG).exp()
+    }
 }
 
 /// The second road.
-fn by_orbit(problem: &Problem, accuracy: Accuracy) -> Found {
+fn by_orbit(problem: &Problem, accuracy: Accuracy) -> (Found, Option<Track>) {
     let kept = motion(problem, accuracy);
     let tried = kept.clone();
     let mut road = Orbit { kept, tried };
@@ -183,213 +296,78 @@ fn by_orbit(problem: &Problem, accuracy: Accuracy) -> Found {
             continue;
         };
         road.keep();
-        return match climb(&mut road, v0, cycle) {
-            Climbed::Graze { v0, slip } => finish(problem, &mut road, v0, slip),
-            Climbed::LiftOff(v0) => Found::LiftOff(v0, Method::GrazeOrbit),
-            Climbed::Unclear => Found::Unclear,
+        let from = Place {
+            v0,
+            cycle,
+            settled: f64::INFINITY,
+            slopes: [f64::NAN; 2],
+            expected: f64::NAN,
         };
+        let (climbed, at) = climb(&mut road, from, LARGEST_STEP);
+        let found = finish(problem, &mut road, climbed);
+        let end = found.end();
+        let track = end.map(|end| Track {
+            road,
+            at,
+            ends: vec![(problem.tau, end)],
+            lifts: matches!(found, Found::LiftOff(..)),
+            off: FIRST_OFF,
+        });
+        return (found, track);
     }
-    Found::Unclear
+    (Found::Unclear(None), None)
 }
 
-fn finish(problem: &Problem, road: &mut Orbit, v0: f64, slip: f64) -> Found {
+/// What the end of a climb comes to. The road's kept motion is just below it.
+fn finish(problem: &Problem, road: &mut Orbit, climbed: Climbed) -> Found {
+    let unclear = |motion: &Motion| Found::Unclear(Some(Box::new(motion.clone())));
+    let (v0, slip) = match climbed {
+        Climbed::Graze { v0, slip } => (v0, slip),
+        Climbed::LiftOff(v0) => return Found::LiftOff(v0, Method::GrazeOrbit),
+        Climbed::Unclear => return unclear(&road.kept),
+    };
     let below = v0 * (1.0 - PRECISION);
     let Ride::Cycle(cycle) = road.trial(below, None, f64::INFINITY) else {
-        return Found::Unclear;
+        return unclear(&road.kept);
     };
     if (cycle.slip / slip - 1.0).abs() > SAME_SLIP {
-        return Found::Unclear;
+        return unclear(&road.kept);
     }
-    road.keep();
     let graze = Graze {
         v0,
         cycle,
         method: Method::GrazeOrbit,
     };
-    if_it_ends(problem, &mut road.kept, slip, graze)
+    road.keep();
+    road.tried.copy_from(&road.kept);
+    match beyond(problem, &mut road.tried, slip, &graze) {
+        Beyond::Ends => Found::Graze(graze),
+        Beyond::Persists => unclear(&road.tried),
+        Beyond::Unknown => unclear(&road.kept),
+    }
 }
 
-/// The graze, if just beyond it a block that is released now comes to slide.
-fn if_it_ends(problem: &Problem, motion: &mut Motion, slip: f64, graze: Graze) -> Found {
-    motion.set_v0(graze.v0 * (1.0 + PRECISION));
+/// What becomes of stick-slip just beyond a graze.
+enum Beyond {
+    /// It ends.
+    Ends,
+    /// It is stick-slip of another kind.
+    Persists,
+    Unknown,
+}
+
+/// What becomes of a block that is released now just beyond the graze.
+fn beyond(problem: &Problem, motion: &mut Motion, slip: f64, graze: &Graze) -> Beyond {
+    let v0 = graze.v0 * (1.0 + PRECISION);
+    motion.set_v0(v0);
     if slides(problem, motion, slip) {
-        Found::Graze(graze)
-    } else {
-        Found::Unclear
+        return Beyond::Ends;
     }
-}
-
-/// How a climb towards a graze ended.
-enum Climbed {
-    Graze { v0: f64, slip: f64 },
-    LiftOff(f64),
-    Unclear,
-}
-
-/// What changes with v0 and vanishes where stick-slip ends: minus the distance to a graze and to lift-off.
-fn gauges(cycle: &Cycle) -> [f64; 2] {
-    [cycle.depth, -cycle.n_min]
-}
-
-/// Whether the last members of a sequence differ by no more than `settled`, relative, and by less and less: else the orbit
-/// that they seem to reach may be unstable.
-fn come_to_rest([first, second, third]: &[f64; 3], settled: f64) -> bool {
-    let (before, last) = ((second - first).abs(), (third - second).abs());
-    let falls = settled > SETTLED || last <= CONTRACTION * before || last <= NOISE * third.abs();
-    last <= settled * third.abs() && falls
-}
-
-/// What a sequence converges to, as its last three members tell (Aitken).
-fn limit([first, second, third]: [f64; 3]) -> f64 {
-    let (before, last) = (second - first, third - second);
-    let ratio = last / before;
-    if ratio.abs() < 0.7 {
-        third + last * ratio / (1.0 - ratio)
-    } else {
-        third
-    }
-}
-
-/// A kept trial on the way to a graze.
-#[derive(Debug, Clone, Copy)]
-struct Place {
-    v0: f64,
-    cycle: Cycle,
-    /// How settled it is, see [`Road::trial`].
-    settled: f64,
-    /// The gauges' derivatives with respect to v0; NaN before they are known.
-    slopes: [f64; 2],
-}
-
-impl Place {
-    /// By how much v0 has to grow for each gauge to vanish, relative; +∞ where it does not come to that.
-    fn gaps(&self) -> [f64; 2] {
-        [0, 1].map(|i| {
-            let gap = -gauges(&self.cycle)[i] / self.slopes[i] / self.v0;
-            if gap >= 0.0 { gap } else { f64::INFINITY }
-        })
-    }
-
-    /// The next one.
-    fn moved_to(&self, v0: f64, cycle: Cycle, settled: f64) -> Self {
-        let slopes = [0, 1].map(|i| {
-            let slope = (gauges(&cycle)[i] - gauges(&self.cycle)[i]) / (v0 - self.v0);
-            // At the same v0 only the gauges are better known.
-            if v0 > self.v0 { slope } else { self.slopes[i] }
-        });
-        Self {
-            v0,
-            cycle,
-            settled,
-            slopes,
-        }
-    }
-}
-
-/// Where the end is near, cycles have to be settled to this.
-const SETTLED: f64 = 0.05;
-/// The most by which cycles that come to rest differ from one to the next, compared with the difference before.
-const CONTRACTION: f64 = 0.8;
-/// Noise of the gauges, relative.
-const NOISE: f64 = 1e-6;
-/// The share of the way to the expected end that is taken at once.
-const SHARE: f64 = 0.97;
-
-/// How settled a trial has to be after a step of v0.
-fn needed(step: f64) -> f64 {
-    match step {
-        0.3.. => 0.2,
-        0.02.. => 0.1,
-        _ => SETTLED,
-    }
-}
-
-/// How far the next trial may go, relative.
-#[derive(Debug, Clone, Copy)]
-struct Reach {
-    most: f64,
-    /// The v0 of the last trial that failed, unless one beyond it has not; and whether it lifted off.
-    failed: Option<(f64, bool)>,
-}
-
-impl Reach {
-    fn step(&self, v0: f64, gap: f64) -> f64 {
-        let ceiling = self
-            .failed
-            .map_or(f64::INFINITY, |(v, _)| 0.5 * (v / v0 - 1.0));
-        (SHARE * gap).min(self.most).min(ceiling)
-    }
-
-    fn succeeded(&mut self, v0: f64, step: f64) {
-        self.most = (2.0 * self.most).min(LARGEST_STEP);
-        if self.failed.is_some_and(|(failed, _)| failed <= v0) {
-            // What failed there was the size of the step.
-            (self.failed, self.most) = (None, 4.0 * step);
-        }
-    }
-}
-
-/// Raises v0 towards where a gauge vanishes.
-fn climb(road: &mut impl Road, start: f64, first: Cycle) -> Climbed {
-    let mut at = Place {
-        v0: start,
-        cycle: first,
-        settled: f64::INFINITY,
-        slopes: [f64::NAN; 2],
-    };
-    let mut reach = Reach {
-        most: LARGEST_STEP,
-        failed: None,
-    };
-    let mut last = false;
-    for _ in 0..MOST_TRIALS {
-        let gaps = at.gaps();
-        let gap = gaps[0].min(gaps[1]);
-        let mut step = reach.step(at.v0, gap);
-        let enough = if gaps[0] <= gaps[1] { NEAR } else { PRECISION };
-        if step < SHARE * enough {
-            if at.settled > SETTLED {
-                step = 0.0;
-            } else if last || gap < enough {
-                return arrived(&at, gaps, reach.failed.is_some_and(|(_, lifted)| lifted));
-            } else {
-                // Once more, beyond where the last one failed.
-                (last, step) = (true, 3.0 * enough);
-            }
-        }
-        let (next, settled) = (at.v0 * (1.0 + step), needed(step));
-        match road.trial(next, Some(at.cycle.slip), settled) {
-            Ride::Cycle(there) => {
-                road.keep();
-                at = at.moved_to(next, there, settled);
-                reach.succeeded(next, step);
-                last = false;
-            }
-            // A start that is not sustained.
-            Ride::Pass | Ride::LiftOff if step == 0.0 => return Climbed::Unclear,
-            missed @ (Ride::Pass | Ride::LiftOff) => {
-                reach.failed = Some((next, missed == Ride::LiftOff));
-            }
-            Ride::Other => return Climbed::Unclear,
-        }
-    }
-    Climbed::Unclear
-}
-
-/// What vanishes at the end of a climb; `lifted`: the last trial beyond it lifted off.
-fn arrived(at: &Place, [graze, lift]: [f64; 2], lifted: bool) -> Climbed {
-    let near = 10.0 * NEAR;
-    if lift < near && lift < graze {
-        Climbed::LiftOff(at.v0 * (1.0 + lift))
-    } else if lifted && graze >= near {
-        Climbed::LiftOff(at.v0)
-    } else if graze < near {
-        Climbed::Graze {
-            v0: at.v0 * (1.0 + graze),
-            slip: at.cycle.slip,
-        }
-    } else {
-        Climbed::Unclear
+    match follow::fate(problem, motion, v0) {
+        Fate::Slips => Beyond::Ends,
+        Fate::Lost(Outcome::Undecided) | Fate::LiftOff => Beyond::Unknown,
+        Fate::Lost(_) => Beyond::Ends,
+        Fate::Periodic | Fate::Irregular => Beyond::Persists,
     }
 }
 

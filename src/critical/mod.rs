@@ -2,23 +2,28 @@
 //!
 //! - [`limit`]: Coulomb friction, load control, τ → 0: closed form (the letter's Fig. 4)
 //! - [`graze`]: as the velocity at which the orbit's slip grazes ẋ = 0
+//! - [`mod@line`]: grazes along a line of delays, each from its neighbour's orbit
 //! - [`follow`]: by simulation, v0 raised step by step
 //! - [`switch_on`]: by the other protocol, the windows in which stick-slip survives switching on
 //! - [`cycle`]: one slip and one stick
 
+mod climb;
 pub mod cycle;
 pub mod follow;
 pub mod graze;
 pub mod limit;
+pub mod line;
+mod stops;
 pub mod switch_on;
 
 use crate::linear::rightmost::Rightmost;
 use crate::linear::{Count, Crossings, MarginalTolerance};
+use crate::model::friction::Kind;
 use crate::model::{FrictionLaw, Groups};
-use crate::slip::motion::{Accuracy, Parameters};
+use crate::slip::motion::{Accuracy, Motion, Parameters};
 use crate::slip::outcome::Outcome;
-use follow::{Fate, Pace, Sustained};
-use graze::{Found, Graze};
+use follow::{Fate, Followed, Pace, Sustained};
+use graze::{Found, Graze, Track};
 
 /// A controlled oscillator whose critical velocity is asked for, in the units of [`crate::slip::motion`].
 #[derive(Debug, Clone, PartialEq)]
@@ -190,16 +195,53 @@ pub const GRAZE_PRECISION: f64 = 1e-4;
 /// Error allowed in a step on the way to a graze.
 const GRAZE_TOLERANCE: f64 = 1e-6;
 /// Error allowed in a step where stick-slip is followed.
-const FOLLOW_TOLERANCE: f64 = 1e-9;
+const FOLLOW_TOLERANCE: f64 = 1e-8;
 
 /// The largest v0 at which stick-slip of `problem` persists while v0 is raised from low values: protocol `follow`.
 #[must_use]
 pub fn critical_velocity(problem: &Problem) -> Critical {
-    match graze::find(problem, Accuracy::of(GRAZE_TOLERANCE)) {
-        Found::Graze(graze) => of_graze(&graze),
-        Found::LiftOff(v0, method) => of_lift_off(v0, method),
-        Found::Unclear => by_simulation(problem, &Pace::default(), Accuracy::of(FOLLOW_TOLERANCE)),
+    from_scratch(problem).0
+}
+
+/// The same, with what a neighbour may start from.
+fn from_scratch(problem: &Problem) -> (Critical, Option<Track>) {
+    if persists_without_control(problem) {
+        let critical = nothing(f64::NAN, End::Persists, Method::Simulation);
+        return (critical, None);
     }
+    let (found, track) = graze::find(problem, Accuracy::of(GRAZE_TOLERANCE));
+    let critical = of_found(&found).unwrap_or_else(|| match found {
+        Found::Unclear(Some(motion)) => simulated_from(problem, *motion),
+        _ => by_simulation(problem, &Pace::default(), Accuracy::of(FOLLOW_TOLERANCE)),
+    });
+    (critical, track)
+}
+
+/// By simulation from a motion in stick-slip on; from low velocities where it is not sustained.
+fn simulated_from(problem: &Problem, mut motion: Motion) -> Critical {
+    let (pace, accuracy) = (Pace::default(), Accuracy::of(FOLLOW_TOLERANCE));
+    motion.refine(accuracy);
+    let followed = follow::from(problem, motion, &pace);
+    match followed.last {
+        Some(_) => of_followed(&followed),
+        None => by_simulation(problem, &pace, accuracy),
+    }
+}
+
+fn of_found(found: &Found) -> Option<Critical> {
+    match found {
+        Found::Graze(graze) => Some(of_graze(graze)),
+        Found::LiftOff(v0, method) => Some(of_lift_off(*v0, *method)),
+        Found::Unclear(_) => None,
+    }
+}
+
+/// Without control, under Coulomb friction, stick-slip persists at every v0: a slip from a = μ_S goes half round the circle
+/// about sliding and comes to a stop at a = 2 μ_K − μ_S, where the block sticks.
+fn persists_without_control(problem: &Problem) -> bool {
+    let uncontrolled = problem.alpha_v == 0.0 && problem.alpha_n == 0.0;
+    let mu_s = problem.law.mu_s();
+    uncontrolled && matches!(problem.law.kind(), Kind::Coulomb { mu0 } if *mu0 < mu_s)
 }
 
 fn of_graze(graze: &Graze) -> Critical {
@@ -240,13 +282,17 @@ fn nothing(vc: f64, end: End, method: Method) -> Critical {
 /// The same by simulation alone, whatever the other roads say.
 #[must_use]
 pub fn by_simulation(problem: &Problem, pace: &Pace, accuracy: Accuracy) -> Critical {
-    let followed = follow::critical_velocity(problem, pace, accuracy);
+    of_followed(&follow::critical_velocity(problem, pace, accuracy))
+}
+
+fn of_followed(followed: &Followed) -> Critical {
     let method = Method::Simulation;
     let undecided = |lost: &Sustained| lost.fate == Fate::Lost(Outcome::Undecided);
-    let vanishing = |last: &Sustained| last.summary.stick_time < VANISHING;
+    // To rounding sticks are lost as well where they only become shorter and shorter.
+    let rounding = |last: &Sustained| last.summary.stick_time < VANISHING && !followed.vanish;
     let decided = followed.complete
         && !followed.lost.as_ref().is_some_and(undecided)
-        && !followed.last.as_ref().is_some_and(vanishing);
+        && !followed.last.as_ref().is_some_and(rounding);
     match (followed.last, followed.lost) {
         (_, Some(lost)) if lost.fate == Fate::LiftOff => of_lift_off(lost.v0, method),
         (None, _) => Critical {
@@ -282,8 +328,9 @@ fn end(last: &Sustained, lost: bool) -> End {
     match last.fate {
         _ if !lost => End::Persists,
         Fate::Irregular => End::Irregular,
-        _ if last.summary.slips > 1 => End::PeriodDoubling,
+        // Of doubled stick-slip as well: one of the stops of its period.
         _ if last.depth.abs() < GRAZING * last.v0 => End::Grazing,
+        _ if last.summary.slips > 1 => End::PeriodDoubling,
         _ => End::Fold,
     }
 }

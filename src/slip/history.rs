@@ -70,6 +70,11 @@ impl History {
         piece.a[1] = rate;
     }
 
+    /// Jumps of the order `felt` and higher are not felt from now on.
+    pub fn feel(&mut self, felt: u32) {
+        self.felt = felt;
+    }
+
     /// Becomes a copy of `other`, in memory that is there.
     pub fn copy_from(&mut self, other: &Self) {
         self.pieces.clear();

@@ -99,6 +99,19 @@ const SLOWEST: f64 = 1e-3;
 /// Rounding of a force, relative.
 const ROUNDING: f64 = 64.0 * f64::EPSILON;
 
+/// The order at which Taylor's method does least work per unit of time (Jorba and Zou 2005).
+fn order(tolerance: f64) -> usize {
+    ((2.0 - 0.5 * tolerance.ln()).ceil() as usize).clamp(4, MOST_ORDER)
+}
+
+/// The order of jumps that are not felt.
+fn felt(accuracy: Accuracy, order: usize) -> u32 {
+    match accuracy.step_on_kinks {
+        true => order as u32,
+        false => 0,
+    }
+}
+
 /// A moving block.
 #[derive(Debug, Clone)]
 pub struct Motion {
@@ -144,16 +157,10 @@ impl Motion {
         mut history: History,
     ) -> Self {
         let tolerance = accuracy.tolerance.clamp(1e-15, 1e-3);
-        // The order at which Taylor's method does least work per unit of time (Jorba and Zou 2005).
-        let order = ((2.0 - 0.5 * tolerance.ln()).ceil() as usize).clamp(4, MOST_ORDER);
+        let order = order(tolerance);
         let mut friction = FrictionSeries::new(&parameters.law, parameters.velocity_unit);
         friction.restart(u.abs());
-        let felt = if accuracy.step_on_kinks {
-            order as u32
-        } else {
-            0
-        };
-        history.restart(a, 0.0, felt);
+        history.restart(a, 0.0, felt(accuracy, order));
         let zero = [0.0; MOST_ORDER + 1];
         let mut motion = Self {
             parameters,
@@ -204,6 +211,22 @@ impl Motion {
             self.stuck_since = self.t;
         }
         self.kink = 1;
+    }
+
+    /// Changes the delay from now on, to less than twice what it was: the past is known for so long.
+    pub fn set_delay(&mut self, tau: f64) {
+        self.parameters.tau = tau;
+        if self.mode == Mode::Stick {
+            self.stuck_since = self.t;
+        }
+        self.kink = 1;
+    }
+
+    /// Goes on with another accuracy.
+    pub fn refine(&mut self, accuracy: Accuracy) {
+        self.tolerance = accuracy.tolerance.clamp(1e-15, 1e-3);
+        self.order = order(self.tolerance);
+        self.history.feel(felt(accuracy, self.order));
     }
 
     /// Becomes a copy of `other`, a motion with the same law and accuracy, in memory that is there.

@@ -115,6 +115,11 @@ impl Summary {
 pub trait Observer {
     /// After each step, with the event that ended it.
     fn step(&mut self, motion: &Motion, event: Option<Event>);
+
+    /// Whether it has seen enough: then the motion is followed no further, and its outcome is undecided.
+    fn enough(&self) -> bool {
+        false
+    }
 }
 
 /// Sees nothing.
@@ -133,6 +138,9 @@ pub fn follow(motion: &mut Motion, limits: &Limits, observer: &mut impl Observer
         watch.steps += 1;
         observer.step(motion, event);
         watch.see(motion, event);
+        if watch.outcome.is_none() && observer.enough() {
+            return watch.summary(motion, Outcome::Undecided);
+        }
     }
 }
 

@@ -24,6 +24,9 @@ const CELLS_PER_CRITICAL_TILE: usize = 1 << 6;
 const DELAYS_PER_TILE: usize = 1 << 17;
 /// Lines of delays are cut at multiples of this only: there tracking starts anew, and no value depends on the tiles.
 pub const BLOCK_OF_DELAYS: usize = crate::linear::track::BLOCK;
+/// The same where critical velocities start from their neighbours; divides the one of roots.
+const BLOCK_OF_VC: usize = crate::critical::line::BLOCK;
+const _: () = assert!(BLOCK_OF_DELAYS.is_multiple_of(BLOCK_OF_VC));
 /// More cells than this are refused.
 const MOST_CELLS: u64 = 10_000_000_000_000;
 /// More tiles than this are refused: even their list would fill a machine's memory.
@@ -83,13 +86,7 @@ impl Plan {
             .axes
             .iter()
             .position(|axis| axis.parameter == Parameter::Tau);
-        // Motions know nothing of the delay before: only roots keep lines in blocks.
-        let moves = spec.critical.is_some() || spec.follows_motions();
-        let block = match moves && !follows_roots(&spec) {
-            true => 1,
-            false => BLOCK_OF_DELAYS,
-        };
-        let tile_shape = tile_shape(&shape, (tau_axis, block), cells_per_tile);
+        let tile_shape = tile_shape(&shape, (tau_axis, block(&spec)), cells_per_tile);
         let boundary_plane = boundary_plane(&spec);
         let tiles = TileGrid::new(shape, tile_shape);
         if tiles.len() > MOST_TILES {
@@ -279,6 +276,19 @@ fn put_numbers(hash: &mut Sha256, values: &[f64]) {
 #[must_use]
 pub fn in_hexadecimal(bytes: &[u8]) -> String {
     bytes.iter().map(|b| format!("{b:02x}")).collect()
+}
+
+/// Lines are cut at multiples of so many delays. What starts from the delay before goes on in its block only; motions, and
+/// stick-slip that control is switched on in, know nothing of it.
+fn block(spec: &SweepSpec) -> usize {
+    let critical = spec.critical.map(|search| search.protocol);
+    match critical {
+        _ if follows_roots(spec) => BLOCK_OF_DELAYS,
+        Some(Protocol::Follow) => BLOCK_OF_VC,
+        Some(Protocol::SwitchOn(_)) => 1,
+        None if spec.follows_motions() => 1,
+        None => BLOCK_OF_DELAYS,
+    }
 }
 
 fn follows_roots(spec: &SweepSpec) -> bool {

@@ -4,7 +4,7 @@ use super::parameter::{Parameter, Setting};
 use crate::critical::follow::Pace;
 use crate::critical::switch_on::{self, Phase, Scan, Survival, Trials, Windows};
 use crate::critical::{
-    Critical, End, GRAZE_PRECISION, Method, Problem, by_simulation, critical_velocity,
+    Critical, End, GRAZE_PRECISION, Method, Problem, by_simulation, critical_velocity, line,
 };
 use crate::linear::{Crossings, MarginalTolerance};
 use crate::model::ModelError;
@@ -134,6 +134,20 @@ pub fn find_in(problem: &Problem, units: &CaseUnits, protocol: Protocol) -> Foun
     }
 }
 
+/// The critical velocities of a block of a line by the protocol `follow`, see [`line::critical_velocities`]; none of a cell
+/// where `stopped` came before it.
+#[must_use]
+pub fn find_in_line(
+    problems: &[Problem],
+    units: &CaseUnits,
+    stopped: impl Fn() -> bool,
+) -> Vec<Option<Found>> {
+    let found = line::critical_velocities(problems, stopped).into_iter();
+    found
+        .map(|critical| critical.map(|critical| followed(&in_units(&critical, units))))
+        .collect()
+}
+
 /// By the protocol `follow` there is one window, from rest to v_c.
 fn followed(critical: &Critical) -> Found {
     let windows = match critical.end {
@@ -203,6 +217,7 @@ pub const AGREEMENT: f64 = 1e-4;
 pub fn simulation_agrees(problem: &Problem, units: &CaseUnits, found: &Critical) -> bool {
     let pace = Pace {
         first: SAMPLE_FIRST,
+        patient: true,
         ..Pace::default()
     };
     let again = by_simulation(problem, &pace, Accuracy::of(SAMPLE_ACCURACY));

@@ -1,5 +1,6 @@
 //! The fields of the critical velocity: every cell's v_c is looked for, and a sample of them a second time.
 
+use std::ops::Range;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use super::field::{Field, number_of_end};
@@ -8,6 +9,7 @@ use super::spec::SweepSpec;
 use super::vc::{self, Class, Found, Protocol, Search};
 use super::worker::{FEW_FILL, TileBuffers};
 use crate::critical::Problem;
+use crate::critical::line::BLOCK;
 use crate::critical::switch_on::Phase;
 use crate::linear::MarginalTolerance;
 use crate::linear::status::{DISAGREE, NOT_CONVERGED, SAMPLED};
@@ -30,6 +32,12 @@ struct Known {
     units: CaseUnits,
     phase: f64,
     found: Found,
+}
+
+impl Known {
+    fn is_of(&self, problem: &Problem, units: &CaseUnits, phase: f64) -> bool {
+        self.problem == *problem && self.units == *units && self.phase.to_bits() == phase.to_bits()
+    }
 }
 
 /// Where a line of cells is.
@@ -99,6 +107,12 @@ impl VcColumns {
         stop: &AtomicBool,
     ) {
         let mut setting = setting.clone();
+        if self.search.protocol == Protocol::Follow {
+            for first in (0..delays.len()).step_by(BLOCK) {
+                let block = first..delays.len().min(first + BLOCK);
+                self.find_block(&mut setting, delays, block, stop);
+            }
+        }
         for (i, tau) in delays.iter().enumerate() {
             if stop.load(Ordering::Relaxed) {
                 return;
@@ -111,6 +125,49 @@ impl VcColumns {
                 // The sweep's values were checked: what is refused here is beyond what can be followed.
                 Err(_) => store_nothing(buffers, place),
             }
+        }
+    }
+
+    /// Looks for the answers in a block of a line, which starts where blocks of the whole line do, unless they are known.
+    fn find_block(
+        &mut self,
+        setting: &mut Setting,
+        delays: &[f64],
+        block: Range<usize>,
+        stop: &AtomicBool,
+    ) {
+        if self.known.len() < block.end {
+            self.known.resize_with(block.end, || None);
+        }
+        let mut cells = Vec::new();
+        let mut problems = Vec::new();
+        let mut units = None;
+        for i in block {
+            setting.set(Parameter::Tau, delays[i]);
+            if let Ok((problem, own)) = vc::problem(setting) {
+                cells.push(i);
+                problems.push(problem);
+                units = Some(own);
+            }
+        }
+        let Some(units) = units else { return };
+        let phase = setting.get(Parameter::SwitchOnPhase);
+        let known = |(i, problem): (&usize, &Problem)| {
+            self.known[*i]
+                .as_ref()
+                .is_some_and(|k| k.is_of(problem, &units, phase))
+        };
+        if cells.iter().zip(&problems).all(known) {
+            return;
+        }
+        let found = vc::find_in_line(&problems, &units, || stop.load(Ordering::Relaxed));
+        for ((i, problem), found) in cells.into_iter().zip(problems).zip(found) {
+            self.known[i] = found.map(|found| Known {
+                problem,
+                units,
+                phase,
+                found,
+            });
         }
     }
 
@@ -163,10 +220,10 @@ impl VcColumns {
             self.known.resize_with(i + 1, || None);
         }
         let known = &mut self.known[i];
-        let same = |k: &Known| {
-            k.problem == *problem && k.units == *units && k.phase.to_bits() == phase.to_bits()
-        };
-        if known.as_ref().is_some_and(|k| !same(k)) {
+        if known
+            .as_ref()
+            .is_some_and(|k| !k.is_of(problem, units, phase))
+        {
             *known = None;
         }
         let known = known.get_or_insert_with(|| Known {

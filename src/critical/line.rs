@@ -1,0 +1,126 @@
+//! The critical velocities of a line of delays: each graze starts from its neighbour's orbit.
+//!
+//! Such a continuation may go on along a branch of grazes that stick-slip raised from low velocities does not come to. So the
+//! cells at both ends of a stretch are looked for from scratch, and what is continued from the one has to meet the other;
+//! else the stretch is halved. A line is cut into blocks for that, so that the answer in a cell depends on its block alone.
+
+use super::graze::Track;
+use super::{Critical, End, Problem, from_scratch, of_found};
+
+/// Cells of a block; blocks start at multiples of it.
+pub const BLOCK: usize = 32;
+/// How well a continuation has to meet what was found from scratch, relative.
+const MEETS: f64 = 3e-5;
+
+/// The critical velocities of a block of a line: problems that differ by their delay alone, which increases. None of a cell
+/// where `stopped` came before it.
+#[must_use]
+pub fn critical_velocities(
+    problems: &[Problem],
+    stopped: impl Fn() -> bool,
+) -> Vec<Option<Critical>> {
+    let mut block = Block {
+        problems,
+        found: vec![None; problems.len()],
+        stopped: &stopped,
+    };
+    if let Some(last) = problems.len().checked_sub(1) {
+        let track = block.start(0);
+        if last > 0 {
+            block.start(last);
+            block.fill(0, last, track);
+        }
+    }
+    block.found
+}
+
+struct Block<'p> {
+    problems: &'p [Problem],
+    found: Vec<Option<Critical>>,
+    stopped: &'p dyn Fn() -> bool,
+}
+
+impl Block<'_> {
+    /// Looks for a cell from scratch, unless that was done.
+    fn start(&mut self, cell: usize) -> Option<Track> {
+        if (self.stopped)() {
+            return None;
+        }
+        let (critical, mut track) = from_scratch(&self.problems[cell]);
+        let alike = |c: &&Critical| c.end == critical.end && c.method == critical.method;
+        for before in (0..cell).rev().take(2) {
+            let Some(known) = self.found[before].as_ref().filter(alike) else {
+                break;
+            };
+            if let Some(track) = &mut track {
+                track.recall(self.problems[before].tau, end(known));
+            }
+        }
+        self.found[cell] = Some(critical);
+        track
+    }
+
+    /// Fills the cells between two that were found from scratch, the first one with its track.
+    fn fill(&mut self, mut first: usize, last: usize, mut track: Option<Track>) {
+        while last - first > 1 && !(self.stopped)() {
+            let start = track.clone();
+            let reached = match &mut track {
+                Some(track) => self.advance(first, last, track),
+                None => first,
+            };
+            if reached == last {
+                return;
+            }
+            // From scratch: the next cell where there is nothing to continue, else the middle of the way that does not meet.
+            let next = match reached == first {
+                true => first + 1,
+                false => usize::midpoint(first, reached + 1),
+            };
+            let continued = self.found[next];
+            let from = self.start(next);
+            let met = match (&continued, &self.found[next]) {
+                (Some(a), Some(b)) => next <= reached && meets(a, b),
+                _ => false,
+            };
+            if !met {
+                self.fill(first, next, start);
+            }
+            (first, track) = (next, from);
+        }
+    }
+
+    /// Continues from `first` on; how far it leads: `last` if it meets what is known there.
+    fn advance(&mut self, first: usize, last: usize, track: &mut Track) -> usize {
+        for cell in first + 1..=last {
+            let next = track.next(&self.problems[cell]);
+            let Some(critical) = next.as_ref().and_then(of_found) else {
+                return cell - 1;
+            };
+            if cell == last {
+                return match self.found[last]
+                    .as_ref()
+                    .is_some_and(|c| meets(c, &critical))
+                {
+                    true => last,
+                    false => cell - 1,
+                };
+            }
+            self.found[cell] = Some(critical);
+        }
+        last
+    }
+}
+
+/// Where stick-slip ends.
+fn end(critical: &Critical) -> f64 {
+    match critical.end {
+        End::LiftOff => critical.v_liftoff,
+        _ => critical.vc,
+    }
+}
+
+/// Whether two answers are one.
+fn meets(a: &Critical, b: &Critical) -> bool {
+    let near = |a: f64, b: f64| a.is_nan() && b.is_nan() || (a - b).abs() <= MEETS * a.abs();
+    a.end == b.end && a.method == b.method && near(a.vc, b.vc) && near(a.v_liftoff, b.v_liftoff)
+}
