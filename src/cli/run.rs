@@ -83,7 +83,9 @@ pub fn main(args: &Args) -> Result<(), Failure> {
     let path = output_path(args.output.as_deref(), &args.sweep, "map")?;
     if let Some(remark) = already_there(&path, &plan, args.fresh)? {
         // What a run that was killed after its map was complete had no time to remove.
-        drop(shards::clear(&path));
+        if has_tiles_of(&path, &plan) {
+            drop(shards::clear(&path));
+        }
         if !plot::beside(&path).exists() {
             show(&path, args.quiet);
         }
@@ -110,8 +112,8 @@ pub fn main(args: &Args) -> Result<(), Failure> {
     };
     let plan = Arc::new(plan);
     match args.shard.filter(|shard| !shard.is_whole()) {
-        Some(shard) => run_shard(&plan, &job, shard, (&observers, &signals)),
-        None => run_whole(&plan, &job, (&observers, &signals), args.quiet),
+        Some(shard) => run_shard(&plan, &job, shard, (&observers, &signals), args.fresh),
+        None => run_whole(&plan, &job, (&observers, &signals), args),
     }
 }
 
@@ -122,9 +124,10 @@ fn run_shard(
     job: &Job,
     shard: Shard,
     (observers, signals): Watched,
+    fresh: bool,
 ) -> Result<(), Failure> {
     let made = map_maker::make_shard(plan, job, shard, observers, &signals.stop);
-    made.map_err(|error| failure(error, job.map, (observers, signals)))?;
+    made.map_err(|error| failure(error, (job.map, fresh), (observers, signals)))?;
     let (number, of) = shard.numbers();
     let map = job.map.display();
     say::result(format_args!(
@@ -136,11 +139,12 @@ fn run_whole(
     plan: &Arc<Plan>,
     job: &Job,
     (observers, signals): Watched,
-    quiet: bool,
+    args: &Args,
 ) -> Result<(), Failure> {
+    let (fresh, quiet) = (args.fresh, args.quiet);
     refuse_shards(job.map)?;
     let made = map_maker::make(plan, job, observers, &signals.stop);
-    let assembled = made.map_err(|error| failure(error, job.map, (observers, signals)))?;
+    let assembled = made.map_err(|error| failure(error, (job.map, fresh), (observers, signals)))?;
     let (elapsed, cells) = (observers.0.elapsed(), observers.0.computed());
     output::tell_assembled(&assembled, quiet);
     let path = job.map;
@@ -217,6 +221,8 @@ pub fn already_there(path: &Path, plan: &Plan, fresh: bool) -> Result<Option<Str
             // One that was put together before its time is replaced by the complete one.
             Ok((!map.is_partial()).then(|| what_differs(&map, plan)))
         }
+        // It is being replaced: an earlier run had --fresh.
+        Ok(_) if has_tiles_of(path, plan) => Ok(None),
         Ok(_) => Err(Failure::bad_input_with_help(
             format!(
                 "{} is already there: the map of another sweep",
@@ -235,6 +241,13 @@ pub fn already_there(path: &Path, plan: &Plan, fresh: bool) -> Result<Option<Str
     }
 }
 
+/// Whether tiles of this plan stand beside the map.
+fn has_tiles_of(path: &Path, plan: &Plan) -> bool {
+    let present = shards::present(path).unwrap_or_default();
+    let manifest = present.first().map(|(_, folder)| shards::manifest(folder));
+    manifest.is_some_and(|m| m.is_ok_and(|m| m.plan_hash == plan.hash()))
+}
+
 /// What `--fresh` would change in a complete map of the same cells.
 fn what_differs(map: &MapFile, plan: &Plan) -> String {
     let version = map.root_text(root::PROGRAM_VERSION).unwrap_or_default();
@@ -248,10 +261,17 @@ fn what_differs(map: &MapFile, plan: &Plan) -> String {
     }
 }
 
-fn failure(error: RunError<StoreError>, path: &Path, (observers, signals): Watched) -> Failure {
+fn failure(
+    error: RunError<StoreError>,
+    (path, fresh): (&Path, bool),
+    (observers, signals): Watched,
+) -> Failure {
     observers.0.clear();
     observers.1.ended(&error.to_string());
-    let kept = "what is computed is kept, the same command goes on from there";
+    let kept = match fresh {
+        true => "what is computed is kept, the same command without --fresh goes on from there",
+        false => "what is computed is kept, the same command goes on from there",
+    };
     match error {
         RunError::Interrupted => Failure::Interrupted {
             message: format!("interrupted: {} is not complete; {kept}", path.display()),
