@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # Everything that is checked before a change goes in: formatting, lints, documentation, and the whole test suite with other
-# people's programs reading the maps. Gets what is missing first.
+# people's programs reading the maps, and a map on a Slurm of its own. Gets what is missing first. What cannot be had is left
+# out with a warning, or fails where it is here on every platform.
 set -euo pipefail
 
 # shellcheck source=scripts/setup.sh
@@ -59,6 +60,48 @@ install_python_packages() {
     cp "$requirements" "$stamp"
 }
 
+# leave_out TEST WHY: the test suite goes without that test.
+left_out=()
+leave_out() {
+    left_out+=(--skip "$1")
+    warnings+=("$2")
+}
+warnings=()
+
+octave_reads_netcdf() {
+    octave-cli --no-gui --norc --quiet --eval "pkg load netcdf" >/dev/null 2>&1 && have gnuplot && have gs
+}
+r_reads_hdf5() { have Rscript && Rscript -e 'library(hdf5r)' >/dev/null 2>&1; }
+julia_reads_netcdf() { have julia && julia -e 'using CairoMakie, Interpolations, NCDatasets' >/dev/null 2>&1; }
+
+# What only the examples in scripts/read need.
+install_languages() {
+    if ! octave_reads_netcdf; then
+        { have apt-get && apt_install octave-netcdf gnuplot-nox ghostscript fonts-freefont-otf; } || true
+        octave_reads_netcdf || leave_out the_example_for_octave \
+            "scripts/read/read_map.m is not run: Octave's package netcdf, gnuplot or Ghostscript is missing"
+    fi
+    if ! r_reads_hdf5; then
+        { have apt-get && apt_install r-base-core r-cran-hdf5r; } || true
+        r_reads_hdf5 || leave_out the_example_for_r_ "scripts/read/read_map.R is not run: R or its package hdf5r is missing"
+    fi
+    julia_reads_netcdf || leave_out the_example_for_julia \
+        "scripts/read/read_map.jl is not run: Julia or one of NCDatasets, Interpolations, CairoMakie is missing"
+}
+
+# Slurm and what proves who one is to it.
+have_slurm() {
+    local program
+    for program in slurmctld slurmd sbatch munged; do
+        PATH="$PATH:/usr/sbin:/sbin" have "$program" || return 1
+    done
+}
+install_slurm() {
+    have_slurm || { have apt-get && apt_install slurm-wlm munge; } || true
+    hash -r
+    have_slurm || warnings+=("tests/slurm/run.sh is not run: Slurm or munge is missing and cannot be installed")
+}
+
 # step COMMAND…: runs it and says so.
 step() {
     say ""
@@ -68,6 +111,8 @@ step() {
 
 install_readers
 install_python_packages
+install_languages
+install_slurm
 
 features=(--features external-readers)
 # shellcheck disable=SC2206
@@ -84,4 +129,10 @@ else
     say "warning: lints are not checked, clippy is not installed (rustup component add clippy)"
 fi
 RUSTDOCFLAGS="-D warnings" step cargo doc --no-deps "${features[@]}"
-step cargo test --release "${features[@]}"
+step cargo test --release "${features[@]}" -- ${left_out[@]+"${left_out[@]}"}
+if have_slurm; then
+    step tests/slurm/run.sh
+fi
+for warning in ${warnings[@]+"${warnings[@]}"}; do
+    say "warning: $warning"
+done

@@ -1,4 +1,5 @@
-//! Maps as other people's programs read them: xarray, h5py, netCDF4, ncdump, h5dump and Octave. None of them may be missing.
+//! Maps as other people's programs read them: xarray, h5py, netCDF4, ncdump, h5dump, Octave, R and Julia. A test whose program is
+//! missing fails; `scripts/test.sh` leaves such a test out and says so.
 //!
 //! Each map comes from the program itself; what must be in it comes from the library, cell by cell, and is handed to the
 //! Python programs in `readers/` as a folder with `expected.json` and raw arrays.
@@ -8,7 +9,7 @@ use std::process::{Command, Output};
 
 use serde_json::{Map, Value, json};
 use slipmap::linear::rightmost::Rightmost;
-use slipmap::linear::status::{FLAGS, MARGINAL};
+use slipmap::linear::status::{CERTIFIED, FLAGS, MARGINAL};
 use slipmap::linear::{Crossings, MarginalTolerance};
 use slipmap::model::{FrictionLaw, Groups};
 use slipmap::sweep::axis::{Spacing, spaced};
@@ -709,4 +710,154 @@ fn python_reads_traces_and_draws_figures_3_and_4() {
         assert_eq!(refused.status.code(), Some(2));
         assert!(text(&refused.stderr).contains("fig3a.json"));
     }
+}
+
+/// The example of a language in `scripts/read`, with arguments `map.h5` and `picture.png`, reads a real map.
+///
+/// It prints the axes' values and the abscissa of a cell after "nearest", an interpolated abscissa after "interpolated" where it can
+/// do that, and the numbers of certified cells and of cells of a plane after "certified"; each is told by other means here.
+fn check_example(interpolates: bool, example: impl FnOnce(&Path, PathBuf) -> Command) {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let folder = TempDir::new().expect("a temporary folder");
+    let sweep = std::fs::read_to_string(root.join("sweeps/decay_load.toml")).unwrap();
+    let coarse = sweep.replace("points = 251", "points = 91");
+    let coarse = coarse.replace("points = 301", "points = 111");
+    assert_ne!(sweep, coarse);
+    std::fs::write(folder.path().join("sweep.toml"), coarse).unwrap();
+    let slipmap = env!("CARGO_BIN_EXE_slipmap");
+    let arguments = ["run", "--quiet", "sweep.toml", "-o", "map.h5"];
+    run(&mut command(slipmap, folder.path(), arguments));
+
+    let said = run(&mut example(folder.path(), root.join("scripts/read")));
+    let said = text(&said.stdout);
+    let after = |word: &str| -> Vec<f64> {
+        let line = said.lines().find_map(|line| line.strip_prefix(word));
+        let line = line.unwrap_or_else(|| panic!("no line of {word}:\n{said}"));
+        let words = line.split_whitespace();
+        words.filter_map(|word| word.parse().ok()).collect()
+    };
+    let gains = spaced(-3.0, 1.0, 91, Spacing::Linear).unwrap();
+    let delays = spaced(0.01, 10.0, 111, Spacing::Linear).unwrap();
+    let abscissa = |i: usize, j: usize| abscissa_at(folder.path(), gains[i], delays[j]);
+    let nearest = after("nearest");
+    let (gain, delay) = (nearest_to(&gains, -1.5), nearest_to(&delays, 0.8));
+    let expected = [-0.3, gains[gain], delays[delay], abscissa(gain, delay)];
+    assert_eq!(nearest.len(), 4, "{said}");
+    for (found, expected) in nearest.iter().zip(expected) {
+        assert!((found - expected).abs() < 1e-12, "{expected}: {said}");
+    }
+    if interpolates {
+        let (i, j) = (before(&gains, -1.5), before(&delays, 0.8));
+        let between = |axis: &[f64], i: usize, at: f64| (at - axis[i]) / (axis[i + 1] - axis[i]);
+        let (x, y) = (between(&gains, i, -1.5), between(&delays, j, 0.8));
+        let along = |i: usize| (1.0 - y) * abscissa(i, j) + y * abscissa(i, j + 1);
+        let expected = (1.0 - x) * along(i) + x * along(i + 1);
+        let found = after("interpolated")[0];
+        assert!((found - expected).abs() < 1e-12, "{expected}: {said}");
+    }
+    let map = hdf5::File::open(folder.path().join("map.h5")).unwrap();
+    let status: Vec<u8> = map.dataset("status").unwrap().read_raw().unwrap();
+    let plane = &status[2 * gains.len() * delays.len()..][..gains.len() * delays.len()];
+    let certified = plane.iter().filter(|status| *status & CERTIFIED != 0);
+    let expected = [certified.count() as f64, plane.len() as f64];
+    assert_eq!(after("certified"), expected, "{said}");
+    check_picture(&folder.path().join("picture.png"));
+}
+
+fn nearest_to(axis: &[f64], value: f64) -> usize {
+    let distance = |i: &usize| (axis[*i] - value).abs();
+    let closer = |a: &usize, b: &usize| distance(a).total_cmp(&distance(b));
+    (0..axis.len()).min_by(closer).unwrap()
+}
+
+/// The last value of a growing axis that is not beyond this one, and has another one after it.
+fn before(axis: &[f64], value: f64) -> usize {
+    axis.partition_point(|v| *v <= value)
+        .clamp(1, axis.len() - 1)
+        - 1
+}
+
+/// The abscissa as `slipmap point` tells it.
+fn abscissa_at(folder: &Path, alpha_n: f64, tau: f64) -> f64 {
+    let (alpha_n, tau) = (format!("--alpha-n={alpha_n}"), format!("--tau={tau}"));
+    let arguments = ["point", "--json", "--mu-prime=-0.3", &alpha_n, &tau];
+    let said = run(&mut command(
+        env!("CARGO_BIN_EXE_slipmap"),
+        folder,
+        arguments,
+    ));
+    let point: Value = serde_json::from_slice(&said.stdout).expect("JSON");
+    point["abscissa"].as_f64().expect("an abscissa")
+}
+
+/// A picture of colours, not an empty frame.
+fn check_picture(path: &Path) {
+    let file = std::io::BufReader::new(std::fs::File::open(path).expect("a picture"));
+    let mut decoder = png::Decoder::new(file);
+    decoder.set_transformations(png::Transformations::EXPAND);
+    let mut reader = decoder.read_info().expect("a PNG");
+    let mut pixels = vec![0; reader.output_buffer_size()];
+    let info = reader.next_frame(&mut pixels).expect("a whole PNG");
+    assert!(info.width > 400 && info.height > 300, "{info:?}");
+    let samples = info.color_type.samples();
+    let colours: std::collections::HashSet<&[u8]> = pixels.chunks_exact(samples).collect();
+    let coloured = pixels.chunks_exact(samples).filter(|p| p[0] != p[2]);
+    let (different, coloured) = (colours.len(), coloured.count());
+    assert!(different > 100, "{different} colours");
+    let all = (info.width * info.height) as usize;
+    assert!(coloured > all / 4, "{coloured} of {all} pixels have a hue");
+}
+
+fn python_example(name: &'static str) -> impl FnOnce(&Path, PathBuf) -> Command {
+    move |folder, examples| {
+        let mut python = python(folder);
+        python
+            .arg(examples.join(name))
+            .args(["map.h5", "picture.png"]);
+        python
+    }
+}
+
+#[test]
+fn the_example_for_xarray_reads_a_map() {
+    check_example(true, python_example("read_xarray.py"));
+}
+
+#[test]
+fn the_example_for_h5py_reads_a_map() {
+    check_example(false, python_example("read_h5py.py"));
+}
+
+#[test]
+fn the_example_for_octave_reads_a_map() {
+    check_example(true, |folder, examples| {
+        let script = "path = 'map.h5'; picture = 'picture.png'; read_map";
+        let arguments = ["--no-gui", "--no-history", "--norc", "--quiet", "--path"];
+        let mut octave = command("octave-cli", folder, arguments);
+        octave.arg(examples).args(["--eval", script]);
+        // Without a window.
+        octave.env_remove("DISPLAY");
+        octave
+    });
+}
+
+#[test]
+fn the_example_for_r_reads_a_map() {
+    check_example(true, |folder, examples| {
+        let mut r = command("Rscript", folder, []);
+        r.arg(examples.join("read_map.R"))
+            .args(["map.h5", "picture.png"]);
+        r
+    });
+}
+
+#[test]
+fn the_example_for_julia_reads_a_map() {
+    check_example(true, |folder, examples| {
+        let mut julia = command("julia", folder, []);
+        julia
+            .arg(examples.join("read_map.jl"))
+            .args(["map.h5", "picture.png"]);
+        julia
+    });
 }

@@ -7,7 +7,7 @@ use slipmap::report::numbers::{bytes, grouped};
 use slipmap::report::progress::Progress;
 use slipmap::store::assembly::{Assembled, Missing};
 use slipmap::store::tiles::shards;
-use slipmap::store::{StoreError, map_maker};
+use slipmap::store::{MapFile, StoreError, map_maker};
 use slipmap::sweep::{Plan, Shard};
 
 use super::failure::Failure;
@@ -34,8 +34,11 @@ pub struct Args {
 }
 
 pub fn main(args: &Args) -> Result<(), Failure> {
-    let folders = folders(args)?;
     let target = args.output.as_ref().unwrap_or(&args.map);
+    let folders = folders(args)?;
+    if folders.is_empty() {
+        return nothing_to_merge(args, target);
+    }
     let plan = plan_of(&folders[0])?;
     if let Some(remark) = run::already_there(target, &plan, args.fresh)? {
         return say::result(format_args!(
@@ -65,16 +68,21 @@ fn folders(args: &Args) -> Result<Vec<PathBuf>, Failure> {
         return Ok(args.folders.clone());
     }
     let present = shards::present(&args.map)?;
-    if present.is_empty() {
-        return Err(Failure::bad_input_with_help(
-            format!(
-                "there are no shards in {}",
-                shards::root(&args.map).display()
-            ),
-            "`slipmap run SWEEP.toml -o MAP.h5 --shard I/N` computes one; folders from elsewhere are named after MAP.h5",
-        ));
-    }
     Ok(present.into_iter().map(|(_, path)| path).collect())
+}
+
+/// An error, unless the shards are gone because their map is complete: a merge that is run again has nothing to do.
+fn nothing_to_merge(args: &Args, target: &Path) -> Result<(), Failure> {
+    if !args.fresh && MapFile::open(target).is_ok_and(|map| !map.is_partial()) {
+        return say::result(format_args!("{} is already complete", target.display()));
+    }
+    Err(Failure::bad_input_with_help(
+        format!(
+            "there are no shards in {}",
+            shards::root(&args.map).display()
+        ),
+        "`slipmap run SWEEP.toml -o MAP.h5 --shard I/N` computes one; folders from elsewhere are named after MAP.h5",
+    ))
 }
 
 fn plan_of(folder: &Path) -> Result<Plan, Failure> {
