@@ -632,6 +632,45 @@ fn a_replacement_that_was_stopped_goes_on() {
     assert!(tile_files(&map).len() > kept);
 }
 
+/// What a run leaves that is killed between giving the map its name and removing the tiles, or while it removes them.
+#[test]
+fn leftovers_of_a_complete_map_are_removed() {
+    let _alone = alone();
+    let folder = Folder::with(&[("night.toml", NIGHT)]);
+    let map = folder.path().join("night.h5");
+    let root = shards::root(&map);
+    expect(
+        &folder.run(&["run", "night.toml", "--shard", "1/1"]),
+        0,
+        "night.h5: ",
+    );
+    expect(
+        &folder.run(&["run", "night.toml", "-o", "other.h5", "--shard", "1/2"]),
+        0,
+        "shard 1 of 2",
+    );
+    let manifest = "other.h5.tiles/1-of-2/manifest.json";
+    std::fs::create_dir_all(root.join("1-of-1")).unwrap();
+    std::fs::copy(
+        folder.path().join(manifest),
+        root.join("1-of-1/manifest.json"),
+    )
+    .unwrap();
+    expect(&folder.run(&["run", "night.toml"]), 0, "already complete");
+    assert!(!root.exists());
+    // A folder from which even the manifest has gone.
+    std::fs::create_dir_all(root.join("1-of-2")).unwrap();
+    std::fs::write(root.join("1-of-2/lock"), "").unwrap();
+    expect(
+        &folder.run(&["status", "night.h5"]),
+        0,
+        "night.h5: complete",
+    );
+    std::fs::remove_file(&map).unwrap();
+    expect(&folder.run(&["run", "night.toml"]), 0, "night.h5: ");
+    assert!(!root.exists());
+}
+
 #[test]
 fn shards_by_the_program() {
     let _alone = alone();

@@ -41,6 +41,7 @@ pub fn main(args: &Args) -> Result<(), Failure> {
     }
     let plan = plan_of(&folders[0])?;
     if let Some(remark) = run::already_there(target, &plan, args.fresh)? {
+        run::drop_leftovers(target, &plan);
         return say::result(format_args!(
             "{} is already complete{remark}",
             target.display()

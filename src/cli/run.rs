@@ -82,10 +82,7 @@ pub fn main(args: &Args) -> Result<(), Failure> {
     let plan = read_plan(&args.sweep)?;
     let path = output_path(args.output.as_deref(), &args.sweep, "map")?;
     if let Some(remark) = already_there(&path, &plan, args.fresh)? {
-        // What a run that was killed after its map was complete had no time to remove.
-        if has_tiles_of(&path, &plan) {
-            drop(shards::clear(&path));
-        }
+        drop_leftovers(&path, &plan);
         if !plot::beside(&path).exists() {
             show(&path, args.quiet);
         }
@@ -238,6 +235,13 @@ pub fn already_there(path: &Path, plan: &Plan, fresh: bool) -> Result<Option<Str
             "it is left as it is; remove it first, or write elsewhere with -o",
         )),
         Err(error) => Err(error.into()),
+    }
+}
+
+/// Removes what a run that was killed after its map was complete had no time to remove. Tiles in use stay.
+pub fn drop_leftovers(path: &Path, plan: &Plan) {
+    if has_tiles_of(path, plan) {
+        drop(shards::clear(path));
     }
 }
 

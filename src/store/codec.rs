@@ -140,7 +140,7 @@ mod tests {
 
     #[test]
     fn bytes_come_back() {
-        let bytes: Vec<u8> = (0..5000_u32).map(|i| (i * i >> 7) as u8).collect();
+        let bytes: Vec<u8> = (0..5000_u32).map(|i| ((i * i) >> 7) as u8).collect();
         let chunk = ChunkCodec::default().encode(&bytes);
         assert_eq!(decode_bytes(&chunk, 5000), Some(bytes));
         assert_eq!(decode_bytes(&chunk, 4999), None);

@@ -156,6 +156,8 @@ fn cells_of(plan: &Plan, piece: Piece) -> u64 {
 
 /// A computed piece, or why it cannot be.
 type Sent<E> = Result<(Piece, E), ModelError>;
+/// Where the pieces for a sink arrive.
+type Arrivals<S> = Receiver<Sent<<<S as Sink>::Encoder as Encode>::Encoded>>;
 
 /// Starts the threads. They hold what they need, so that nobody has to wait for one that is slow to stop.
 fn start<S: Sink>(
@@ -164,7 +166,7 @@ fn start<S: Sink>(
     threads: usize,
     sink: &S,
     stop: &Arc<AtomicBool>,
-) -> Result<Receiver<Sent<<S::Encoder as Encode>::Encoded>>, RunError<S::Error>> {
+) -> Result<Arrivals<S>, RunError<S::Error>> {
     let pool: ThreadPool = ThreadPoolBuilder::new()
         .num_threads(threads)
         // A panic is told by the thread's missing work.
@@ -229,7 +231,7 @@ fn work<C: Encode>(
 /// Hands pieces to the sink as they come, and says how many. After a stop only those that come in time.
 fn receive<S: Sink>(
     plan: &Plan,
-    receiver: Receiver<Sent<<S::Encoder as Encode>::Encoded>>,
+    receiver: Arrivals<S>,
     sink: &mut S,
     observer: &dyn Observer,
     stop: &AtomicBool,

@@ -216,6 +216,12 @@ pub(super) fn is_claimed(folder: &Path) -> bool {
     lock.is_ok_and(|lock| matches!(lock.try_lock_shared(), Err(TryLockError::WouldBlock)))
 }
 
+/// Whether a folder has neither a manifest nor tiles, and no run works in it.
+pub(super) fn is_bare(folder: &Path) -> bool {
+    let held = listed(folder, |name| name == manifest::NAME || is_tile_file(name));
+    held.is_ok_and(|held| held.is_empty()) && !is_claimed(folder)
+}
+
 /// Writes the manifest where there is none; else compares.
 fn check_manifest(folder: &Path, asked: &Manifest) -> Result<(), StoreError> {
     let path = folder.join(manifest::NAME);

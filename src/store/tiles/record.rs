@@ -42,7 +42,7 @@ pub(super) fn digest(bytes: &[u8]) -> Digest {
 /// What a payload holds.
 pub(in super::super) enum Content<'a> {
     /// The rows of a plane of curves.
-    Curves(CurveRows),
+    Curves(Box<CurveRows>),
     /// The row of a plane of best settings.
     Best(BestRow),
     /// The compressed chunks of a tile, in the order of the map's datasets.
@@ -54,7 +54,7 @@ impl<'a> Content<'a> {
     pub fn read(piece: Piece, payload: &'a [u8]) -> Option<Self> {
         match piece {
             Piece::Curves(_) => {
-                let rows: CurveRows = whole(payload)?;
+                let rows: Box<CurveRows> = whole(payload)?;
                 rows.is_consistent().then_some(Self::Curves(rows))
             }
             Piece::Best(_) => whole(payload).map(Self::Best),

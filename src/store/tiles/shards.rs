@@ -30,11 +30,19 @@ fn shard_of(name: &str) -> Option<Shard> {
     format!("{number}/{of}").parse().ok()
 }
 
-/// The shards of `map` that have a folder, by number.
+/// The shards of `map` of which something is there, by number.
 ///
 /// # Errors
 /// When the system refuses; not where there is no folder at all.
 pub fn present(map: &Path) -> Result<Vec<(Shard, PathBuf)>, StoreError> {
+    let mut shards = all(map)?;
+    // One that was just made, or all but removed, holds nothing to speak of.
+    shards.retain(|(_, path)| !folder::is_bare(path));
+    Ok(shards)
+}
+
+/// Every folder of a shard of `map`.
+fn all(map: &Path) -> Result<Vec<(Shard, PathBuf)>, StoreError> {
     let root = root(map);
     if !root.exists() {
         return Ok(Vec::new());
@@ -67,7 +75,7 @@ pub fn manifest(folder: &Path) -> Result<Manifest, StoreError> {
 /// # Errors
 /// When a run works on one of them, something that is not slipmap's is there, or the system refuses.
 pub fn clear(map: &Path) -> Result<(), StoreError> {
-    let shards = present(map)?;
+    let shards = all(map)?;
     if let Some((_, path)) = shards.iter().find(|(_, path)| is_running(path)) {
         return Err(StoreError::Locked { path: path.clone() });
     }
@@ -77,14 +85,19 @@ pub fn clear(map: &Path) -> Result<(), StoreError> {
     remove_root(map)
 }
 
-/// Removes the folder of folders, which is empty.
+/// Removes the folder of folders, in which nothing is left.
 ///
 /// # Errors
-/// When it is not empty, or the system refuses.
+/// When something is left, or the system refuses.
 pub fn remove_root(map: &Path) -> Result<(), StoreError> {
     let root = root(map);
     if !root.exists() {
         return Ok(());
+    }
+    for (_, path) in all(map)? {
+        if folder::is_bare(&path) {
+            folder::clear(&path)?;
+        }
     }
     fs::remove_dir(&root).map_err(StoreError::io("remove", &root))
 }
