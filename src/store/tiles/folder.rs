@@ -146,7 +146,7 @@ impl Sink for TileFolder {
 
     fn pause(&mut self) -> Result<(), StoreError> {
         let due =
-            self.last_file.elapsed() >= BETWEEN_FILES || self.waiting_bytes >= BYTES_OF_A_FILE;
+            self.last_file.elapsed() >= self.save_every || self.waiting_bytes >= BYTES_OF_A_FILE;
         if due { self.flush() } else { Ok(()) }
     }
 
