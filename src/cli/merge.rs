@@ -19,7 +19,7 @@ pub struct Args {
     /// The map that `run --shard` was given, or would have been by default
     #[arg(value_name = "MAP.h5")]
     map: PathBuf,
-    /// Folders of shards, where they were computed elsewhere [default: all in MAP.h5.tiles]
+    /// Folders of shards, where they were computed elsewhere; these stay [default: all in MAP.h5.tiles]
     #[arg(value_name = "FOLDER")]
     folders: Vec<PathBuf>,
     /// Write the map here instead
@@ -39,9 +39,9 @@ pub fn main(args: &Args) -> Result<(), Failure> {
     if folders.is_empty() {
         return nothing_to_merge(args, target);
     }
-    let plan = plan_of(&folders[0])?;
+    let (_, plan) = shards::plan(&folders[0])?;
     if let Some(remark) = run::already_there(target, &plan, args.fresh)? {
-        run::drop_leftovers(target, &plan);
+        drop(shards::remove_root(target));
         return say::result(format_args!(
             "{} is already complete{remark}",
             target.display()
@@ -54,9 +54,18 @@ pub fn main(args: &Args) -> Result<(), Failure> {
         true => Missing::Leave,
         false => Missing::Refuse,
     };
-    let merged = map_maker::merge(&plan, &folders, target, &provenance, (missing, &observer));
+    // What was computed elsewhere belongs to whoever brought it.
+    let keep = args.partial || !args.folders.is_empty();
+    let merged = map_maker::merge(
+        &plan,
+        &folders,
+        target,
+        &provenance,
+        (missing, keep),
+        &observer,
+    );
     let assembled = merged.map_err(|error| failure(error, &args.map))?;
-    if assembled.pieces_missing == 0 && args.folders.is_empty() {
+    if assembled.pieces_missing == 0 && !keep {
         shards::remove_root(&args.map)?;
     }
     tell(target, &plan, &assembled)?;
@@ -66,7 +75,14 @@ pub fn main(args: &Args) -> Result<(), Failure> {
 
 fn folders(args: &Args) -> Result<Vec<PathBuf>, Failure> {
     if !args.folders.is_empty() {
-        return Ok(args.folders.clone());
+        let mut folders = Vec::new();
+        for folder in &args.folders {
+            let same = |other: &PathBuf| other.canonicalize().ok() == folder.canonicalize().ok();
+            if !folders.iter().any(same) {
+                folders.push(folder.clone());
+            }
+        }
+        return Ok(folders);
     }
     let present = shards::present(&args.map)?;
     Ok(present.into_iter().map(|(_, path)| path).collect())
@@ -84,16 +100,6 @@ fn nothing_to_merge(args: &Args, target: &Path) -> Result<(), Failure> {
         ),
         "`slipmap run SWEEP.toml -o MAP.h5 --shard I/N` computes one; folders from elsewhere are named after MAP.h5",
     ))
-}
-
-fn plan_of(folder: &Path) -> Result<Plan, Failure> {
-    let manifest = shards::manifest(folder)?;
-    manifest.read_plan().map_err(|error| {
-        Failure::from(StoreError::Manifest {
-            path: folder.to_owned(),
-            why: error.message,
-        })
-    })
 }
 
 fn tell(target: &Path, plan: &Plan, assembled: &Assembled) -> Result<(), Failure> {

@@ -19,6 +19,7 @@ mod vc;
 mod verify;
 
 use std::process::ExitCode;
+use std::sync::Arc;
 
 use clap::{Parser, Subcommand};
 
@@ -61,7 +62,11 @@ enum Command {
 
 /// Runs the command line of this process.
 pub fn main() -> ExitCode {
-    let result = match Cli::parse().command {
+    let command = Cli::parse().command;
+    // Caught and not looked at: a limit on file sizes then fails the write instead of ending the process. Where it cannot be
+    // caught, such a limit ends the process, no more.
+    let _ = signal_hook::flag::register(signal_hook::consts::SIGXFSZ, Arc::default());
+    let result = match command {
         Command::Run(args) => run::main(&args),
         Command::Merge(args) => merge::main(&args),
         Command::Status(args) => status::main(&args),

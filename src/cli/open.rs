@@ -1,11 +1,12 @@
 //! Opens a map for a command that looks at it: the map itself, or what is computed of it so far.
 
 use std::path::Path;
+use std::sync::atomic::AtomicBool;
 
 use slipmap::report::numbers::grouped;
 use slipmap::store::assembly::{Missing, assemble};
 use slipmap::store::tiles::{TileReader, shards};
-use slipmap::store::{MapFile, Output, StoreError};
+use slipmap::store::{MapFile, Output};
 use slipmap::sweep::Pieces;
 
 use super::failure::Failure;
@@ -14,18 +15,19 @@ use super::say;
 
 /// The map at `path`. Where there is none yet, what its tiles hold, put together in a file of its own that is gone afterwards.
 pub fn open(path: &Path) -> Result<MapFile, Failure> {
-    let present = match path.exists() {
-        true => Vec::new(),
-        false => shards::present(path).unwrap_or_default(),
+    let held = path.exists().then(|| MapFile::open(path)).transpose()?;
+    let present = match held.as_ref().is_none_or(MapFile::is_partial) {
+        true => shards::present(path).unwrap_or_default(),
+        false => Vec::new(),
     };
     let Some((_, first)) = present.first() else {
-        return Ok(MapFile::open(path)?);
+        let map = held.map_or_else(|| MapFile::open(path), Ok)?;
+        if map.is_partial() {
+            tell_partial(path, map.cells_missing(), map.cells());
+        }
+        return Ok(map);
     };
-    let manifest = shards::manifest(first)?;
-    let plan = manifest.read_plan().map_err(|error| StoreError::Manifest {
-        path: first.clone(),
-        why: error.message,
-    })?;
+    let (_, plan) = shards::plan(first)?;
     let mut source = Vec::new();
     for (_, folder) in &present {
         let layout = shards::manifest(folder)?.layout();
@@ -36,21 +38,22 @@ pub fn open(path: &Path) -> Result<MapFile, Failure> {
         path.file_name().unwrap_or_default().display()
     ));
     let output = Output::claim(&file)?;
-    let assembled = assemble(
-        &plan,
-        output,
-        &provenance("merge", path),
-        &mut source,
-        Missing::Leave,
-    )?;
-    say::remark(format_args!(
-        "{} is not complete: {} of {} cells are there",
-        path.display(),
-        grouped(plan.cells() - assembled.cells_missing),
-        grouped(plan.cells()),
-    ));
+    let how = (Missing::Leave, &AtomicBool::new(false));
+    let assembled = assemble(&plan, output, &provenance("merge", path), &mut source, how)?;
+    tell_partial(path, assembled.cells_missing, plan.cells());
     let map = MapFile::open(&file);
     // The open file outlives its name.
     std::fs::remove_file(&file)?;
     Ok(map?)
+}
+
+fn tell_partial(path: &Path, missing: u64, cells: u64) {
+    let (path, done, cells) = (
+        path.display(),
+        grouped(cells - missing.min(cells)),
+        grouped(cells),
+    );
+    say::remark(format_args!(
+        "{path} is not complete: {done} of {cells} cells are there"
+    ));
 }

@@ -11,6 +11,7 @@ use slipmap::sweep::Plan;
 use slipmap::sweep::best::{best_of_plane, best_planes};
 use slipmap::sweep::boundaries::{planes, trace_plane};
 use slipmap::sweep::engine::{Computed, Encode, Worker};
+use slipmap::sweep::pieces::spread;
 
 use super::failure::Failure;
 use super::run::{default_threads, parse_threads};
@@ -19,6 +20,8 @@ use super::sweep_file::read_plan;
 /// A sample ends after so long, once it has this many pieces; or after the longest time, whatever it has.
 const SAMPLE: Duration = Duration::from_millis(500);
 const ENOUGH: usize = 12;
+/// What a run takes besides its tiles, the picture included.
+const BASE_MEMORY: u64 = 80 << 20;
 const LONGEST_SAMPLE: Duration = Duration::from_secs(6);
 
 #[derive(Debug, clap::Args)]
@@ -71,7 +74,7 @@ pub fn main(args: &Args) -> Result<(), Failure> {
         bytes(stored as u64),
     )?;
     let in_memory = cells * plan.bytes_per_cell() * 4 * threads as u64;
-    writeln!(out, "memory      about {}", bytes(in_memory + (30 << 20)))?;
+    writeln!(out, "memory      about {}", bytes(in_memory + BASE_MEMORY))?;
     let (total, spread) = costs.seconds();
     let threads_told = threads as f64;
     writeln!(
@@ -105,7 +108,7 @@ impl Sample {
             if elapsed > LONGEST_SAMPLE || (elapsed > SAMPLE && values.len() >= ENOUGH) {
                 break;
             }
-            let number = (spread(values.len()) * of as f64) as usize;
+            let number = (spread(values.len() as u64) * of as f64) as usize;
             values.push(measured(number)?);
         }
         Ok(Self { values, of })
@@ -186,9 +189,4 @@ impl Costs {
         let squares: f64 = all.iter().map(|s| s.spread().powi(2)).sum();
         (all.iter().map(|s| s.total()).sum(), squares.sqrt())
     }
-}
-
-/// A number in [0, 1) for each sample: multiples of the golden ratio fall evenly, wherever the sampling ends.
-fn spread(sample: usize) -> f64 {
-    (sample as f64 * 0.618_033_988_749_895).fract()
 }

@@ -43,7 +43,7 @@ pub struct Args {
     /// Compute only every N-th piece, from the I-th on; `slipmap merge` puts the shards together
     #[arg(long, value_name = "I/N")]
     shard: Option<Shard>,
-    /// Start over, replacing a map that is already there and dropping what an earlier run computed
+    /// Start over, replacing a map that is already there and dropping what an earlier run, or this shard, computed
     #[arg(long)]
     fresh: bool,
     /// Save what is computed every so many seconds
@@ -82,7 +82,7 @@ pub fn main(args: &Args) -> Result<(), Failure> {
     let plan = read_plan(&args.sweep)?;
     let path = output_path(args.output.as_deref(), &args.sweep, "map")?;
     if let Some(remark) = already_there(&path, &plan, args.fresh)? {
-        drop_leftovers(&path, &plan);
+        drop(shards::remove_root(&path));
         if !plot::beside(&path).exists() {
             show(&path, args.quiet);
         }
@@ -91,8 +91,10 @@ pub fn main(args: &Args) -> Result<(), Failure> {
             path.display()
         ));
     }
-    if args.fresh {
-        shards::clear(&path)?;
+    match args.shard.filter(|_| args.fresh) {
+        Some(shard) => shards::clear_shard(&path, shard)?,
+        None if args.fresh => shards::clear(&path)?,
+        None => {}
     }
     let signals = Signals::catch()?;
     let progress = Progress::new(args.quiet);
@@ -214,12 +216,12 @@ pub fn already_there(path: &Path, plan: &Plan, fresh: bool) -> Result<Option<Str
     }
     match MapFile::open(path) {
         Ok(_) if fresh => Ok(None),
+        // It is being computed again: an earlier run had --fresh.
+        Ok(_) if has_tiles_of(path, plan) => Ok(None),
         Ok(map) if map.root_text(root::PLAN_HASH).as_deref() == Some(&plan.hash()) => {
             // One that was put together before its time is replaced by the complete one.
             Ok((!map.is_partial()).then(|| what_differs(&map, plan)))
         }
-        // It is being replaced: an earlier run had --fresh.
-        Ok(_) if has_tiles_of(path, plan) => Ok(None),
         Ok(_) => Err(Failure::bad_input_with_help(
             format!(
                 "{} is already there: the map of another sweep",
@@ -235,13 +237,6 @@ pub fn already_there(path: &Path, plan: &Plan, fresh: bool) -> Result<Option<Str
             "it is left as it is; remove it first, or write elsewhere with -o",
         )),
         Err(error) => Err(error.into()),
-    }
-}
-
-/// Removes what a run that was killed after its map was complete had no time to remove. Tiles in use stay.
-pub fn drop_leftovers(path: &Path, plan: &Plan) {
-    if has_tiles_of(path, plan) {
-        drop(shards::clear(path));
     }
 }
 
@@ -272,7 +267,9 @@ fn failure(
 ) -> Failure {
     observers.0.clear();
     observers.1.ended(&error.to_string());
+    let nothing = shards::present(path).unwrap_or_default().is_empty();
     let kept = match fresh {
+        _ if nothing => "nothing was computed yet",
         true => "what is computed is kept, the same command without --fresh goes on from there",
         false => "what is computed is kept, the same command goes on from there",
     };
@@ -300,7 +297,7 @@ struct Signals {
 
 impl Signals {
     fn catch() -> Result<Self, Failure> {
-        use signal_hook::consts::{SIGINT, SIGTERM, SIGXFSZ};
+        use signal_hook::consts::{SIGINT, SIGTERM};
         use signal_hook::flag;
         let (stop, code) = (
             Arc::new(AtomicBool::new(false)),
@@ -310,8 +307,6 @@ impl Signals {
             let message = format!("cannot catch signals: {error}");
             Failure::failed(message)
         };
-        // Caught and not looked at: a limit on file sizes then fails the write instead of ending the process.
-        flag::register(SIGXFSZ, Arc::new(AtomicBool::new(false))).map_err(refused)?;
         for (signal, exit_code) in [(SIGINT, 130), (SIGTERM, 143)] {
             flag::register_conditional_shutdown(signal, exit_code, Arc::clone(&stop))
                 .and_then(|_| flag::register_usize(signal, Arc::clone(&code), exit_code as usize))

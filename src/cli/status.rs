@@ -3,7 +3,7 @@
 use std::fs::File;
 use std::io::{BufRead, BufReader, Write};
 use std::path::{Path, PathBuf};
-use std::time::{Duration, SystemTime};
+use std::time::SystemTime;
 
 use serde_json::{Value, json};
 use slipmap::linear::status::FLAGS;
@@ -61,7 +61,7 @@ struct ShardStatus {
 impl ShardStatus {
     fn seconds_left(&self) -> Option<f64> {
         let rate = self.rate.filter(|rate| *rate > 0.0)?;
-        Some((self.cells - self.cells_done) as f64 / rate)
+        Some(self.cells.saturating_sub(self.cells_done) as f64 / rate)
     }
 }
 
@@ -89,7 +89,7 @@ fn of_tiles(map: &Path, survey: &Survey) -> Status {
         rate: rate(map, found),
     };
     Status {
-        complete: false,
+        complete: MapFile::open(map).is_ok_and(|map| !map.is_partial()),
         cells: survey.plan.cells(),
         cells_done: survey.cells_done,
         statuses: survey.statuses,
@@ -111,9 +111,8 @@ fn rate(map: &Path, found: &ShardSurvey) -> Option<f64> {
     });
     let (time, left) = started.last()?;
     let since = humantime::parse_rfc3339(&time).ok()?;
-    let elapsed = SystemTime::now()
-        .duration_since(since)
-        .unwrap_or(Duration::ZERO);
+    // A clock that was set back tells no rate.
+    let elapsed = SystemTime::now().duration_since(since).ok()?;
     let computed = found
         .cells_done
         .saturating_sub(found.cells.saturating_sub(left));
@@ -164,7 +163,9 @@ impl Status {
         let mut out = std::io::stdout().lock();
         let mut row = |name: &str, text: String| writeln!(out, "{name:<12} {text}");
         let state = match (self.complete, self.running()) {
-            (true, _) => "complete",
+            (true, _) if self.shards.is_empty() => "complete",
+            (true, true) => "complete, and being computed again",
+            (true, false) => "complete; what is computed of another one is told here",
             (false, true) => "running",
             (false, false) if self.cells_done == self.cells && self.shards.len() > 1 => {
                 "all shards are complete; `slipmap merge` makes the map"

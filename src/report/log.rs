@@ -83,6 +83,7 @@ pub struct Log {
     last_line: Cell<Instant>,
     computed: Cell<u64>,
     left: Cell<u64>,
+    begun: Cell<bool>,
 }
 
 /// The log of a shard of `map`.
@@ -118,11 +119,16 @@ impl Log {
             last_line: Cell::new(Instant::now()),
             computed: Cell::new(0),
             left: Cell::new(0),
+            begun: Cell::new(false),
         }
     }
 
     /// The run ends before its time.
     pub fn ended(&self, why: &str) {
+        // One that was refused has no part in the story.
+        if !self.begun.get() {
+            return;
+        }
         self.put(Entry::Ended {
             why: why.to_owned(),
             cells_computed: self.computed.get(),
@@ -135,12 +141,13 @@ impl Log {
             entry,
         };
         let mut file = self.file.borrow_mut();
-        let written = file.as_mut().zip(serde_json::to_string(&line).ok());
-        if let Some((file, text)) = written
-            // One write a line: two runs do not mix theirs.
-            && file.write_all(format!("{text}\n").as_bytes()).is_err()
-        {
-            self.file.replace(None);
+        let text = serde_json::to_string(&line).unwrap_or_default();
+        // One write a line: two runs do not mix theirs.
+        let written = file
+            .as_mut()
+            .map(|file| file.write_all(format!("{text}\n").as_bytes()));
+        if let Some(Err(_)) = written {
+            *file = None;
         }
     }
 
@@ -171,6 +178,7 @@ impl Observer for Log {
                 left,
                 threads,
             } => {
+                self.begun.set(true);
                 self.start.set(Instant::now());
                 self.computed.set(0);
                 self.left.set(*left);

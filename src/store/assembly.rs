@@ -1,5 +1,7 @@
 //! From the pieces of a sweep to its map.
 
+use std::sync::atomic::{AtomicBool, Ordering};
+
 use super::best_writer::BestRow;
 use super::error::StoreError;
 use super::map_writer::{MapWriter, Provenance};
@@ -40,20 +42,23 @@ pub struct Assembled {
 /// Writes the map of `plan` from the pieces that `source` gives, in the order of their numbers: equal pieces make equal files.
 ///
 /// # Errors
-/// When a piece is damaged, when one is missing and has to be there, or when the system or the library refuses; nothing then
+/// When it is to stop, when a piece is damaged, when one is missing and has to be there, or when the system or the library refuses; nothing then
 /// stands under the map's name that was not there before.
 pub fn assemble(
     plan: &Plan,
     output: Output,
     provenance: &Provenance,
     source: &mut dyn Source,
-    missing: Missing,
+    (missing, stop): (Missing, &AtomicBool),
 ) -> Result<Assembled, StoreError> {
     let mut writer = MapWriter::create(plan, output, provenance)?;
     let mut assembled = Assembled::default();
     let (curve_planes, best_planes) = (planes(plan), best_planes(plan));
     let pieces = Pieces::of(plan);
     for piece in (0..pieces.total()).map(|place| pieces.at(place)) {
+        if stop.load(Ordering::Relaxed) {
+            return Err(StoreError::Stopped);
+        }
         let Some(payload) = source.read(piece)? else {
             assembled.pieces_missing += 1;
             match piece {

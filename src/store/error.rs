@@ -84,6 +84,9 @@ pub enum StoreError {
         /// Which one.
         piece: Piece,
     },
+    /// It was asked to stop.
+    #[error("interrupted")]
+    Stopped,
     /// Pieces are missing.
     #[error("{pieces} of {of} pieces of the map are missing")]
     Incomplete {

@@ -16,7 +16,7 @@ use super::tiles::RecordEncoder;
 use super::tiles::record::Content;
 use crate::linear::status::{DISAGREE, FLAGS};
 use crate::sweep::engine::{Computed, Encode, STATUS_FILL, Worker};
-use crate::sweep::pieces::Piece;
+use crate::sweep::pieces::{Piece, spread};
 use crate::sweep::plan::{Plan, in_hexadecimal};
 use crate::sweep::second_look::{Answer, Question, Stored, second_look};
 use crate::sweep::{Field, SweepSpec};
@@ -247,11 +247,6 @@ fn check_statuses(map: &MapFile, report: &mut Report) -> Result<(), StoreError> 
     Ok(())
 }
 
-/// A number in [0, 1) for each sample: multiples of the golden ratio fall evenly.
-fn spread(sample: u64) -> f64 {
-    (sample as f64 * 0.618_033_988_749_895).fract()
-}
-
 fn look_at_cells(
     map: &MapFile,
     plan: &Plan,
@@ -277,8 +272,12 @@ fn look_at_cells(
             status,
             value: &value,
         };
-        report.cells += 1;
         match second_look(plan, &index, &stored) {
+            Ok(answers) if answers.is_empty() => {
+                let remark = "no second method looks at the fields of this map";
+                report.remarks.push(remark.to_owned());
+                break;
+            }
             Ok(answers) => tally(plan, &index, &answers, report),
             Err(error) => report.remarks.push(format!("cell {index:?}: {error}")),
         }
@@ -287,6 +286,7 @@ fn look_at_cells(
 }
 
 fn tally(plan: &Plan, index: &[usize], answers: &[(Question, Answer)], report: &mut Report) {
+    report.cells += 1;
     for &(question, answer) in answers {
         let place = report.answers.iter().position(|(q, _)| *q == question);
         let place = place.unwrap_or_else(|| {

@@ -69,7 +69,8 @@ pub fn make(
             Some(output) => output,
             None => Output::claim(job.map).map_err(RunError::Sink)?,
         };
-        match assemble(plan, claim, job.provenance, &mut folder, Missing::Refuse) {
+        let how = (Missing::Refuse, &**stop);
+        match assemble(plan, claim, job.provenance, &mut folder, how) {
             Ok(assembled) => {
                 folder
                     .remove()
@@ -82,6 +83,7 @@ pub fn make(
             {
                 tell(&folder.scan().map_err(RunError::Sink)?, observer);
             }
+            Err(StoreError::Stopped) => return Err(RunError::Interrupted),
             Err(error) => return Err(RunError::Sink(error)),
         }
     }
@@ -103,7 +105,7 @@ pub fn make_shard(
     compute(plan, job, shard, &mut folder, (observer, stop))
 }
 
-/// Puts a map together from the folders of its shards; removes them where the map is complete.
+/// Puts a map together from the folders of its shards. They are removed only where `keep` is not set and the map is complete.
 ///
 /// # Errors
 /// When a piece is missing and has to be there, folders do not belong together, or the system refuses.
@@ -112,14 +114,16 @@ pub fn merge(
     folders: &[PathBuf],
     map: &Path,
     provenance: &Provenance,
-    (missing, observer): (Missing, &dyn Observer),
+    (missing, keep): (Missing, bool),
+    observer: &dyn Observer,
 ) -> Result<Assembled, StoreError> {
     let output = Output::claim(map)?;
     let expected = Manifest::of(plan, Shard::WHOLE, provenance);
     let (mut source, damaged) = Shards::claim(folders, &expected, Pieces::of(plan))?;
     tell(&damaged, observer);
-    let assembled = assemble(plan, output, provenance, &mut source, missing)?;
-    if assembled.pieces_missing == 0 {
+    let how = (missing, &AtomicBool::new(false));
+    let assembled = assemble(plan, output, provenance, &mut source, how)?;
+    if assembled.pieces_missing == 0 && !keep {
         source.remove()?;
     }
     Ok(assembled)
@@ -139,7 +143,8 @@ pub fn make_in_memory(
     let mut pieces = InMemory::default();
     let stop = Arc::new(AtomicBool::new(false));
     engine::run(plan, Todo::all(plan), threads, &mut pieces, &Silent, &stop)?;
-    assemble(plan, output, provenance, &mut pieces, Missing::Refuse).map_err(RunError::Sink)
+    let how = (Missing::Refuse, &*stop);
+    assemble(plan, output, provenance, &mut pieces, how).map_err(RunError::Sink)
 }
 
 fn claimed(
@@ -149,6 +154,7 @@ fn claimed(
     observer: &dyn Observer,
 ) -> Result<TileFolder, StoreError> {
     let manifest = Manifest::of(plan, shard, job.provenance);
+    shards::make_root(job.map)?;
     let path = shards::folder_of(job.map, shard);
     let (mut folder, damaged) = TileFolder::claim(&path, &manifest, Pieces::of(plan))?;
     folder.save_every(job.save_every);

@@ -18,6 +18,7 @@ mod boundary_writer;
 mod codec;
 mod curve_rows;
 mod error;
+mod lock;
 pub mod map_check;
 pub mod map_file;
 pub mod map_maker;

@@ -1,9 +1,10 @@
 //! A map's way to its final name: a lock beside it, a temporary name, one rename at the end.
 
-use std::fs::{self, File, OpenOptions, TryLockError};
+use std::fs::{self, File};
 use std::path::{Path, PathBuf};
 
 use super::error::StoreError;
+use super::lock;
 
 /// The place of a map that is being written. Dropped before [`Output::commit`], it leaves nothing behind.
 #[derive(Debug)]
@@ -31,43 +32,23 @@ impl Output {
             return Err(StoreError::io("write", path)(source));
         }
         let lock_path = beside(path, "lock");
-        loop {
-            if lock_path.symlink_metadata().is_ok_and(|m| !m.is_file()) {
-                let source = std::io::Error::from(std::io::ErrorKind::AlreadyExists);
-                return Err(StoreError::io("lock", &lock_path)(source));
-            }
-            let lock = OpenOptions::new()
-                .create(true)
-                .truncate(false)
-                .write(true)
-                .open(&lock_path)
-                .map_err(StoreError::io("write", path))?;
-            match lock.try_lock() {
-                Ok(()) => {}
-                Err(TryLockError::WouldBlock) => {
-                    return Err(StoreError::Locked {
-                        path: path.to_owned(),
-                    });
-                }
-                Err(TryLockError::Error(source)) => {
-                    return Err(StoreError::io("lock", &lock_path)(source));
-                }
-            }
-            // Another run may have removed the file between opening and locking: then the lock is on nothing.
-            if still_there(&lock, &lock_path) {
-                let part = beside(path, "part");
-                // What a run that died left, or a link: the file that is written to is always a new one.
-                if part.symlink_metadata().is_ok() {
-                    fs::remove_file(&part).map_err(StoreError::io("replace", &part))?;
-                }
-                return Ok(Self {
-                    path: path.to_owned(),
-                    part,
-                    lock_path,
-                    lock: Some(lock),
-                });
-            }
+        let lock = lock::acquire(&lock_path).map_err(StoreError::io("lock", &lock_path))?;
+        let Some(lock) = lock else {
+            return Err(StoreError::Locked {
+                path: path.to_owned(),
+            });
+        };
+        let part = beside(path, "part");
+        // What a run that died left, or a link: the file that is written to is always a new one.
+        if part.symlink_metadata().is_ok() {
+            fs::remove_file(&part).map_err(StoreError::io("replace", &part))?;
         }
+        Ok(Self {
+            path: path.to_owned(),
+            part,
+            lock_path,
+            lock: Some(lock),
+        })
     }
 
     /// The final name.
@@ -105,20 +86,6 @@ impl Drop for Output {
         let _ = fs::remove_file(&self.lock_path);
         self.lock = None;
     }
-}
-
-#[cfg(unix)]
-fn still_there(lock: &File, path: &Path) -> bool {
-    use std::os::unix::fs::MetadataExt;
-    match (lock.metadata(), fs::metadata(path)) {
-        (Ok(held), Ok(named)) => held.ino() == named.ino() && held.dev() == named.dev(),
-        _ => false,
-    }
-}
-
-#[cfg(not(unix))]
-fn still_there(_: &File, path: &Path) -> bool {
-    path.exists()
 }
 
 #[cfg(test)]

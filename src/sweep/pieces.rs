@@ -221,9 +221,17 @@ impl Todo {
     }
 }
 
+/// A number in [0, 1) for each sample: multiples of the golden section fall evenly, wherever the sampling ends.
+#[must_use]
+pub fn spread(sample: u64) -> f64 {
+    (sample as f64 * GOLDEN).fract()
+}
+
+const GOLDEN: f64 = 0.618_033_988_749_895;
+
 /// A number without common factor with `total`, near its golden section: its multiples visit every place once.
 fn stride(total: u64) -> u64 {
-    let golden = (total as f64 * 0.618_033_988_749_895) as u64;
+    let golden = (total as f64 * GOLDEN) as u64;
     (golden.max(1)..).find(|&n| gcd(n, total) == 1).unwrap_or(1)
 }
 

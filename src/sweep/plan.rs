@@ -31,6 +31,8 @@ const _: () = assert!(BLOCK_OF_DELAYS.is_multiple_of(BLOCK_OF_VC));
 const MOST_CELLS: u64 = 10_000_000_000_000;
 /// More tiles than this are refused: even their list would fill a machine's memory.
 const MOST_TILES: usize = 100_000_000;
+/// More planes of curves and best settings than this are refused.
+const MOST_PLANES: u64 = 1_000_000;
 /// Planes up to which crossing curves are traced without being asked for.
 const PLANES_TRACED_UNASKED: u64 = 1000;
 
@@ -96,12 +98,20 @@ impl Plan {
                 tiles.tile_cells(),
             )));
         }
-        Ok(Self {
+        let plan = Self {
             tiles,
             tau_axis,
             boundary_plane,
             spec,
-        })
+        };
+        let planes = plan.boundary_planes() + plan.best_planes();
+        if planes > MOST_PLANES {
+            return Err(SpecError::whole(format!(
+                "curves or best settings in {planes} planes; at most {MOST_PLANES} are allowed: leave out boundaries, \
+                 degree_of_stability and best, or split the sweep"
+            )));
+        }
+        Ok(plan)
     }
 
     /// Length of each axis, in the order of the map's dimensions.

@@ -1,11 +1,12 @@
 //! One shard's folder, claimed by the process that fills it.
 
-use std::fs::{self, File, OpenOptions, TryLockError};
-use std::io::BufWriter;
+use std::fs::{self, File};
+use std::io::{BufWriter, ErrorKind};
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
 use super::super::error::StoreError;
+use super::super::lock;
 use super::super::source::Source;
 use super::format;
 use super::manifest::{self, Manifest};
@@ -52,7 +53,7 @@ impl TileFolder {
         manifest: &Manifest,
         pieces: Pieces,
     ) -> Result<(Self, Vec<Damaged>), StoreError> {
-        fs::create_dir_all(path).map_err(StoreError::io("create", path))?;
+        make(path)?;
         refuse_foreign(path)?;
         let lock = lock(path)?;
         check_manifest(path, manifest)?;
@@ -110,7 +111,7 @@ impl TileFolder {
     /// # Errors
     /// When the system refuses, also because something else is in the folder.
     pub fn remove(self) -> Result<(), StoreError> {
-        clear(self.reader.path())
+        clear_claimed(self.reader.path())
     }
 
     fn write_file(&mut self) -> Result<(), StoreError> {
@@ -195,31 +196,20 @@ pub(super) fn rename_synced(part: &Path, path: &Path) -> Result<(), StoreError> 
 /// Claims the folder.
 fn lock(folder: &Path) -> Result<File, StoreError> {
     let path = folder.join(LOCK);
-    let open = OpenOptions::new()
-        .create(true)
-        .truncate(false)
-        .write(true)
-        .open(&path);
-    let lock = open.map_err(StoreError::io("write", &path))?;
-    match lock.try_lock() {
-        Ok(()) => Ok(lock),
-        Err(TryLockError::WouldBlock) => Err(StoreError::Locked {
-            path: folder.to_owned(),
-        }),
-        Err(TryLockError::Error(source)) => Err(StoreError::io("lock", &path)(source)),
-    }
+    let lock = lock::acquire(&path).map_err(StoreError::io("lock", &path))?;
+    lock.ok_or_else(|| StoreError::Locked {
+        path: folder.to_owned(),
+    })
 }
 
 /// Whether a run works in the folder at this moment.
 pub(super) fn is_claimed(folder: &Path) -> bool {
-    let lock = File::open(folder.join(LOCK));
-    lock.is_ok_and(|lock| matches!(lock.try_lock_shared(), Err(TryLockError::WouldBlock)))
+    lock::is_held(&folder.join(LOCK))
 }
 
-/// Whether a folder has neither a manifest nor tiles, and no run works in it.
+/// Whether a folder has no manifest, and no run works in it: it was just made, or is being removed.
 pub(super) fn is_bare(folder: &Path) -> bool {
-    let held = listed(folder, |name| name == manifest::NAME || is_tile_file(name));
-    held.is_ok_and(|held| held.is_empty()) && !is_claimed(folder)
+    !folder.join(manifest::NAME).exists() && !is_claimed(folder)
 }
 
 /// Writes the manifest where there is none; else compares.
@@ -243,14 +233,15 @@ fn check_manifest(folder: &Path, asked: &Manifest) -> Result<(), StoreError> {
 /// Number of a tile file's name.
 fn file_number(name: &str) -> Option<u64> {
     let digits = name.strip_prefix(PREFIX)?.strip_suffix(SUFFIX)?;
-    let whole = digits.len() == DIGITS && digits.bytes().all(|b| b.is_ascii_digit());
+    let whole = digits.len() >= DIGITS && digits.bytes().all(|b| b.is_ascii_digit());
     digits.parse().ok().filter(|_| whole)
 }
 
 /// The largest number of a tile file that is there.
 fn last_number(folder: &Path) -> Result<Option<u64>, StoreError> {
-    let last = listed(folder, is_tile_file)?.pop();
-    Ok(last.and_then(|path| file_number(path.file_name()?.to_str()?)))
+    let files = listed(folder, is_tile_file)?;
+    let number = |path: &PathBuf| file_number(path.file_name()?.to_str()?);
+    Ok(files.iter().filter_map(number).max())
 }
 
 pub(super) fn is_tile_file(name: &str) -> bool {
@@ -282,6 +273,14 @@ pub(super) fn listed(
     Ok(paths)
 }
 
+/// Makes a folder, if it is not there.
+pub(super) fn make(folder: &Path) -> Result<(), StoreError> {
+    match fs::create_dir(folder) {
+        Err(error) if error.kind() == ErrorKind::AlreadyExists => Ok(()),
+        made => made.map_err(StoreError::io("create", folder)),
+    }
+}
+
 fn refuse_foreign(folder: &Path) -> Result<(), StoreError> {
     let all = fs::read_dir(folder).map_err(StoreError::io("read", folder))?;
     for entry in all {
@@ -297,18 +296,27 @@ fn remove(path: &Path) -> Result<(), StoreError> {
     fs::remove_file(path).map_err(StoreError::io("remove", path))
 }
 
-/// Removes the folder with everything of slipmap's in it; a folder that is not there is fine.
+/// Removes the folder with everything of slipmap's in it.
 pub(super) fn clear(folder: &Path) -> Result<(), StoreError> {
-    if !folder.exists() {
-        return Ok(());
-    }
     refuse_foreign(folder)?;
-    // The manifest last: what is left of a removal that was cut short is still known for what it is.
-    for path in listed(folder, |name| is_ours(name) && name != manifest::NAME)? {
+    let lock = lock(folder)?;
+    clear_claimed(folder)?;
+    drop(lock);
+    Ok(())
+}
+
+/// The same of a folder that this process has claimed.
+fn clear_claimed(folder: &Path) -> Result<(), StoreError> {
+    refuse_foreign(folder)?;
+    let manifest = folder.join(manifest::NAME);
+    if manifest.exists() {
+        // Without its manifest the folder is on its way out, and nobody takes what is left for half a map.
+        let part = folder.join(format!(".{}{PART}", manifest::NAME));
+        rename_synced(&manifest, &part)?;
+    }
+    for path in listed(folder, |name| is_ours(name) && name != LOCK)? {
         remove(&path)?;
     }
-    for path in listed(folder, |name| name == manifest::NAME)? {
-        remove(&path)?;
-    }
+    remove(&folder.join(LOCK))?;
     fs::remove_dir(folder).map_err(StoreError::io("remove", folder))
 }

@@ -9,6 +9,7 @@ use super::folder::{self, TileFolder};
 use super::manifest::{self, Manifest};
 use super::reader::Damaged;
 use crate::sweep::pieces::{Piece, Pieces, Shard};
+use crate::sweep::plan::Plan;
 
 /// The folder beside `map` in which the folders of its shards are.
 #[must_use]
@@ -56,6 +57,21 @@ fn all(map: &Path) -> Result<Vec<(Shard, PathBuf)>, StoreError> {
     Ok(shards)
 }
 
+/// The manifest of a shard's folder, and the plan that it is of.
+///
+/// # Errors
+/// When there is no manifest, or it is damaged.
+pub fn plan(folder: &Path) -> Result<(Manifest, Plan), StoreError> {
+    let manifest = manifest(folder)?;
+    match manifest.read_plan() {
+        Ok(plan) => Ok((manifest, plan)),
+        Err(error) => Err(StoreError::Manifest {
+            path: folder.to_owned(),
+            why: error.message,
+        }),
+    }
+}
+
 /// Whether a run works on a shard at this moment.
 #[must_use]
 pub fn is_running(folder: &Path) -> bool {
@@ -83,6 +99,36 @@ pub fn clear(map: &Path) -> Result<(), StoreError> {
         folder::clear(path)?;
     }
     remove_root(map)
+}
+
+/// Removes the tiles of one shard of `map`, if there are any.
+///
+/// # Errors
+/// As [`clear`].
+pub fn clear_shard(map: &Path, shard: Shard) -> Result<(), StoreError> {
+    let path = folder_of(map, shard);
+    if path.exists() {
+        folder::clear(&path)
+    } else {
+        Ok(())
+    }
+}
+
+/// Makes the folder in which those of the shards are, if it is not there.
+///
+/// # Errors
+/// When something else is there, or in it, or the system refuses.
+pub fn make_root(map: &Path) -> Result<(), StoreError> {
+    let root = root(map);
+    folder::make(&root)?;
+    let foreign = |path: PathBuf| Err(StoreError::Foreign { path });
+    if !root.symlink_metadata().is_ok_and(|m| m.is_dir()) {
+        return foreign(root);
+    }
+    match folder::listed(&root, |name| shard_of(name).is_none())?.pop() {
+        Some(path) => foreign(path),
+        None => Ok(()),
+    }
 }
 
 /// Removes the folder of folders, in which nothing is left.

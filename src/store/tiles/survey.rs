@@ -68,12 +68,7 @@ impl Survey {
         let Some((_, first)) = present.first() else {
             return Ok(None);
         };
-        let manifest = shards::manifest(first)?;
-        let damaged = |error: crate::sweep::SpecError| StoreError::Manifest {
-            path: first.clone(),
-            why: error.message,
-        };
-        let plan = manifest.read_plan().map_err(damaged)?;
+        let (manifest, plan) = shards::plan(first)?;
         let pieces = Pieces::of(&plan);
         let mut survey = Self {
             plan,
@@ -162,7 +157,8 @@ impl Survey {
                 continue;
             };
             let (cells, place) = (self.cells(entry.piece), place as usize);
-            if !std::mem::replace(&mut seen.here[place], true) {
+            let own = found.shard.holds(place as u64);
+            if !std::mem::replace(&mut seen.here[place], true) && own {
                 found.pieces_done += 1;
                 found.cells_done += cells;
             }
