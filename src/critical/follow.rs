@@ -2,6 +2,7 @@
 
 use super::Problem;
 use super::stops::{Stops, Waiting};
+use super::trend::{expected_way, jumps, vanishes, ways};
 use crate::slip::motion::{Accuracy, Motion};
 use crate::slip::outcome::{Limits, Outcome, Summary, follow};
 
@@ -75,7 +76,7 @@ pub struct Sustained {
 
 impl Sustained {
     /// Whether it and `other` are periodic with as many slips in a period.
-    fn alike(&self, other: &Self) -> bool {
+    pub(super) fn alike(&self, other: &Self) -> bool {
         let periodic = |s: &Self| s.fate == Fate::Periodic;
         periodic(self) && periodic(other) && self.summary.slips == other.summary.slips
     }
@@ -98,6 +99,10 @@ pub struct Followed {
     pub complete: bool,
     /// Whether sticks become shorter such that none is left just beyond the last v0.
     pub vanish: bool,
+    /// The relative way beyond the last v0 to where the depth of the stops is expected to vanish; infinite where it is not.
+    pub graze_way: f64,
+    /// Whether irregular stick-slip, or a jump from one kind to another, was on the way: what follows may depend on the steps.
+    pub chance: bool,
 }
 
 /// Follows stick-slip of `problem` from low v0 on.
@@ -127,6 +132,8 @@ pub fn critical_velocity(problem: &Problem, pace: &Pace, accuracy: Accuracy) -> 
         lost,
         complete: true,
         vanish: false,
+        graze_way: f64::INFINITY,
+        chance: false,
     }
 }
 
@@ -144,6 +151,8 @@ pub fn from(problem: &Problem, mut motion: Motion, pace: &Pace) -> Followed {
         lost: Some(first),
         complete: true,
         vanish: false,
+        graze_way: f64::INFINITY,
+        chance: false,
     }
 }
 
@@ -243,6 +252,8 @@ struct Climb<'p> {
     last: Sustained,
     /// The smallest v0 above `last` at which stick-slip was lost, and the relative step that lost it.
     lost: Option<(Sustained, f64)>,
+    /// The smallest v0 above `last` to which the step was too large for what it led to.
+    jump: Option<f64>,
     /// The largest relative step for now.
     most: f64,
     /// The share of the way to where stick-slip is expected to end that is taken at once.
@@ -251,6 +262,8 @@ struct Climb<'p> {
     passed: (f64, u32),
     /// Whether the last steps shortened the sticks as if none were left soon.
     vanish: bool,
+    /// Whether irregular stick-slip or a jump was on the way.
+    chance: bool,
     spent: u64,
 }
 
@@ -263,10 +276,12 @@ fn raise(problem: &Problem, motion: Motion, first: Sustained, pace: &Pace) -> Fo
         before: None,
         last: first,
         lost: None,
+        jump: None,
         most: pace.first,
         share: SHARE,
         passed: (0.0, 0),
         vanish: false,
+        chance: first.fate == Fate::Irregular,
         spent: first.summary.steps,
     };
     let complete = climb.run();
@@ -276,6 +291,8 @@ fn raise(problem: &Problem, motion: Motion, first: Sustained, pace: &Pace) -> Fo
         lost: climb.lost.map(|(lost, _)| lost),
         complete,
         vanish: climb.vanish,
+        graze_way: ways(climb.before, &climb.last)[0],
+        chance: climb.chance,
     }
 }
 
@@ -349,7 +366,11 @@ impl Climb<'_> {
         if self.last.fate == Fate::Irregular {
             step = step.min(LARGEST_UNSEEN);
         }
-        let step = step.clamp(self.pace.last, self.most.max(self.pace.last));
+        let mut step = step.clamp(self.pace.last, self.most.max(self.pace.last));
+        if let Some(jump) = self.jump {
+            let room = jump / self.last.v0 - 1.0;
+            step = step.min(if room > 2.0 * JUMP { 0.5 * room } else { room });
+        }
         let Some((lost, by)) = &self.lost else {
             return step;
         };
@@ -359,6 +380,21 @@ impl Climb<'_> {
             return step.min(room);
         }
         step.min(0.5 * room)
+    }
+
+    /// The largest relative step of v0 that may lead from the last place to `there`, where it took `step`.
+    fn largest_step(&self, there: &Sustained, step: f64) -> f64 {
+        let last = &self.last;
+        match (last.fate, there.fate) {
+            (Fate::Periodic, Fate::Periodic) if last.alike(there) && !jumps(last, there, step) => {
+                f64::INFINITY
+            }
+            // Once chance has a part in it nothing is gained by that.
+            _ if self.chance => LARGEST_UNSEEN,
+            (Fate::Periodic, Fate::Periodic) if jumps(last, there, step) => JUMP,
+            (Fate::Periodic, Fate::Irregular) => CAREFUL,
+            _ => LARGEST_UNSEEN,
+        }
     }
 
     /// Tries `v0`, a relative `step` away.
@@ -377,10 +413,14 @@ impl Climb<'_> {
                 self.share = (0.5 * taken).clamp(LEAST_SHARE, self.share);
             }
             self.most = 0.5 * step;
-        } else if jumped(&self.last, &there, step) {
+        } else if step > self.largest_step(&there, step) {
             self.most = 0.5 * step;
+            self.jump = Some(v0);
         } else {
+            let jumped = there.fate == Fate::Irregular || jumps(&self.last, &there, step);
+            self.chance |= jumped;
             std::mem::swap(&mut self.motion, &mut self.trial);
+            self.jump = self.jump.filter(|jump| *jump > v0 && !jumped);
             let passed = self.lost.is_some_and(|(lost, _)| lost.v0 <= v0);
             if passed {
                 self.pass(v0);
@@ -430,51 +470,8 @@ const LARGEST_UNSEEN: f64 = 0.1;
 /// The last relative step from irregular stick-slip.
 const LAST_IRREGULAR: f64 = 1e-4;
 
-/// Whether a step of v0 may have thrown the motion from one kind of stick-slip to another: its cycle or its slip changed by more than
-/// such a step explains.
-fn jumped(last: &Sustained, there: &Sustained, step: f64) -> bool {
-    if step <= CAREFUL {
-        return false;
-    }
-    if !last.alike(there) {
-        return step > LARGEST_UNSEEN;
-    }
-    let (before, after) = (&last.summary, &there.summary);
-    let period = after.period / before.period;
-    let slip = after.slip_time / before.slip_time;
-    !(0.8 / (1.0 + step)..=1.25).contains(&period) || !(0.8..=1.4).contains(&slip)
-}
-
-/// The relative way within which sticks that become shorter vanish.
-const SOON: f64 = 1e-2;
-
-/// Whether sticks, from one v0 to the next, become shorter such that none is left soon.
-fn vanishes(before: &Sustained, last: &Sustained) -> bool {
-    let loss = (before.summary.stick_time - last.summary.stick_time) / (last.v0 - before.v0);
-    loss > 0.0 && last.summary.stick_time / loss < SOON * last.v0
-}
-
+/// The largest step that may lead from one kind of stick-slip to another: v0 is raised slowly.
+const JUMP: f64 = 1e-5;
 /// The share of the expected way that is taken at first, and at least.
 const SHARE: f64 = 0.9;
 const LEAST_SHARE: f64 = 0.2;
-
-/// The relative way to where the depth of the stops, the smallest load or the sticks are expected to vanish.
-fn expected_way(before: Option<Sustained>, last: &Sustained) -> f64 {
-    let Some(before) = before.filter(|before| before.alike(last)) else {
-        return f64::INFINITY;
-    };
-    let run = last.v0 - before.v0;
-    let gauges = [
-        (before.depth, last.depth),
-        (-before.summary.n_min, -last.summary.n_min),
-        (-before.summary.stick_time, -last.summary.stick_time),
-    ];
-    let steps = gauges.map(|(before, last_one)| {
-        let slope = (last_one - before) / run;
-        match slope > 0.0 {
-            true => -last_one / slope / last.v0,
-            false => f64::INFINITY,
-        }
-    });
-    steps.into_iter().fold(f64::INFINITY, f64::min)
-}

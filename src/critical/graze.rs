@@ -178,7 +178,8 @@ fn by_one_slip(problem: &Problem, accuracy: Accuracy) -> Option<Found> {
         cycle,
         method: Method::GrazeSlip,
     };
-    match beyond(problem, &mut road.motion, slip, &graze) {
+    let kept = road.motion.clone();
+    match beyond(problem, &kept, &mut road.motion, slip, &graze) {
         Beyond::Ends => Some(Found::Graze(graze)),
         Beyond::Persists => Some(Found::Unclear(Some(Box::new(road.motion)))),
         Beyond::Unknown => None,
@@ -323,7 +324,10 @@ fn finish(problem: &Problem, road: &mut Orbit, climbed: Climbed) -> Found {
     let unclear = |motion: &Motion| Found::Unclear(Some(Box::new(motion.clone())));
     let (v0, slip) = match climbed {
         Climbed::Graze { v0, slip } => (v0, slip),
-        Climbed::LiftOff(v0) => return Found::LiftOff(v0, Method::GrazeOrbit),
+        Climbed::LiftOff(v0) if lifts(road, v0) => {
+            return Found::LiftOff(v0, Method::GrazeOrbit);
+        }
+        Climbed::LiftOff(_) => return unclear(&road.kept),
         Climbed::Unclear => return unclear(&road.kept),
     };
     let below = v0 * (1.0 - PRECISION);
@@ -339,15 +343,28 @@ fn finish(problem: &Problem, road: &mut Orbit, climbed: Climbed) -> Found {
         method: Method::GrazeOrbit,
     };
     road.keep();
-    road.tried.copy_from(&road.kept);
-    match beyond(problem, &mut road.tried, slip, &graze) {
+    match beyond(problem, &road.kept, &mut road.tried, slip, &graze) {
         Beyond::Ends => Found::Graze(graze),
         Beyond::Persists => unclear(&road.tried),
         Beyond::Unknown => unclear(&road.kept),
     }
 }
 
+/// The velocity of lift-off is checked this far below and above it, relative.
+const LIFT_PRECISION: f64 = 1e-4;
+
+/// Whether cycles just below `v0` do not lift off, and just above it do.
+fn lifts(road: &mut Orbit, v0: f64) -> bool {
+    let [below, above] = [1.0 - LIFT_PRECISION, 1.0 + LIFT_PRECISION].map(|f| f * v0);
+    let lifted = |ride: Ride| ride == Ride::LiftOff;
+    !lifted(road.trial(below, None, CHECKED)) && lifted(road.trial(above, None, CHECKED))
+}
+
+/// How well cycles repeat where lift-off is checked, relative.
+const CHECKED: f64 = 1e-3;
+
 /// What becomes of stick-slip just beyond a graze.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Beyond {
     /// It ends.
     Ends,
@@ -356,9 +373,39 @@ enum Beyond {
     Unknown,
 }
 
-/// What becomes of a block that is released now just beyond the graze.
-fn beyond(problem: &Problem, motion: &mut Motion, slip: f64, graze: &Graze) -> Beyond {
-    let v0 = graze.v0 * (1.0 + PRECISION);
+/// Steps of v0 past the graze, from below it to beyond it, relative. The first one is taken from where the last kept cycle was.
+const STEPS: [[f64; 2]; 3] = [[PRECISION, PRECISION], [PRECISION, 1e-4], [2e-6, 2e-6]];
+
+/// What becomes, just beyond the graze, of the block of `kept`, released just below it; in `tried`. Where steps of different
+/// sizes lead to different ends, that is not known.
+fn beyond(
+    problem: &Problem,
+    kept: &Motion,
+    tried: &mut Motion,
+    slip: f64,
+    graze: &Graze,
+) -> Beyond {
+    let mut step = |[below, above]: [f64; 2]| {
+        tried.copy_from(kept);
+        if below < PRECISION {
+            tried.set_v0(graze.v0 * (1.0 - below));
+            let Ride::Cycle(_) = ride(tried, Some(graze.cycle.stop()), false) else {
+                // The graze is not known to that.
+                return None;
+            };
+        }
+        Some(outcome(problem, tried, slip, graze.v0 * (1.0 + above)))
+    };
+    let first = step(STEPS[0]).unwrap_or(Beyond::Unknown);
+    let ends = |steps: &[f64; 2]| step(*steps).is_none_or(|beyond| beyond == Beyond::Ends);
+    match first {
+        Beyond::Ends if !STEPS[1..].iter().all(ends) => Beyond::Unknown,
+        first => first,
+    }
+}
+
+/// What becomes of a block that is released now, at `v0`.
+fn outcome(problem: &Problem, motion: &mut Motion, slip: f64, v0: f64) -> Beyond {
     motion.set_v0(v0);
     if slides(problem, motion, slip) {
         return Beyond::Ends;
@@ -371,8 +418,9 @@ fn beyond(problem: &Problem, motion: &mut Motion, slip: f64, graze: &Graze) -> B
     }
 }
 
-/// The share of v0 above which ẋ stays once the block slides.
-const SLIDING: f64 = 0.25;
+/// The share of v0 above which ẋ stays once the block slides. Minima that only rise to half of v0 may fall again: an unstable
+/// oscillation about stable sliding can be on either side.
+const SLIDING: f64 = 0.8;
 
 /// Whether a block released just beyond a graze slides from then on: its velocity's minima after the graze rise.
 fn slides(problem: &Problem, motion: &mut Motion, slip: f64) -> bool {

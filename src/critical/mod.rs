@@ -15,6 +15,7 @@ pub mod limit;
 pub mod line;
 mod stops;
 pub mod switch_on;
+mod trend;
 
 use crate::linear::rightmost::Rightmost;
 use crate::linear::{Count, Crossings, MarginalTolerance};
@@ -190,6 +191,22 @@ pub struct Critical {
     pub decided: bool,
 }
 
+impl Critical {
+    /// Whether `other` says the same of the end of stick-slip: at v_c, or the velocity of lift-off, within
+    /// [`GRAZE_PRECISION`].
+    ///
+    /// Both have to lift off, to persist or never to be stick-slip; by which of the other ends it is lost is told from
+    /// the last v0 that holds it alone, whose cycles need not have come to repeat, so that is not compared.
+    #[must_use]
+    pub fn ends_like(&self, other: &Self) -> bool {
+        let near =
+            |a: f64, b: f64| a.is_nan() && b.is_nan() || (a - b).abs() <= GRAZE_PRECISION * a.abs();
+        let apart = |end: End| matches!(end, End::LiftOff | End::Persists | End::Never);
+        let alike = self.end == other.end || !apart(self.end) && !apart(other.end);
+        alike && near(self.vc, other.vc) && near(self.v_liftoff, other.v_liftoff)
+    }
+}
+
 /// v_c by a graze is known to about this, relative.
 pub const GRAZE_PRECISION: f64 = 1e-4;
 /// Error allowed in a step on the way to a graze.
@@ -212,19 +229,48 @@ fn from_scratch(problem: &Problem) -> (Critical, Option<Track>) {
     let (found, track) = graze::find(problem, Accuracy::of(GRAZE_TOLERANCE));
     let critical = of_found(&found).unwrap_or_else(|| match found {
         Found::Unclear(Some(motion)) => simulated_from(problem, *motion),
-        _ => by_simulation(problem, &Pace::default(), Accuracy::of(FOLLOW_TOLERANCE)),
+        _ => simulated(problem),
     });
     (critical, track)
 }
 
 /// By simulation from a motion in stick-slip on; from low velocities where it is not sustained.
 fn simulated_from(problem: &Problem, mut motion: Motion) -> Critical {
-    let (pace, accuracy) = (Pace::default(), Accuracy::of(FOLLOW_TOLERANCE));
-    motion.refine(accuracy);
-    let followed = follow::from(problem, motion, &pace);
+    motion.refine(Accuracy::of(FOLLOW_TOLERANCE));
+    let search = |pace: &Pace| follow::from(problem, motion.clone(), pace);
+    let followed = search(&Pace::default());
     match followed.last {
-        Some(_) => of_followed(&followed),
-        None => by_simulation(problem, &pace, accuracy),
+        Some(_) => confirmed(&followed, search),
+        None => simulated(problem),
+    }
+}
+
+/// By simulation from low velocities on.
+fn simulated(problem: &Problem) -> Critical {
+    let accuracy = Accuracy::of(FOLLOW_TOLERANCE);
+    let search = |pace: &Pace| follow::critical_velocity(problem, pace, accuracy);
+    confirmed(&search(&Pace::default()), search)
+}
+
+/// The first step of v0 of a search that confirms another one.
+const CONFIRM_FIRST: f64 = 0.2;
+
+/// What `followed` tells. v0 is raised slowly: an end that is another one with other steps of v0 is not decided.
+///
+/// Without chance on the way steps do not matter. Lift-off, which is looked for by the smallest load, is left to the sample
+/// of a map: of 229 such cells one depended on the steps.
+fn confirmed(followed: &Followed, search: impl Fn(&Pace) -> Followed) -> Critical {
+    let critical = of_followed(followed);
+    if !followed.chance || !critical.decided || critical.end == End::LiftOff {
+        return critical;
+    }
+    let again = of_followed(&search(&Pace {
+        first: CONFIRM_FIRST,
+        ..Pace::default()
+    }));
+    Critical {
+        decided: again.decided && critical.ends_like(&again),
+        ..critical
     }
 }
 
@@ -290,7 +336,16 @@ fn of_followed(followed: &Followed) -> Critical {
     let undecided = |lost: &Sustained| lost.fate == Fate::Lost(Outcome::Undecided);
     // To rounding sticks are lost as well where they only become shorter and shorter.
     let rounding = |last: &Sustained| last.summary.stick_time < VANISHING && !followed.vanish;
+    // Irregular stick-slip ends by chance: where, depends on the steps of v0 and on how long each is waited for.
+    let irregular = |last: &Sustained| last.fate == Fate::Irregular;
+    let lifts = followed
+        .lost
+        .as_ref()
+        .is_some_and(|lost| lost.fate == Fate::LiftOff);
+    let by_chance =
+        !lifts && followed.lost.is_some() && followed.last.as_ref().is_some_and(irregular);
     let decided = followed.complete
+        && !by_chance
         && !followed.lost.as_ref().is_some_and(undecided)
         && !followed.last.as_ref().is_some_and(rounding);
     match (followed.last, followed.lost) {
@@ -300,7 +355,7 @@ fn of_followed(followed: &Followed) -> Critical {
             ..nothing(0.0, End::Never, method)
         },
         (Some(last), lost) => {
-            let end = end(&last, lost.is_some());
+            let end = end(&last, lost.is_some(), followed.graze_way);
             let longer = if end == End::Grazing {
                 last.to_minimum
             } else {
@@ -324,12 +379,12 @@ const VANISHING: f64 = 1e-6;
 /// Depth of a stop, over v0, below which it is a graze.
 const GRAZING: f64 = 1e-3;
 
-fn end(last: &Sustained, lost: bool) -> End {
+fn end(last: &Sustained, lost: bool, graze_way: f64) -> End {
     match last.fate {
         _ if !lost => End::Persists,
         Fate::Irregular => End::Irregular,
         // Of doubled stick-slip as well: one of the stops of its period.
-        _ if last.depth.abs() < GRAZING * last.v0 => End::Grazing,
+        _ if last.depth.abs() < GRAZING * last.v0 || graze_way < GRAZE_PRECISION => End::Grazing,
         _ if last.summary.slips > 1 => End::PeriodDoubling,
         _ => End::Fold,
     }

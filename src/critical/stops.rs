@@ -57,7 +57,7 @@ pub struct Stops {
     window: f64,
     until: f64,
     lowest: f64,
-    /// The lowest one of the windows before; of the last window alone where sliding is unstable.
+    /// The lowest one of the window before: what has risen after a graze may fall again, to another kind of stick-slip.
     before: f64,
     windows: u32,
     /// Amplitudes beyond this are far from stick-slip.
@@ -134,10 +134,7 @@ impl Stops {
             true => 0,
             false => self.calm + 1,
         };
-        self.before = match self.slides {
-            true => self.before.min(self.lowest),
-            false => self.lowest,
-        };
+        self.before = self.lowest;
         self.lowest = f64::INFINITY;
         self.until = now + self.window;
     }

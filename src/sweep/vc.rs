@@ -208,11 +208,10 @@ fn in_motion_units(phase: Phase, units: &CaseUnits) -> Phase {
 /// First step of v0 and error of a step of the integrator where a cell is recomputed: other ones than where it was computed.
 const SAMPLE_FIRST: f64 = 0.35;
 const SAMPLE_ACCURACY: f64 = 1e-10;
-/// Velocities of the two ways differ by no more than this, relative.
-pub const AGREEMENT: f64 = 1e-4;
 
-/// Whether simulation alone, with steps of its own, finds the same end of stick-slip at the same velocity as `found`, which
-/// is the answer for `problem` by the protocol `follow`, in `units`.
+/// Whether simulation alone, with steps of its own, does not contradict `found`, the answer for `problem` by the protocol
+/// `follow`, in `units`: it has to see stick-slip end at the same velocity, see [`Critical::ends_like`]. A cell that is not
+/// decided claims nothing.
 #[must_use]
 pub fn simulation_agrees(problem: &Problem, units: &CaseUnits, found: &Critical) -> bool {
     let pace = Pace {
@@ -222,8 +221,7 @@ pub fn simulation_agrees(problem: &Problem, units: &CaseUnits, found: &Critical)
     };
     let again = by_simulation(problem, &pace, Accuracy::of(SAMPLE_ACCURACY));
     let again = in_units(&again, units);
-    let near = |a: f64, b: f64| a.is_nan() && b.is_nan() || (a - b).abs() <= AGREEMENT * a.abs();
-    found.end == again.end && near(found.vc, again.vc) && near(found.v_liftoff, again.v_liftoff)
+    !found.decided || found.ends_like(&again)
 }
 
 /// What a working velocity v0 is good for.
