@@ -25,9 +25,11 @@ const DELAYS_PER_TILE: usize = 1 << 17;
 /// Lines of delays are cut at multiples of this only: there tracking starts anew, and no value depends on the tiles.
 pub const BLOCK_OF_DELAYS: usize = crate::linear::track::BLOCK;
 /// More cells than this are refused.
-const MOST_CELLS: u64 = 10_000_000_000_000;
+pub const MOST_CELLS: u64 = 10_000_000_000_000;
 /// More tiles than this are refused: even their list would fill a machine's memory.
 const MOST_TILES: usize = 100_000_000;
+/// More planes of curves or of best settings than this are refused, for the same reason.
+const MOST_PLANES: u64 = 10_000_000;
 /// Planes up to which crossing curves are traced without being asked for.
 const PLANES_TRACED_UNASKED: u64 = 1000;
 
@@ -99,12 +101,19 @@ impl Plan {
                 tiles.tile_cells(),
             )));
         }
-        Ok(Self {
+        let plan = Self {
             tiles,
             tau_axis,
             boundary_plane,
             spec,
-        })
+        };
+        let planes = plan.boundary_planes().max(plan.best_planes());
+        if planes > MOST_PLANES {
+            return Err(SpecError::whole(format!(
+                "{planes} planes of curves or best settings are asked for; at most {MOST_PLANES} are allowed: split the sweep",
+            )));
+        }
+        Ok(plan)
     }
 
     /// Length of each axis, in the order of the map's dimensions.
