@@ -63,28 +63,48 @@ pub(super) fn put_flags(at: &Location, long_name: &str, names: &[&str]) -> hdf5:
     put_text(at, "flag_meanings", &names.join(" "))
 }
 
+/// More bytes than this are no text of slipmap's.
+const MOST_TEXT: usize = 64 << 20;
+
 /// Reads a text attribute of fixed or variable length.
 pub(super) fn text(at: &Location, name: &str) -> hdf5::Result<String> {
     use hdf5::types::{TypeDescriptor, VarLenUnicode};
     let attribute = at.attr(name)?;
-    match attribute.dtype()?.to_descriptor()? {
+    let kind = attribute.dtype()?.to_descriptor()?;
+    if attribute.size() != 1 {
+        return Err("a text attribute holds one string".into());
+    }
+    match kind {
         TypeDescriptor::FixedAscii(_) | TypeDescriptor::FixedUnicode(_) => fixed_text(&attribute),
-        _ => Ok(attribute.read_scalar::<VarLenUnicode>()?.to_string()),
+        TypeDescriptor::VarLenAscii | TypeDescriptor::VarLenUnicode => {
+            let text = attribute.read_raw::<VarLenUnicode>()?;
+            // The binding takes the pointer for a string, and the bytes for UTF-8; neither is known of a file.
+            match text.first().filter(|text| !text.as_ptr().is_null()) {
+                Some(text) => utf8(text.as_bytes()),
+                None => Err("a text attribute holds no string".into()),
+            }
+        }
+        _ => Err("a text attribute holds text".into()),
     }
 }
 
 /// Reads a string of fixed length; the binding's own fixed strings have theirs in the type.
 fn fixed_text(attribute: &hdf5::Attribute) -> hdf5::Result<String> {
     let kind = attribute.dtype()?;
-    let mut bytes = vec![0_u8; kind.size()];
-    if attribute.size() != 1 {
-        return Err("a text attribute holds one string".into());
+    if kind.size() > MOST_TEXT {
+        return Err(format!("a text attribute of {} bytes", kind.size()).into());
     }
+    let mut bytes = vec![0_u8; kind.size()];
     let read = hdf5::sync::sync(|| {
         // SAFETY: the buffer holds one element of the attribute's own type.
         unsafe { hdf5_sys::h5a::H5Aread(attribute.id(), kind.id(), bytes.as_mut_ptr().cast()) }
     });
     failure(&[], read)?;
     let end = bytes.iter().position(|&b| b == 0).unwrap_or(bytes.len());
-    String::from_utf8(bytes[..end].to_vec()).map_err(|e| e.to_string().into())
+    utf8(&bytes[..end])
+}
+
+fn utf8(bytes: &[u8]) -> hdf5::Result<String> {
+    let text = std::str::from_utf8(bytes).map_err(|e| e.to_string())?;
+    Ok(text.to_owned())
 }

@@ -53,6 +53,7 @@ impl MapFile {
         let planes = outer.iter().map(|values| values.len()).product();
         let read = || -> hdf5::Result<Vec<MapBest>> {
             let group = Columns {
+                map: self,
                 group: self.group(BEST)?,
                 planes,
             };
@@ -82,14 +83,15 @@ impl MapFile {
 }
 
 /// The group, with one value per plane in each variable.
-struct Columns {
+struct Columns<'m> {
+    map: &'m MapFile,
     group: Group,
     planes: usize,
 }
 
-impl Columns {
-    fn read<T: H5Type>(&self, name: &str) -> hdf5::Result<Vec<T>> {
-        let values = self.group.dataset(name)?.read_raw::<T>()?;
+impl Columns<'_> {
+    fn read<T: H5Type + Copy + Default>(&self, name: &str) -> hdf5::Result<Vec<T>> {
+        let values = self.map.whole::<T>(&self.group.dataset(name)?)?;
         if values.len() == self.planes {
             Ok(values)
         } else {

@@ -9,7 +9,7 @@ use crate::sweep::boundaries::BoundaryPlane;
 
 /// The curves of one plane, column by column: one row per curve, per vertex and per corner.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
-pub(super) struct CurveRows {
+pub struct CurveRows {
     /// Some curves are left out: too many cross the plane.
     pub left_out: bool,
     /// Per curve: number of vertices.

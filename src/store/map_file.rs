@@ -5,13 +5,17 @@ use std::path::{Path, PathBuf};
 use hdf5::{Dataset, File, Group, H5Type, Hyperslab, SliceOrIndex};
 
 use super::attributes::text;
+pub use super::curve_reader::MapCurve;
 use super::error::StoreError;
-use super::schema::{self, BOUNDARIES, DEGREE_OF_STABILITY, PLANE, STATUS, root};
-use crate::linear::Direction;
-use crate::linear::curves::{CurvePiece, StableSide, Vertex};
+use super::schema::{self, BEST, BOUNDARIES, DEGREE_OF_STABILITY, PLANE, STATUS, root};
+use crate::sweep::axis::{Axis, MOST_POINTS};
 use crate::sweep::engine::{FEW_FILL, N_UNSTABLE_FILL, STATUS_FILL};
 use crate::sweep::field::Storage;
+use crate::sweep::plan::MOST_CELLS;
 use crate::sweep::{Field, Parameter};
+
+/// Deflate makes data smaller by this factor at most: 258 bytes in two bits.
+const MOST_DEFLATED: u64 = 1032;
 
 /// An axis of a map.
 #[derive(Debug, Clone, PartialEq)]
@@ -22,17 +26,6 @@ pub struct MapAxis {
     pub values: Vec<f64>,
     /// Its unit, "1" if dimensionless.
     pub unit: String,
-}
-
-/// A curve of a map with the values of the axes outside its plane.
-#[derive(Debug, Clone, PartialEq)]
-pub struct MapCurve {
-    /// Values of the axes outside the plane, in the order of the map's axes.
-    pub outer: Vec<f64>,
-    /// Degree of stability σ, 1/time: roots on the curve have Re λ = −σ. 0 for crossings of the imaginary axis.
-    pub degree_of_stability: f64,
-    /// The curve.
-    pub piece: CurvePiece,
 }
 
 /// A rectangle of cells of one field, as numbers: fill values and cells beyond counting are NaN.
@@ -92,6 +85,7 @@ impl MapFile {
             fields,
         };
         map.check_shapes()?;
+        map.check_planes()?;
         Ok(map)
     }
 
@@ -99,13 +93,34 @@ impl MapFile {
         let shape: Vec<usize> = self.axes.iter().map(|a| a.values.len()).collect();
         let names = self.fields.iter().map(|f| f.name()).chain([STATUS]);
         for name in names {
-            let found = self.dataset(name)?.shape();
+            let dataset = self.dataset(name)?;
+            let found = dataset.shape();
+            if !has_fitting_chunks(&dataset) {
+                let why = format!("the chunks of {name} have another number of dimensions");
+                return Err(StoreError::not_a_map(&self.path, why));
+            }
             if found != shape {
                 let why = format!("{name} has the shape {found:?}, its axes have {shape:?}");
                 return Err(StoreError::not_a_map(&self.path, why));
             }
         }
         Ok(())
+    }
+
+    /// Groups of planes name two different axes.
+    fn check_planes(&self) -> Result<(), StoreError> {
+        let there = |group: &&str| self.file.link_exists(group);
+        match [BOUNDARIES, BEST]
+            .into_iter()
+            .filter(there)
+            .find(|group| self.plane_of(group).is_none())
+        {
+            Some(group) => {
+                let why = format!("{group} does not name the axes of its planes");
+                Err(StoreError::not_a_map(&self.path, why))
+            }
+            None => Ok(()),
+        }
     }
 
     /// Where the map is.
@@ -173,7 +188,11 @@ impl MapFile {
         Parameter::ALL
             .into_iter()
             .filter(|p| !on_axis(p) && self.file.link_exists(p.name()))
-            .filter_map(|p| Some((p, self.file.dataset(p.name()).ok()?.read_scalar().ok()?)))
+            .filter_map(|p| {
+                let dataset = self.file.dataset(p.name()).ok();
+                let value = dataset.filter(has_fitting_chunks)?.read_scalar().ok()?;
+                Some((p, value))
+            })
             .collect()
     }
 
@@ -293,6 +312,14 @@ impl MapFile {
         Ok(array.into_raw_vec_and_offset().0)
     }
 
+    /// All values of a dataset that is no dataset of cells.
+    pub(super) fn whole<T: H5Type + Copy + Default>(
+        &self,
+        dataset: &Dataset,
+    ) -> hdf5::Result<Vec<T>> {
+        whole(&self.file, dataset)
+    }
+
     /// The axes of the planes in which the map holds crossing curves; none where it holds no curves.
     #[must_use]
     pub fn boundary_plane(&self) -> Option<(usize, usize)> {
@@ -310,7 +337,8 @@ impl MapFile {
         let mut axes = plane
             .split_whitespace()
             .map(|name| self.axes.iter().position(|a| a.parameter.name() == name));
-        Some((axes.next()??, axes.next()??))
+        let plane = (axes.next()??, axes.next()??);
+        (plane.0 != plane.1).then_some(plane)
     }
 
     /// The unit of degrees of stability; "1" where the map holds none.
@@ -322,97 +350,87 @@ impl MapFile {
             .and_then(|d| text(&d, "units"))
             .unwrap_or_else(|_| "1".into())
     }
-
-    /// All curves of the map, in order. Empty where it holds none.
-    ///
-    /// # Errors
-    /// When the file is damaged.
-    pub fn curves(&self) -> Result<Vec<MapCurve>, StoreError> {
-        let Some((p, tau)) = self.boundary_plane() else {
-            return Ok(Vec::new());
-        };
-        let read = || -> hdf5::Result<Vec<MapCurve>> {
-            let group = self.file.group(BOUNDARIES)?;
-            let column = |name: &str| group.dataset(name)?.read_raw::<f64>();
-            let outer: Vec<Vec<f64>> = (0..self.axes.len())
-                .filter(|&axis| axis != p && axis != tau)
-                .map(|axis| column(self.axes[axis].parameter.name()))
-                .collect::<hdf5::Result<_>>()?;
-            let counts = group.dataset("vertex_count")?.read_raw::<i32>()?;
-            let branches = group.dataset("branch")?.read_raw::<i64>()?;
-            let directions = group.dataset("direction")?.read_raw::<i8>()?;
-            let sides = group.dataset("stable_side")?.read_raw::<i8>()?;
-            let (ps, taus) = (column(self.axes[p].parameter.name())?, column("tau")?);
-            let omegas = column("omega")?;
-            let degrees = match group.link_exists(DEGREE_OF_STABILITY) {
-                true => column(DEGREE_OF_STABILITY)?,
-                false => Vec::new(),
-            };
-            let mut vertices = ps.into_iter().zip(taus).zip(omegas);
-            let mut curves = Vec::with_capacity(counts.len());
-            for (i, &count) in counts.iter().enumerate() {
-                let of = |columns: &[i8]| columns.get(i).copied().unwrap_or(0);
-                curves.push(MapCurve {
-                    outer: outer.iter().filter_map(|c| c.get(i).copied()).collect(),
-                    degree_of_stability: degrees.get(i).copied().unwrap_or(0.0),
-                    piece: CurvePiece {
-                        branch: branches.get(i).map_or(0, |&b| b.max(0) as u64),
-                        direction: match of(&directions) {
-                            ..0 => Direction::Left,
-                            0 => Direction::Touch,
-                            1.. => Direction::Right,
-                        },
-                        stable_side: match of(&sides) {
-                            ..0 => StableSide::Shorter,
-                            0 => StableSide::Neither,
-                            1.. => StableSide::Longer,
-                        },
-                        vertices: (&mut vertices)
-                            .take(count.max(0) as usize)
-                            .map(|((p, tau), omega)| Vertex { p, tau, omega })
-                            .collect(),
-                    },
-                });
-            }
-            Ok(curves)
-        };
-        read().map_err(StoreError::hdf5("read the boundaries of", &self.path))
-    }
 }
 
 fn at(index: &[usize]) -> Vec<SliceOrIndex> {
     index.iter().map(|&i| SliceOrIndex::Index(i)).collect()
 }
 
+/// Whether a dataset's chunks, if it has any, have as many dimensions as itself. Else the library reads for ever.
+fn has_fitting_chunks(dataset: &Dataset) -> bool {
+    let chunk = dataset.chunk();
+    chunk.is_none_or(|chunk| chunk.len() == dataset.ndim())
+}
+
+/// All values of a dataset. What claims more of them than its bytes in the file can hold is refused before memory is asked for.
+fn whole<T: H5Type + Copy + Default>(file: &File, dataset: &Dataset) -> hdf5::Result<Vec<T>> {
+    if !has_fitting_chunks(dataset) {
+        return Err("its chunks have another number of dimensions".into());
+    }
+    let (lengths, element) = (dataset.shape(), dataset.dtype()?.size());
+    let mut factors = lengths.iter().copied();
+    let claimed = factors.try_fold(element, usize::checked_mul);
+    let stored = dataset.storage_size().min(file.size());
+    let most = stored.saturating_mul(MOST_DEFLATED);
+    if claimed.is_none_or(|bytes| bytes as u64 > most) {
+        return Err("it claims more values than its bytes can hold".into());
+    }
+    let length = lengths.iter().product();
+    let mut values = Vec::new();
+    values
+        .try_reserve_exact(length)
+        .map_err(|error| error.to_string())?;
+    values.resize(length, T::default());
+    dataset.as_reader().read_into_raw(&mut values)?;
+    Ok(values)
+}
+
+/// The axes, checked as those of a sweep are.
 fn read_axes(file: &File, path: &Path) -> Result<Vec<MapAxis>, StoreError> {
     let names = text(file, root::AXES)
         .map_err(|_| StoreError::not_a_map(path, "it does not name its axes"))?;
-    names
-        .split_whitespace()
-        .map(|name| {
-            let parameter = Parameter::from_name(name).ok_or_else(|| {
-                StoreError::not_a_map(path, format!("it has an unknown axis {name}"))
-            })?;
-            let read = || -> hdf5::Result<MapAxis> {
-                let dataset = file.dataset(name)?;
-                Ok(MapAxis {
-                    parameter,
-                    values: dataset.read_raw()?,
-                    unit: text(&dataset, "units")?,
-                })
-            };
-            let damaged = || StoreError::not_a_map(path, format!("its axis {name} is damaged"));
-            let axis = read().map_err(|_| damaged())?;
-            if axis.values.is_empty() {
-                return Err(damaged());
-            }
-            Ok(axis)
-        })
-        .collect()
+    let mut axes: Vec<MapAxis> = Vec::new();
+    for name in names.split_whitespace() {
+        let axis = read_axis(file, name).map_err(|why| StoreError::not_a_map(path, why))?;
+        if axes.iter().any(|other| other.parameter == axis.parameter) {
+            let why = format!("it names its axis {name} twice");
+            return Err(StoreError::not_a_map(path, why));
+        }
+        axes.push(axis);
+    }
+    let lengths = axes.iter().map(|axis| axis.values.len() as u64);
+    let cells = lengths.fold(1, u64::saturating_mul);
+    if axes.is_empty() || cells > MOST_CELLS {
+        let why = format!("it has {} axes and {cells} cells", axes.len());
+        return Err(StoreError::not_a_map(path, why));
+    }
+    Ok(axes)
+}
+
+fn read_axis(file: &File, name: &str) -> Result<MapAxis, String> {
+    let parameter =
+        Parameter::from_name(name).ok_or_else(|| format!("it has an unknown axis {name}"))?;
+    let read = || -> hdf5::Result<(Vec<f64>, String)> {
+        let dataset = file.dataset(name)?;
+        match dataset.shape()[..] {
+            [length] if length as u64 <= MOST_POINTS => {}
+            _ => return Err("no axis has this shape".into()),
+        }
+        Ok((whole(file, &dataset)?, text(&dataset, "units")?))
+    };
+    let (values, unit) = read().map_err(|_| format!("its axis {name} is damaged"))?;
+    let axis = Axis::new(parameter, values)
+        .map_err(|error| format!("its axis {name} is damaged: {error}"))?;
+    Ok(MapAxis {
+        parameter,
+        values: axis.values,
+        unit,
+    })
 }
 
 fn first_number<T: H5Type + Copy>(file: &File, name: &str) -> Option<T> {
-    file.attr(name).ok()?.read_raw::<T>().ok()?.first().copied()
+    let attribute = file.attr(name).ok().filter(|a| a.size() == 1)?;
+    attribute.read_raw::<T>().ok()?.first().copied()
 }
 
 /// Whole numbers as reals, NaN for `fill`.

@@ -48,7 +48,8 @@ impl StatusCounts {
 }
 
 impl FieldSummary {
-    fn add(&mut self, cells: &[f64]) {
+    /// Takes in more cells.
+    pub fn add(&mut self, cells: &[f64]) {
         for &value in cells {
             if value.is_finite() {
                 let (low, high) = self.range.unwrap_or((value, value));
@@ -114,13 +115,32 @@ impl MapFile {
     }
 }
 
-/// Every chunk of a dataset as a hyperslab, cut at the dataset's edges.
+/// Cells that are read at once, at most.
+const MOST_AT_ONCE: usize = 1 << 22;
+
+/// The shape of the pieces in which to read a dataset: its chunks, or parts of them where they are huge.
+fn piece_shape(dataset: &Dataset) -> Vec<usize> {
+    let shape = dataset.shape();
+    let chunk = dataset.chunk().filter(|c| c.len() == shape.len());
+    let mut piece = chunk.unwrap_or_else(|| shape.clone());
+    for (length, &whole) in piece.iter_mut().zip(&shape) {
+        *length = (*length).clamp(1, whole.max(1));
+    }
+    for axis in 0..piece.len() {
+        // The lengths behind are no longer than those of the map, whose cells can be counted.
+        let behind: usize = piece[axis + 1..].iter().product();
+        piece[axis] = piece[axis].min((MOST_AT_ONCE / behind).max(1));
+    }
+    piece
+}
+
+/// Every piece of a dataset as a hyperslab, cut at the dataset's edges.
 fn for_each_chunk<E>(
     dataset: &Dataset,
     mut visit: impl FnMut(Vec<SliceOrIndex>) -> Result<(), E>,
 ) -> Result<(), E> {
     let shape = dataset.shape();
-    let chunk = dataset.chunk().unwrap_or_else(|| shape.clone());
+    let chunk = piece_shape(dataset);
     let mut offset = vec![0; shape.len()];
     loop {
         let slab = offset

@@ -28,7 +28,7 @@ pub const BLOCK_OF_DELAYS: usize = crate::linear::track::BLOCK;
 const BLOCK_OF_VC: usize = crate::critical::line::BLOCK;
 const _: () = assert!(BLOCK_OF_DELAYS.is_multiple_of(BLOCK_OF_VC));
 /// More cells than this are refused.
-const MOST_CELLS: u64 = 10_000_000_000_000;
+pub const MOST_CELLS: u64 = 10_000_000_000_000;
 /// More tiles than this are refused: even their list would fill a machine's memory.
 const MOST_TILES: usize = 100_000_000;
 /// More planes of curves and best settings than this are refused.

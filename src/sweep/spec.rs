@@ -45,7 +45,7 @@ mod vc_keys;
 
 use std::ops::Range;
 
-use super::axis::{Axis, Spacing, plane_of_curves, spaced};
+use super::axis::{Axis, MOST_POINTS, Spacing, plane_of_curves, spaced};
 use super::best::gain_plane;
 use super::field::{Field, known_fields};
 use super::given::{GivenParameters, read_units};
@@ -61,6 +61,8 @@ use crate::linear::MarginalTolerance;
 use crate::model::Shown;
 use vc_keys::VcKeys;
 
+/// More points than this on all axes but the last are refused: their product would be too many cells.
+const MOST_POINTS_TOGETHER: u64 = 2 * MOST_POINTS;
 /// More degrees of stability than this are refused.
 const MOST_DEGREES: usize = 16;
 /// The largest degree of stability, in 1/time.
@@ -245,6 +247,13 @@ impl Draft {
             let parameter = Parameter::from_name(entry.key)
                 .ok_or_else(|| entry.unknown(&Parameter::ALL.map(Parameter::name)))?;
             self.given.give(&entry, parameter)?;
+            let points: u64 = self.axes.iter().map(|axis| axis.len() as u64).sum();
+            if points > MOST_POINTS_TOGETHER {
+                let message = format!(
+                    "the axes before it have {points} points together; at most {MOST_POINTS_TOGETHER} are allowed"
+                );
+                return Err(entry.error(message));
+            }
             let values = if entry.is_table() {
                 read_range(&entry)?
             } else {

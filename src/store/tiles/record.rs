@@ -5,7 +5,7 @@ use serde::de::DeserializeOwned;
 use sha2::{Digest as _, Sha256};
 
 use super::super::best_writer::BestRow;
-use super::super::codec::{Chunk, ChunkCodec};
+use super::super::codec::{Chunk, ChunkCodec, decode_bytes};
 use super::super::curve_rows::CurveRows;
 use crate::sweep::engine::{Computed, Encode};
 use crate::sweep::pieces::Piece;
@@ -60,6 +60,18 @@ impl<'a> Content<'a> {
             Piece::Best(_) => whole(payload).map(Self::Best),
             Piece::Tile(_) => chunks(payload).map(Self::Tile),
         }
+    }
+}
+
+/// Whether bytes are the payload of such a piece; of a tile, whose chunks have `status_cells` statuses in the last one.
+#[must_use]
+pub fn is_readable(piece: Piece, payload: &[u8], status_cells: usize) -> bool {
+    match Content::read(piece, payload) {
+        Some(Content::Tile(chunks)) => {
+            let status = chunks.last().and_then(|c| decode_bytes(c, status_cells));
+            status.is_some()
+        }
+        content => content.is_some(),
     }
 }
 

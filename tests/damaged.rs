@@ -1,0 +1,409 @@
+//! Damaged HDF5 files through the whole program, each in a process of its own with a limit on its memory: whatever a file holds, the
+//! program ends with a message and an exit code.
+//!
+//! `SLIPMAP_DAMAGED=10000 cargo test --release --test damaged -- --nocapture` tries so many files and prints how they ended.
+
+#[path = "damaged/checksums.rs"]
+mod checksums;
+#[path = "common/program.rs"]
+mod program;
+
+use std::collections::BTreeMap;
+use std::fs::{self, File};
+use std::os::unix::process::ExitStatusExt;
+use std::path::{Path, PathBuf};
+use std::process::{Child, Command, ExitStatus, Stdio};
+use std::time::{Duration, Instant};
+
+use program::{Folder, expect};
+
+/// Files that are tried where nothing else is asked for.
+const FILES: u64 = 84;
+/// Virtual memory of a process, KiB.
+const MEMORY: u64 = 2 << 20;
+/// What takes longer hangs.
+const PATIENCE: Duration = Duration::from_secs(10);
+
+const SWEEP: &str = "title = \"Damaged\"\nfields = [\"n_unstable\", \"abscissa\"]\nbest = true\ndegree_of_stability = [0.05]\n\
+    [axes]\nmu_prime = [-0.2, -0.1]\nalpha_v = { from = -1.2, to = 0.0, points = 7 }\n\
+    tau = { from = 0.5, to = 6.0, points = 9 }\n[fixed]\nalpha_n = 0.0\n";
+const CASE: &str = "horizon = 50.0\n[friction]\nlaw = \"coulomb\"\nmu0 = 0.4\n[fixed]\nv0 = 0.1\n[trace]\nuntil = 20.0\n";
+
+/// What is done with a damaged file. All of `run`, `merge` and `simulate` look at it because it has their output's name.
+const COMMANDS: [(&str, &[&str]); 7] = [
+    ("info", &["info", "map.h5"]),
+    ("plot", &["plot", "map.h5", "-o", "map.png"]),
+    (
+        "verify",
+        &["verify", "map.h5", "--cells", "3", "--tiles", "1"],
+    ),
+    ("status", &["status", "map.h5"]),
+    ("merge", &["merge", "map.h5", "--partial"]),
+    (
+        "run",
+        &[
+            "run",
+            "sweep.toml",
+            "-o",
+            "map.h5",
+            "--threads",
+            "2",
+            "--quiet",
+        ],
+    ),
+    ("simulate", &["simulate", "case.toml", "-o", "trace.h5"]),
+];
+
+/// Where metadata begins in an HDF5 file.
+const SIGNATURES: [&[u8]; 10] = [
+    b"\x89HDF", b"OHDR", b"OCHK", b"TREE", b"HEAP", b"SNOD", b"GCOL", b"FRHP", b"BTHD", b"FADB",
+];
+
+/// A reproducible stream of numbers (SplitMix64).
+struct Chance(u64);
+
+impl Chance {
+    fn next(&mut self) -> u64 {
+        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
+        let mut z = self.0;
+        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+        z ^ (z >> 31)
+    }
+
+    fn below(&mut self, end: usize) -> usize {
+        (self.next() % end.max(1) as u64) as usize
+    }
+}
+
+/// Places where metadata begins.
+fn metadata(bytes: &[u8]) -> Vec<usize> {
+    let signed = |at: &usize| SIGNATURES.iter().any(|s| bytes[*at..].starts_with(s));
+    (0..bytes.len()).filter(signed).collect()
+}
+
+/// The bytes, damaged in one to three places, most of them in metadata.
+fn damaged(sound: &[u8], metadata: &[usize], chance: &mut Chance) -> Vec<u8> {
+    let mut bytes = sound.to_vec();
+    for _ in 0..=chance.below(3) {
+        let at = match chance.below(10) {
+            0..6 if !metadata.is_empty() => {
+                metadata[chance.below(metadata.len())] + chance.below(200)
+            }
+            0..8 => chance.below(2048),
+            _ => chance.below(bytes.len()),
+        };
+        if bytes.is_empty() {
+            break;
+        }
+        let at = at.min(bytes.len() - 1);
+        let end = (at + 1 + chance.below(64)).min(bytes.len());
+        match chance.below(12) {
+            0..4 => bytes[at] ^= 1 << chance.below(8),
+            4..6 => bytes[at] = chance.next() as u8,
+            6 => bytes[at..end].fill(0),
+            7 => bytes[at..end].fill(0xff),
+            8 => bytes[at] = [0, 1, 0x7f, 0x80, 0xfe, 0xff][chance.below(6)],
+            9 => {
+                let end = (at + 8).min(bytes.len());
+                let huge = [u64::MAX, 1 << 40, 1 << 31, 1 << 63, 0][chance.below(5)];
+                bytes[at..end].copy_from_slice(&huge.to_le_bytes()[..end - at]);
+            }
+            10 => {
+                let from = chance.below(bytes.len() - (end - at) + 1);
+                bytes.copy_within(from..from + (end - at), at);
+            }
+            _ => bytes.truncate(at),
+        }
+    }
+    bytes
+}
+
+/// How a process ended.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+enum End {
+    Code(i32),
+    Signal(i32),
+    Hung,
+}
+
+fn end(child: &mut Child) -> End {
+    let begun = Instant::now();
+    let mut pause = Duration::from_millis(1);
+    let status: ExitStatus = loop {
+        if let Some(status) = child.try_wait().unwrap() {
+            break status;
+        }
+        if begun.elapsed() > PATIENCE {
+            child.kill().unwrap();
+            child.wait().unwrap();
+            return End::Hung;
+        }
+        std::thread::sleep(pause);
+        pause = (pause * 2).min(Duration::from_millis(20));
+    };
+    match (status.code(), status.signal()) {
+        (Some(code), _) => End::Code(code),
+        (None, signal) => End::Signal(signal.unwrap_or(0)),
+    }
+}
+
+/// Runs the program with little memory; what it says goes to a file.
+fn run(folder: &Folder, args: &[&str]) -> (End, String) {
+    let said = folder.path().join("said");
+    let out = File::create(&said).unwrap();
+    let limited = format!("ulimit -v {MEMORY}; ulimit -c 0; exec \"$0\" \"$@\"");
+    let mut child = Command::new("sh")
+        .args(["-c", &limited, env!("CARGO_BIN_EXE_slipmap")])
+        .args(args)
+        .current_dir(folder.path())
+        .env("NO_COLOR", "1")
+        .stdin(Stdio::null())
+        .stderr(out.try_clone().unwrap())
+        .stdout(out)
+        .spawn()
+        .unwrap();
+    let end = end(&mut child);
+    let text = fs::read(&said).unwrap();
+    (end, String::from_utf8_lossy(&text).into_owned())
+}
+
+/// A map with one shard of two beside it, and a trace.
+struct Sound {
+    folder: Folder,
+    map: Vec<u8>,
+    trace: Vec<u8>,
+}
+
+impl Sound {
+    fn new() -> Self {
+        let folder = Folder::with(&[("sweep.toml", SWEEP), ("case.toml", CASE)]);
+        expect(
+            &folder.run(&["simulate", "case.toml", "-o", "trace.h5"]),
+            0,
+            "",
+        );
+        expect(
+            &folder.run(&["run", "sweep.toml", "-o", "map.h5", "--quiet"]),
+            0,
+            "",
+        );
+        let read = |name: &str| fs::read(folder.path().join(name)).unwrap();
+        let (map, trace) = (read("map.h5"), read("trace.h5"));
+        fs::remove_file(folder.path().join("map.h5")).unwrap();
+        let shard = [
+            "run",
+            "sweep.toml",
+            "-o",
+            "map.h5",
+            "--shard",
+            "1/2",
+            "--quiet",
+        ];
+        expect(&folder.run(&shard), 0, "");
+        fs::rename(
+            folder.path().join("map.h5.tiles"),
+            folder.path().join("tiles"),
+        )
+        .unwrap();
+        Self { folder, map, trace }
+    }
+
+    /// Everything as it was, with other bytes for the map and the trace.
+    fn put(&self, command: &str, bytes: &[u8]) {
+        let path = |name: &str| self.folder.path().join(name);
+        let name = if command == "simulate" {
+            "trace.h5"
+        } else {
+            "map.h5"
+        };
+        fs::write(path(name), bytes).unwrap();
+        let _ = fs::remove_dir_all(path("map.h5.tiles"));
+        if command == "merge" {
+            copy(&path("tiles"), &path("map.h5.tiles"));
+        }
+    }
+}
+
+fn copy(from: &Path, to: &Path) {
+    fs::create_dir_all(to).unwrap();
+    for entry in fs::read_dir(from).unwrap() {
+        let entry = entry.unwrap();
+        let target = to.join(entry.file_name());
+        match entry.path().is_dir() {
+            true => copy(&entry.path(), &target),
+            false => drop(fs::copy(entry.path(), target).unwrap()),
+        }
+    }
+}
+
+/// The ways to end that are slipmap's own fault, in words.
+fn fault(end: End, said: &str) -> Option<&'static str> {
+    match end {
+        _ if said.contains("panicked") => Some("it panicked"),
+        _ if said.contains("memory allocation of") => Some("it asked for too much memory"),
+        End::Code(1 | 2) if said.trim().is_empty() => Some("it said nothing"),
+        End::Code(0..=2) | End::Signal(_) | End::Hung => None,
+        End::Code(_) => Some("no exit code of its own"),
+    }
+}
+
+fn keep(sound: &Sound, number: u64, name: &str, end: End) {
+    let Ok(folder) = std::env::var("SLIPMAP_DAMAGED_KEEP") else {
+        return;
+    };
+    let file = if name == "simulate" {
+        "trace.h5"
+    } else {
+        "map.h5"
+    };
+    let kept = PathBuf::from(folder).join(format!("{number}-{name}-{end:?}.h5"));
+    fs::copy(sound.folder.path().join(file), kept).unwrap();
+}
+
+#[test]
+fn damaged_files_end_in_a_message() {
+    let files = std::env::var("SLIPMAP_DAMAGED").map_or(FILES, |n| n.parse().unwrap());
+    let sound = Sound::new();
+    let sources = [&sound.map, &sound.trace].map(|bytes| {
+        let places = metadata(bytes);
+        let blocks = checksums::blocks(bytes, &places);
+        assert!(blocks.len() > 10, "{blocks:?} of {places:?}");
+        (bytes, places, blocks)
+    });
+    let mut ends: BTreeMap<(&str, End), u64> = BTreeMap::new();
+    let mut faults = Vec::new();
+    for number in 0..files {
+        if number % 1000 == 999 {
+            println!("{} files: {ends:?}", number + 1);
+        }
+        let (name, args) = COMMANDS[(number % COMMANDS.len() as u64) as usize];
+        let mut chance = Chance(number);
+        let (whole, places, blocks) = &sources[usize::from(name == "simulate")];
+        let mut bytes = damaged(whole, places, &mut chance);
+        // Every other file gets past the library's own checksums.
+        if chance.below(2) == 0 {
+            checksums::repair(&mut bytes, blocks);
+        }
+        sound.put(name, &bytes);
+        let (end, said) = run(&sound.folder, args);
+        *ends.entry((name, end)).or_default() += 1;
+        let fault = fault(end, &said);
+        if fault.is_some() || !matches!(end, End::Code(_)) {
+            sound.put(name, &bytes);
+            keep(&sound, number, name, end);
+            println!("file {number}, {name}: {end:?}: {said}");
+        }
+        faults.extend(fault.map(|fault| format!("file {number}, {name}: {fault}: {said}")));
+    }
+    for ((name, end), count) in &ends {
+        println!("{name:<10} {end:<12?} {count}");
+    }
+    assert!(faults.is_empty(), "{}", faults.join("\n"));
+    // What the library does with damaged files is not slipmap's; that it is rare is seen here.
+    let abnormal = ends
+        .iter()
+        .filter(|((_, end), _)| !matches!(end, End::Code(_)));
+    let abnormal: u64 = abnormal.map(|(_, count)| count).sum();
+    assert!(
+        abnormal * 50 <= files,
+        "{abnormal} of {files} ended in a signal or not at all: {ends:?}"
+    );
+}
+
+/// Sound HDF5 files that are odd as maps: each is refused in words.
+#[test]
+fn odd_maps_are_refused() {
+    use hdf5::types::{FixedAscii, VarLenUnicode};
+    use slipmap::store::MapFile;
+    type Edit = fn(&hdf5::File) -> hdf5::Result<()>;
+    fn put_axes(file: &hdf5::File, text: &str) -> hdf5::Result<()> {
+        file.delete_attr("axes")?;
+        let text: VarLenUnicode = text.parse().unwrap();
+        file.new_attr::<VarLenUnicode>()
+            .create("axes")?
+            .write_scalar(&text)
+    }
+    let edits: [(Edit, &str); 8] = [
+        (
+            |file| {
+                file.delete_attr("axes")?;
+                // Never written: a string without a pointer.
+                file.new_attr::<VarLenUnicode>().create("axes").map(drop)
+            },
+            "does not name its axes",
+        ),
+        (
+            |file| {
+                file.delete_attr("axes")?;
+                // SAFETY: the bytes are only copied; that they are no text is the point.
+                let text = unsafe { FixedAscii::<8>::from_ascii_unchecked(&[0xff_u8; 8]) };
+                let attribute = file.new_attr::<FixedAscii<8>>().create("axes")?;
+                attribute.write_scalar(&text)
+            },
+            "does not name its axes",
+        ),
+        (|file| put_axes(file, ""), "it has 0 axes"),
+        (|file| put_axes(file, "mu_prime tau tau"), "tau twice"),
+        (
+            |file| {
+                let counts = file.dataset("boundaries/vertex_count")?;
+                let mut values = counts.read_raw::<i32>()?;
+                values[0] = -values[0];
+                counts.write_raw(&values)
+            },
+            "lengths do not fit together",
+        ),
+        (
+            |file| file.dataset("boundaries/branch")?.resize(1),
+            "lengths do not fit together",
+        ),
+        (
+            |file| {
+                file.unlink("tau")?;
+                let claimed = file.new_dataset::<f64>().chunk(64).shape(9_000_000);
+                claimed.create("tau").map(drop)
+            },
+            "axis tau is damaged",
+        ),
+        (
+            |file| {
+                let tau = file.dataset("tau")?;
+                tau.write_raw(&vec![f64::NAN; tau.size()])
+            },
+            "axis tau is damaged",
+        ),
+    ];
+    let sound = Sound::new();
+    for (edit, says) in edits {
+        sound.put("info", &sound.map);
+        let path = sound.folder.path().join("map.h5");
+        edit(&hdf5::File::open_rw(&path).unwrap()).unwrap();
+        let found = MapFile::open(&path).and_then(|map| map.curves().map(drop));
+        let error = found.expect_err(says).to_string();
+        assert!(error.contains(says), "{error}");
+    }
+}
+
+/// Columns of curves that claim to be one value, in chunks of a list: libhdf5 would read for ever.
+#[test]
+fn chunks_of_other_dimensions_are_refused() {
+    let sound = Sound::new();
+    let blocks = checksums::blocks(&sound.map, &metadata(&sound.map));
+    let mut bytes = sound.map.clone();
+    // A dataspace of version 1 with one dimension, its largest length unlimited.
+    let lists = (0..bytes.len() - 24).filter(|&at| {
+        bytes[at..].starts_with(&[1, 1, 1, 0, 0, 0, 0, 0])
+            && bytes[at + 16..].starts_with(&[0xff; 8])
+    });
+    let lists: Vec<usize> = lists.collect();
+    assert!(lists.len() > 5, "{lists:?}");
+    for at in lists {
+        bytes[at + 1..at + 3].fill(0);
+    }
+    checksums::repair(&mut bytes, &blocks);
+    sound.put("verify", &bytes);
+    let (end, said) = run(&sound.folder, &["verify", "map.h5"]);
+    assert_eq!(end, End::Code(1), "{said}");
+    assert!(said.contains("another number of dimensions"), "{said}");
+}
