@@ -24,7 +24,7 @@ use slipmap::store::map_maker::{Job, make, make_in_memory, make_shard, merge};
 use slipmap::store::map_writer::Provenance;
 use slipmap::store::tiles::shards;
 use slipmap::sweep::events::Silent;
-use slipmap::sweep::{Order, Plan, Shard};
+use slipmap::sweep::{Order, Plan, RunError, Shard};
 
 /// Curves, best settings and decay rates: every kind of piece, a second or two of work.
 const NIGHT: &str = "
@@ -221,7 +221,8 @@ fn threads_shards_and_order_make_no_difference() {
         &folders,
         &map,
         &provenance,
-        (Missing::Refuse, &Silent),
+        (Missing::Refuse, false),
+        &Silent,
     )
     .unwrap();
     assert!(std::fs::read(&map).unwrap() == expected, "7 shards");
@@ -459,7 +460,8 @@ fn damaged_tiles_are_noticed_and_computed_again() {
         &folders,
         &map,
         &provenance,
-        (Missing::Refuse, &Silent),
+        (Missing::Refuse, false),
+        &Silent,
     )
     .unwrap();
     assert!(std::fs::read(&map).unwrap() == expected);
@@ -632,43 +634,174 @@ fn a_replacement_that_was_stopped_goes_on() {
     assert!(tile_files(&map).len() > kept);
 }
 
-/// What a run leaves that is killed between giving the map its name and removing the tiles, or while it removes them.
+/// What is left where a run or merge is killed between giving the map its name and removing the tiles, or while it removes them.
 #[test]
 fn leftovers_of_a_complete_map_are_removed() {
     let _alone = alone();
     let folder = Folder::with(&[("night.toml", NIGHT)]);
     let map = folder.path().join("night.h5");
-    let root = shards::root(&map);
-    expect(
-        &folder.run(&["run", "night.toml", "--shard", "1/1"]),
-        0,
-        "night.h5: ",
-    );
-    expect(
-        &folder.run(&["run", "night.toml", "-o", "other.h5", "--shard", "1/2"]),
-        0,
-        "shard 1 of 2",
-    );
-    let manifest = "other.h5.tiles/1-of-2/manifest.json";
-    std::fs::create_dir_all(root.join("1-of-1")).unwrap();
-    std::fs::copy(
-        folder.path().join(manifest),
-        root.join("1-of-1/manifest.json"),
-    )
-    .unwrap();
-    expect(&folder.run(&["run", "night.toml"]), 0, "already complete");
-    assert!(!root.exists());
-    // A folder from which even the manifest has gone.
-    std::fs::create_dir_all(root.join("1-of-2")).unwrap();
-    std::fs::write(root.join("1-of-2/lock"), "").unwrap();
+    let (root, first) = (shards::root(&map), shards::root(&map).join("1-of-2"));
+    for shard in ["1/2", "2/2"] {
+        expect(
+            &folder.run(&["run", "night.toml", "--shard", shard]),
+            0,
+            "is complete",
+        );
+    }
+    let kept = folder.path().join("kept");
+    copy(&first, &kept);
+    expect(&folder.run(&["merge", "night.h5"]), 0, "night.h5: ");
+    let expected = datasets(&map);
+    // All but the manifest is left.
+    std::fs::create_dir(&root).unwrap();
+    copy(&kept, &first);
+    std::fs::remove_file(first.join("manifest.json")).unwrap();
     expect(
         &folder.run(&["status", "night.h5"]),
         0,
         "night.h5: complete",
     );
-    std::fs::remove_file(&map).unwrap();
-    expect(&folder.run(&["run", "night.toml"]), 0, "night.h5: ");
+    expect(&folder.run(&["run", "night.toml"]), 0, "already complete");
     assert!(!root.exists());
+    // Everything is left: the shards are merged once more, when the other one is there again.
+    std::fs::create_dir(&root).unwrap();
+    copy(&kept, &first);
+    expect(
+        &folder.run(&["status", "night.h5"]),
+        0,
+        "complete; what is computed of another one",
+    );
+    expect(
+        &folder.run(&["merge", "night.h5"]),
+        1,
+        "run these shards again: 2/2",
+    );
+    assert_eq!(datasets(&map), expected);
+    expect(
+        &folder.run(&["run", "night.toml", "--shard", "2/2"]),
+        0,
+        "is complete",
+    );
+    expect(
+        &folder.run(&["merge", "night.h5"]),
+        0,
+        "night.h5: 388 800 cells",
+    );
+    assert_eq!(datasets(&map), expected);
+    assert!(!root.exists());
+}
+
+/// A complete map can be computed again, as a whole or in shards; what is stopped goes on; and no shard drops another.
+#[test]
+fn a_complete_map_is_computed_again() {
+    let _alone = alone();
+    let folder = Folder::with(&[("night.toml", NIGHT), ("large.toml", LARGE)]);
+    let map = folder.path().join("night.h5");
+    expect(&folder.run(&["run", "night.toml"]), 0, "night.h5: ");
+    let expected = datasets(&map);
+    let mut child = start(
+        &folder,
+        &["run", "night.toml", "--fresh", "--save-every", "0"],
+    );
+    wait_for("tile file", || !tile_files(&map).is_empty());
+    send("-KILL", &child);
+    child.wait().unwrap();
+    assert_eq!(datasets(&map), expected);
+    let kept = tile_files(&map).len();
+    assert!(kept > 0);
+    expect(&folder.run(&["run", "night.toml"]), 0, "left, on 2 threads");
+    assert_eq!(datasets(&map), expected);
+    for shard in ["1/3", "2/3", "3/3"] {
+        let args = ["run", "night.toml", "--fresh", "--shard", shard];
+        expect(&folder.run(&args), 0, "is complete");
+    }
+    assert_eq!(shards::present(&map).unwrap().len(), 3);
+    expect(
+        &folder.run(&["merge", "night.h5", "--partial", "-o", "sofar.h5"]),
+        0,
+        "sofar.h5: ",
+    );
+    assert_eq!(shards::present(&map).unwrap().len(), 3, "the shards stay");
+    let away = folder.path().join("away");
+    std::fs::rename(shards::root(&map), &away).unwrap();
+    let elsewhere = [
+        "merge",
+        "there.h5",
+        "away/1-of-3",
+        "away/2-of-3",
+        "away/3-of-3",
+        "away/./1-of-3",
+    ];
+    expect(&folder.run(&elsewhere), 0, "there.h5: ");
+    assert!(away.join("1-of-3/manifest.json").exists());
+    for name in ["sofar.h5", "there.h5"] {
+        assert_eq!(datasets(&folder.path().join(name)), expected, "{name}");
+    }
+}
+
+/// A log that cannot be written, and other things in the way.
+#[test]
+fn obstacles_are_named() {
+    let _alone = alone();
+    let folder = Folder::with(&[("night.toml", NIGHT)]);
+    let program = env!("CARGO_BIN_EXE_slipmap");
+    let shell = |script: &str| {
+        Command::new("sh")
+            .args(["-c", script])
+            .current_dir(folder.path())
+            .output()
+            .unwrap()
+    };
+    std::fs::write(
+        folder.path().join("night.h5.1-of-2.log"),
+        vec![b' '; 5 << 20],
+    )
+    .unwrap();
+    let unloggable = shell(&format!(
+        "ulimit -f 9000; exec '{program}' run night.toml --shard 1/2"
+    ));
+    expect(&unloggable, 0, "shard 1 of 2 is complete");
+    expect(
+        &folder.run(&["run", "night.toml", "--shard", "2/2"]),
+        0,
+        "is complete",
+    );
+    let small = shell(&format!("ulimit -f 60; exec '{program}' merge night.h5"));
+    expect(&small, 1, "File too large");
+    expect(&folder.run(&["merge", "night.h5"]), 0, "night.h5: ");
+    for args in [
+        &["run", "night.toml", "-o", "none/night.h5"][..],
+        &["run", "night.toml", "-o", "none/night.h5", "--shard", "1/2"],
+    ] {
+        expect(&folder.run(args), 1, "No such file or directory");
+    }
+    assert!(!folder.path().join("none").exists());
+    std::os::unix::fs::symlink(folder.path(), folder.path().join("other.h5.tiles")).unwrap();
+    expect(
+        &folder.run(&["run", "night.toml", "-o", "other.h5"]),
+        2,
+        "other.h5.tiles stands where the tiles go",
+    );
+}
+
+/// A stop is heeded while the map is put together, and what was computed stays.
+#[test]
+fn a_stop_while_the_map_is_put_together() {
+    let _alone = alone();
+    let (folder, plan) = uninterrupted();
+    let map = folder.path().join("night.h5");
+    let provenance = Provenance::default();
+    let job = Job::new(&map, 2, &provenance);
+    let stop = Arc::new(AtomicBool::new(false));
+    make_shard(&plan, &job, Shard::WHOLE, &Silent, &stop).unwrap();
+    stop.store(true, std::sync::atomic::Ordering::Relaxed);
+    let stopped = make(&plan, &job, &Silent, &stop);
+    assert!(matches!(stopped, Err(RunError::Interrupted)));
+    assert!(!map.exists() && !tile_files(&map).is_empty());
+    stop.store(false, std::sync::atomic::Ordering::Relaxed);
+    make(&plan, &job, &Silent, &stop).unwrap();
+    let whole = std::fs::read(folder.path().join("whole.h5")).unwrap();
+    assert!(std::fs::read(&map).unwrap() == whole);
 }
 
 #[test]

@@ -6,6 +6,7 @@ mod map;
 mod program;
 
 use std::path::Path;
+use std::str::FromStr;
 
 use program::{Folder, expect, out};
 use slipmap::linear::status::{MARGINAL, NOT_CONVERGED};
@@ -112,6 +113,31 @@ fn changed_maps_do_not() {
             .unwrap();
     });
     expect(&gone, 1, "the field frequency is missing");
+    let described = changed(&|path| {
+        let file = hdf5::File::open_rw(path).unwrap();
+        let units = file.dataset("abscissa").unwrap();
+        units.delete_attr("units").unwrap();
+        let furlong = hdf5::types::VarLenUnicode::from_str("furlong").unwrap();
+        units
+            .new_attr::<hdf5::types::VarLenUnicode>()
+            .create("units")
+            .unwrap()
+            .write_scalar(&furlong)
+            .unwrap();
+    });
+    expect(&described, 1, "a description has changed");
+    let curve = changed(&|path| {
+        let file = hdf5::File::open_rw(path).unwrap();
+        let delays = file.dataset("boundaries/tau").unwrap();
+        let longer: Vec<f64> = delays
+            .read_raw::<f64>()
+            .unwrap()
+            .iter()
+            .map(|tau| tau * 1.5)
+            .collect();
+        delays.write_raw(&longer).unwrap();
+    });
+    expect(&curve, 1, "a curve");
     for (bad, code) in [("map.toml", 2), ("none.h5", 2)] {
         expect(&folder.run(&["verify", bad]), code, bad);
     }

@@ -71,11 +71,8 @@ fn to_json(report: &Report) -> Value {
 fn print(report: &Report) -> Result<(), Failure> {
     let mut out = std::io::stdout().lock();
     let mut row = |name: &str, text: String| writeln!(out, "{name:<12} {text}");
-    let datasets = report.checksums;
-    row(
-        "checksums",
-        format!("{datasets} datasets of cells are as they were written"),
-    )?;
+    let checksums = report.checksums;
+    row("checksums", format!("{checksums} fit"))?;
     if report.cells > 0 {
         let cells = grouped(report.cells);
         row("cells", format!("{cells} looked at by second methods"))?;

@@ -28,7 +28,7 @@ pub struct Report {
     pub faults: Vec<String>,
     /// What could not be checked, and why.
     pub remarks: Vec<String>,
-    /// Datasets of cells whose checksums fit.
+    /// Checksums that fit: one of each dataset of cells, one of everything else.
     pub checksums: u64,
     /// Cells at which second methods looked.
     pub cells: u64,
@@ -177,6 +177,17 @@ fn check_checksums(map: &MapFile, plan: &Plan, report: &mut Report) {
             )),
             None => report.faults.push(format!("{name}: chunks cannot be read")),
         }
+    }
+    match (map.root_text(schema::CONTENTS_SHA256), map.contents_hash()) {
+        (None, Ok(_)) => {}
+        (Some(expected), Ok(found)) if found == expected => report.checksums += 1,
+        (_, Ok(_)) => {
+            let fault = "the checksum of what is no cell does not fit: an axis, a curve, a best setting or a description has changed";
+            report.faults.push(fault.to_owned());
+        }
+        (_, Err(error)) => report
+            .faults
+            .push(format!("not everything in it can be read: {error}")),
     }
     if without > 0 {
         let remark = format!("{without} datasets have no checksum: an earlier version wrote them");

@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use hdf5::{Dataset, File, Group, H5Type, Hyperslab, SliceOrIndex};
 
 use super::attributes::text;
+use super::contents_hash::contents_hash;
 pub use super::curve_reader::MapCurve;
 use super::error::StoreError;
 use super::schema::{self, BEST, BOUNDARIES, DEGREE_OF_STABILITY, PLANE, STATUS, root};
@@ -158,6 +159,12 @@ impl MapFile {
     #[must_use]
     pub fn root_text(&self, name: &str) -> Option<String> {
         text(&self.file, name).ok()
+    }
+
+    /// The hash of everything besides the cells, as it is now.
+    pub(super) fn contents_hash(&self) -> hdf5::Result<String> {
+        let fields = self.fields.iter().map(|field| field.name());
+        contents_hash(&self.file, &fields.chain([STATUS]).collect::<Vec<_>>())
     }
 
     /// Whether some cells are not computed yet.
@@ -363,7 +370,10 @@ fn has_fitting_chunks(dataset: &Dataset) -> bool {
 }
 
 /// All values of a dataset. What claims more of them than its bytes in the file can hold is refused before memory is asked for.
-fn whole<T: H5Type + Copy + Default>(file: &File, dataset: &Dataset) -> hdf5::Result<Vec<T>> {
+pub(super) fn whole<T: H5Type + Copy + Default>(
+    file: &File,
+    dataset: &Dataset,
+) -> hdf5::Result<Vec<T>> {
     if !has_fitting_chunks(dataset) {
         return Err("its chunks have another number of dimensions".into());
     }

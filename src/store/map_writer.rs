@@ -12,6 +12,7 @@ use super::attributes::{put_flags, put_numbers, put_text};
 use super::best_writer::{BestRow, BestWriter};
 use super::boundary_writer::BoundaryWriter;
 use super::codec::DEFLATE_LEVEL;
+use super::contents_hash::contents_hash;
 use super::curve_rows::{CurveRows, outer_values};
 use super::error::StoreError;
 use super::netcdf::{DimensionId, Dimensions, named};
@@ -154,6 +155,11 @@ impl<'p> MapWriter<'p> {
                 best.finish()?;
             }
             self.dimensions.finish()?;
+            self.file.flush()?;
+            let fields = self.plan.spec.fields.iter().map(|field| field.name());
+            let cells: Vec<&str> = fields.chain([STATUS]).collect();
+            let hash = contents_hash(&self.file, &cells)?;
+            put_text(&self.file, schema::CONTENTS_SHA256, &hash)?;
             self.file.flush()
         };
         close().map_err(StoreError::hdf5("write", &path))?;

@@ -16,6 +16,7 @@ mod best_reader;
 mod best_writer;
 mod boundary_writer;
 mod codec;
+mod contents_hash;
 pub mod curve_reader;
 pub mod curve_rows;
 mod error;

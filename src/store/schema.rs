@@ -62,6 +62,9 @@ pub mod root {
 /// Attribute of datasets of cells: SHA-256 of the stored bytes of all chunks, one after the other, last dimension fastest.
 pub const CHUNKS_SHA256: &str = "chunks_sha256";
 
+/// Root attribute: SHA-256 over everything in the map besides the cells, the references between datasets and the history.
+pub const CONTENTS_SHA256: &str = "contents_sha256";
+
 /// Name of the status of each cell.
 pub const STATUS: &str = "status";
 /// Name of the group of crossing curves.
