@@ -1,6 +1,7 @@
 //! A map's way to its final name: a lock beside it, a temporary name, one rename at the end.
 
 use std::fs::{self, File};
+use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 
 use super::error::StoreError;
@@ -32,7 +33,10 @@ impl Output {
             return Err(StoreError::io("write", path)(source));
         }
         let lock_path = beside(path, "lock");
-        let lock = lock::acquire(&lock_path).map_err(StoreError::io("lock", &lock_path))?;
+        let lock = lock::acquire(&lock_path).map_err(|error| match error.kind() {
+            ErrorKind::AlreadyExists => StoreError::io("lock", &lock_path)(error),
+            _ => StoreError::io("write", path)(error),
+        })?;
         let Some(lock) = lock else {
             return Err(StoreError::Locked {
                 path: path.to_owned(),
