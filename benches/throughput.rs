@@ -34,9 +34,9 @@ fn plan(points: usize) -> Plan {
     Plan::new(spec).expect("the plan is valid")
 }
 
-/// Decay rates in a plane of so many points that it takes some seconds.
+/// Decay rates in a plane of three times as many points each way, which takes some seconds.
 fn decay_plan(points: usize) -> Plan {
-    let points = points.max(2);
+    let points = 3 * points.max(1);
     let text = format!(
         "fields = [\"abscissa\", \"frequency\"]\nboundaries = false\n[axes]\n\
          alpha_n = {{ from = -3.0, to = 1.0, points = {points} }}\n\
