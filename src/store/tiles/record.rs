@@ -18,7 +18,7 @@ pub type Digest = [u8; 32];
 pub struct Record {
     /// Which piece.
     pub piece: Piece,
-    /// Its bytes, see [`Content`].
+    /// Its bytes, as the encoder wrote them.
     pub payload: Vec<u8>,
     /// Their checksum.
     pub digest: Digest,
