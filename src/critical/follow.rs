@@ -122,8 +122,12 @@ pub fn critical_velocity(problem: &Problem, pace: &Pace, accuracy: Accuracy) -> 
         if followed.last.is_some() {
             return followed;
         }
-        let lifted = |lost: &Option<Sustained>| lost.is_some_and(|lost| lost.fate == Fate::LiftOff);
-        if lost.is_none() || lifted(&followed.lost) {
+        // Where stick-slip was lost otherwise before, a lift-off at a larger start is that of the start alone.
+        let lower = followed.lost.as_ref().is_some_and(|now| {
+            let lowest = lost.as_ref().map_or(f64::INFINITY, |lost| lost.v0);
+            now.fate == Fate::LiftOff && now.v0 < lowest
+        });
+        if lost.is_none() || lower {
             lost = followed.lost;
         }
     }
