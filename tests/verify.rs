@@ -7,6 +7,7 @@ mod program;
 
 use std::path::Path;
 use std::str::FromStr;
+use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use program::{Folder, expect, out};
 use slipmap::linear::status::{MARGINAL, NOT_CONVERGED};
@@ -25,8 +26,15 @@ const OUTCOME: &str = "fields = [\"outcome\"]\n[axes]\ntau = [0.5, 1.5, 2.5]\n[f
 const LIMIT: &str = "protocol = \"limit\"\nfields = [\"vc_over_vtilde\"]\n[axes]\ngamma = { from = 0.1, to = 0.9, points = 10 }\n\
                      [fixed]\nmu_ratio = 0.5\n";
 
+/// One test at a time: a child that is just being started would hold the locks of maps that another test writes.
+fn alone() -> MutexGuard<'static, ()> {
+    static ONE: Mutex<()> = Mutex::new(());
+    ONE.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
 #[test]
 fn sound_maps_pass() {
+    let _alone = alone();
     for (text, questions) in [
         (DECAY, &["abscissa, by", "n_unstable, by"][..]),
         (
@@ -53,6 +61,7 @@ fn sound_maps_pass() {
 /// Every byte of every chunk is under a checksum, and a changed attribute or axis is noticed too.
 #[test]
 fn changed_maps_do_not() {
+    let _alone = alone();
     let folder = Folder::with(&[("map.toml", DECAY)]);
     expect(&folder.run(&["run", "map.toml"]), 0, "map.h5: ");
     let original = std::fs::read(folder.path().join("map.h5")).unwrap();
@@ -178,6 +187,7 @@ fn looked(
 /// Second methods see wrong values, and keep quiet where the cell itself says that it is in doubt.
 #[test]
 fn wrong_values_are_seen_by_second_methods() {
+    let _alone = alone();
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("map.h5");
     for (text, field, wrong, question, doubt) in [
@@ -235,6 +245,7 @@ fn wrong_values_are_seen_by_second_methods() {
 
 #[test]
 fn a_map_of_another_revision_is_not_compared_bit_by_bit() {
+    let _alone = alone();
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("map.h5");
     map::write(&plan(DECAY), 2, &path);

@@ -42,8 +42,8 @@ pub struct Assembled {
 /// Writes the map of `plan` from the pieces that `source` gives, in the order of their numbers: equal pieces make equal files.
 ///
 /// # Errors
-/// When it is to stop, when a piece is damaged, when one is missing and has to be there, or when the system or the library refuses; nothing then
-/// stands under the map's name that was not there before.
+/// When it is to stop, when a piece is damaged, when one is missing and has to be there, or when the system or the library
+/// refuses; nothing then stands under the map's name that was not there before.
 pub fn assemble(
     plan: &Plan,
     output: Output,
@@ -61,12 +61,9 @@ pub fn assemble(
         }
         let Some(payload) = source.read(piece)? else {
             assembled.pieces_missing += 1;
-            match piece {
-                Piece::Curves(_) => {}
-                Piece::Best(_) => writer.put_best(&BestRow::of(None)),
-                Piece::Tile(number) => {
-                    assembled.cells_missing += plan.tiles.tile(number as usize).cells();
-                }
+            assembled.cells_missing += plan.cells_of(piece);
+            if let Piece::Best(_) = piece {
+                writer.put_best(&BestRow::of(None));
             }
             continue;
         };

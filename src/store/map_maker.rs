@@ -60,17 +60,13 @@ pub fn make(
     observer: &dyn Observer,
     stop: &Arc<AtomicBool>,
 ) -> Result<Assembled, RunError<StoreError>> {
-    let output = Output::claim(job.map).map_err(RunError::Sink)?;
+    let mut output = Output::claim(job.map).map_err(RunError::Sink)?;
     let mut folder = claimed(plan, job, Shard::WHOLE, observer).map_err(RunError::Sink)?;
-    let mut output = Some(output);
-    for repair in 0.. {
+    let mut repairs = 0;
+    loop {
         compute(plan, job, Shard::WHOLE, &mut folder, (observer, stop))?;
-        let claim = match output.take() {
-            Some(output) => output,
-            None => Output::claim(job.map).map_err(RunError::Sink)?,
-        };
         let how = (Missing::Refuse, &**stop);
-        match assemble(plan, claim, job.provenance, &mut folder, how) {
+        match assemble(plan, output, job.provenance, &mut folder, how) {
             Ok(assembled) => {
                 folder
                     .remove()
@@ -79,15 +75,16 @@ pub fn make(
                 return Ok(assembled);
             }
             Err(StoreError::Damaged { .. } | StoreError::Incomplete { .. })
-                if repair < MOST_REPAIRS =>
+                if repairs < MOST_REPAIRS =>
             {
+                repairs += 1;
                 tell(&folder.scan().map_err(RunError::Sink)?, observer);
+                output = Output::claim(job.map).map_err(RunError::Sink)?;
             }
             Err(StoreError::Stopped) => return Err(RunError::Interrupted),
             Err(error) => return Err(RunError::Sink(error)),
         }
     }
-    unreachable!("the loop ends in one of its arms")
 }
 
 /// Computes what the tiles of one shard lack.

@@ -19,6 +19,7 @@ mod codec;
 mod contents_hash;
 pub mod curve_reader;
 pub mod curve_rows;
+mod durable;
 mod error;
 mod lock;
 pub mod map_check;

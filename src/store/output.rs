@@ -4,6 +4,7 @@ use std::fs::{self, File};
 use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 
+use super::durable::{rename_synced, sync};
 use super::error::StoreError;
 use super::lock;
 
@@ -72,14 +73,8 @@ impl Output {
     /// # Errors
     /// When the system cannot sync or rename; the temporary file is then removed.
     pub fn commit(self) -> Result<(), StoreError> {
-        let sync = |path: &Path| File::open(path).and_then(|file| file.sync_all());
-        sync(&self.part).map_err(StoreError::io("sync", &self.part))?;
-        fs::rename(&self.part, &self.path).map_err(StoreError::io("rename to", &self.path))?;
-        let folder = match self.path.parent() {
-            Some(folder) if !folder.as_os_str().is_empty() => folder,
-            _ => Path::new("."),
-        };
-        sync(folder).map_err(StoreError::io("sync", folder))
+        sync(&self.part)?;
+        rename_synced(&self.part, &self.path)
     }
 }
 

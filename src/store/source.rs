@@ -16,6 +16,18 @@ pub trait Source {
     fn read(&mut self, piece: Piece) -> Result<Option<Vec<u8>>, StoreError>;
 }
 
+/// Several sources as one: the first that has a piece gives it.
+impl<S: Source> Source for Vec<S> {
+    fn read(&mut self, piece: Piece) -> Result<Option<Vec<u8>>, StoreError> {
+        for source in self {
+            if let Some(payload) = source.read(piece)? {
+                return Ok(Some(payload));
+            }
+        }
+        Ok(None)
+    }
+}
+
 /// Pieces in memory: for maps that nobody has to wait for.
 #[derive(Debug, Default)]
 pub struct InMemory(BTreeMap<Piece, Vec<u8>>);

@@ -120,7 +120,7 @@ pub fn run<S: Sink>(
     stop: &Arc<AtomicBool>,
 ) -> Result<(), RunError<S::Error>> {
     let left = todo.left().fold((0, 0), |(pieces, cells), piece| {
-        (pieces + 1, cells + cells_of(plan, piece))
+        (pieces + 1, cells + plan.cells_of(piece))
     });
     observer.event(&Event::Started {
         cells: plan.cells(),
@@ -145,13 +145,6 @@ pub fn run<S: Sink>(
     flushed?;
     observer.event(&Event::Finished);
     Ok(())
-}
-
-fn cells_of(plan: &Plan, piece: Piece) -> u64 {
-    match piece {
-        Piece::Tile(number) => plan.tiles.tile(number as usize).cells(),
-        Piece::Curves(_) | Piece::Best(_) => 0,
-    }
 }
 
 /// A computed piece, or why it cannot be.
@@ -245,7 +238,7 @@ fn receive<S: Sink>(
                 sink.write(piece, encoded).map_err(RunError::Sink)?;
                 received += 1;
                 observer.event(&Event::PieceDone {
-                    cells: cells_of(plan, piece),
+                    cells: plan.cells_of(piece),
                 });
             }
             Err(RecvTimeoutError::Timeout) => sink.pause().map_err(RunError::Sink)?,

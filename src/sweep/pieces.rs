@@ -186,12 +186,6 @@ impl Todo {
         self.shard.holds(place) && self.done[(place / 64) as usize] >> (place % 64) & 1 == 0
     }
 
-    /// The pieces of the plan.
-    #[must_use]
-    pub fn pieces(&self) -> Pieces {
-        self.pieces
-    }
-
     /// All pieces on the list, in the order of their numbers.
     pub fn left(&self) -> impl Iterator<Item = Piece> {
         (0..self.pieces.total())

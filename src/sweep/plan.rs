@@ -5,6 +5,7 @@ use sha2::{Digest, Sha256};
 use super::axis::plane_of_curves;
 use super::best::gain_plane;
 use super::parameter::{LawKind, Parameter, Setting};
+use super::pieces::Piece;
 use super::spec::{SpecError, SweepSpec};
 use super::tile::{Tile, TileGrid};
 use super::vc::Protocol;
@@ -124,6 +125,15 @@ impl Plan {
     #[must_use]
     pub fn cells(&self) -> u64 {
         self.shape().iter().map(|&n| n as u64).product()
+    }
+
+    /// Number of cells of a piece; 0 where it is no tile.
+    #[must_use]
+    pub fn cells_of(&self, piece: Piece) -> u64 {
+        match piece {
+            Piece::Tile(number) => self.tiles.tile(number as usize).cells(),
+            Piece::Curves(_) | Piece::Best(_) => 0,
+        }
     }
 
     /// Uncompressed bytes of a cell, the status included.

@@ -102,7 +102,7 @@ impl TileGrid {
 }
 
 /// Every index of a box, last axis fastest; `skip` names an axis that stays at 0.
-pub(super) fn for_each_index(
+pub(crate) fn for_each_index(
     extent: &[usize],
     skip: Option<usize>,
     mut visit: impl FnMut(&[usize]),

@@ -1,10 +1,11 @@
 //! One shard's folder, claimed by the process that fills it.
 
 use std::fs::{self, File};
-use std::io::{BufWriter, ErrorKind};
+use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
+use super::super::durable::{rename_synced, write_synced};
 use super::super::error::StoreError;
 use super::super::lock;
 use super::super::source::Source;
@@ -165,34 +166,6 @@ impl Source for TileFolder {
     }
 }
 
-/// Writes a new file and makes it durable.
-pub(super) fn write_synced(
-    path: &Path,
-    write: impl FnOnce(&mut BufWriter<File>) -> std::io::Result<()>,
-) -> Result<(), StoreError> {
-    let written = || -> std::io::Result<()> {
-        let mut out = BufWriter::with_capacity(1 << 16, File::create(path)?);
-        write(&mut out)?;
-        let file = out
-            .into_inner()
-            .map_err(std::io::IntoInnerError::into_error)?;
-        file.sync_all()
-    };
-    written().map_err(|error| {
-        // What is half written is of no use, and on a full disk in the way.
-        let _ = fs::remove_file(path);
-        StoreError::io("write", path)(error)
-    })
-}
-
-/// Gives a durable file its final name, durably.
-pub(super) fn rename_synced(part: &Path, path: &Path) -> Result<(), StoreError> {
-    fs::rename(part, path).map_err(StoreError::io("rename to", path))?;
-    let folder = path.parent().unwrap_or(Path::new("."));
-    let synced = File::open(folder).and_then(|folder| folder.sync_all());
-    synced.map_err(StoreError::io("sync", folder))
-}
-
 /// Claims the folder.
 fn lock(folder: &Path) -> Result<File, StoreError> {
     let path = folder.join(LOCK);
@@ -221,13 +194,7 @@ fn check_manifest(folder: &Path, asked: &Manifest) -> Result<(), StoreError> {
         write_synced(&part, |out| std::io::Write::write_all(out, json.as_bytes()))?;
         return rename_synced(&part, &path);
     }
-    match Manifest::read(&path)?.difference(asked) {
-        None => Ok(()),
-        Some(difference) => Err(StoreError::OtherTiles {
-            path: folder.to_owned(),
-            difference,
-        }),
-    }
+    Manifest::read(&path)?.refuse_unlike(asked, folder)
 }
 
 /// Number of a tile file's name.

@@ -62,6 +62,25 @@ impl Manifest {
         }
     }
 
+    /// The same of the shard that `other` is of.
+    pub(super) fn of_shard_of(&self, other: &Self) -> Self {
+        Self {
+            shard: other.shard.clone(),
+            ..self.clone()
+        }
+    }
+
+    /// An error where tiles of `self`, in `folder`, do not belong to what is asked for.
+    pub(super) fn refuse_unlike(&self, asked: &Self, folder: &Path) -> Result<(), StoreError> {
+        match self.difference(asked) {
+            None => Ok(()),
+            Some(difference) => Err(StoreError::OtherTiles {
+                path: folder.to_owned(),
+                difference,
+            }),
+        }
+    }
+
     /// Reads a manifest.
     ///
     /// # Errors

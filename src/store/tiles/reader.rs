@@ -30,6 +30,55 @@ struct TileFile {
     entries: Vec<Entry>,
 }
 
+/// A tile file that was read and checked, byte by byte.
+pub(super) struct Checked {
+    pub bytes: Vec<u8>,
+    /// Its sound records, which are of pieces that there are.
+    pub sound: Vec<Entry>,
+    /// What is wrong with it, in words, if something is.
+    pub fault: Option<String>,
+}
+
+impl Checked {
+    /// Reads a file of a folder whose tiles have `layout` in common; none where it is gone.
+    pub fn read(path: &Path, layout: &Digest, pieces: Pieces) -> Result<Option<Self>, StoreError> {
+        let useless = |fault: String| {
+            Ok(Some(Self {
+                bytes: Vec::new(),
+                sound: Vec::new(),
+                fault: Some(fault),
+            }))
+        };
+        let bytes = match fs::metadata(path).map(|m| m.len()) {
+            Ok(length) if length > MOST_BYTES => return useless(format!("it has {length} bytes")),
+            Ok(_) => fs::read(path),
+            Err(error) => Err(error),
+        };
+        let bytes = match bytes {
+            Ok(bytes) => bytes,
+            // Gone since the folder was listed: its run has just put the map together.
+            Err(error) if error.kind() == ErrorKind::NotFound => return Ok(None),
+            Err(error) => return Err(StoreError::io("read", path)(error)),
+        };
+        let entries = match format::index(&bytes, layout) {
+            Ok(entries) => entries,
+            Err(damage) => return useless(damage.to_string()),
+        };
+        let all = entries.len();
+        let sound: Vec<Entry> = entries
+            .into_iter()
+            .filter(|e| pieces.place(e.piece).is_some() && format::is_sound(&bytes, e))
+            .collect();
+        let lost = all - sound.len();
+        let fault = || format!("{}: {lost} of {all} pieces", Damage::Checksum);
+        Ok(Some(Self {
+            bytes,
+            fault: (lost > 0).then(fault),
+            sound,
+        }))
+    }
+}
+
 /// What the tile files of a folder hold.
 #[derive(Debug)]
 pub struct TileReader {
@@ -71,29 +120,11 @@ impl TileReader {
 
     /// Adds the sound pieces of a file. What is wrong with it, if something is.
     fn take_in(&mut self, path: &Path) -> Result<Option<String>, StoreError> {
-        let bytes = match fs::metadata(path).map(|m| m.len()) {
-            Ok(length) if length > MOST_BYTES => return Ok(Some(format!("it has {length} bytes"))),
-            Ok(_) => fs::read(path),
-            Err(error) => Err(error),
+        let Some(checked) = Checked::read(path, &self.layout, self.pieces)? else {
+            return Ok(None);
         };
-        let bytes = match bytes {
-            Ok(bytes) => bytes,
-            // Gone since the folder was listed: its run has just put the map together.
-            Err(error) if error.kind() == ErrorKind::NotFound => return Ok(None),
-            Err(error) => return Err(StoreError::io("read", path)(error)),
-        };
-        let entries = match format::index(&bytes, &self.layout) {
-            Ok(entries) => entries,
-            Err(damage) => return Ok(Some(damage.to_string())),
-        };
-        let all = entries.len();
-        let sound: Vec<Entry> = entries
-            .into_iter()
-            .filter(|e| self.pieces.place(e.piece).is_some() && format::is_sound(&bytes, e))
-            .collect();
-        let lost = all - sound.len();
-        self.add(path.to_owned(), sound);
-        Ok((lost > 0).then(|| format!("{}: {lost} of {all} pieces", Damage::Checksum)))
+        self.add(path.to_owned(), checked.sound);
+        Ok(checked.fault)
     }
 
     /// Adds a file whose entries are known to be sound.
@@ -166,16 +197,5 @@ impl Source for TileReader {
         };
         let entry = self.files[file as usize].entries[number as usize].clone();
         self.payload(file, &entry).map(Some)
-    }
-}
-
-impl Source for Vec<TileReader> {
-    fn read(&mut self, piece: Piece) -> Result<Option<Vec<u8>>, StoreError> {
-        for reader in self {
-            if let Some(payload) = reader.read(piece)? {
-                return Ok(Some(payload));
-            }
-        }
-        Ok(None)
     }
 }

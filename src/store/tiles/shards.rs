@@ -167,21 +167,12 @@ impl Shards {
         let mut all = Vec::new();
         let mut folders = Vec::new();
         for path in paths {
-            let shard = manifest(path)?.shard;
-            let expected = Manifest {
-                shard,
-                ..expected.clone()
-            };
+            let expected = expected.of_shard_of(&manifest(path)?);
             let (folder, damaged) = TileFolder::claim(path, &expected, pieces)?;
             folders.push(folder);
             all.extend(damaged);
         }
         Ok((Self { folders }, all))
-    }
-
-    /// The pieces that are in one of them at least.
-    pub fn done(&self) -> impl Iterator<Item = Piece> {
-        self.folders.iter().flat_map(TileFolder::done)
     }
 
     /// Removes them.
@@ -195,11 +186,6 @@ impl Shards {
 
 impl Source for Shards {
     fn read(&mut self, piece: Piece) -> Result<Option<Vec<u8>>, StoreError> {
-        for folder in &mut self.folders {
-            if let Some(payload) = folder.read(piece)? {
-                return Ok(Some(payload));
-            }
-        }
-        Ok(None)
+        self.folders.read(piece)
     }
 }

@@ -1,20 +1,18 @@
 //! What the tiles beside a map hold, seen from outside: nothing is claimed and nothing changed.
 
-use std::fs;
-use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 
 use super::super::codec::decode_bytes;
 use super::super::error::StoreError;
 use super::super::map_summary::StatusCounts;
 use super::folder::{is_tile_file, listed};
-use super::format;
 use super::manifest::Manifest;
+use super::reader::Checked;
 use super::record::Content;
 use super::shards;
 use crate::sweep::pieces::{Piece, Pieces, Shard};
 use crate::sweep::plan::Plan;
-use crate::sweep::tile::Tile;
+use crate::sweep::tile::for_each_index;
 
 /// What the tiles of all shards of a map hold.
 #[derive(Debug)]
@@ -88,12 +86,6 @@ impl Survey {
         Ok(Some(survey))
     }
 
-    /// Whether nothing is missing.
-    #[must_use]
-    pub fn is_complete(&self) -> bool {
-        self.pieces_done == Pieces::of(&self.plan).total()
-    }
-
     fn add_shard(
         &mut self,
         shard: Shard,
@@ -102,19 +94,12 @@ impl Survey {
         seen: &mut Seen,
     ) -> Result<(), StoreError> {
         let manifest = shards::manifest(path)?;
-        let expected = Manifest {
-            shard: manifest.shard.clone(),
-            ..expected.clone()
-        };
-        if let Some(difference) = manifest.difference(&expected) {
-            return Err(StoreError::OtherTiles {
-                path: path.to_owned(),
-                difference,
-            });
-        }
+        manifest.refuse_unlike(&expected.of_shard_of(&manifest), path)?;
         let total = seen.pieces.total();
         let places = (0..total).filter(|&place| shard.holds(place));
-        let cells = places.map(|place| self.cells(seen.pieces.at(place))).sum();
+        let cells = places
+            .map(|place| self.plan.cells_of(seen.pieces.at(place)))
+            .sum();
         let mut found = ShardSurvey {
             shard,
             running: shards::is_running(path),
@@ -139,24 +124,17 @@ impl Survey {
         found: &mut ShardSurvey,
         seen: &mut Seen,
     ) -> Result<(), StoreError> {
-        let bytes = match fs::read(file) {
-            Ok(bytes) => bytes,
-            // The run that wrote it has just put the map together.
-            Err(error) if error.kind() == ErrorKind::NotFound => return Ok(()),
-            Err(error) => return Err(StoreError::io("read", file)(error)),
-        };
-        let Ok(entries) = format::index(&bytes, &manifest.layout()) else {
-            found.damaged.push(file.to_owned());
+        let Some(checked) = Checked::read(file, &manifest.layout(), seen.pieces)? else {
             return Ok(());
         };
-        let mut damaged = false;
-        for entry in entries {
-            let sound = format::is_sound(&bytes, &entry);
-            let Some(place) = seen.pieces.place(entry.piece).filter(|_| sound) else {
-                damaged = true;
+        if checked.fault.is_some() {
+            found.damaged.push(file.to_owned());
+        }
+        for entry in checked.sound {
+            let Some(place) = seen.pieces.place(entry.piece) else {
                 continue;
             };
-            let (cells, place) = (self.cells(entry.piece), place as usize);
+            let (cells, place) = (self.plan.cells_of(entry.piece), place as usize);
             let own = found.shard.holds(place as u64);
             if !std::mem::replace(&mut seen.here[place], true) && own {
                 found.pieces_done += 1;
@@ -165,20 +143,10 @@ impl Survey {
             if !std::mem::replace(&mut seen.anywhere[place], true) {
                 self.pieces_done += 1;
                 self.cells_done += cells;
-                self.count_flags(entry.piece, &bytes[entry.at]);
+                self.count_flags(entry.piece, &checked.bytes[entry.at]);
             }
         }
-        if damaged {
-            found.damaged.push(file.to_owned());
-        }
         Ok(())
-    }
-
-    fn cells(&self, piece: Piece) -> u64 {
-        match piece {
-            Piece::Tile(number) => self.plan.tiles.tile(number as usize).cells(),
-            Piece::Curves(_) | Piece::Best(_) => 0,
-        }
     }
 
     fn count_flags(&mut self, piece: Piece, payload: &[u8]) {
@@ -194,22 +162,11 @@ impl Survey {
         };
         let tile = self.plan.tiles.tile(number as usize);
         let strides = self.plan.tiles.strides();
-        for_each_cell(&tile, &strides, |place| self.statuses.add([status[place]]));
-    }
-}
-
-/// The place in memory of every cell of a tile that lies inside the map.
-fn for_each_cell(tile: &Tile, strides: &[usize], mut visit: impl FnMut(usize)) {
-    let Some((&inner, outer)) = tile.extent.split_last() else {
-        return visit(0);
-    };
-    let rows: usize = outer.iter().product();
-    for mut row in 0..rows {
-        let mut start = 0;
-        for (&extent, &stride) in outer.iter().zip(strides).rev() {
-            start += (row % extent) * stride;
-            row /= extent;
-        }
-        (start..start + inner).for_each(&mut visit);
+        let last = tile.extent.len() - 1;
+        for_each_index(&tile.extent, Some(last), |index| {
+            let start: usize = index.iter().zip(&strides).map(|(i, s)| i * s).sum();
+            let row = &status[start..start + tile.extent[last]];
+            self.statuses.add(row.iter().copied());
+        });
     }
 }
