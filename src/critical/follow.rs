@@ -1,6 +1,7 @@
 //! The critical velocity by simulation: stick-slip is followed while v0 is raised, carrying the state.
 
 use super::Problem;
+use super::climb::JUMP;
 use super::stops::{Stops, Waiting};
 use super::trend::{expected_way, jumps, vanishes, ways};
 use crate::slip::motion::{Accuracy, Motion};
@@ -198,12 +199,12 @@ impl Holding {
 }
 
 /// What becomes of a motion at `v0`, waited for as long as at the end of a search.
-pub fn fate(problem: &Problem, motion: &mut Motion, v0: f64) -> Fate {
+pub fn fate(problem: &Problem, motion: &mut Motion, v0: f64) -> Sustained {
     let how = Holding {
         waiting: Waiting::Long,
         ..Holding::new(&Pace::default(), 0.0)
     };
-    hold(problem, motion, v0, &how).fate
+    hold(problem, motion, v0, &how)
 }
 
 /// Follows the motion at `v0` until its fate is known.
@@ -474,8 +475,6 @@ const LARGEST_UNSEEN: f64 = 0.1;
 /// The last relative step from irregular stick-slip.
 const LAST_IRREGULAR: f64 = 1e-4;
 
-/// The largest step that may lead from one kind of stick-slip to another: v0 is raised slowly.
-const JUMP: f64 = 1e-5;
 /// The share of the expected way that is taken at first, and at least.
 const SHARE: f64 = 0.9;
 const LEAST_SHARE: f64 = 0.2;

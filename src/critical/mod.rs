@@ -7,24 +7,29 @@
 //! - [`switch_on`]: by the other protocol, the windows in which stick-slip survives switching on
 //! - [`cycle`]: one slip and one stick
 
+mod beyond;
 mod climb;
 pub mod cycle;
 pub mod follow;
-pub mod graze;
+mod graze;
 pub mod limit;
 pub mod line;
+mod orbit;
+mod search;
 mod stops;
 pub mod switch_on;
+mod track;
 mod trend;
 
 use crate::linear::rightmost::Rightmost;
 use crate::linear::{Count, Crossings, MarginalTolerance};
 use crate::model::friction::Kind;
 use crate::model::{FrictionLaw, Groups};
-use crate::slip::motion::{Accuracy, Motion, Parameters};
+use crate::slip::motion::{Accuracy, Parameters};
 use crate::slip::outcome::Outcome;
+use cycle::Period;
 use follow::{Fate, Followed, Pace, Sustained};
-use graze::{Found, Graze, Track};
+use graze::Found;
 
 /// A controlled oscillator whose critical velocity is asked for, in the units of [`crate::slip::motion`].
 #[derive(Debug, Clone, PartialEq)]
@@ -217,39 +222,7 @@ const FOLLOW_TOLERANCE: f64 = 1e-8;
 /// The largest v0 at which stick-slip of `problem` persists while v0 is raised from low values: protocol `follow`.
 #[must_use]
 pub fn critical_velocity(problem: &Problem) -> Critical {
-    from_scratch(problem).0
-}
-
-/// The same, with what a neighbour may start from.
-fn from_scratch(problem: &Problem) -> (Critical, Option<Track>) {
-    if persists_without_control(problem) {
-        let critical = nothing(f64::NAN, End::Persists, Method::Simulation);
-        return (critical, None);
-    }
-    let (found, track) = graze::find(problem, Accuracy::of(GRAZE_TOLERANCE));
-    let critical = of_found(&found).unwrap_or_else(|| match found {
-        Found::Unclear(Some(motion)) => simulated_from(problem, *motion),
-        _ => simulated(problem),
-    });
-    (critical, track)
-}
-
-/// By simulation from a motion in stick-slip on; from low velocities where it is not sustained.
-fn simulated_from(problem: &Problem, mut motion: Motion) -> Critical {
-    motion.refine(Accuracy::of(FOLLOW_TOLERANCE));
-    let search = |pace: &Pace| follow::from(problem, motion.clone(), pace);
-    let followed = search(&Pace::default());
-    match followed.last {
-        Some(_) => confirmed(&followed, search),
-        None => simulated(problem),
-    }
-}
-
-/// By simulation from low velocities on.
-fn simulated(problem: &Problem) -> Critical {
-    let accuracy = Accuracy::of(FOLLOW_TOLERANCE);
-    let search = |pace: &Pace| follow::critical_velocity(problem, pace, accuracy);
-    confirmed(&search(&Pace::default()), search)
+    search::from_scratch(problem).0
 }
 
 /// The first step of v0 of a search that confirms another one.
@@ -274,11 +247,13 @@ fn confirmed(followed: &Followed, search: impl Fn(&Pace) -> Followed) -> Critica
     }
 }
 
-fn of_found(found: &Found) -> Option<Critical> {
+/// What an end that was found by `method` tells; none where it does not.
+fn of_found(found: &Found, method: Method) -> Option<Critical> {
     match found {
-        Found::Graze(graze) => Some(of_graze(graze)),
-        Found::LiftOff(v0, method) => Some(of_lift_off(*v0, *method)),
-        Found::Unclear(_) => None,
+        Found::Graze(v0, period) => Some(of_orbit((*v0, End::Grazing), period, method)),
+        Found::Vanish(v0, period) => Some(of_orbit((*v0, End::Fold), period, method)),
+        Found::LiftOff(v0) => Some(of_lift_off(*v0, method)),
+        Found::Changes(_) | Found::Persists(_) | Found::Irregular | Found::Unclear => None,
     }
 }
 
@@ -290,17 +265,17 @@ fn persists_without_control(problem: &Problem) -> bool {
     uncontrolled && matches!(problem.law.kind(), Kind::Coulomb { mu0 } if *mu0 < mu_s)
 }
 
-fn of_graze(graze: &Graze) -> Critical {
+fn of_orbit((vc, end): (f64, End), period: &Period, method: Method) -> Critical {
+    // At the graze itself, that of the first slip, it lasts until the minimum of ẋ.
+    let longer = match end {
+        End::Grazing => period.cycles()[0].to_minimum,
+        _ => 0.0,
+    };
     Critical {
-        vc: graze.v0,
-        end: End::Grazing,
-        method: graze.method,
-        v_liftoff: f64::NAN,
-        // At the graze itself the slip lasts until the minimum of ẋ.
-        stick_time: graze.cycle.stick - graze.cycle.to_minimum,
-        slip_time: graze.cycle.slip + graze.cycle.to_minimum,
-        n_min: graze.cycle.n_min,
-        decided: true,
+        stick_time: period.stick_time() - longer,
+        slip_time: period.slip_time() + longer,
+        n_min: period.n_min(),
+        ..nothing(vc, end, method)
     }
 }
 

@@ -82,6 +82,38 @@ impl History {
         (self.at, self.felt) = (other.at, other.felt);
     }
 
+    /// Becomes, over `span` until time 0, `last` and `share` of the way from `before` to it beyond it; both as of their ends.
+    pub fn extrapolate(&mut self, last: &mut Self, before: &mut Self, share: f64, span: f64) {
+        (self.at, self.felt) = (0, last.felt);
+        self.pieces.clear();
+        let ends = [&last, &before].map(|h| h.pieces.back().map_or(0.0, |p| p.to));
+        let (mut from, mut kink) = (-span, SMOOTH);
+        let orders = |h: &Self| h.pieces.iter().map(|p| p.order).max().unwrap_or(0);
+        let order = orders(last).max(orders(before));
+        let mut a = [[0.0; MOST_ORDER + 1]; 2];
+        while from < 0.0 {
+            let one = last.read(ends[0] + from, SMOOTH, &mut a[0]);
+            let other = before.read(ends[1] + from, SMOOTH, &mut a[1]);
+            let (until, next) = match (one.until - ends[0], other.until - ends[1]) {
+                (one_until, until) if one_until < until => (one_until, one.kink),
+                (_, until) => (until, other.kink),
+            };
+            // No piece is so short that time would stand still.
+            let to = until.max(from + 1e-13 * span).min(0.0);
+            let [a, b] = &a;
+            let both = std::array::from_fn(|k| a[k] + share * (a[k] - b[k]));
+            self.pieces.push_back(Piece {
+                from,
+                to,
+                radius: to - from,
+                order,
+                a: both,
+                kink,
+            });
+            (from, kink) = (to, next);
+        }
+    }
+
     /// Moves everything by `time`.
     pub fn shift(&mut self, time: f64) {
         for piece in &mut self.pieces {
@@ -141,6 +173,8 @@ impl History {
     fn farthest(&self, time: f64, latest: u32) -> (usize, Reach) {
         let mut best = (self.at, self.pieces[self.at].to);
         let mut kink = if latest < self.felt { latest } else { SMOOTH };
+        // Where nothing happens at the end of the last step, its polynomial goes on to be the motion.
+        let smooth_end = kink == SMOOTH && self.felt > 0;
         let mut end = f64::INFINITY;
         for (index, piece) in self.pieces.iter().enumerate().skip(self.at) {
             if index > self.at {
@@ -159,7 +193,10 @@ impl History {
             }
             end = piece.to;
         }
-        // Nothing is known beyond the last piece, nor beyond a kink.
+        if smooth_end && best.0 + 1 == self.pieces.len() {
+            return (best.0, Reach { until: best.1, kink });
+        }
+        // Nothing is known beyond a kink.
         let until = best.1.min(end.max(self.pieces[self.at].to));
         let kink = if until == end { kink } else { SMOOTH };
         (best.0, Reach { until, kink })

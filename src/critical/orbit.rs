@@ -1,0 +1,178 @@
+//! The road of the orbit: period after period of stick-slip, with all its memory, from one v0 to the next.
+//!
+//! The past of a block that is released is a function of the time since then, smooth in v0 as long as stick-slip stays of one kind. So
+//! a new v0 starts from the pasts at the last two, extrapolated: what is left of a transient is of the second order in the
+//! step of v0, where simply going on would leave one of the first order.
+
+use super::Problem;
+use super::climb::{Place, Ran, Road, SETTLED, Seen};
+use super::cycle::{Cycle, MOST_SLIPS, Period, Ride, Stop, ride};
+use crate::slip::motion::{Accuracy, Motion};
+
+/// The most periods at one v0; of many slips, the most slips.
+const MOST_PERIODS: usize = 12;
+const MOST_CYCLES: usize = 24;
+/// The farthest that two pasts are extrapolated, in units of what lies between them.
+const FARTHEST: f64 = 3.0;
+
+/// A motion at a release, and the v0 it belongs to; NaN where it means nothing.
+#[derive(Debug, Clone)]
+struct At {
+    motion: Motion,
+    v0: f64,
+}
+
+/// Stick-slip of one number of slips in a period.
+#[derive(Debug, Clone)]
+pub(super) struct Orbit {
+    slips: usize,
+    tried: At,
+    kept: At,
+    before: At,
+}
+
+impl Road for Orbit {
+    fn place(&mut self, v0: f64) -> &mut Motion {
+        let share = (v0 - self.kept.v0) / (self.kept.v0 - self.before.v0);
+        let tried = &mut self.tried;
+        if share.abs() <= FARTHEST && v0 != self.kept.v0 {
+            let tau = self.kept.motion.parameters().tau;
+            let (last, before) = (&mut self.kept.motion, &mut self.before.motion);
+            tried.motion.extrapolate(last, before, share, (v0, tau));
+        } else {
+            tried.motion.copy_from(&self.kept.motion);
+            tried.motion.set_v0(v0);
+        }
+        tried.v0 = v0;
+        &mut tried.motion
+    }
+
+    fn trial(&mut self, v0: f64, expected: Option<&Period>, settled: f64) -> Ran {
+        self.place(v0);
+        self.run(expected, settled)
+    }
+
+    fn keep(&mut self) {
+        if self.kept.v0 != self.tried.v0 {
+            std::mem::swap(&mut self.kept, &mut self.before);
+        }
+        std::mem::swap(&mut self.kept, &mut self.tried);
+    }
+}
+
+impl Orbit {
+    /// Of a block that is released from a memoryless stick at `v0`, which has one slip in a period.
+    pub fn released(problem: &Problem, v0: f64, accuracy: Accuracy) -> Self {
+        let mut motion = Motion::new(problem.at(v0, 0.0), accuracy, 0.0, 0.0);
+        motion.release_from(problem.law.mu_s());
+        Self::of(motion, 1)
+    }
+
+    /// Of a `motion` that is released in stick-slip of so many `slips`, at most [`MOST_SLIPS`], in a period.
+    pub fn of(motion: Motion, slips: usize) -> Self {
+        let v0 = motion.parameters().v0;
+        let at = At { motion, v0 };
+        Self {
+            slips: slips.clamp(1, MOST_SLIPS),
+            tried: at.clone(),
+            before: At {
+                v0: f64::NAN,
+                ..at.clone()
+            },
+            kept: at,
+        }
+    }
+
+    /// The motion that was kept last.
+    pub fn motion(&self) -> &Motion {
+        &self.kept.motion
+    }
+
+    /// The motion that was tried last.
+    pub fn tried(&self) -> &Motion {
+        &self.tried.motion
+    }
+
+    /// Begins its period so many slips later; false where it does not come to that.
+    pub fn rotate(&mut self, by: usize, period: &Period) -> bool {
+        let stops = period.stops();
+        let rides = |motion: &mut Motion| {
+            let mut stops = stops.iter().take(by);
+            stops.all(|stop| matches!(ride(motion, Some(*stop), false), Ride::Cycle(_)))
+        };
+        if !rides(&mut self.before.motion) {
+            self.before.v0 = f64::NAN;
+        }
+        rides(&mut self.kept.motion)
+    }
+
+    /// The place to begin with; none where there is no stick-slip.
+    pub fn first_place(&mut self) -> Option<Place> {
+        let v0 = self.kept.v0;
+        let Ran::Period(period, gauges) = self.trial(v0, None, f64::INFINITY) else {
+            return None;
+        };
+        self.keep();
+        Some(Place::first(v0, period, gauges, f64::INFINITY))
+    }
+
+    /// Starts with another delay and `v0` from where it ended; with a motion that ended likewise at another delay, from both
+    /// pasts, extrapolated by `share` of what lies between them. Slopes are taken to be those of a place `like` it.
+    pub fn restart(
+        &mut self,
+        before: Option<(&mut Motion, f64)>,
+        (v0, tau): (f64, f64),
+        like: &Place,
+    ) -> Option<Place> {
+        let motion = &mut self.tried.motion;
+        match before {
+            Some((before, share)) if share.abs() <= FARTHEST => {
+                motion.extrapolate(&mut self.kept.motion, before, share, (v0, tau));
+            }
+            _ => {
+                motion.copy_from(&self.kept.motion);
+                motion.set_delay(tau);
+                motion.set_v0(v0);
+            }
+        }
+        self.tried.v0 = v0;
+        let Ran::Period(period, gauges) = self.run(Some(&like.period), SETTLED) else {
+            return None;
+        };
+        std::mem::swap(&mut self.kept, &mut self.tried);
+        // What was kept before belongs to another delay.
+        self.before.v0 = f64::NAN;
+        Some(Place {
+            slopes: like.slopes,
+            ..Place::first(v0, period, gauges, SETTLED)
+        })
+    }
+
+    /// Follows the tried motion, period after period.
+    fn run(&mut self, expected: Option<&Period>, settled: f64) -> Ran {
+        let n = self.slips;
+        let mut stops: Option<[Stop; MOST_SLIPS]> = expected.map(Period::stops);
+        let mut seen = Seen::none();
+        for _ in 0..MOST_PERIODS.min(MOST_CYCLES / n) {
+            let mut cycles = [Cycle::NONE; MOST_SLIPS];
+            for (i, cycle) in cycles.iter_mut().enumerate().take(n) {
+                *cycle = match ride(&mut self.tried.motion, stops.map(|stops| stops[i]), false) {
+                    Ride::Cycle(cycle) => cycle,
+                    Ride::Pass => return Ran::Pass,
+                    Ride::LiftOff => return Ran::LiftOff,
+                    Ride::Other => return Ran::Other,
+                };
+            }
+            let period = Period::new(n, cycles);
+            stops = stops.map(|_| period.stops());
+            seen.push(&period);
+            if settled == f64::INFINITY {
+                return Ran::Period(period, period.gauges());
+            }
+            if seen.settled(settled) {
+                return Ran::Period(period, seen.limits());
+            }
+        }
+        Ran::Other
+    }
+}
