@@ -22,46 +22,50 @@ pub(super) enum Beyond {
 
 /// The last trials are this far below and above a graze, relative: v_c is known to it.
 pub(super) const PRECISION: f64 = 1e-5;
-/// Steps of v0 past the graze, relative.
-const STEPS: [f64; 3] = [PRECISION, 1e-4, 2e-6];
+/// The block is released so far past the graze, relative; the first one at which it does not stop counts.
+const STEPS: [f64; 2] = [PRECISION, 1e-4];
+/// And so far past it, where that decides on its end.
+const OTHER_STEPS: [f64; 2] = [1e-4, 2e-6];
 /// Minima of ẋ, over v0, that leave no doubt on which side of zero they are after other steps of v0.
 const CLEAR: f64 = 0.05;
 
-/// What becomes, just beyond the graze at `v0` of a slip that took `slip`, of the block that `road` releases for that slip. Where the block comes near another stop and steps of different sizes lead to different ends, that is not known.
+/// What becomes, just beyond the graze at `v0` of a slip that took `slip`, of the block that `road` releases for that slip. Where
+/// the block comes near another stop and steps of different sizes lead to different ends, that is not known.
 pub(super) fn beyond(problem: &Problem, (v0, slip): (f64, f64), road: &mut impl Road) -> Beyond {
-    let mut step = |above: f64| {
+    let least = slip + problem.tau;
+    let mut first_passed = STEPS.iter().filter_map(|above| {
         let motion = road.place(v0 * (1.0 + above));
-        let passed = passes(motion, slip);
-        if !passed && above < PRECISION {
-            // The graze is not known to that.
-            return (Beyond::Ends, CLEAR);
-        }
-        outcome(problem, motion, passed, slip + problem.tau)
+        passes(motion, slip).then(|| passed(problem, motion, least))
+    });
+    let (first, nearest) = match first_passed.next() {
+        Some(known) => known,
+        None => return kind(problem, road.place(v0 * (1.0 + STEPS[0]))),
     };
-    let (first, nearest) = step(STEPS[0]);
-    match first {
-        Beyond::Ends if nearest < CLEAR => {
-            let ends = |above: &f64| step(*above).0 == Beyond::Ends;
-            match STEPS[1..].iter().all(ends) {
-                true => Beyond::Ends,
-                false => Beyond::Unknown,
-            }
-        }
-        first => first,
+    if first != Beyond::Ends || nearest > CLEAR {
+        return first;
+    }
+    let ends = |above: &f64| {
+        let motion = road.place(v0 * (1.0 + above));
+        // Else the graze is not known to that.
+        !passes(motion, slip) || passed(problem, motion, least).0 == Beyond::Ends
+    };
+    match OTHER_STEPS.iter().all(ends) {
+        true => Beyond::Ends,
+        false => Beyond::Unknown,
     }
 }
 
-/// What becomes of a block that has `passed` a graze, or not; and the lowest minimum of ẋ from then on, over v0. `least`: for how
-/// long it slips on at least.
-fn outcome(problem: &Problem, motion: &mut Motion, passed: bool, least: f64) -> (Beyond, f64) {
-    match passed.then(|| slips_on(problem, motion, least)).flatten() {
+/// What becomes of a block that has passed a graze; and the lowest minimum of ẋ from then on, over v0. `least`: for how long it
+/// slips on at least.
+fn passed(problem: &Problem, motion: &mut Motion, least: f64) -> (Beyond, f64) {
+    match slips_on(problem, motion, least) {
         Some(lowest) => (Beyond::Ends, lowest / motion.parameters().v0),
         None => (kind(problem, motion), 0.0),
     }
 }
 
 /// What becomes of a motion in the end.
-fn kind(problem: &Problem, motion: &mut Motion) -> Beyond {
+pub(super) fn kind(problem: &Problem, motion: &mut Motion) -> Beyond {
     let v0 = motion.parameters().v0;
     let sustained = follow::fate(problem, motion, v0);
     match sustained.fate {

@@ -28,6 +28,8 @@ pub(super) enum Ran {
     LiftOff,
     /// Periods did not come to rest, or something else happened.
     Other,
+    /// The road leads no further.
+    Over,
 }
 
 /// Trials of stick-slip at one v0 after the other.
@@ -263,6 +265,7 @@ pub(super) fn climb(road: &mut impl Road, mut at: Place, most: f64) -> (Climbed,
             // A start that is not sustained.
             Ran::Pass | Ran::LiftOff if step == 0.0 => return (Climbed::Unclear, at),
             Ran::Other if step < UNSETTLED => return (Climbed::Unclear, at),
+            Ran::Over => return (Climbed::Unclear, at),
             Ran::Pass | Ran::LiftOff | Ran::Other => reach.failed(next, step),
         }
     }

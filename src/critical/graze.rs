@@ -8,6 +8,7 @@ use super::beyond::{Beyond, PRECISION, beyond, without_stick};
 use super::climb::{Climbed, LARGEST_STEP, Place, Ran, Road, climb};
 use super::cycle::{Period, Ride, ride};
 use super::orbit::Orbit;
+use super::search::CHANGED;
 use super::Problem;
 use crate::slip::motion::{Accuracy, Motion};
 
@@ -62,7 +63,9 @@ impl Road for Slips<'_> {
     }
 
     fn trial(&mut self, v0: f64, expected: Option<&Period>, _: f64) -> Ran {
-        match ride(self.place(v0), expected.map(|p| p.stops()[0]), true) {
+        let tau = self.problem.tau;
+        match ride(self.place(v0), expected.map(|p| p.stops()[0]), false) {
+            Ride::Cycle(cycle) if cycle.stick < tau => Ran::Over,
             Ride::Cycle(cycle) => {
                 let period = Period::of(cycle);
                 Ran::Period(period, period.gauges())
@@ -107,7 +110,7 @@ pub(super) fn by_one_slip(problem: &Problem, accuracy: Accuracy) -> Option<Found
                 return outlasts(&mut road, v0).map(|_| Found::LiftOff(v0));
             }
             Climbed::Changes(v0) => {
-                let beyond = v0 * (1.0 + PRECISION);
+                let beyond = v0 * (1.0 + CHANGED);
                 let Ran::Period(period, gauges) = road.trial(beyond, None, f64::INFINITY) else {
                     return None;
                 };

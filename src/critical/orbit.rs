@@ -7,7 +7,7 @@
 use super::Problem;
 use super::climb::{Place, Ran, Road, SETTLED, Seen};
 use super::cycle::{Cycle, MOST_SLIPS, Period, Ride, Stop, ride};
-use crate::slip::motion::{Accuracy, Motion};
+use crate::slip::motion::{Accuracy, Motion, Stretch};
 
 /// The most periods at one v0; of many slips, the most slips.
 const MOST_PERIODS: usize = 12;
@@ -15,12 +15,49 @@ const MOST_CYCLES: usize = 24;
 /// The farthest that two pasts are extrapolated, in units of what lies between them.
 const FARTHEST: f64 = 3.0;
 
-/// A motion at a release, and the v0 it belongs to; NaN where it means nothing.
+/// A motion at the end of a period, and the v0 it belongs to; NaN where it means nothing.
 #[derive(Debug, Clone)]
-struct At {
+pub(super) struct At {
     motion: Motion,
+    period: Period,
     v0: f64,
 }
+
+impl At {
+    /// Becomes what is expected at another v0 and delay from the `last` and the one `before`, and `share` of what lies
+    /// between them; false where that cannot be told.
+    fn extrapolate(
+        &mut self,
+        (last, before): (&mut Self, &mut Self),
+        share: f64,
+        (v0, tau): (f64, f64),
+    ) -> bool {
+        let (one, other) = (last.period.cycles(), before.period.cycles());
+        if !(share.abs() <= FARTHEST && one.len() == other.len()) {
+            return false;
+        }
+        let mut stretches = [Stretch {
+            lengths: [f64::NAN; 3],
+        }; 2 * MOST_SLIPS];
+        let pairs = one.iter().zip(other).rev();
+        let times = pairs.flat_map(|(p, q)| [(p.stick, q.stick), (p.slip, q.slip)]);
+        for (stretch, (last, before)) in stretches.iter_mut().zip(times) {
+            stretch.lengths = [last + share * (last - before), last, before];
+        }
+        let stretches = &stretches[..2 * one.len()];
+        let alike = |s: &Stretch| s.lengths[0] > LEAST * s.lengths[1] && s.lengths[2] > 0.0;
+        if !stretches.iter().all(alike) {
+            return false;
+        }
+        let motions = (&mut last.motion, &mut before.motion);
+        self.motion.extrapolate(motions, share, (v0, tau), stretches);
+        self.v0 = v0;
+        true
+    }
+}
+
+/// Sticks and slips do not become shorter than this at once, relative.
+const LEAST: f64 = 5e-3;
 
 /// Stick-slip of one number of slips in a period.
 #[derive(Debug, Clone)]
@@ -34,16 +71,14 @@ pub(super) struct Orbit {
 impl Road for Orbit {
     fn place(&mut self, v0: f64) -> &mut Motion {
         let share = (v0 - self.kept.v0) / (self.kept.v0 - self.before.v0);
+        let tau = self.kept.motion.parameters().tau;
         let tried = &mut self.tried;
-        if share.abs() <= FARTHEST && v0 != self.kept.v0 {
-            let tau = self.kept.motion.parameters().tau;
-            let (last, before) = (&mut self.kept.motion, &mut self.before.motion);
-            tried.motion.extrapolate(last, before, share, (v0, tau));
-        } else {
+        let pasts = (&mut self.kept, &mut self.before);
+        if v0 == pasts.0.v0 || !tried.extrapolate(pasts, share, (v0, tau)) {
             tried.motion.copy_from(&self.kept.motion);
             tried.motion.set_v0(v0);
+            tried.v0 = v0;
         }
-        tried.v0 = v0;
         &mut tried.motion
     }
 
@@ -71,7 +106,11 @@ impl Orbit {
     /// Of a `motion` that is released in stick-slip of so many `slips`, at most [`MOST_SLIPS`], in a period.
     pub fn of(motion: Motion, slips: usize) -> Self {
         let v0 = motion.parameters().v0;
-        let at = At { motion, v0 };
+        let at = At {
+            motion,
+            period: Period::of(Cycle::NONE),
+            v0,
+        };
         Self {
             slips: slips.clamp(1, MOST_SLIPS),
             tried: at.clone(),
@@ -86,6 +125,11 @@ impl Orbit {
     /// The motion that was kept last.
     pub fn motion(&self) -> &Motion {
         &self.kept.motion
+    }
+
+    /// Where it was kept last.
+    pub fn place_kept(&self) -> &At {
+        &self.kept
     }
 
     /// The motion that was tried last.
@@ -103,6 +147,8 @@ impl Orbit {
         if !rides(&mut self.before.motion) {
             self.before.v0 = f64::NAN;
         }
+        (self.kept.period, self.before.period) =
+            (self.kept.period.rotated(by), self.before.period.rotated(by));
         rides(&mut self.kept.motion)
     }
 
@@ -120,22 +166,20 @@ impl Orbit {
     /// pasts, extrapolated by `share` of what lies between them. Slopes are taken to be those of a place `like` it.
     pub fn restart(
         &mut self,
-        before: Option<(&mut Motion, f64)>,
+        before: Option<(&mut At, f64)>,
         (v0, tau): (f64, f64),
         like: &Place,
     ) -> Option<Place> {
-        let motion = &mut self.tried.motion;
-        match before {
-            Some((before, share)) if share.abs() <= FARTHEST => {
-                motion.extrapolate(&mut self.kept.motion, before, share, (v0, tau));
-            }
-            _ => {
-                motion.copy_from(&self.kept.motion);
-                motion.set_delay(tau);
-                motion.set_v0(v0);
-            }
+        let (tried, kept) = (&mut self.tried, &mut self.kept);
+        let told = before.is_some_and(|(before, share)| {
+            tried.extrapolate((kept, before), share, (v0, tau))
+        });
+        if !told {
+            tried.motion.copy_from(&self.kept.motion);
+            tried.motion.set_delay(tau);
+            tried.motion.set_v0(v0);
+            tried.v0 = v0;
         }
-        self.tried.v0 = v0;
         let Ran::Period(period, gauges) = self.run(Some(&like.period), SETTLED) else {
             return None;
         };
@@ -165,6 +209,7 @@ impl Orbit {
             }
             let period = Period::new(n, cycles);
             stops = stops.map(|_| period.stops());
+            self.tried.period = period;
             seen.push(&period);
             if settled == f64::INFINITY {
                 return Ran::Period(period, period.gauges());

@@ -1,6 +1,6 @@
 //! The end of stick-slip of one problem, by the first of the roads that leads to it.
 
-use super::beyond::PRECISION;
+use super::beyond::{Beyond, PRECISION, kind};
 use super::climb::{LARGEST_STEP, Road, climb, jumps};
 use super::follow::{self, Fate, Pace};
 use super::graze::{FIRST_STEP, Found, MOST_KINDS, STARTS, by_one_slip, finish};
@@ -60,7 +60,17 @@ fn by_orbit(problem: &Problem, accuracy: Accuracy) -> Reached {
         let found = finish(problem, &mut road, climbed, &at);
         let next = match found {
             Found::Persists(slips) => Some((road.tried().clone(), slips)),
-            Found::Changes(v0) => changed(problem, &mut road, v0),
+            Found::Changes(v0) => match changed(problem, &mut road, v0) {
+                (motion, Beyond::Persists(slips)) => Some((motion, slips)),
+                // Nothing is left of it.
+                (_, Beyond::Ends) => {
+                    let found = Found::Vanish(v0, at.period);
+                    let track = Track::new(problem, road, at, &found);
+                    return Reached::End(found, Box::new(track));
+                }
+                (motion, Beyond::Irregular) => return Reached::Motion(Box::new(motion)),
+                _ => None,
+            },
             Found::Irregular => return Reached::Motion(Box::new(road.tried().clone())),
             Found::Unclear => recognised(problem, &road),
             Found::Graze(..) | Found::Vanish(..) | Found::LiftOff(..) => {
@@ -92,21 +102,20 @@ const NEXT: f64 = 1e-4;
 
 /// What became of stick-slip just beyond where it was last: a motion, and how many slips its period has.
 fn recognised(problem: &Problem, road: &Orbit) -> Option<(Motion, usize)> {
-    let motion = road.motion().clone();
+    let mut motion = road.motion().clone();
     let v0 = motion.parameters().v0 * (1.0 + NEXT);
-    periodic(problem, motion, v0)
-}
-
-/// The same, where it is known to become of another kind at `v0`.
-fn changed(problem: &Problem, road: &mut Orbit, v0: f64) -> Option<(Motion, usize)> {
-    let v0 = v0 * (1.0 + PRECISION);
-    let motion = road.place(v0).clone();
-    periodic(problem, motion, v0)
-}
-
-fn periodic(problem: &Problem, mut motion: Motion, v0: f64) -> Option<(Motion, usize)> {
     let sustained = follow::fate(problem, &mut motion, v0);
     (sustained.fate == Fate::Periodic).then(|| (motion, sustained.summary.slips as usize))
+}
+
+/// How far beyond a change of kind the next one is looked for, relative: forces have to differ by more than their noise.
+pub(super) const CHANGED: f64 = 1e-4;
+
+/// What becomes of stick-slip beyond `v0`, where it is known to become of another kind, and a motion there.
+fn changed(problem: &Problem, road: &mut Orbit, v0: f64) -> (Motion, Beyond) {
+    let mut motion = road.place(v0 * (1.0 + CHANGED)).clone();
+    let beyond = kind(problem, &mut motion);
+    (motion, beyond)
 }
 
 /// By simulation from a motion in stick-slip on; from low velocities where it is not sustained.

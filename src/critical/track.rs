@@ -3,8 +3,7 @@
 use super::Problem;
 use super::climb::{Place, climb};
 use super::graze::{Found, finish};
-use super::orbit::Orbit;
-use crate::slip::motion::Motion;
+use super::orbit::{At, Orbit};
 
 /// An orbit at its end, from which the next cell of a line starts.
 #[derive(Debug, Clone)]
@@ -12,7 +11,7 @@ pub(super) struct Track {
     road: Orbit,
     at: Place,
     /// The motion at the end of the cell before the last one.
-    before: Option<Motion>,
+    before: Option<At>,
     /// Delays and ends of the cells before, the last ones.
     ends: Vec<(f64, f64)>,
     /// Whether it ends by lift-off.
@@ -66,7 +65,7 @@ impl Track {
         let off = (2.0 * self.off)
             .max(0.15 * change)
             .clamp(nearest, FARTHEST);
-        let ended = self.road.motion().clone();
+        let ended = self.road.place_kept().clone();
         let offs = [off, 4.0 * off, 2.0 * FARTHEST].into_iter();
         let from = offs
             .map(|off| expected * (1.0 - off))

@@ -32,6 +32,16 @@ pub(super) const SMOOTH: u32 = u32::MAX;
 /// The part of a polynomial's radius within which it stands in for its neighbours.
 const SHARE: f64 = 0.75;
 
+/// A stretch of time in a past that is extrapolated, and what it corresponds to in the two pasts that it is told from.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Stretch {
+    /// Its length, and those in the last past and in the one before.
+    pub lengths: [f64; 3],
+}
+
+/// Pasts correspond to one another to this, compared with all of their span.
+const SLIVER: f64 = 1e-7;
+
 /// The elongation over a window of time that moves along, of bounded length.
 #[derive(Debug, Clone, Default)]
 pub(super) struct History {
@@ -82,35 +92,77 @@ impl History {
         (self.at, self.felt) = (other.at, other.felt);
     }
 
-    /// Becomes, over `span` until time 0, `last` and `share` of the way from `before` to it beyond it; both as of their ends.
-    pub fn extrapolate(&mut self, last: &mut Self, before: &mut Self, share: f64, span: f64) {
+    /// Becomes, over `span` until time 0, `last` and `share` of the way from `before` to it beyond it, both as of their ends.
+    ///
+    /// What is alike in the two pasts stands at the same place of stretches of time that follow one another, back and back
+    /// again through `stretches`, the last one first.
+    pub fn extrapolate(
+        &mut self,
+        (last, before): (&mut Self, &mut Self),
+        share: f64,
+        span: f64,
+        stretches: &[Stretch],
+    ) {
         (self.at, self.felt) = (0, last.felt);
         self.pieces.clear();
-        let ends = [&last, &before].map(|h| h.pieces.back().map_or(0.0, |p| p.to));
-        let (mut from, mut kink) = (-span, SMOOTH);
         let orders = |h: &Self| h.pieces.iter().map(|p| p.order).max().unwrap_or(0);
         let order = orders(last).max(orders(before));
-        let mut a = [[0.0; MOST_ORDER + 1]; 2];
-        while from < 0.0 {
-            let one = last.read(ends[0] + from, SMOOTH, &mut a[0]);
-            let other = before.read(ends[1] + from, SMOOTH, &mut a[1]);
-            let (until, next) = match (one.until - ends[0], other.until - ends[1]) {
-                (one_until, until) if one_until < until => (one_until, one.kink),
-                (_, until) => (until, other.kink),
-            };
-            // No piece is so short that time would stand still.
-            let to = until.max(from + 1e-13 * span).min(0.0);
-            let [a, b] = &a;
-            let both = std::array::from_fn(|k| a[k] + share * (a[k] - b[k]));
-            self.pieces.push_back(Piece {
-                from,
-                to,
-                radius: to - from,
-                order,
-                a: both,
-                kink,
-            });
-            (from, kink) = (to, next);
+        // The ends of the present stretch.
+        let ends = [&*last, &*before].map(|h| h.pieces.back().map_or(0.0, |p| p.to));
+        let mut end = [0.0, ends[0], ends[1]];
+        let mut back = 0;
+        let stretch = |back: usize| &stretches[back % stretches.len()].lengths;
+        while end[0] - stretch(back)[0] > -span {
+            end = std::array::from_fn(|i| end[i] - stretch(back)[i]);
+            back += 1;
+        }
+        let shortest = SLIVER * span;
+        let mut from = -span;
+        loop {
+            let lengths = stretch(back);
+            let rates = [1, 2].map(|i| lengths[i] / lengths[0]);
+            // A stretch begins where something happened.
+            let mut kink = 2;
+            while from < end[0] {
+                // A little later: where a stretch begins, what is alike does so to rounding only.
+                let ahead = (from + shortest).min(end[0]);
+                let mut c = [[0.0; MOST_ORDER + 1]; 2];
+                let mut until = [0.0; 2];
+                let mut next = [SMOOTH; 2];
+                for (i, past) in [&mut *last, &mut *before].into_iter().enumerate() {
+                    let time = |t: f64| end[i + 1] - (end[0] - t) * rates[i];
+                    let reach = past.read(time(ahead), SMOOTH, &mut c[i]);
+                    c[i] = shifted(&c[i][..=order], (from - ahead) * rates[i]);
+                    until[i] = ahead + (reach.until - time(ahead)) / rates[i];
+                    next[i] = reach.kink;
+                }
+                let sooner = usize::from(until[1] < until[0]);
+                let to = match until[sooner].max(ahead) {
+                    to if to > end[0] - shortest => end[0],
+                    to => to,
+                };
+                let mut powers = [1.0; 2];
+                let mut a = [0.0; MOST_ORDER + 1];
+                for (k, a) in a.iter_mut().enumerate().take(order + 1) {
+                    let [one, other] = [0, 1].map(|i| c[i][k] * powers[i]);
+                    *a = one + share * (one - other);
+                    powers = [0, 1].map(|i| powers[i] * rates[i]);
+                }
+                self.pieces.push_back(Piece {
+                    from,
+                    to,
+                    radius: to - from,
+                    order,
+                    a,
+                    kink,
+                });
+                (from, kink) = (to, next[sooner]);
+            }
+            if back == 0 {
+                return;
+            }
+            back -= 1;
+            end = std::array::from_fn(|i| end[i] + stretch(back)[i]);
         }
     }
 

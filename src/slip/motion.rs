@@ -13,6 +13,7 @@
 //! the tolerance: kinks are stepped on, one delay after the other, until they are too smooth to be felt.
 
 use super::friction_series::FrictionSeries;
+pub use super::history::Stretch;
 use super::history::{History, SMOOTH};
 use super::series::{Coefficients, MOST_ORDER, first_zero, value};
 use super::step::{Control, Step};
@@ -250,20 +251,21 @@ impl Motion {
 
     /// Becomes a block that is released at t = 0 at `v0` and with the delay `tau`, with a past that differs from that of `last`
     /// by `share` of the difference between `last` and `before`: two motions of the same law, gains and accuracy as they
-    /// are released. What holds at a release is linear in the past, so it holds here as well.
+    /// are released. Stretches of time that correspond to one another, the last one first, are slips and sticks; they are
+    /// gone through again and again.
     ///
     /// `tau` is less than twice the delays of both, whose past is known for so long.
     pub fn extrapolate(
         &mut self,
-        last: &mut Self,
-        before: &mut Self,
+        (last, before): (&mut Self, &mut Self),
         share: f64,
         (v0, tau): (f64, f64),
+        stretches: &[Stretch],
     ) {
         self.parameters.clone_from(&last.parameters);
         (self.parameters.v0, self.parameters.tau) = (v0, tau);
-        let (history, other) = (&mut last.history, &mut before.history);
-        self.history.extrapolate(history, other, share, 1.01 * tau);
+        let pasts = (&mut last.history, &mut before.history);
+        self.history.extrapolate(pasts, share, 1.01 * tau, stretches);
         self.friction.restart(0.0);
         self.mode = Mode::Forwards;
         self.a = last.a + share * (last.a - before.a);
