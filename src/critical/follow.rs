@@ -25,6 +25,8 @@ pub struct Pace {
     pub steps: u64,
     /// The most at all v0 together: some seconds.
     pub total_steps: u64,
+    /// Whether the search ends where stick-slip has come to repeat.
+    pub until_periodic: bool,
     /// Whether every loss of stick-slip is waited for until the outcome of the motion is known. Else it counts once the
     /// minima of ẋ no longer fall, and only the last one is waited for longer.
     pub patient: bool,
@@ -39,6 +41,7 @@ impl Default for Pace {
             v_max: 100.0,
             steps: 50_000,
             total_steps: 3_000_000,
+            until_periodic: false,
             patient: false,
         }
     }
@@ -145,9 +148,14 @@ pub fn critical_velocity(problem: &Problem, pace: &Pace, accuracy: Accuracy) -> 
 /// The same from a motion in stick-slip of `problem` on, at the v0 it has.
 #[must_use]
 pub fn from(problem: &Problem, mut motion: Motion, pace: &Pace) -> Followed {
+    carry(problem, &mut motion, pace)
+}
+
+/// The same; leaves the motion where it comes to.
+pub fn carry(problem: &Problem, motion: &mut Motion, pace: &Pace) -> Followed {
     let v0 = motion.parameters().v0;
     let how = Holding::new(pace, f64::INFINITY);
-    let first = hold(problem, &mut motion, v0, &how);
+    let first = hold(problem, motion, v0, &how);
     if first.persists() {
         return raise(problem, motion, first, pace);
     }
@@ -272,12 +280,12 @@ struct Climb<'p> {
     spent: u64,
 }
 
-fn raise(problem: &Problem, motion: Motion, first: Sustained, pace: &Pace) -> Followed {
+fn raise(problem: &Problem, motion: &mut Motion, first: Sustained, pace: &Pace) -> Followed {
     let mut climb = Climb {
         problem,
         pace: *pace,
         trial: motion.clone(),
-        motion,
+        motion: motion.clone(),
         before: None,
         last: first,
         lost: None,
@@ -291,6 +299,7 @@ fn raise(problem: &Problem, motion: Motion, first: Sustained, pace: &Pace) -> Fo
     };
     let complete = climb.run();
     climb.classify();
+    std::mem::swap(motion, &mut climb.motion);
     Followed {
         last: Some(climb.last),
         lost: climb.lost.map(|(lost, _)| lost),
@@ -306,7 +315,8 @@ impl Climb<'_> {
     fn run(&mut self) -> bool {
         let end = self.pace.v_max * self.problem.law.mu_s();
         for _ in 0..MOST_TRIALS {
-            if self.last.v0 >= end {
+            let repeats = self.pace.until_periodic && self.last.fate == Fate::Periodic;
+            if self.last.v0 >= end || repeats {
                 return true;
             }
             let step = self.next_step();

@@ -124,7 +124,7 @@ pub(super) fn by_one_slip(problem: &Problem, accuracy: Accuracy) -> Option<Found
 }
 
 /// The most kinds of stick-slip that are followed one after the other.
-pub(super) const MOST_KINDS: usize = 12;
+pub(super) const MOST_KINDS: usize = 24;
 /// The first relative step of v0 with another kind of stick-slip than the first.
 pub(super) const FIRST_STEP: f64 = 0.02;
 

@@ -94,17 +94,21 @@ impl Block<'_> {
     fn advance(&mut self, first: usize, last: usize, track: &mut Track) -> usize {
         for cell in first + 1..=last {
             let next = track.next(&self.problems[cell]);
-            let Some(critical) = next.and_then(|found| of_found(&found, Method::GrazeOrbit)) else {
+            let found = next.and_then(|found| of_found(&found, Method::GrazeOrbit));
+            let Some(mut critical) = found else {
                 return cell - 1;
             };
+            critical.decided = track.decided;
             if cell == last {
-                return match self.found[last]
-                    .as_ref()
-                    .is_some_and(|c| meets(c, &critical))
-                {
-                    true => last,
-                    false => cell - 1,
+                let met = self.found[last].filter(|there| meets(there, &critical));
+                let Some(there) = met else {
+                    return cell - 1;
                 };
+                // What is in doubt at one end is so on the way.
+                for between in self.found[first + 1..last].iter_mut().flatten() {
+                    between.decided &= there.decided;
+                }
+                return last;
             }
             self.found[cell] = Some(critical);
         }

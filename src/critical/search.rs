@@ -1,14 +1,14 @@
 //! The end of stick-slip of one problem, by the first of the roads that leads to it.
 
 use super::beyond::{Beyond, PRECISION, kind};
-use super::climb::{LARGEST_STEP, Road, climb, jumps};
+use super::climb::{LARGEST_STEP, Place, Road, climb, jumps};
 use super::follow::{self, Fate, Pace};
 use super::graze::{FIRST_STEP, Found, MOST_KINDS, STARTS, by_one_slip, finish};
 use super::orbit::Orbit;
 use super::track::Track;
 use super::{
     Critical, End, FOLLOW_TOLERANCE, GRAZE_TOLERANCE, Method, Problem, confirmed, nothing,
-    of_found, persists_without_control,
+    of_followed, of_found, persists_without_control,
 };
 use crate::slip::motion::{Accuracy, Motion};
 
@@ -26,96 +26,198 @@ pub(super) fn from_scratch(problem: &Problem) -> (Critical, Option<Track>) {
     if let Some(critical) = one_slip.and_then(|found| of_found(&found, Method::GrazeSlip)) {
         return (critical, None);
     }
-    match by_orbit(problem, accuracy) {
-        Reached::End(found, track) => {
-            let critical = of_found(&found, Method::GrazeOrbit);
-            (critical.unwrap_or_else(|| simulated(problem)), Some(*track))
-        }
-        Reached::Motion(motion) => (simulated_from(problem, *motion), None),
-        Reached::Nothing => (simulated(problem), None),
-    }
-}
-
-/// Where the road of the orbit leads.
-enum Reached {
-    End(Found, Box<Track>),
-    /// Stick-slip, from which simulation has to go on.
-    Motion(Box<Motion>),
-    Nothing,
-}
-
-/// By the orbit, of one kind of stick-slip after the other.
-fn by_orbit(problem: &Problem, accuracy: Accuracy) -> Reached {
     let start = STARTS.iter().find_map(|start| {
         let mut road = Orbit::released(problem, start * problem.law.mu_s(), accuracy);
         let place = road.first_place()?;
         Some((road, place))
     });
-    let Some((mut road, mut place)) = start else {
-        return Reached::Nothing;
+    let Some((road, place)) = start else {
+        return (simulated(problem), None);
     };
-    let mut step = LARGEST_STEP;
-    for _ in 0..MOST_KINDS {
-        let (climbed, at) = climb(&mut road, place, step);
-        let found = finish(problem, &mut road, climbed, &at);
-        let next = match found {
-            Found::Persists(slips) => Some((road.tried().clone(), slips)),
-            Found::Changes(v0) => match changed(problem, &mut road, v0) {
-                (motion, Beyond::Persists(slips)) => Some((motion, slips)),
-                // Nothing is left of it.
-                (_, Beyond::Ends) => {
-                    let found = Found::Vanish(v0, at.period);
-                    let track = Track::new(problem, road, at, &found);
-                    return Reached::End(found, Box::new(track));
-                }
-                (motion, Beyond::Irregular) => return Reached::Motion(Box::new(motion)),
-                _ => None,
-            },
-            Found::Irregular => return Reached::Motion(Box::new(road.tried().clone())),
-            Found::Unclear => recognised(problem, &road),
-            Found::Graze(..) | Found::Vanish(..) | Found::LiftOff(..) => {
-                let track = Track::new(problem, road, at, &found);
-                return Reached::End(found, Box::new(track));
-            }
-        };
-        let from = road.motion().clone();
-        let Some((motion, slips)) = next else {
-            return Reached::Motion(Box::new(from));
-        };
-        road = Orbit::of(motion, slips);
-        match road.first_place() {
-            Some(first) => {
-                step = match jumps(&at.period, &first.period, 0.0) {
-                    true => FIRST_STEP,
-                    false => LAST_STEP,
-                };
-                place = first;
-            }
-            None => return Reached::Motion(Box::new(from)),
+    let mut kinds = Kinds {
+        problem,
+        crossing: CROSSINGS[0],
+        entry: None,
+    };
+    let reached = kinds.follow(road, place);
+    match (reached, kinds.entry.take()) {
+        (Reached::End(critical, track), None) => (critical, Some(*track)),
+        (Reached::End(critical, mut track), Some(entry)) => {
+            let again = kinds.again(*entry);
+            let decided = again.is_some_and(|again| critical.ends_like(&again));
+            track.decided = decided;
+            (
+                Critical {
+                    decided,
+                    ..critical
+                },
+                Some(*track),
+            )
         }
+        (Reached::Lost(critical), _) => (critical, None),
+        (Reached::Motion(motion), _) => (simulated_from(problem, *motion), None),
     }
-    Reached::Motion(Box::new(road.motion().clone()))
 }
 
-/// How far beyond its last place a kind of stick-slip that was lost from sight is looked for, relative.
-const NEXT: f64 = 1e-4;
+/// Relative steps of v0 through irregular stick-slip: where it leads should not depend on them.
+const CROSSINGS: [f64; 2] = [0.1, 0.04];
+/// The last ones: what ends by chance is known to this.
+const LAST_CROSSING: f64 = 1e-3;
 
-/// What became of stick-slip just beyond where it was last: a motion, and how many slips its period has.
-fn recognised(problem: &Problem, road: &Orbit) -> Option<(Motion, usize)> {
+/// Where one kind of stick-slip after the other leads.
+enum Reached {
+    /// To the end of an orbit.
+    End(Critical, Box<Track>),
+    /// To an end by chance.
+    Lost(Critical),
+    /// To stick-slip from which simulation has to go on.
+    Motion(Box<Motion>),
+}
+
+/// What follows a kind of stick-slip as v0 grows.
+enum Next {
+    /// One with so many slips in a period.
+    Periodic(Motion, usize),
+    Irregular(Motion),
+    /// None.
+    Ends,
+    Unknown,
+}
+
+impl Next {
+    fn of(motion: Motion, beyond: Beyond) -> Self {
+        match beyond {
+            Beyond::Persists(slips) => Self::Periodic(motion, slips),
+            Beyond::Irregular => Self::Irregular(motion),
+            Beyond::Ends => Self::Ends,
+            Beyond::Unknown => Self::Unknown,
+        }
+    }
+}
+
+/// One kind of stick-slip after the other.
+struct Kinds<'p> {
+    problem: &'p Problem,
+    /// The largest step through irregular stick-slip.
+    crossing: f64,
+    /// Where irregular stick-slip was come to first.
+    entry: Option<Box<Motion>>,
+}
+
+impl Kinds<'_> {
+    /// From a place of an orbit on.
+    fn follow(&mut self, mut road: Orbit, mut place: Place) -> Reached {
+        let mut step = LARGEST_STEP;
+        for _ in 0..MOST_KINDS {
+            let (climbed, at) = climb(&mut road, place, step);
+            let found = finish(self.problem, &mut road, climbed, &at);
+            let next = match found {
+                Found::Persists(slips) => Next::Periodic(road.tried().clone(), slips),
+                Found::Irregular => Next::Irregular(road.tried().clone()),
+                Found::Changes(v0) => match changed(self.problem, &mut road, v0) {
+                    // Nothing is left of it.
+                    Next::Ends => return self.end(road, at, &Found::Vanish(v0, at.period)),
+                    next => next,
+                },
+                Found::Unclear => recognised(self.problem, &road, &at),
+                Found::Graze(..) | Found::Vanish(..) | Found::LiftOff(..) => {
+                    return self.end(road, at, &found);
+                }
+            };
+            let from = Box::new(road.motion().clone());
+            let next = match next {
+                Next::Irregular(motion) => self.cross(motion),
+                Next::Periodic(motion, slips) => Ok((motion, slips)),
+                Next::Ends | Next::Unknown => return Reached::Motion(from),
+            };
+            let (motion, slips) = match next {
+                Ok(next) => next,
+                Err(critical) => return Reached::Lost(critical),
+            };
+            road = Orbit::of(motion, slips);
+            let Some(first) = road.first_place() else {
+                return Reached::Motion(from);
+            };
+            step = match jumps(&at.period, &first.period, 0.0) {
+                true => FIRST_STEP,
+                false => LAST_STEP,
+            };
+            place = first;
+        }
+        Reached::Motion(Box::new(road.motion().clone()))
+    }
+
+    fn end(&self, road: Orbit, at: Place, found: &Found) -> Reached {
+        match of_found(found, Method::GrazeOrbit) {
+            Some(critical) => {
+                let track = Track::new(self.problem, road, at, found);
+                Reached::End(critical, Box::new(track))
+            }
+            None => Reached::Motion(Box::new(road.motion().clone())),
+        }
+    }
+
+    /// Through irregular stick-slip, to where it repeats again; else to its end.
+    fn cross(&mut self, mut motion: Motion) -> Result<(Motion, usize), Critical> {
+        if self.entry.is_none() {
+            self.entry = Some(Box::new(motion.clone()));
+        }
+        let pace = Pace {
+            first: self.crossing,
+            last: LAST_CROSSING,
+            until_periodic: true,
+            ..Pace::default()
+        };
+        let followed = follow::carry(self.problem, &mut motion, &pace);
+        match followed.last {
+            Some(last) if last.fate == Fate::Periodic => Ok((motion, last.summary.slips as usize)),
+            _ => Err(of_followed(&followed)),
+        }
+    }
+
+    /// Once more from the first irregular stick-slip on, with other steps.
+    fn again(&mut self, entry: Motion) -> Option<Critical> {
+        self.crossing = CROSSINGS[1];
+        let (motion, slips) = self.cross(entry).ok()?;
+        let mut road = Orbit::of(motion, slips);
+        let place = road.first_place()?;
+        match self.follow(road, place) {
+            Reached::End(critical, _) => Some(critical),
+            Reached::Lost(_) | Reached::Motion(_) => None,
+        }
+    }
+}
+
+/// How far beyond its last place a kind of stick-slip that was lost from sight is looked for, relative: as far as it is still
+/// the same.
+const NEXT: [f64; 4] = [1e-4, 1e-3, 5e-3, 2e-2];
+
+/// What became of stick-slip beyond where it was last.
+fn recognised(problem: &Problem, road: &Orbit, at: &Place) -> Next {
     let mut motion = road.motion().clone();
-    let v0 = motion.parameters().v0 * (1.0 + NEXT);
-    let sustained = follow::fate(problem, &mut motion, v0);
-    (sustained.fate == Fate::Periodic).then(|| (motion, sustained.summary.slips as usize))
+    let from = motion.parameters().v0;
+    let mut next = Next::Unknown;
+    for beyond in NEXT {
+        let v0 = from * (1.0 + beyond);
+        motion.set_v0(v0);
+        let kind = kind(problem, &mut motion);
+        let same = kind == Beyond::Persists(at.period.cycles().len());
+        next = Next::of(motion.clone(), kind);
+        if !same {
+            break;
+        }
+    }
+    next
 }
 
 /// How far beyond a change of kind the next one is looked for, relative: forces have to differ by more than their noise.
 pub(super) const CHANGED: f64 = 1e-4;
 
-/// What becomes of stick-slip beyond `v0`, where it is known to become of another kind, and a motion there.
-fn changed(problem: &Problem, road: &mut Orbit, v0: f64) -> (Motion, Beyond) {
+/// What becomes of stick-slip beyond `v0`, where it is known to become of another kind.
+fn changed(problem: &Problem, road: &mut Orbit, v0: f64) -> Next {
     let mut motion = road.place(v0 * (1.0 + CHANGED)).clone();
     let beyond = kind(problem, &mut motion);
-    (motion, beyond)
+    Next::of(motion, beyond)
 }
 
 /// By simulation from a motion in stick-slip on; from low velocities where it is not sustained.

@@ -18,6 +18,8 @@ pub(super) struct Track {
     lifts: bool,
     /// How far off the end was last expected, relative.
     off: f64,
+    /// Whether it is known that stick-slip leads there.
+    pub decided: bool,
 }
 
 /// How far off an end is taken to be before anything is known.
@@ -48,6 +50,7 @@ impl Track {
                 .collect(),
             lifts: matches!(found, Found::LiftOff(..)),
             off: FIRST_OFF,
+            decided: true,
         }
     }
 
