@@ -46,6 +46,7 @@ fn tolerance(tolerance: f64) -> Accuracy {
 fn simulated(problem: &Problem) -> Critical {
     let pace = Pace {
         first: 0.35,
+        largest: 0.35,
         patient: true,
         ..Pace::default()
     };
@@ -193,6 +194,7 @@ fn the_worst_phase_of_a_delay_too_long_is_undecided() {
 fn a_search_of_too_many_trials_is_undecided() {
     let pace = Pace {
         first: 1e-3,
+        largest: 1e-3,
         patient: true,
         ..Pace::default()
     };

@@ -59,11 +59,11 @@ pub(super) enum Climbed {
 }
 
 /// Whether the last members of a sequence differ by no more than `settled`, relative, and by less and less: else the orbit
-/// that they seem to reach may be unstable.
-pub(super) fn come_to_rest([first, second, third]: &[f64; 3], settled: f64) -> bool {
+/// that they seem to reach may be unstable. Or by no more than `noise`.
+fn come_to_rest([first, second, third]: &[f64; 3], settled: f64, noise: f64) -> bool {
     let (before, last) = ((second - first).abs(), (third - second).abs());
     let falls = settled > SETTLED || last <= CONTRACTION * before || last <= NOISE * third.abs();
-    third.is_nan() || last <= settled * third.abs() && falls
+    third.is_nan() || last <= noise || last <= settled * third.abs() && falls
 }
 
 /// What a sequence converges to, as its last three members tell (Aitken).
@@ -94,9 +94,15 @@ impl Seen {
         }
     }
 
-    /// Whether they have come to rest.
-    pub fn settled(&self, settled: f64) -> bool {
-        !self.0[LOAD][0].is_nan() && self.0.iter().all(|seen| come_to_rest(seen, settled))
+    /// Whether they have come to rest, at `v0`.
+    pub fn settled(&self, settled: f64, v0: f64) -> bool {
+        let speed = |gauge: usize| gauge < LOAD || gauge == DIP;
+        let mut seen = self.0.iter().enumerate();
+        !self.0[LOAD][0].is_nan()
+            && seen.all(|(i, seen)| {
+                let noise = if speed(i) { NOISE * v0 } else { NOISE };
+                come_to_rest(seen, settled, noise)
+            })
     }
 
     /// What they come to.
@@ -178,7 +184,7 @@ impl Place {
 pub(super) const SETTLED: f64 = 0.05;
 /// The most by which periods that come to rest differ from one to the next, compared with the difference before.
 const CONTRACTION: f64 = 0.8;
-/// Noise of the gauges, relative.
+/// Noise of the gauges, relative to themselves, and to v0 or to the forces and times of free oscillation.
 const NOISE: f64 = 1e-6;
 /// The share of the way to the expected end that is taken at once.
 const SHARE: f64 = 0.97;

@@ -15,6 +15,8 @@ pub const STARTS: [f64; 6] = [1e-2, 1e-1, 1e-3, 1e-4, 1e-5, 1e-6];
 pub struct Pace {
     /// The first relative step of v0.
     pub first: f64,
+    /// The largest one.
+    pub largest: f64,
     /// The last relative step: v_c is known to it.
     pub last: f64,
     /// v0 up to which stick-slip is followed, in units of μ_S N0/√(κM).
@@ -36,6 +38,7 @@ impl Default for Pace {
     fn default() -> Self {
         Self {
             first: 0.6,
+            largest: 0.6,
             repeated: 1e-6,
             last: 1e-6,
             v_max: 100.0,
@@ -444,7 +447,7 @@ impl Climb<'_> {
             (self.before, self.last) = (Some(self.last), there);
             // What failed there was the size of the step: the steps from here on grow slowly.
             self.most = if passed { 2.0 * step } else { 2.0 * self.most };
-            self.most = self.most.min(self.pace.first);
+            self.most = self.most.min(self.pace.largest);
         }
     }
 

@@ -239,6 +239,7 @@ fn confirmed(followed: &Followed, search: impl Fn(&Pace) -> Followed) -> Critica
     }
     let again = of_followed(&search(&Pace {
         first: CONFIRM_FIRST,
+        largest: CONFIRM_FIRST,
         ..Pace::default()
     }));
     Critical {

@@ -214,7 +214,7 @@ impl Orbit {
             if settled == f64::INFINITY {
                 return Ran::Period(period, period.gauges());
             }
-            if seen.settled(settled) {
+            if seen.settled(settled, self.tried.v0) {
                 return Ran::Period(period, seen.limits());
             }
         }

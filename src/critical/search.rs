@@ -55,7 +55,7 @@ pub(super) fn from_scratch(problem: &Problem) -> (Critical, Option<Track>) {
             )
         }
         (Reached::Lost(critical), _) => (critical, None),
-        (Reached::Motion(motion), _) => (simulated_from(problem, *motion), None),
+        (Reached::Motion(motion, step), _) => (simulated_from(problem, *motion, step), None),
     }
 }
 
@@ -70,8 +70,8 @@ enum Reached {
     End(Critical, Box<Track>),
     /// To an end by chance.
     Lost(Critical),
-    /// To stick-slip from which simulation has to go on.
-    Motion(Box<Motion>),
+    /// To stick-slip from which simulation has to go on, by this step of v0 at first, relative.
+    Motion(Box<Motion>, f64),
 }
 
 /// What follows a kind of stick-slip as v0 grows.
@@ -79,17 +79,18 @@ enum Next {
     /// One with so many slips in a period.
     Periodic(Motion, usize),
     Irregular(Motion),
-    /// None.
-    Ends,
+    /// None: it was lost by a relative step of v0.
+    Ends(f64),
     Unknown,
 }
 
 impl Next {
-    fn of(motion: Motion, beyond: Beyond) -> Self {
+    /// What is seen of a motion after a relative `step` of v0.
+    fn of(motion: Motion, beyond: Beyond, step: f64) -> Self {
         match beyond {
             Beyond::Persists(slips) => Self::Periodic(motion, slips),
             Beyond::Irregular => Self::Irregular(motion),
-            Beyond::Ends => Self::Ends,
+            Beyond::Ends => Self::Ends(step),
             Beyond::Unknown => Self::Unknown,
         }
     }
@@ -116,7 +117,7 @@ impl Kinds<'_> {
                 Found::Irregular => Next::Irregular(road.tried().clone()),
                 Found::Changes(v0) => match changed(self.problem, &mut road, v0) {
                     // Nothing is left of it.
-                    Next::Ends => return self.end(road, at, &Found::Vanish(v0, at.period)),
+                    Next::Ends(_) => return self.end(road, at, &Found::Vanish(v0, at.period)),
                     next => next,
                 },
                 Found::Unclear => recognised(self.problem, &road, &at),
@@ -128,7 +129,8 @@ impl Kinds<'_> {
             let next = match next {
                 Next::Irregular(motion) => self.cross(motion),
                 Next::Periodic(motion, slips) => Ok((motion, slips)),
-                Next::Ends | Next::Unknown => return Reached::Motion(from),
+                Next::Ends(step) => return Reached::Motion(from, step),
+                Next::Unknown => return Reached::Motion(from, FIRST_STEP),
             };
             let (motion, slips) = match next {
                 Ok(next) => next,
@@ -136,7 +138,7 @@ impl Kinds<'_> {
             };
             road = Orbit::of(motion, slips);
             let Some(first) = road.first_place() else {
-                return Reached::Motion(from);
+                return Reached::Motion(from, FIRST_STEP);
             };
             step = match jumps(&at.period, &first.period, 0.0) {
                 true => FIRST_STEP,
@@ -144,7 +146,7 @@ impl Kinds<'_> {
             };
             place = first;
         }
-        Reached::Motion(Box::new(road.motion().clone()))
+        Reached::Motion(Box::new(road.motion().clone()), FIRST_STEP)
     }
 
     fn end(&self, road: Orbit, at: Place, found: &Found) -> Reached {
@@ -153,7 +155,7 @@ impl Kinds<'_> {
                 let track = Track::new(self.problem, road, at, found);
                 Reached::End(critical, Box::new(track))
             }
-            None => Reached::Motion(Box::new(road.motion().clone())),
+            None => Reached::Motion(Box::new(road.motion().clone()), FIRST_STEP),
         }
     }
 
@@ -164,6 +166,7 @@ impl Kinds<'_> {
         }
         let pace = Pace {
             first: self.crossing,
+            largest: self.crossing,
             last: LAST_CROSSING,
             until_periodic: true,
             ..Pace::default()
@@ -183,7 +186,7 @@ impl Kinds<'_> {
         let place = road.first_place()?;
         match self.follow(road, place) {
             Reached::End(critical, _) => Some(critical),
-            Reached::Lost(_) | Reached::Motion(_) => None,
+            Reached::Lost(_) | Reached::Motion(..) => None,
         }
     }
 }
@@ -202,7 +205,7 @@ fn recognised(problem: &Problem, road: &Orbit, at: &Place) -> Next {
         motion.set_v0(v0);
         let kind = kind(problem, &mut motion);
         let same = kind == Beyond::Persists(at.period.cycles().len());
-        next = Next::of(motion.clone(), kind);
+        next = Next::of(motion.clone(), kind, beyond);
         if !same {
             break;
         }
@@ -217,13 +220,17 @@ pub(super) const CHANGED: f64 = 1e-4;
 fn changed(problem: &Problem, road: &mut Orbit, v0: f64) -> Next {
     let mut motion = road.place(v0 * (1.0 + CHANGED)).clone();
     let beyond = kind(problem, &mut motion);
-    Next::of(motion, beyond)
+    Next::of(motion, beyond, CHANGED)
 }
 
-/// By simulation from a motion in stick-slip on; from low velocities where it is not sustained.
-fn simulated_from(problem: &Problem, mut motion: Motion) -> Critical {
+/// By simulation from a motion in stick-slip on, v0 raised by a relative `step` at first; from low velocities where it is not
+/// sustained.
+fn simulated_from(problem: &Problem, mut motion: Motion, step: f64) -> Critical {
     motion.refine(Accuracy::of(FOLLOW_TOLERANCE));
-    let search = |pace: &Pace| follow::from(problem, motion.clone(), pace);
+    let search = |pace: &Pace| {
+        let first = step * pace.first;
+        follow::from(problem, motion.clone(), &Pace { first, ..*pace })
+    };
     let followed = search(&Pace::default());
     match followed.last {
         Some(_) => confirmed(&followed, search),
