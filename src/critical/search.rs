@@ -55,7 +55,7 @@ pub(super) fn from_scratch(problem: &Problem) -> (Critical, Option<Track>) {
             )
         }
         (Reached::Lost(critical), _) => (critical, None),
-        (Reached::Motion(motion, step), _) => (simulated_from(problem, *motion, step), None),
+        (Reached::Motion(motions, step), _) => (simulated_from(problem, motions, step), None),
     }
 }
 
@@ -71,7 +71,8 @@ enum Reached {
     /// To an end by chance.
     Lost(Critical),
     /// To stick-slip from which simulation has to go on, by this step of v0 at first, relative.
-    Motion(Box<Motion>, f64),
+    /// Motions at less and less high v0, each for the case that the one before is not sustained.
+    Motion(Vec<Motion>, f64),
 }
 
 /// What follows a kind of stick-slip as v0 grows.
@@ -110,6 +111,7 @@ impl Kinds<'_> {
     fn follow(&mut self, mut road: Orbit, mut place: Place) -> Reached {
         let mut step = LARGEST_STEP;
         for _ in 0..MOST_KINDS {
+            let start = road.motion().clone();
             let (climbed, at) = climb(&mut road, place, step);
             let found = finish(self.problem, &mut road, climbed, &at);
             let next = match found {
@@ -125,20 +127,20 @@ impl Kinds<'_> {
                     return self.end(road, at, &found);
                 }
             };
-            let from = Box::new(road.motion().clone());
+            let from = |road: &Orbit| [road.motion().clone(), start.clone()].to_vec();
             let next = match next {
                 Next::Irregular(motion) => self.cross(motion),
                 Next::Periodic(motion, slips) => Ok((motion, slips)),
-                Next::Ends(step) => return Reached::Motion(from, step),
-                Next::Unknown => return Reached::Motion(from, FIRST_STEP),
+                Next::Ends(step) => return Reached::Motion(from(&road), step),
+                Next::Unknown => return Reached::Motion(from(&road), FIRST_STEP),
             };
             let (motion, slips) = match next {
                 Ok(next) => next,
                 Err(critical) => return Reached::Lost(critical),
             };
-            road = Orbit::of(motion, slips);
+            let before = std::mem::replace(&mut road, Orbit::of(motion, slips));
             let Some(first) = road.first_place() else {
-                return Reached::Motion(from, FIRST_STEP);
+                return Reached::Motion(from(&before), FIRST_STEP);
             };
             step = match jumps(&at.period, &first.period, 0.0) {
                 true => FIRST_STEP,
@@ -146,7 +148,7 @@ impl Kinds<'_> {
             };
             place = first;
         }
-        Reached::Motion(Box::new(road.motion().clone()), FIRST_STEP)
+        Reached::Motion(vec![road.motion().clone()], FIRST_STEP)
     }
 
     fn end(&self, road: Orbit, at: Place, found: &Found) -> Reached {
@@ -155,7 +157,7 @@ impl Kinds<'_> {
                 let track = Track::new(self.problem, road, at, found);
                 Reached::End(critical, Box::new(track))
             }
-            None => Reached::Motion(Box::new(road.motion().clone()), FIRST_STEP),
+            None => Reached::Motion(vec![road.motion().clone()], FIRST_STEP),
         }
     }
 
@@ -223,19 +225,21 @@ fn changed(problem: &Problem, road: &mut Orbit, v0: f64) -> Next {
     Next::of(motion, beyond, CHANGED)
 }
 
-/// By simulation from a motion in stick-slip on, v0 raised by a relative `step` at first; from low velocities where it is not
-/// sustained.
-fn simulated_from(problem: &Problem, mut motion: Motion, step: f64) -> Critical {
-    motion.refine(Accuracy::of(FOLLOW_TOLERANCE));
-    let search = |pace: &Pace| {
-        let first = step * pace.first;
-        follow::from(problem, motion.clone(), &Pace { first, ..*pace })
-    };
-    let followed = search(&Pace::default());
-    match followed.last {
-        Some(_) => confirmed(&followed, search),
-        None => simulated(problem),
+/// By simulation from the first of some motions in stick-slip on that is sustained, v0 raised by a relative `step` at first;
+/// from low velocities where none is.
+fn simulated_from(problem: &Problem, motions: Vec<Motion>, step: f64) -> Critical {
+    for mut motion in motions {
+        motion.refine(Accuracy::of(FOLLOW_TOLERANCE));
+        let search = |pace: &Pace| {
+            let first = step * pace.first;
+            follow::from(problem, motion.clone(), &Pace { first, ..*pace })
+        };
+        let followed = search(&Pace::default());
+        if followed.last.is_some() {
+            return confirmed(&followed, search);
+        }
     }
+    simulated(problem)
 }
 
 /// By simulation from low velocities on.
