@@ -1,7 +1,7 @@
 //! Raising v0 towards where a number vanishes that is seen in every period of stick-slip: the depth of a stop, the load, or a
 //! stick.
 
-use crate::slip::motion::Motion;
+use crate::slip::motion::{Accuracy, Motion};
 
 use super::cycle::{DIP, GAUGES, LOAD, Period, STICK, TURN};
 
@@ -41,6 +41,8 @@ pub(super) trait Road {
     fn trial(&mut self, v0: f64, expected: Option<&Period>, settled: f64) -> Ran;
     /// Goes on from the end of the last trial.
     fn keep(&mut self);
+    /// Goes on with another accuracy.
+    fn refine(&mut self, accuracy: Accuracy);
 }
 
 /// How a climb ended.
@@ -294,6 +296,22 @@ pub(super) fn thrown(before: [f64; 2], after: [f64; 2], step: f64) -> bool {
     // Where sticks are not followed, slips tell.
     let same_period = period.is_nan() || (0.8 / (1.0 + step)..=1.25).contains(&period);
     !same_period || !(0.8..=1.4).contains(&slip)
+}
+
+/// Below this v0, over μ_S N0/√(κM), errors of the elongation are felt in the depth of a stop, which is to be known compared
+/// with v0.
+const SLOW: f64 = 0.03;
+
+/// The same, once more from there with a finer integration where the end is at a low v0.
+pub(super) fn climb_finely(road: &mut impl Road, from: Place, most: f64) -> (Climbed, Place) {
+    let (climbed, at) = climb(road, from, most);
+    let slow = at.v0 < SLOW && !matches!(climbed, Climbed::Unclear);
+    if !slow {
+        return (climbed, at);
+    }
+    road.refine(Accuracy::of(super::GRAZE_TOLERANCE * at.v0 / SLOW));
+    let settled = f64::INFINITY;
+    climb(road, Place { settled, ..at }, 10.0 * NEAR)
 }
 
 /// What vanishes at the end of a climb.

@@ -17,6 +17,8 @@ pub struct Pace {
     pub first: f64,
     /// The largest one.
     pub largest: f64,
+    /// The largest one where cycles do not show whether stick-slip is of the same kind.
+    pub unseen: f64,
     /// The last relative step: v_c is known to it.
     pub last: f64,
     /// v0 up to which stick-slip is followed, in units of μ_S N0/√(κM).
@@ -39,6 +41,7 @@ impl Default for Pace {
         Self {
             first: 0.6,
             largest: 0.6,
+            unseen: 0.1,
             repeated: 1e-6,
             last: 1e-6,
             v_max: 100.0,
@@ -382,7 +385,7 @@ impl Climb<'_> {
     fn next_step(&self) -> f64 {
         let mut step = self.share * expected_way(self.before, &self.last);
         if self.last.fate == Fate::Irregular {
-            step = step.min(LARGEST_UNSEEN);
+            step = step.min(self.pace.unseen);
         }
         let mut step = step.clamp(self.pace.last, self.most.max(self.pace.last));
         if let Some(jump) = self.jump {
@@ -408,10 +411,10 @@ impl Climb<'_> {
                 f64::INFINITY
             }
             // Once chance has a part in it nothing is gained by that.
-            _ if self.chance => LARGEST_UNSEEN,
+            _ if self.chance => self.pace.unseen,
             (Fate::Periodic, Fate::Periodic) if jumps(last, there, step) => JUMP,
             (Fate::Periodic, Fate::Irregular) => CAREFUL,
-            _ => LARGEST_UNSEEN,
+            _ => self.pace.unseen,
         }
     }
 
@@ -483,8 +486,6 @@ const NEARBY: f64 = 0.15;
 /// Surviving so often where it had been lost, on so short a way, stick-slip creeps.
 const MOST_PASSED: u32 = 6;
 const SHORT_WAY: f64 = 1e-3;
-/// The largest step where cycles do not show whether it is the same attractor.
-const LARGEST_UNSEEN: f64 = 0.1;
 /// The last relative step from irregular stick-slip.
 const LAST_IRREGULAR: f64 = 1e-4;
 

@@ -5,7 +5,7 @@
 //! from a = μ_S (1 + α_n v0 τ), which has grown evenly.
 
 use super::beyond::{Beyond, PRECISION, beyond, without_stick};
-use super::climb::{Climbed, LARGEST_STEP, Place, Ran, Road, climb};
+use super::climb::{Climbed, LARGEST_STEP, Place, Ran, Road, climb_finely};
 use super::cycle::{Period, Ride, ride};
 use super::orbit::Orbit;
 use super::search::CHANGED;
@@ -41,8 +41,8 @@ impl Found {
     }
 }
 
-/// Where v0 starts, in order, in units of μ_S N0/√(κM).
-pub(super) const STARTS: [f64; 4] = [6e-2, 6e-3, 1e-4, 1e-6];
+/// Where v0 of one slip starts, in order, in units of μ_S N0/√(κM): what has no memory ends in the same way from anywhere.
+const STARTS: [f64; 4] = [6e-2, 6e-3, 1e-4, 1e-6];
 /// How much the slip may lengthen on the last bit of the way, where it grows as a square root.
 const SAME_SLIP: f64 = 0.1;
 
@@ -77,6 +77,10 @@ impl Road for Slips<'_> {
     }
 
     fn keep(&mut self) {}
+
+    fn refine(&mut self, accuracy: Accuracy) {
+        self.motion.refine(accuracy);
+    }
 }
 
 impl Slips<'_> {
@@ -103,7 +107,7 @@ pub(super) fn by_one_slip(problem: &Problem, accuracy: Accuracy) -> Option<Found
     let mut from = road.first_place()?;
     let mut step = LARGEST_STEP;
     for _ in 0..MOST_KINDS {
-        let (climbed, at) = climb(&mut road, from, step);
+        let (climbed, at) = climb_finely(&mut road, from, step);
         match climbed {
             Climbed::Graze { v0, .. } => return slip_grazes(&mut road, v0, &at),
             Climbed::LiftOff(v0) => {

@@ -33,7 +33,7 @@ impl At {
         (v0, tau): (f64, f64),
     ) -> bool {
         let (one, other) = (last.period.cycles(), before.period.cycles());
-        if !(share.abs() <= FARTHEST && one.len() == other.len()) {
+        if !(share.abs() <= FARTHEST && one.len() == other.len() && tau > 0.0) {
             return false;
         }
         let mut stretches = [Stretch {
@@ -45,7 +45,7 @@ impl At {
             stretch.lengths = [last + share * (last - before), last, before];
         }
         let stretches = &stretches[..2 * one.len()];
-        let alike = |s: &Stretch| s.lengths[0] > LEAST * s.lengths[1] && s.lengths[2] > 0.0;
+        let alike = |s: &Stretch| s.lengths[0] > LEAST * s.lengths[1] && s.lengths[1].min(s.lengths[2]) > 0.0;
         if !stretches.iter().all(alike) {
             return false;
         }
@@ -93,7 +93,16 @@ impl Road for Orbit {
         }
         std::mem::swap(&mut self.kept, &mut self.tried);
     }
+
+    fn refine(&mut self, accuracy: Accuracy) {
+        for at in [&mut self.kept, &mut self.before, &mut self.tried] {
+            at.motion.refine(accuracy);
+        }
+    }
 }
+
+/// Where v0 starts, in order, in units of μ_S N0/√(κM): as [`super::follow`] does, with smaller ones in the place of larger ones.
+pub(super) const STARTS: [f64; 4] = [1e-2, 1e-3, 1e-4, 1e-6];
 
 impl Orbit {
     /// Of a block that is released from a memoryless stick at `v0`, which has one slip in a period.

@@ -1,10 +1,10 @@
 //! The end of stick-slip of one problem, by the first of the roads that leads to it.
 
 use super::beyond::{Beyond, PRECISION, kind};
-use super::climb::{LARGEST_STEP, Place, Road, climb, jumps};
+use super::climb::{LARGEST_STEP, Place, Road, climb_finely, jumps};
 use super::follow::{self, Fate, Pace};
-use super::graze::{FIRST_STEP, Found, MOST_KINDS, STARTS, by_one_slip, finish};
-use super::orbit::Orbit;
+use super::graze::{FIRST_STEP, Found, MOST_KINDS, by_one_slip, finish};
+use super::orbit::{Orbit, STARTS};
 use super::track::Track;
 use super::{
     Critical, End, FOLLOW_TOLERANCE, GRAZE_TOLERANCE, Method, Problem, confirmed, nothing,
@@ -60,7 +60,7 @@ pub(super) fn from_scratch(problem: &Problem) -> (Critical, Option<Track>) {
 }
 
 /// Relative steps of v0 through irregular stick-slip: where it leads should not depend on them.
-const CROSSINGS: [f64; 2] = [0.1, 0.04];
+const CROSSINGS: [f64; 2] = [0.25, 0.1];
 /// The last ones: what ends by chance is known to this.
 const LAST_CROSSING: f64 = 1e-3;
 
@@ -112,7 +112,7 @@ impl Kinds<'_> {
         let mut step = LARGEST_STEP;
         for _ in 0..MOST_KINDS {
             let start = road.motion().clone();
-            let (climbed, at) = climb(&mut road, place, step);
+            let (climbed, at) = climb_finely(&mut road, place, step);
             let found = finish(self.problem, &mut road, climbed, &at);
             let next = match found {
                 Found::Persists(slips) => Next::Periodic(road.tried().clone(), slips),
@@ -169,6 +169,7 @@ impl Kinds<'_> {
         let pace = Pace {
             first: self.crossing,
             largest: self.crossing,
+            unseen: self.crossing,
             last: LAST_CROSSING,
             until_periodic: true,
             ..Pace::default()

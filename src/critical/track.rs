@@ -33,6 +33,9 @@ const NEAREST_LIFT: f64 = 3e-3;
 const LARGEST_CHANGE: f64 = 0.5;
 /// How far from the last end, in its logarithm, the next one is looked for.
 const FARTHEST_LOG: f64 = 0.5;
+/// The most trials on the way from one cell to the next, and the part of a way that is tried where the whole of it failed.
+const MOST_TRIALS: u32 = 8;
+const PART: f64 = 0.25;
 /// Ends that an expectation is made of.
 const KNOWN_ENDS: usize = 3;
 
@@ -57,6 +60,28 @@ impl Track {
     /// The end of stick-slip of `problem`, which differs by its delay alone from the one before; none where the orbit before
     /// does not lead to its end. After that the track is of no more use.
     pub fn next(&mut self, problem: &Problem) -> Option<Found> {
+        let mut trials = MOST_TRIALS;
+        self.approach(problem, &mut trials)
+    }
+
+    /// The same, by way of delays in between where the whole way is too far, within so many `trials`.
+    fn approach(&mut self, problem: &Problem, trials: &mut u32) -> Option<Found> {
+        *trials = trials.checked_sub(1)?;
+        let from = self.clone();
+        if let Some(found) = self.attempt(problem) {
+            return Some(found);
+        }
+        *self = from;
+        let last = self.ends.last()?.0;
+        let between = Problem {
+            tau: last + PART * (problem.tau - last),
+            ..problem.clone()
+        };
+        self.approach(&between, trials)?;
+        self.approach(problem, trials)
+    }
+
+    fn attempt(&mut self, problem: &Problem) -> Option<Found> {
         let last = *self.ends.last()?;
         if (problem.tau / last.0 - 1.0).abs() > LARGEST_CHANGE {
             return None;
