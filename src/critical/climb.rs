@@ -310,9 +310,20 @@ pub(super) fn climb_finely(road: &mut impl Road, from: Place, most: f64) -> (Cli
         return (climbed, at);
     }
     road.refine(Accuracy::of(super::GRAZE_TOLERANCE * at.v0 / SLOW));
-    let settled = f64::INFINITY;
-    climb(road, Place { settled, ..at }, 10.0 * NEAR)
+    let v0 = at.v0 * (1.0 - BACK);
+    let Ran::Period(period, gauges) = road.trial(v0, Some(&at.period), SETTLED) else {
+        return (Climbed::Unclear, at);
+    };
+    road.keep();
+    let from = Place {
+        slopes: at.slopes,
+        ..Place::first(v0, period, gauges, SETTLED)
+    };
+    climb(road, from, BACK)
 }
+
+/// From so far below an end, relative, it is looked for once more.
+const BACK: f64 = 2e-3;
 
 /// What vanishes at the end of a climb.
 fn arrived(at: &Place) -> Climbed {

@@ -50,6 +50,8 @@ pub(super) struct History {
     at: usize,
     /// Jumps of this order and higher are not felt.
     felt: u32,
+    /// The part of its radius to which the last polynomial stands in for what is yet to come.
+    ahead: f64,
 }
 
 impl History {
@@ -80,6 +82,17 @@ impl History {
         piece.a[1] = rate;
     }
 
+    /// The last polynomial stands in for what is yet to come as far as its errors, times a `gain`, stay within the tolerance,
+    /// which at the end of its radius is its last term, of this `order`.
+    pub fn look_ahead(&mut self, gain: f64, order: usize) {
+        self.ahead = SHARE.min(gain.powf(-1.0 / order as f64));
+    }
+
+    /// The part of a radius to which it does so.
+    pub fn ahead(&self) -> f64 {
+        self.ahead
+    }
+
     /// Jumps of the order `felt` and higher are not felt from now on.
     pub fn feel(&mut self, felt: u32) {
         self.felt = felt;
@@ -89,7 +102,7 @@ impl History {
     pub fn copy_from(&mut self, other: &Self) {
         self.pieces.clear();
         self.pieces.extend(other.pieces.iter().cloned());
-        (self.at, self.felt) = (other.at, other.felt);
+        (self.at, self.felt, self.ahead) = (other.at, other.felt, other.ahead);
     }
 
     /// Becomes, over `span` until time 0, `last` and `share` of the way from `before` to it beyond it, both as of their ends.
@@ -103,7 +116,7 @@ impl History {
         span: f64,
         stretches: &[Stretch],
     ) {
-        (self.at, self.felt) = (0, last.felt);
+        (self.at, self.felt, self.ahead) = (0, last.felt, last.ahead);
         self.pieces.clear();
         let orders = |h: &Self| h.pieces.iter().map(|p| p.order).max().unwrap_or(0);
         let order = orders(last).max(orders(before));
@@ -246,7 +259,9 @@ impl History {
             end = piece.to;
         }
         if smooth_end && best.0 + 1 == self.pieces.len() {
-            return (best.0, Reach { until: best.1, kink });
+            let last = &self.pieces[best.0];
+            let until = last.to.max(last.from + self.ahead * last.radius);
+            return (best.0, Reach { until, kink });
         }
         // Nothing is known beyond a kink.
         let until = best.1.min(end.max(self.pieces[self.at].to));

@@ -102,8 +102,9 @@ const SHORT: f64 = 0.5;
 const SPARE_TERMS: usize = 2;
 const LEAST_ORDER: usize = 4;
 
-/// The part of what a series allows that steps take where they outlast the delay: they need the one before beyond its end.
-const BALANCED: f64 = 0.4;
+/// The part of what a polynomial looks ahead that steps take where they outlast the delay: they need the one before beyond its
+/// end.
+const BALANCED: f64 = 0.53;
 
 /// Rounding of a force, relative.
 const ROUNDING: f64 = 64.0 * f64::EPSILON;
@@ -170,6 +171,8 @@ impl Motion {
         let mut friction = FrictionSeries::new(&parameters.law, parameters.velocity_unit);
         friction.restart(u.abs());
         history.restart(a, 0.0, felt(accuracy, order));
+        let gain = parameters.alpha_v.abs().max(parameters.alpha_n.abs());
+        history.look_ahead(gain, order);
         let zero = [0.0; MOST_ORDER + 1];
         let mut motion = Self {
             parameters,
@@ -236,6 +239,8 @@ impl Motion {
         self.tolerance = accuracy.tolerance.clamp(1e-15, 1e-3);
         self.order = order(self.tolerance);
         self.history.feel(felt(accuracy, self.order));
+        let gain = self.parameters.alpha_v.abs().max(self.parameters.alpha_n.abs());
+        self.history.look_ahead(gain, self.order);
     }
 
     /// Becomes a copy of `other`, a motion with the same law and accuracy, in memory that is there.
@@ -351,9 +356,10 @@ impl Motion {
         }
         let mut free = self.free_length();
         let radius = free;
-        if controlled && self.parameters.tau < BALANCED * free {
+        let balanced = BALANCED * self.history.ahead() * free;
+        if controlled && self.parameters.tau < balanced {
             // The next step, one delay behind, uses the polynomial of this one beyond its end.
-            free *= BALANCED;
+            free = balanced;
         }
         // Two halves rather than a long and a tiny step.
         let length = match free / limit {
