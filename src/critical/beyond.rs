@@ -26,6 +26,15 @@ pub(super) const PRECISION: f64 = 1e-5;
 const STEPS: [f64; 2] = [PRECISION, 1e-4];
 /// And so far past it, where that decides on its end.
 const OTHER_STEPS: [f64; 2] = [1e-4, 2e-6];
+/// The lowest minimum of ẋ after a graze, and how long after it.
+#[derive(Debug, Clone, Copy)]
+struct Lowest {
+    u: f64,
+    since: f64,
+}
+
+/// For so long after its lowest minimum the block is followed that was released otherwise.
+const AFTER: f64 = std::f64::consts::TAU;
 /// Minima of ẋ, over v0, that leave no doubt on which side of zero they are after other steps of v0.
 const CLEAR: f64 = 0.05;
 
@@ -33,34 +42,28 @@ const CLEAR: f64 = 0.05;
 /// the block comes near another stop and steps of different sizes lead to different ends, that is not known.
 pub(super) fn beyond(problem: &Problem, (v0, slip): (f64, f64), road: &mut impl Road) -> Beyond {
     let least = slip + problem.tau;
-    let mut first_passed = STEPS.iter().filter_map(|above| {
+    let mut passed = STEPS.iter().filter_map(|above| {
         let motion = road.place(v0 * (1.0 + above));
-        passes(motion, slip).then(|| passed(problem, motion, least))
+        passes(motion, slip).then(|| slips_on(problem, motion, least).ok_or_else(|| kind(problem, motion)))
     });
-    let (first, nearest) = match first_passed.next() {
-        Some(known) => known,
+    let lowest = match passed.next() {
         None => return kind(problem, road.place(v0 * (1.0 + STEPS[0]))),
+        Some(Err(other)) => return other,
+        Some(Ok(lowest)) => lowest,
     };
-    if first != Beyond::Ends || nearest > CLEAR {
-        return first;
+    if lowest.u > CLEAR * v0 {
+        return Beyond::Ends;
     }
     let ends = |above: &f64| {
         let motion = road.place(v0 * (1.0 + above));
         // Else the graze is not known to that.
-        !passes(motion, slip) || passed(problem, motion, least).0 == Beyond::Ends
+        !passes(motion, slip)
+            || !stops_within(motion, lowest.since + AFTER)
+            || kind(problem, motion) == Beyond::Ends
     };
     match OTHER_STEPS.iter().all(ends) {
         true => Beyond::Ends,
         false => Beyond::Unknown,
-    }
-}
-
-/// What becomes of a block that has passed a graze; and the lowest minimum of ẋ from then on, over v0. `least`: for how long it
-/// slips on at least.
-fn passed(problem: &Problem, motion: &mut Motion, least: f64) -> (Beyond, f64) {
-    match slips_on(problem, motion, least) {
-        Some(lowest) => (Beyond::Ends, lowest / motion.parameters().v0),
-        None => (kind(problem, motion), 0.0),
     }
 }
 
@@ -119,11 +122,15 @@ fn passes(motion: &mut Motion, slip: f64) -> bool {
 
 /// The lowest minimum of ẋ beyond a graze, of a block that slips on: its velocity's minima do not fall for long; or, where
 /// sliding is stable, rise nearly to v0, for at least the time `least`. None where it stops again.
-fn slips_on(problem: &Problem, motion: &mut Motion, least: f64) -> Option<f64> {
+fn slips_on(problem: &Problem, motion: &mut Motion, least: f64) -> Option<Lowest> {
     let v0 = motion.parameters().v0;
     let stable = problem.count(v0).stable();
     let mut stops = Stops::new(motion, stable, Waiting::Long);
     let start = motion.t;
+    let mut lowest = Lowest {
+        u: f64::INFINITY,
+        since: 0.0,
+    };
     let mut last = f64::NEG_INFINITY;
     let mut risen = 0;
     while !stops.enough() {
@@ -133,6 +140,10 @@ fn slips_on(problem: &Problem, motion: &mut Motion, least: f64) -> Option<f64> {
             return None;
         }
         if let Some((_, u)) = motion.last_step().speed_minimum() {
+            if u < lowest.u {
+                let since = motion.t - start;
+                lowest = Lowest { u, since };
+            }
             // Beats: what comes after the lowest one counts.
             risen = if u < last { 0 } else { risen + 1 };
             last = u;
@@ -141,7 +152,18 @@ fn slips_on(problem: &Problem, motion: &mut Motion, least: f64) -> Option<f64> {
             }
         }
     }
-    Some(stops.nearest())
+    Some(lowest)
+}
+
+/// Whether a block that slips stops within this time.
+fn stops_within(motion: &mut Motion, time: f64) -> bool {
+    let until = motion.t + time;
+    while motion.t < until {
+        if motion.advance(until).is_some() || !motion.u.is_finite() {
+            return true;
+        }
+    }
+    false
 }
 
 /// The longest time that is waited for, in units of √(M/κ).

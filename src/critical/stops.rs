@@ -57,8 +57,6 @@ pub struct Stops {
     window: f64,
     until: f64,
     lowest: f64,
-    /// The lowest minimum since the last event.
-    nearest: f64,
     /// The lowest one of the window before: what has risen after a graze may fall again, to another kind of stick-slip.
     before: f64,
     windows: u32,
@@ -85,7 +83,6 @@ impl Stops {
             window,
             until: motion.t + window,
             lowest: f64::INFINITY,
-            nearest: f64::INFINITY,
             before: f64::INFINITY,
             windows: 0,
             large: FAR * (p.law.mu_s() + p.v0 + motion.a.abs() + motion.u.abs()),
@@ -115,12 +112,6 @@ impl Stops {
         self.calm >= self.waiting.windows() || self.calm >= ENOUGH && 2 * self.calm >= self.windows
     }
 
-    /// The lowest minimum of ẋ since the last event, or since it is seen.
-    #[must_use]
-    pub fn nearest(&self) -> f64 {
-        self.nearest
-    }
-
     /// Whether it has grown far beyond stick-slip.
     #[must_use]
     pub fn far(&self) -> bool {
@@ -130,7 +121,6 @@ impl Stops {
     fn restart(&mut self, now: f64) {
         self.until = now + self.window;
         (self.lowest, self.before) = (f64::INFINITY, f64::INFINITY);
-        self.nearest = f64::INFINITY;
         (self.windows, self.calm) = (0, 0);
     }
 
@@ -164,7 +154,6 @@ impl Observer for Stops {
         let inside = motion.last_step().speed_minimum();
         let lowest = inside.map_or(motion.u, |(_, u)| u);
         self.lowest = self.lowest.min(lowest);
-        self.nearest = self.nearest.min(inside.map_or(f64::INFINITY, |(_, u)| u));
         if motion.t >= self.until {
             self.close(motion.t);
         }
