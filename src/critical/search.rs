@@ -166,6 +166,7 @@ impl Kinds<'_> {
         if self.entry.is_none() {
             self.entry = Some(Box::new(motion.clone()));
         }
+        let v0 = motion.parameters().v0;
         let pace = Pace {
             first: self.crossing,
             largest: self.crossing,
@@ -177,7 +178,12 @@ impl Kinds<'_> {
         let followed = follow::carry(self.problem, &mut motion, &pace);
         match followed.last {
             Some(last) if last.fate == Fate::Periodic => Ok((motion, last.summary.slips as usize)),
-            _ => Err(of_followed(&followed)),
+            Some(_) => Err(of_followed(&followed)),
+            // It was lost where it was come to.
+            None => Err(Critical {
+                decided: false,
+                ..nothing(v0, End::Irregular, Method::Simulation)
+            }),
         }
     }
 
