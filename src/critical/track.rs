@@ -88,10 +88,11 @@ impl Track {
         }
         let expected = self.expected(problem.tau);
         let nearest = if self.lifts { NEAREST_LIFT } else { NEAREST };
-        // An orbit that has to change starts with a transient.
+        // An orbit that has to change starts with a transient, a small one where its past is extrapolated.
         let change = (expected / last.1 - 1.0).abs();
+        let transient = if self.before.is_some() { 0.01 } else { 0.15 };
         let off = (2.0 * self.off)
-            .max(0.15 * change)
+            .max(transient * change)
             .clamp(nearest, FARTHEST);
         let ended = self.road.place_kept().clone();
         let offs = [off, 4.0 * off, 2.0 * FARTHEST].into_iter();
