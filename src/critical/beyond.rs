@@ -44,7 +44,8 @@ pub(super) fn beyond(problem: &Problem, (v0, slip): (f64, f64), road: &mut impl 
     let least = slip + problem.tau;
     let mut passed = STEPS.iter().filter_map(|above| {
         let motion = road.place(v0 * (1.0 + above));
-        passes(motion, slip).then(|| slips_on(problem, motion, least).ok_or_else(|| kind(problem, motion)))
+        passes(motion, slip)
+            .then(|| slips_on(problem, motion, least).ok_or_else(|| kind(problem, motion)))
     });
     let lowest = match passed.next() {
         None => return kind(problem, road.place(v0 * (1.0 + STEPS[0]))),

@@ -174,10 +174,10 @@ pub enum Ride {
     Other,
 }
 
-/// Follows a block that was just released until its next release; or until it stops, if it is `slip_only`.
+/// Follows a block that was just released until its next release.
 ///
 /// `expected` is the stop that is expected, if one is.
-pub fn ride(motion: &mut Motion, expected: Option<Stop>, slip_only: bool) -> Ride {
+pub fn ride(motion: &mut Motion, expected: Option<Stop>) -> Ride {
     let start = motion.t;
     let mut stopped: Option<(f64, Cycle)> = None;
     let (mut n_min, mut reversals, mut dip) = (f64::INFINITY, 0, f64::NAN);
@@ -202,9 +202,6 @@ pub fn ride(motion: &mut Motion, expected: Option<Stop>, slip_only: bool) -> Rid
                     hold: motion.hold_now(),
                     dip,
                 };
-                if slip_only {
-                    return Ride::Cycle(cycle);
-                }
                 stopped = Some((motion.t, cycle));
             }
             (Some(Event::Release), Some((stop, cycle))) if motion.mode() == Mode::Forwards => {

@@ -1,8 +1,8 @@
 //! The critical velocity v_c: the velocity of the pull below which stick-slip survives.
 //!
 //! - [`limit`]: Coulomb friction, load control, τ → 0: closed form (the letter's Fig. 4)
-//! - [`graze`]: as the velocity at which the orbit's slip grazes ẋ = 0
-//! - [`mod@line`]: grazes along a line of delays, each from its neighbour's orbit
+//! - `search`: by the first road that leads to it; `one_slip` and `orbit` raise v0 (`climb`) to where stick-slip ends (`ends`)
+//! - [`mod@line`]: along a line of delays, each from its neighbour's orbit
 //! - [`follow`]: by simulation, v0 raised step by step
 //! - [`switch_on`]: by the other protocol, the windows in which stick-slip survives switching on
 //! - [`cycle`]: one slip and one stick
@@ -10,10 +10,11 @@
 mod beyond;
 mod climb;
 pub mod cycle;
+mod ends;
 pub mod follow;
-mod graze;
 pub mod limit;
 pub mod line;
+mod one_slip;
 mod orbit;
 mod search;
 mod stops;
@@ -28,8 +29,8 @@ use crate::model::{FrictionLaw, Groups};
 use crate::slip::motion::{Accuracy, Parameters};
 use crate::slip::outcome::Outcome;
 use cycle::Period;
+use ends::Found;
 use follow::{Fate, Followed, Pace, Sustained};
-use graze::Found;
 
 /// A controlled oscillator whose critical velocity is asked for, in the units of [`crate::slip::motion`].
 #[derive(Debug, Clone, PartialEq)]
@@ -152,9 +153,9 @@ impl End {
 /// What gave a critical velocity.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Method {
-    /// One slip without memory, see [`graze`].
+    /// One slip without memory, at its graze or at its lift-off.
     GrazeSlip,
-    /// The orbit at its graze, see [`graze`].
+    /// The orbit, at its graze, at its lift-off or where its stick vanishes.
     GrazeOrbit,
     /// Simulation, see [`follow`].
     Simulation,

@@ -45,12 +45,15 @@ impl At {
             stretch.lengths = [last + share * (last - before), last, before];
         }
         let stretches = &stretches[..2 * one.len()];
-        let alike = |s: &Stretch| s.lengths[0] > LEAST * s.lengths[1] && s.lengths[1].min(s.lengths[2]) > 0.0;
+        let alike = |s: &Stretch| {
+            s.lengths[0] > LEAST * s.lengths[1] && s.lengths[1].min(s.lengths[2]) > 0.0
+        };
         if !stretches.iter().all(alike) {
             return false;
         }
         let motions = (&mut last.motion, &mut before.motion);
-        self.motion.extrapolate(motions, share, (v0, tau), stretches);
+        self.motion
+            .extrapolate(motions, share, (v0, tau), stretches);
         self.v0 = v0;
         true
     }
@@ -151,7 +154,7 @@ impl Orbit {
         let stops = period.stops();
         let rides = |motion: &mut Motion| {
             let mut stops = stops.iter().take(by);
-            stops.all(|stop| matches!(ride(motion, Some(*stop), false), Ride::Cycle(_)))
+            stops.all(|stop| matches!(ride(motion, Some(*stop)), Ride::Cycle(_)))
         };
         if !rides(&mut self.before.motion) {
             self.before.v0 = f64::NAN;
@@ -180,9 +183,8 @@ impl Orbit {
         like: &Place,
     ) -> Option<Place> {
         let (tried, kept) = (&mut self.tried, &mut self.kept);
-        let told = before.is_some_and(|(before, share)| {
-            tried.extrapolate((kept, before), share, (v0, tau))
-        });
+        let told = before
+            .is_some_and(|(before, share)| tried.extrapolate((kept, before), share, (v0, tau)));
         if !told {
             tried.motion.copy_from(&self.kept.motion);
             tried.motion.set_delay(tau);
@@ -209,7 +211,7 @@ impl Orbit {
         for _ in 0..MOST_PERIODS.min(MOST_CYCLES / n) {
             let mut cycles = [Cycle::NONE; MOST_SLIPS];
             for (i, cycle) in cycles.iter_mut().enumerate().take(n) {
-                *cycle = match ride(&mut self.tried.motion, stops.map(|stops| stops[i]), false) {
+                *cycle = match ride(&mut self.tried.motion, stops.map(|stops| stops[i])) {
                     Ride::Cycle(cycle) => cycle,
                     Ride::Pass => return Ran::Pass,
                     Ride::LiftOff => return Ran::LiftOff,

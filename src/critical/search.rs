@@ -2,8 +2,9 @@
 
 use super::beyond::{Beyond, PRECISION, kind};
 use super::climb::{LARGEST_STEP, Place, Road, climb_finely, jumps};
+use super::ends::{CHANGED, FIRST_STEP, Found, MOST_KINDS, finish};
 use super::follow::{self, Fate, Pace};
-use super::graze::{FIRST_STEP, Found, MOST_KINDS, by_one_slip, finish};
+use super::one_slip::by_one_slip;
 use super::orbit::{Orbit, STARTS};
 use super::track::Track;
 use super::{
@@ -221,9 +222,6 @@ fn recognised(problem: &Problem, road: &Orbit, at: &Place) -> Next {
     }
     next
 }
-
-/// How far beyond a change of kind the next one is looked for, relative: forces have to differ by more than their noise.
-pub(super) const CHANGED: f64 = 1e-4;
 
 /// What becomes of stick-slip beyond `v0`, where it is known to become of another kind.
 fn changed(problem: &Problem, road: &mut Orbit, v0: f64) -> Next {

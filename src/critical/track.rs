@@ -2,7 +2,7 @@
 
 use super::Problem;
 use super::climb::{Place, climb};
-use super::graze::{Found, finish};
+use super::ends::{Found, finish};
 use super::orbit::{At, Orbit};
 
 /// An orbit at its end, from which the next cell of a line starts.

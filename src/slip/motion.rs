@@ -239,7 +239,11 @@ impl Motion {
         self.tolerance = accuracy.tolerance.clamp(1e-15, 1e-3);
         self.order = order(self.tolerance);
         self.history.feel(felt(accuracy, self.order));
-        let gain = self.parameters.alpha_v.abs().max(self.parameters.alpha_n.abs());
+        let gain = self
+            .parameters
+            .alpha_v
+            .abs()
+            .max(self.parameters.alpha_n.abs());
         self.history.look_ahead(gain, self.order);
     }
 
@@ -270,7 +274,8 @@ impl Motion {
         self.parameters.clone_from(&last.parameters);
         (self.parameters.v0, self.parameters.tau) = (v0, tau);
         let pasts = (&mut last.history, &mut before.history);
-        self.history.extrapolate(pasts, share, 1.01 * tau, stretches);
+        self.history
+            .extrapolate(pasts, share, 1.01 * tau, stretches);
         self.friction.restart(0.0);
         self.mode = Mode::Forwards;
         self.a = last.a + share * (last.a - before.a);
