@@ -18,6 +18,10 @@ const MOST_TRIALS: u32 = 60;
 const UNSETTLED: f64 = 0.02;
 
 /// What a trial came to.
+#[expect(
+    clippy::large_enum_variant,
+    reason = "nothing is allocated for a trial"
+)]
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Ran {
     /// Periods that came to rest: the last one, and its gauges, which may be those of a limit.
