@@ -40,24 +40,16 @@ pub(super) fn from_scratch(problem: &Problem) -> (Critical, Option<Track>) {
         crossing: CROSSINGS[0],
         entry: None,
     };
-    let reached = kinds.follow(road, place);
-    match (reached, kinds.entry.take()) {
-        (Reached::End(critical, track), None) => (critical, Some(*track)),
-        (Reached::End(critical, mut track), Some(entry)) => {
-            let again = kinds.again(*entry);
-            let decided = again.is_some_and(|again| critical.ends_like(&again));
-            track.decided = decided;
-            (
-                Critical {
-                    decided,
-                    ..critical
-                },
-                Some(*track),
-            )
-        }
-        (Reached::Lost(critical), _) => (critical, None),
-        (Reached::Motion(motions, step), _) => (simulated_from(problem, motions, step), None),
+    let (mut critical, mut track) = kinds.follow(road, place).end(problem);
+    if let Some(entry) = kinds.entry.take()
+        && critical.decided
+    {
+        critical.decided = critical.ends_like(&kinds.again(*entry));
     }
+    if let Some(track) = &mut track {
+        track.decided = critical.decided;
+    }
+    (critical, track)
 }
 
 /// Relative steps of v0 through irregular stick-slip: where it leads should not depend on them.
@@ -74,6 +66,17 @@ enum Reached {
     /// To stick-slip from which simulation has to go on, by this step of v0 at first, relative.
     /// Motions at less and less high v0, each for the case that the one before is not sustained.
     Motion(Vec<Motion>, f64),
+}
+
+impl Reached {
+    /// The end of stick-slip, and what a neighbour may start from.
+    fn end(self, problem: &Problem) -> (Critical, Option<Track>) {
+        match self {
+            Self::End(critical, track) => (critical, Some(*track)),
+            Self::Lost(critical) => (critical, None),
+            Self::Motion(motions, step) => (simulated_from(problem, motions, step), None),
+        }
+    }
 }
 
 /// What follows a kind of stick-slip as v0 grows.
@@ -189,15 +192,18 @@ impl Kinds<'_> {
     }
 
     /// Once more from the first irregular stick-slip on, with other steps.
-    fn again(&mut self, entry: Motion) -> Option<Critical> {
+    fn again(&mut self, entry: Motion) -> Critical {
         self.crossing = CROSSINGS[1];
-        let (motion, slips) = self.cross(entry).ok()?;
+        let (motion, slips) = match self.cross(entry) {
+            Ok(periodic) => periodic,
+            Err(critical) => return critical,
+        };
         let mut road = Orbit::of(motion, slips);
-        let place = road.first_place()?;
-        match self.follow(road, place) {
-            Reached::End(critical, _) => Some(critical),
-            Reached::Lost(_) | Reached::Motion(..) => None,
-        }
+        let reached = match road.first_place() {
+            Some(place) => self.follow(road, place),
+            None => Reached::Motion(vec![road.motion().clone()], FIRST_STEP),
+        };
+        reached.end(self.problem).0
     }
 }
 
