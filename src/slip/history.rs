@@ -306,6 +306,48 @@ mod tests {
         assert_eq!(history.pieces.len(), 2);
     }
 
+    /// Two pasts of a slope and a rest each, whose stretches differ: what lies beyond the second one has the lengths and values
+    /// that go on evenly, with a kink where the stretches meet.
+    #[test]
+    fn pasts_are_extrapolated_with_their_stretches_aligned() {
+        let past = |slip: f64, stick: f64, start: f64| {
+            let mut history = History::default();
+            history.restart(start, start, 10);
+            history.push(start + slip, slip, &[start, 0.5], 2);
+            history.push(start + slip + stick, stick, &[start + 0.5 * slip, 2.0], 2);
+            history
+        };
+        let (mut before, mut last) = (past(1.0, 2.0, 5.0), past(1.2, 1.5, 7.0));
+        let lengths = |last: f64, before: f64| Stretch {
+            lengths: [last + 0.5 * (last - before), last, before],
+        };
+        let stretches = [lengths(1.5, 2.0), lengths(1.2, 1.0)];
+        let mut third = History::default();
+        third.extrapolate((&mut last, &mut before), 0.5, 2.0, &stretches);
+        // It sticks for 1.25: half of the way on from 2 and 1.5.
+        let ends = |history: &mut History, time: f64| {
+            let mut a = [0.0; MOST_ORDER + 1];
+            history.read(time, SMOOTH, &mut a);
+            (a[0], a[1])
+        };
+        for part in [0.01, 0.3, 0.9] {
+            let at = [5.0 + 3.0, 7.0 + 2.7, 0.0];
+            let sticks = [2.0, 1.5, 1.25];
+            let mut value =
+                |history: &mut History, i: usize| ends(history, at[i] - part * sticks[i]).0;
+            let (one, two) = (value(&mut before, 0), value(&mut last, 1));
+            let expected = two + 0.5 * (two - one);
+            let found = value(&mut third, 2);
+            assert!(
+                (found - expected).abs() < 1e-12,
+                "{part}: {found} {expected}"
+            );
+        }
+        let kinks = third.pieces.iter().filter(|p| p.kink == 2);
+        let at: Vec<f64> = kinks.map(|p| p.from).collect();
+        assert!(at.iter().any(|t| (t + 1.25).abs() < 1e-12), "{at:?}");
+    }
+
     #[test]
     fn boundaries_nearer_than_the_present_is_rounded_are_passed() {
         let mut history = History::default();
