@@ -333,8 +333,7 @@ mod tests {
         for part in [0.01, 0.3, 0.9] {
             let at = [5.0 + 3.0, 7.0 + 2.7, 0.0];
             let sticks = [2.0, 1.5, 1.25];
-            let mut value =
-                |history: &mut History, i: usize| ends(history, at[i] - part * sticks[i]).0;
+            let value = |history: &mut History, i: usize| ends(history, at[i] - part * sticks[i]).0;
             let (one, two) = (value(&mut before, 0), value(&mut last, 1));
             let expected = two + 0.5 * (two - one);
             let found = value(&mut third, 2);
