@@ -4,8 +4,9 @@
 use super::Problem;
 use super::beyond::{Beyond, PRECISION, beyond, without_stick};
 use super::climb::{Climbed, Place, Ran, Road};
-use super::cycle::{Period, STICK};
+use super::cycle::{Period, Ride, STICK, ride};
 use super::orbit::Orbit;
+use crate::slip::motion::Motion;
 
 /// The end of an orbit.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -75,6 +76,9 @@ fn grazes(problem: &Problem, road: &mut Orbit, v0: f64, slip: usize, at: &Place)
         return Found::Unclear;
     }
     let period = period.rotated(slip);
+    if !period.cycles()[0].to_minimum.is_finite() {
+        return Found::Unclear;
+    }
     let slip = period.cycles()[0].slip;
     told(beyond(problem, (v0, slip), road), Found::Graze(v0, period))
 }
@@ -91,7 +95,42 @@ fn vanishes(problem: &Problem, road: &mut Orbit, v0: f64, at: &Place) -> Found {
         return Found::Unclear;
     }
     road.keep();
+    if !attracts(road.motion().clone(), &period) {
+        return Found::Unclear;
+    }
     told(without_stick(problem, v0, road), Found::Vanish(v0, period))
+}
+
+/// An orbit is disturbed by v0 being lower by this in one period, relative, and has so many to come back.
+const DISTURBED: f64 = 2e-4;
+const PERIODS_BACK: usize = 30;
+/// Sticks do not come nearer to one another than this.
+const STICKS_NOISE: f64 = 1e-7;
+
+/// Whether stick-slip comes back to the orbit that a motion is on when it is disturbed: an unstable one, followed from close by, seems to
+/// be at rest as well.
+fn attracts(mut motion: Motion, period: &Period) -> bool {
+    let v0 = motion.parameters().v0;
+    let stick = period.cycles()[0].stick;
+    motion.set_v0(v0 * (1.0 - DISTURBED));
+    let mut distances = (0..=PERIODS_BACK).map_while(|i| {
+        let mut first = None;
+        for _ in period.cycles() {
+            let Ride::Cycle(cycle) = ride(&mut motion, None) else {
+                return None;
+            };
+            first.get_or_insert(cycle.stick);
+        }
+        if i == 0 {
+            motion.set_v0(v0);
+        }
+        first.map(|first| (first - stick).abs())
+    });
+    let disturbed = distances.next();
+    let back = distances.nth(PERIODS_BACK - 1);
+    disturbed
+        .zip(back)
+        .is_some_and(|(disturbed, back)| back < (0.5 * disturbed).max(STICKS_NOISE))
 }
 
 fn told(beyond: Beyond, end: Found) -> Found {

@@ -231,11 +231,10 @@ const CONFIRM_FIRST: f64 = 0.2;
 
 /// What `followed` tells. v0 is raised slowly: an end that is another one with other steps of v0 is not decided.
 ///
-/// Without chance on the way steps do not matter. Lift-off, which is looked for by the smallest load, is left to the sample
-/// of a map: of 229 such cells one depended on the steps.
+/// Without chance on the way steps do not matter.
 fn confirmed(followed: &Followed, search: impl Fn(&Pace) -> Followed) -> Critical {
     let critical = of_followed(followed);
-    if !followed.chance || !critical.decided || critical.end == End::LiftOff {
+    if !followed.chance || !critical.decided {
         return critical;
     }
     let again = of_followed(&search(&Pace {

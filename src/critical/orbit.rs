@@ -7,6 +7,7 @@
 use super::Problem;
 use super::climb::{Place, Ran, Road, SETTLED, Seen};
 use super::cycle::{Cycle, MOST_SLIPS, Period, Ride, Stop, ride};
+use super::follow::Pace;
 use crate::slip::motion::{Accuracy, Motion, Stretch};
 
 /// The most periods at one v0; of many slips, the most slips.
@@ -86,6 +87,10 @@ impl Road for Orbit {
     }
 
     fn trial(&mut self, v0: f64, expected: Option<&Period>, settled: f64) -> Ran {
+        if v0 > Pace::default().v_max * self.kept.motion.parameters().law.mu_s() {
+            // Where simulation does not look either.
+            return Ran::Over;
+        }
         self.place(v0);
         self.run(expected, settled)
     }
