@@ -44,9 +44,14 @@ fn tolerance(tolerance: f64) -> Accuracy {
 
 /// By simulation alone, with steps of its own, every loss of stick-slip waited for.
 fn simulated(problem: &Problem) -> Critical {
+    simulated_by(problem, 0.35)
+}
+
+/// The same, with steps of v0 no larger than `first`, relative.
+fn simulated_by(problem: &Problem, first: f64) -> Critical {
     let pace = Pace {
-        first: 0.35,
-        largest: 0.35,
+        first,
+        largest: first,
         patient: true,
         ..Pace::default()
     };
@@ -223,8 +228,7 @@ fn the_roads_agree() {
         if fast.method == Method::Simulation {
             continue;
         }
-        claimed += 1;
-        let slow = simulated(&problem);
+        claimed += u32::from(fast.decided);
         let value = |c: &Critical| {
             if c.end == End::LiftOff {
                 c.v_liftoff
@@ -232,10 +236,21 @@ fn the_roads_agree() {
                 c.vc
             }
         };
-        let difference = (value(&fast) / value(&slow) - 1.0).abs();
-        if fast.end == slow.end && difference < 1e-4 {
-            worst = worst.max(difference);
-        } else {
+        // Simulation is thrown off by steps of one size or another; what it does not know says nothing.
+        let mut differs = None;
+        for first in [0.35, 0.6, 0.15] {
+            let slow = simulated_by(&problem, first);
+            let difference = (value(&fast) / value(&slow) - 1.0).abs();
+            if fast.end == slow.end && difference < 1e-4 {
+                worst = worst.max(difference);
+                differs = None;
+                break;
+            }
+            if slow.decided {
+                differs = Some(slow);
+            }
+        }
+        if let Some(slow) = differs.filter(|_| fast.decided) {
             others.push((problem, fast, slow));
         }
     }
@@ -246,8 +261,8 @@ fn the_roads_agree() {
     for (problem, fast, slow) in &others {
         println!("{problem:?}\n  {fast:?}\n  {slow:?}");
     }
-    assert!(4 * claimed > total, "{claimed}");
-    assert!(others.len() * 200 <= claimed, "{}", others.len());
+    assert!(4 * claimed as usize > 3 * total, "{claimed}");
+    assert!(others.len() as u32 * 200 <= claimed, "{}", others.len());
 }
 
 /// Kinds of stick-slip that follow one another as v0 grows: what was there before the graze of the first one, or the
@@ -331,6 +346,9 @@ fn lines_are_what_their_cells_are() {
         for (problem, found) in problems.iter().zip(line) {
             let found = found.unwrap();
             let alone = critical_velocity(problem);
+            if !(found.decided && alone.decided) {
+                continue;
+            }
             assert_eq!(found.end, alone.end, "{problem:?}\n{found:?}\n{alone:?}");
             let values = [(found.vc, alone.vc), (found.v_liftoff, alone.v_liftoff)];
             for (a, b) in values.into_iter().filter(|(a, _)| *a > 0.0) {
