@@ -10,7 +10,7 @@ use slipmap::critical::{
     Critical, End, GRAZE_PRECISION, Method, Problem, by_simulation, critical_velocity,
 };
 use slipmap::model::FrictionLaw;
-use slipmap::slip::motion::Accuracy;
+use slipmap::slip::motion::{Accuracy, Event, Motion};
 
 #[path = "common/chance_problem.rs"]
 mod chance_problem;
@@ -44,8 +44,14 @@ fn tolerance(tolerance: f64) -> Accuracy {
 
 /// By simulation alone, with steps of its own, every loss of stick-slip waited for.
 fn simulated(problem: &Problem) -> Critical {
+    simulated_by(problem, 0.35)
+}
+
+/// The same, with steps of v0 no larger than `first`, relative.
+fn simulated_by(problem: &Problem, first: f64) -> Critical {
     let pace = Pace {
-        first: 0.35,
+        first,
+        largest: first,
         patient: true,
         ..Pace::default()
     };
@@ -193,6 +199,7 @@ fn the_worst_phase_of_a_delay_too_long_is_undecided() {
 fn a_search_of_too_many_trials_is_undecided() {
     let pace = Pace {
         first: 1e-3,
+        largest: 1e-3,
         patient: true,
         ..Pace::default()
     };
@@ -221,8 +228,7 @@ fn the_roads_agree() {
         if fast.method == Method::Simulation {
             continue;
         }
-        claimed += 1;
-        let slow = simulated(&problem);
+        claimed += u32::from(fast.decided);
         let value = |c: &Critical| {
             if c.end == End::LiftOff {
                 c.v_liftoff
@@ -230,10 +236,21 @@ fn the_roads_agree() {
                 c.vc
             }
         };
-        let difference = (value(&fast) / value(&slow) - 1.0).abs();
-        if fast.end == slow.end && difference < 1e-4 {
-            worst = worst.max(difference);
-        } else {
+        // Simulation is thrown off by steps of one size or another; what it does not know says nothing.
+        let mut differs = None;
+        for first in [0.35, 0.6, 0.15] {
+            let slow = simulated_by(&problem, first);
+            let difference = (value(&fast) / value(&slow) - 1.0).abs();
+            if fast.end == slow.end && difference < 1e-4 {
+                worst = worst.max(difference);
+                differs = None;
+                break;
+            }
+            if slow.decided {
+                differs = Some(slow);
+            }
+        }
+        if let Some(slow) = differs.filter(|_| fast.decided) {
             others.push((problem, fast, slow));
         }
     }
@@ -244,8 +261,71 @@ fn the_roads_agree() {
     for (problem, fast, slow) in &others {
         println!("{problem:?}\n  {fast:?}\n  {slow:?}");
     }
-    assert!(4 * claimed > total, "{claimed}");
-    assert!(others.len() * 200 <= claimed, "{}", others.len());
+    assert!(4 * claimed as usize > 3 * total, "{claimed}");
+    assert!(others.len() as u32 * 200 <= claimed, "{}", others.len());
+}
+
+/// Kinds of stick-slip that follow one another as v0 grows: what was there before the graze of the first one, or the
+/// doubling of its period, or where it begins to turn back, goes on as another one.
+#[test]
+fn the_last_kind_of_stick_slip_counts() {
+    let of = |slope: f64, alpha_v: f64, alpha_n: f64, tau: f64| {
+        let law = FrictionLaw::weakening(0.5, -0.5 / slope, 1.0).unwrap();
+        problem(law, alpha_v, alpha_n, tau)
+    };
+    for (problem, end, expected) in [
+        // A graze at 0.6009, after which the block swings up to 0.53 v0 and then comes to stick again.
+        (of(-2.0, -0.5753, 0.0, 4.733), End::Grazing, 1.0013),
+        // It turns back at its stops from 0.8735 on.
+        (of(-1.5842, 0.0, -3.0022, 0.0397), End::Fold, 3.0034),
+        (of(-0.8678, 0.0, -8.224, 0.03405), End::Grazing, 3.0030),
+        // Irregular from 0.19 on, periodic again later.
+        (of(-1.3719, -0.5781, 0.0, 9.5), End::Grazing, 1.3726),
+        // Its period is doubled at last.
+        (of(-0.7522, -1.3936, 0.0, 0.5202), End::Grazing, 2.9237),
+    ] {
+        let found = critical_velocity(&problem);
+        println!("{found:?}");
+        assert!(found.decided && found.end == end, "{problem:?} {found:?}");
+        assert!(
+            (found.vc / expected - 1.0).abs() < 1e-4,
+            "{problem:?} {found:?}"
+        );
+    }
+}
+
+/// Where stick-slip attracts from less and less far, large steps of v0 throw simulation off it; raised in steps of 0.05 %, with
+/// sixty stops at each v0, it comes to where its orbit ends.
+#[test]
+fn orbits_are_followed_where_simulation_is_thrown_off() {
+    let law = FrictionLaw::stribeck(0.6744465137600394, 0.1259700484834986, 1.0).unwrap();
+    let problem = problem(law, -0.20412752854690996, 0.0, 0.29285947750679436);
+    let orbit = critical_velocity(&problem);
+    assert!(
+        orbit.decided && orbit.method == Method::GrazeOrbit,
+        "{orbit:?}"
+    );
+    assert!(simulated(&problem).vc < 0.99 * orbit.vc);
+    let mut motion = Motion::new(problem.at(1.0, 0.0), tolerance(1e-9), 0.0, 0.0);
+    motion.release_from(1.0);
+    let mut v0 = 1.0;
+    while sticks_again(&mut motion, 60) {
+        v0 *= 1.0005;
+        motion.set_v0(v0);
+    }
+    println!("{v0} {}", orbit.vc);
+    assert!((v0 / orbit.vc - 1.0).abs() < 1e-3, "{v0} {orbit:?}");
+}
+
+/// Whether a block stops so many times, never slipping for long.
+fn sticks_again(motion: &mut Motion, stops: usize) -> bool {
+    let (mut seen, mut last) = (0, motion.t);
+    while seen < stops && motion.t - last < 400.0 {
+        if motion.advance(f64::INFINITY) == Some(Event::Stick) {
+            (seen, last) = (seen + 1, motion.t);
+        }
+    }
+    seen == stops
 }
 
 /// A cell that starts from its neighbour's orbit is what it is from scratch.
@@ -266,6 +346,9 @@ fn lines_are_what_their_cells_are() {
         for (problem, found) in problems.iter().zip(line) {
             let found = found.unwrap();
             let alone = critical_velocity(problem);
+            if !(found.decided && alone.decided) {
+                continue;
+            }
             assert_eq!(found.end, alone.end, "{problem:?}\n{found:?}\n{alone:?}");
             let values = [(found.vc, alone.vc), (found.v_liftoff, alone.v_liftoff)];
             for (a, b) in values.into_iter().filter(|(a, _)| *a > 0.0) {

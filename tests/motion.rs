@@ -130,6 +130,45 @@ fn errors_are_proportional_to_the_tolerance() {
     }
 }
 
+/// Steps outlast a short delay, since the polynomial of the last one goes on to be the motion; errors stay in proportion.
+#[test]
+fn steps_longer_than_the_delay_are_as_exact() {
+    for (gains, tau) in [
+        ((0.0, -8.0), 0.02),
+        ((0.0, -200.0), 0.005),
+        ((-3.0, 0.0), 0.05),
+        ((-0.5, -2.0), 1e-3),
+    ] {
+        let p = case(letters_law(), 0.5, gains, tau, 0.0);
+        let run = |tolerance: f64| {
+            let mut motion = Motion::new(p.clone(), at_tolerance(tolerance), 0.0, 0.9);
+            let mut steps = 0.0;
+            while motion.t < 25.0 {
+                motion.advance(25.0);
+                steps += 1.0;
+            }
+            (motion.a, steps)
+        };
+        let (exact, _) = run(1e-14);
+        let tolerances = [1e-5, 1e-6, 1e-7, 1e-8, 1e-9, 1e-10, 1e-11];
+        let mut points = Vec::new();
+        for tolerance in tolerances {
+            let (a, steps) = run(tolerance);
+            points.push((tolerance.ln(), (a - exact).abs().max(1e-15).ln()));
+            assert!(
+                tolerance < 1e-6 || steps * tau < 0.7 * 25.0,
+                "{gains:?} {steps}"
+            );
+        }
+        let slope = slope(&points);
+        println!("{gains:?} {tau}: power {slope:.3} {points:?}");
+        assert!(
+            (0.75..1.35).contains(&slope),
+            "{gains:?} {slope} {points:?}"
+        );
+    }
+}
+
 /// Slope of a straight line through `points`.
 fn slope(points: &[(f64, f64)]) -> f64 {
     let n = points.len() as f64;

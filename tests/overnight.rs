@@ -305,8 +305,8 @@ fn signals_stop_a_run_soon_and_keep_what_is_done() {
 #[test]
 fn slow_cells_do_not_delay_a_stop() {
     let _alone = alone();
-    let slow = "fields = [\"outcome\"]\n[axes]\ntau = { from = 0.5, to = 3, points = 400 }\n[fixed]\nv0 = 0.1\nalpha_v = 0.3\n\
-                [friction]\nlaw = \"weakening\"\nmu0 = 0.5\nv_s = 0.5\n[simulation]\nhorizon = 1e9\n";
+    let slow = "fields = [\"outcome\"]\n[axes]\ntau = { from = 13, to = 14.9, points = 400 }\n[fixed]\nv0 = 0.1\nalpha_v = -1.45\n\
+                switch_on_phase = 0.0\n[friction]\nlaw = \"weakening\"\nmu0 = 0.5\nv_s = 0.5\n[simulation]\nhorizon = 1e9\n";
     let folder = Folder::with(&[("slow.toml", slow)]);
     let child = start(&folder, &["run", "slow.toml"]);
     wait_for("manifest", || {

@@ -158,8 +158,8 @@ fn only_traces_are_replaced() {
         ),
     ]);
     let simulate = |args: &[&str]| folder.run(&[&["simulate"], args].concat());
-    expect(&simulate(&["a.toml"]), 0, "a.h5: 3 ");
-    expect(&simulate(&["a.toml"]), 0, "a.h5: 3 ");
+    expect(&simulate(&["a.toml"]), 0, "a.h5: 2 ");
+    expect(&simulate(&["a.toml"]), 0, "a.h5: 2 ");
     expect(
         &simulate(&["b.toml", "-o", "a.h5"]),
         2,
@@ -230,9 +230,11 @@ fn a_trace_holds_samples_events_and_who_made_it() {
         assert!((a[at] - elongation).abs() < 1e-12);
     }
     let attribute = |name: &str| file.attr(name).unwrap().read_raw::<f64>().unwrap()[0];
-    assert_eq!(
-        attribute("last_release"),
-        said["last_release"].as_f64().unwrap()
+    let printed = said["last_release"].to_string();
+    let last_release = attribute("last_release");
+    assert!(
+        (last_release - printed.parse::<f64>().unwrap()).abs() < 1e-12,
+        "{last_release} {printed}"
     );
     assert!(attribute("period").is_nan());
     assert_eq!(

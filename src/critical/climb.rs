@@ -1,48 +1,79 @@
-//! Raising v0 towards where a number vanishes that is seen in every cycle of stick-slip: the depth of its stops, or the load.
+//! Raising v0 towards where a number vanishes that is seen in every period of stick-slip: the depth of a stop, the load, or a
+//! stick.
 
-use super::cycle::{Cycle, Ride, Stop};
+use crate::slip::motion::{Accuracy, Motion};
+
+use super::cycle::{DIP, GAUGES, LOAD, Period, STICK, TURN};
 
 /// The largest relative step of v0.
 pub(super) const LARGEST_STEP: f64 = 1.0;
-/// Nearer than this to the graze, relative, the rest of the way is told from the last two trials.
+/// Nearer than this to the end, relative, the rest of the way is told from the last two trials.
 const NEAR: f64 = 1e-4;
 /// As near as this the last two trials tell, if they agree to that on where it ends.
 const QUITE_NEAR: f64 = 3e-3;
 const AGREES: f64 = 3e-6;
 /// The most trials.
-const MOST_TRIALS: u32 = 40;
+const MOST_TRIALS: u32 = 60;
+/// Periods that have not come to rest after a step larger than this may do so after a smaller one.
+const UNSETTLED: f64 = 0.02;
+
+/// What a trial came to.
+#[expect(
+    clippy::large_enum_variant,
+    reason = "nothing is allocated for a trial"
+)]
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) enum Ran {
+    /// Periods that came to rest: the last one, and its gauges, which may be those of a limit.
+    Period(Period, [f64; GAUGES]),
+    /// A stop that was expected did not come.
+    Pass,
+    /// N ≤ 0.
+    LiftOff,
+    /// Periods did not come to rest, or something else happened.
+    Other,
+    /// The road leads no further.
+    Over,
+}
 
 /// Trials of stick-slip at one v0 after the other.
 pub(super) trait Road {
+    /// A block that is released at `v0`, with a past like that of the trials that were kept.
+    fn place(&mut self, v0: f64) -> &mut Motion;
     /// What a block released at `v0` does, from where the last trial that was kept ended.
-    /// With memory, cycle after cycle until their depths differ by no more than `settled`, relative.
-    fn trial(&mut self, v0: f64, expected: Option<Stop>, settled: f64) -> Ride;
+    /// With memory, period after period until their gauges differ by no more than `settled`, relative.
+    fn trial(&mut self, v0: f64, expected: Option<&Period>, settled: f64) -> Ran;
     /// Goes on from the end of the last trial.
     fn keep(&mut self);
+    /// Goes on with another accuracy.
+    fn refine(&mut self, accuracy: Accuracy);
 }
 
-/// How a climb towards a graze ended.
+/// How a climb ended.
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Climbed {
-    Graze { v0: f64, slip: f64 },
+    /// By a graze of the slip of this number.
+    Graze { v0: f64, slip: usize },
+    /// By lift-off.
     LiftOff(f64),
+    /// By a stick that vanishes.
+    Vanish(f64),
+    /// It becomes of another kind: it turns back where it stopped, or stops where it had not.
+    Changes(f64),
+    /// Not known.
     Unclear,
 }
 
-/// What changes with v0 and vanishes where stick-slip ends: minus the distance to a graze and to lift-off.
-pub(super) fn gauges(cycle: &Cycle) -> [f64; 2] {
-    [cycle.depth, -cycle.n_min]
-}
-
 /// Whether the last members of a sequence differ by no more than `settled`, relative, and by less and less: else the orbit
-/// that they seem to reach may be unstable.
-pub(super) fn come_to_rest([first, second, third]: &[f64; 3], settled: f64) -> bool {
+/// that they seem to reach may be unstable. Or by no more than `noise`.
+fn come_to_rest([first, second, third]: &[f64; 3], settled: f64, noise: f64) -> bool {
     let (before, last) = ((second - first).abs(), (third - second).abs());
     let falls = settled > SETTLED || last <= CONTRACTION * before || last <= NOISE * third.abs();
-    last <= settled * third.abs() && falls
+    third.is_nan() || last <= noise || last <= settled * third.abs() && falls
 }
 
 /// What a sequence converges to, as its last three members tell (Aitken).
-pub(super) fn limit([first, second, third]: [f64; 3]) -> f64 {
+fn limit([first, second, third]: [f64; 3]) -> f64 {
     let (before, last) = (second - first, third - second);
     let ratio = last / before;
     if ratio.abs() < 0.7 {
@@ -52,32 +83,83 @@ pub(super) fn limit([first, second, third]: [f64; 3]) -> f64 {
     }
 }
 
-/// A kept trial on the way to a graze.
+/// The gauges of the last three periods, the oldest first.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Seen([[f64; 3]; GAUGES]);
+
+impl Seen {
+    /// None yet.
+    pub fn none() -> Self {
+        Self([[f64::NAN; 3]; GAUGES])
+    }
+
+    /// One more period.
+    pub fn push(&mut self, period: &Period) {
+        for (seen, gauge) in self.0.iter_mut().zip(period.gauges()) {
+            *seen = [seen[1], seen[2], gauge];
+        }
+    }
+
+    /// Whether they have come to rest, at `v0`.
+    pub fn settled(&self, settled: f64, v0: f64) -> bool {
+        let speed = |gauge: usize| gauge < LOAD || gauge == DIP;
+        let mut seen = self.0.iter().enumerate();
+        !self.0[LOAD][0].is_nan()
+            && seen.all(|(i, seen)| {
+                let noise = if speed(i) { NOISE * v0 } else { NOISE };
+                come_to_rest(seen, settled, noise)
+            })
+    }
+
+    /// What they come to.
+    pub fn limits(&self) -> [f64; GAUGES] {
+        self.0.map(limit)
+    }
+}
+
+/// A kept trial on the way.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Place {
     pub v0: f64,
-    pub cycle: Cycle,
+    pub period: Period,
+    /// What vanishes at the end.
+    pub gauges: [f64; GAUGES],
     /// How settled it is, see [`Road::trial`].
     pub settled: f64,
     /// The gauges' derivatives with respect to v0; NaN before they are known.
-    pub slopes: [f64; 2],
+    pub slopes: [f64; GAUGES],
     /// Where the end was expected before this place was reached; NaN where it was not.
     pub expected: f64,
 }
 
 impl Place {
-    /// By how much v0 has to grow for each gauge to vanish, relative; +∞ where it does not come to that.
-    fn gaps(&self) -> [f64; 2] {
-        [0, 1].map(|i| {
-            let gap = -gauges(&self.cycle)[i] / self.slopes[i] / self.v0;
-            if gap >= 0.0 { gap } else { f64::INFINITY }
-        })
+    /// Before anything is known of how it changes.
+    pub fn first(v0: f64, period: Period, gauges: [f64; GAUGES], settled: f64) -> Self {
+        Self {
+            v0,
+            period,
+            gauges,
+            settled,
+            slopes: [f64::NAN; GAUGES],
+            expected: f64::NAN,
+        }
+    }
+
+    /// By how much v0 has to grow until the first gauge vanishes, relative, and which one; +∞ where none comes to that.
+    fn gap(&self) -> (f64, usize) {
+        let mut first = (f64::INFINITY, LOAD);
+        for (i, (gauge, slope)) in self.gauges.iter().zip(&self.slopes).enumerate() {
+            let gap = -gauge / slope / self.v0;
+            if gap >= 0.0 && gap < first.0 {
+                first = (gap, i);
+            }
+        }
+        first
     }
 
     /// Where the end is expected; +∞ where none is.
     fn end(&self) -> f64 {
-        let [graze, lift] = self.gaps();
-        self.v0 * (1.0 + graze.min(lift))
+        self.v0 * (1.0 + self.gap().0)
     }
 
     /// Whether the end is near, and where it was expected before.
@@ -87,15 +169,16 @@ impl Place {
     }
 
     /// The next one.
-    fn moved_to(&self, v0: f64, cycle: Cycle, settled: f64) -> Self {
-        let slopes = [0, 1].map(|i| {
-            let slope = (gauges(&cycle)[i] - gauges(&self.cycle)[i]) / (v0 - self.v0);
-            // At the same v0 only the gauges are better known.
-            if v0 > self.v0 { slope } else { self.slopes[i] }
-        });
+    fn moved_to(&self, v0: f64, (period, gauges): (Period, [f64; GAUGES]), settled: f64) -> Self {
+        let mut slopes = self.slopes;
+        // At the same v0 only the gauges are better known.
+        if v0 > self.v0 {
+            slopes = std::array::from_fn(|i| (gauges[i] - self.gauges[i]) / (v0 - self.v0));
+        }
         Self {
             v0,
-            cycle,
+            period,
+            gauges,
             settled,
             slopes,
             expected: self.end(),
@@ -103,11 +186,11 @@ impl Place {
     }
 }
 
-/// Where the end is near, cycles have to be settled to this.
+/// Where the end is near, periods have to be settled to this.
 pub(super) const SETTLED: f64 = 0.05;
-/// The most by which cycles that come to rest differ from one to the next, compared with the difference before.
+/// The most by which periods that come to rest differ from one to the next, compared with the difference before.
 const CONTRACTION: f64 = 0.8;
-/// Noise of the gauges, relative.
+/// Noise of the gauges, relative to themselves, and to v0 or to the forces and times of free oscillation.
 const NOISE: f64 = 1e-6;
 /// The share of the way to the expected end that is taken at once.
 const SHARE: f64 = 0.97;
@@ -122,25 +205,43 @@ fn needed(step: f64) -> f64 {
     }
 }
 
+/// A trial beyond one that failed is made by a step this much smaller than the one that failed there.
+const SMALLER: f64 = 0.3;
+
 /// How far the next trial may go, relative.
 #[derive(Debug, Clone, Copy)]
 struct Reach {
     most: f64,
-    /// The v0 of the last trial that failed, unless one beyond it has not.
-    failed: Option<f64>,
+    /// The v0 of the last trial that failed, unless one beyond it has not, and the step that led there.
+    failed: Option<(f64, f64)>,
 }
 
 impl Reach {
     fn step(&self, v0: f64, gap: f64) -> f64 {
-        let ceiling = self.failed.map_or(f64::INFINITY, |v| 0.5 * (v / v0 - 1.0));
-        (SHARE * gap).min(self.most).min(ceiling)
+        let step = (SHARE * gap).min(self.most);
+        let Some((failed, by)) = self.failed else {
+            return step;
+        };
+        let room = failed / v0 - 1.0;
+        if step < room || step <= SMALLER * by {
+            step
+        } else if room <= SMALLER * by {
+            // It may have been the size of the step that failed there.
+            SMALLER * by
+        } else {
+            0.5 * room
+        }
+    }
+
+    fn failed(&mut self, v0: f64, step: f64) {
+        self.failed = Some((v0, step));
+        self.most = 0.5 * step;
     }
 
     fn succeeded(&mut self, v0: f64, step: f64) {
         self.most = (2.0 * self.most).min(LARGEST_STEP);
-        if self.failed.is_some_and(|failed| failed <= v0) {
-            // What failed there was the size of the step.
-            (self.failed, self.most) = (None, 4.0 * step);
+        if self.failed.is_some_and(|(failed, _)| failed <= v0) {
+            (self.failed, self.most) = (None, 2.0 * step);
         }
     }
 }
@@ -150,8 +251,7 @@ pub(super) fn climb(road: &mut impl Road, mut at: Place, most: f64) -> (Climbed,
     let mut reach = Reach { most, failed: None };
     let mut last = false;
     for _ in 0..MOST_TRIALS {
-        let gaps = at.gaps();
-        let gap = gaps[0].min(gaps[1]);
+        let gap = at.gap().0;
         let mut step = reach.step(at.v0, gap);
         if step < SHARE * NEAR || at.agrees() {
             if at.settled > SETTLED {
@@ -164,38 +264,85 @@ pub(super) fn climb(road: &mut impl Road, mut at: Place, most: f64) -> (Climbed,
             }
         }
         let (next, settled) = (at.v0 * (1.0 + step), needed(step));
-        match road.trial(next, Some(at.cycle.stop()), settled) {
-            Ride::Cycle(there) => {
+        match road.trial(next, Some(&at.period), settled) {
+            Ran::Period(period, _) if step > JUMP && jumps(&at.period, &period, step) => {
+                reach.failed(next, step);
+            }
+            Ran::Period(period, gauges) => {
                 road.keep();
-                at = at.moved_to(next, there, settled);
+                at = at.moved_to(next, (period, gauges), settled);
                 reach.succeeded(next, step);
                 last = false;
             }
             // A start that is not sustained.
-            Ride::Pass | Ride::LiftOff if step == 0.0 => return (Climbed::Unclear, at),
-            Ride::Pass | Ride::LiftOff => reach.failed = Some(next),
-            Ride::Other => return (Climbed::Unclear, at),
+            Ran::Pass | Ran::LiftOff if step == 0.0 => return (Climbed::Unclear, at),
+            Ran::Other if step < UNSETTLED => return (Climbed::Unclear, at),
+            Ran::Over => return (Climbed::Unclear, at),
+            Ran::Pass | Ran::LiftOff | Ran::Other => reach.failed(next, step),
         }
     }
     (Climbed::Unclear, at)
 }
 
+/// The largest relative step of v0 that may lead from one kind of stick-slip to another: v0 is raised slowly.
+pub(super) const JUMP: f64 = 1e-5;
+
+/// Whether a relative `step` of v0 threw stick-slip from one kind to another: the mean cycle or the mean slip of its period
+/// changed by more than such a step explains.
+pub(super) fn jumps(before: &Period, after: &Period, step: f64) -> bool {
+    let turns = |p: &Period| p.cycles().iter().map(|cycle| cycle.reversals).sum::<u32>();
+    turns(before) != turns(after) || thrown(before.mean_times(), after.mean_times(), step)
+}
+
+/// The same, from the mean cycles and slips.
+pub(super) fn thrown(before: [f64; 2], after: [f64; 2], step: f64) -> bool {
+    let [period, slip] = [0, 1].map(|i| after[i] / before[i]);
+    // Where sticks are not followed, slips tell.
+    let same_period = period.is_nan() || (0.8 / (1.0 + step)..=1.25).contains(&period);
+    !same_period || !(0.8..=1.4).contains(&slip)
+}
+
+/// Below this v0, over μ_S N0/√(κM), errors of the elongation are felt in the depth of a stop, which is to be known compared
+/// with v0.
+const SLOW: f64 = 0.03;
+
+/// The same, once more from there with a finer integration where the end is at a low v0.
+pub(super) fn climb_finely(road: &mut impl Road, from: Place, most: f64) -> (Climbed, Place) {
+    let (climbed, at) = climb(road, from, most);
+    let slow = at.v0 < SLOW && !matches!(climbed, Climbed::Unclear);
+    if !slow {
+        return (climbed, at);
+    }
+    road.refine(Accuracy::of(super::GRAZE_TOLERANCE * at.v0 / SLOW));
+    let v0 = at.v0 * (1.0 - BACK);
+    let Ran::Period(period, gauges) = road.trial(v0, Some(&at.period), SETTLED) else {
+        return (Climbed::Unclear, at);
+    };
+    road.keep();
+    let from = Place {
+        slopes: at.slopes,
+        ..Place::first(v0, period, gauges, SETTLED)
+    };
+    climb(road, from, BACK)
+}
+
+/// From so far below an end, relative, it is looked for once more.
+const BACK: f64 = 2e-3;
+
 /// What vanishes at the end of a climb.
 fn arrived(at: &Place) -> Climbed {
-    let [graze, lift] = at.gaps();
-    // The load of cycles that have not quite come to rest says less than the depth of their stops.
-    let (near_graze, near_lift) = match at.agrees() {
+    let (gap, gauge) = at.gap();
+    let end = at.v0 * (1.0 + gap);
+    // The load of periods that have not quite come to rest says less than the depth of their stops.
+    let (near_graze, near_other) = match at.agrees() {
         true => (QUITE_NEAR, QUITE_NEAR),
         false => (10.0 * NEAR, NEAR),
     };
-    if lift < near_lift && lift < graze {
-        Climbed::LiftOff(at.v0 * (1.0 + lift))
-    } else if graze < near_graze {
-        Climbed::Graze {
-            v0: at.v0 * (1.0 + graze),
-            slip: at.cycle.slip,
-        }
-    } else {
-        Climbed::Unclear
+    match gauge {
+        LOAD if gap < near_other => Climbed::LiftOff(end),
+        STICK if gap < near_other => Climbed::Vanish(end),
+        TURN | DIP if gap < near_graze => Climbed::Changes(end),
+        slip if slip < LOAD && gap < near_graze => Climbed::Graze { v0: end, slip },
+        _ => Climbed::Unclear,
     }
 }

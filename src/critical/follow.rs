@@ -1,6 +1,7 @@
 //! The critical velocity by simulation: stick-slip is followed while v0 is raised, carrying the state.
 
 use super::Problem;
+use super::climb::JUMP;
 use super::stops::{Stops, Waiting};
 use super::trend::{expected_way, jumps, vanishes, ways};
 use crate::slip::motion::{Accuracy, Motion};
@@ -14,6 +15,10 @@ pub const STARTS: [f64; 6] = [1e-2, 1e-1, 1e-3, 1e-4, 1e-5, 1e-6];
 pub struct Pace {
     /// The first relative step of v0.
     pub first: f64,
+    /// The largest one.
+    pub largest: f64,
+    /// The largest one where cycles do not show whether stick-slip is of the same kind.
+    pub unseen: f64,
     /// The last relative step: v_c is known to it.
     pub last: f64,
     /// v0 up to which stick-slip is followed, in units of μ_S N0/√(κM).
@@ -24,6 +29,8 @@ pub struct Pace {
     pub steps: u64,
     /// The most at all v0 together: some seconds.
     pub total_steps: u64,
+    /// Whether the search ends where stick-slip has come to repeat.
+    pub until_periodic: bool,
     /// Whether every loss of stick-slip is waited for until the outcome of the motion is known. Else it counts once the
     /// minima of ẋ no longer fall, and only the last one is waited for longer.
     pub patient: bool,
@@ -33,11 +40,14 @@ impl Default for Pace {
     fn default() -> Self {
         Self {
             first: 0.6,
+            largest: 0.6,
+            unseen: 0.1,
             repeated: 1e-6,
             last: 1e-6,
             v_max: 100.0,
             steps: 50_000,
             total_steps: 3_000_000,
+            until_periodic: false,
             patient: false,
         }
     }
@@ -144,9 +154,14 @@ pub fn critical_velocity(problem: &Problem, pace: &Pace, accuracy: Accuracy) -> 
 /// The same from a motion in stick-slip of `problem` on, at the v0 it has.
 #[must_use]
 pub fn from(problem: &Problem, mut motion: Motion, pace: &Pace) -> Followed {
+    carry(problem, &mut motion, pace)
+}
+
+/// The same; leaves the motion where it comes to.
+pub fn carry(problem: &Problem, motion: &mut Motion, pace: &Pace) -> Followed {
     let v0 = motion.parameters().v0;
     let how = Holding::new(pace, f64::INFINITY);
-    let first = hold(problem, &mut motion, v0, &how);
+    let first = hold(problem, motion, v0, &how);
     if first.persists() {
         return raise(problem, motion, first, pace);
     }
@@ -198,12 +213,12 @@ impl Holding {
 }
 
 /// What becomes of a motion at `v0`, waited for as long as at the end of a search.
-pub fn fate(problem: &Problem, motion: &mut Motion, v0: f64) -> Fate {
+pub fn fate(problem: &Problem, motion: &mut Motion, v0: f64) -> Sustained {
     let how = Holding {
         waiting: Waiting::Long,
         ..Holding::new(&Pace::default(), 0.0)
     };
-    hold(problem, motion, v0, &how).fate
+    hold(problem, motion, v0, &how)
 }
 
 /// Follows the motion at `v0` until its fate is known.
@@ -271,12 +286,12 @@ struct Climb<'p> {
     spent: u64,
 }
 
-fn raise(problem: &Problem, motion: Motion, first: Sustained, pace: &Pace) -> Followed {
+fn raise(problem: &Problem, motion: &mut Motion, first: Sustained, pace: &Pace) -> Followed {
     let mut climb = Climb {
         problem,
         pace: *pace,
         trial: motion.clone(),
-        motion,
+        motion: motion.clone(),
         before: None,
         last: first,
         lost: None,
@@ -290,6 +305,7 @@ fn raise(problem: &Problem, motion: Motion, first: Sustained, pace: &Pace) -> Fo
     };
     let complete = climb.run();
     climb.classify();
+    std::mem::swap(motion, &mut climb.motion);
     Followed {
         last: Some(climb.last),
         lost: climb.lost.map(|(lost, _)| lost),
@@ -305,7 +321,8 @@ impl Climb<'_> {
     fn run(&mut self) -> bool {
         let end = self.pace.v_max * self.problem.law.mu_s();
         for _ in 0..MOST_TRIALS {
-            if self.last.v0 >= end {
+            let repeats = self.pace.until_periodic && self.last.fate == Fate::Periodic;
+            if self.last.v0 >= end || repeats {
                 return true;
             }
             let step = self.next_step();
@@ -368,7 +385,7 @@ impl Climb<'_> {
     fn next_step(&self) -> f64 {
         let mut step = self.share * expected_way(self.before, &self.last);
         if self.last.fate == Fate::Irregular {
-            step = step.min(LARGEST_UNSEEN);
+            step = step.min(self.pace.unseen);
         }
         let mut step = step.clamp(self.pace.last, self.most.max(self.pace.last));
         if let Some(jump) = self.jump {
@@ -394,10 +411,10 @@ impl Climb<'_> {
                 f64::INFINITY
             }
             // Once chance has a part in it nothing is gained by that.
-            _ if self.chance => LARGEST_UNSEEN,
+            _ if self.chance => self.pace.unseen,
             (Fate::Periodic, Fate::Periodic) if jumps(last, there, step) => JUMP,
             (Fate::Periodic, Fate::Irregular) => CAREFUL,
-            _ => LARGEST_UNSEEN,
+            _ => self.pace.unseen,
         }
     }
 
@@ -433,7 +450,7 @@ impl Climb<'_> {
             (self.before, self.last) = (Some(self.last), there);
             // What failed there was the size of the step: the steps from here on grow slowly.
             self.most = if passed { 2.0 * step } else { 2.0 * self.most };
-            self.most = self.most.min(self.pace.first);
+            self.most = self.most.min(self.pace.largest);
         }
     }
 
@@ -469,13 +486,9 @@ const NEARBY: f64 = 0.15;
 /// Surviving so often where it had been lost, on so short a way, stick-slip creeps.
 const MOST_PASSED: u32 = 6;
 const SHORT_WAY: f64 = 1e-3;
-/// The largest step where cycles do not show whether it is the same attractor.
-const LARGEST_UNSEEN: f64 = 0.1;
 /// The last relative step from irregular stick-slip.
 const LAST_IRREGULAR: f64 = 1e-4;
 
-/// The largest step that may lead from one kind of stick-slip to another: v0 is raised slowly.
-const JUMP: f64 = 1e-5;
 /// The share of the expected way that is taken at first, and at least.
 const SHARE: f64 = 0.9;
 const LEAST_SHARE: f64 = 0.2;

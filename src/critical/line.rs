@@ -4,8 +4,9 @@
 //! cells at both ends of a stretch are looked for from scratch, and what is continued from the one has to meet the other;
 //! else the stretch is halved. A line is cut into blocks for that, so that the answer in a cell depends on its block alone.
 
-use super::graze::Track;
-use super::{Critical, End, Problem, from_scratch, of_found};
+use super::search::from_scratch;
+use super::track::Track;
+use super::{Critical, End, Method, Problem, of_found};
 
 /// Cells of a block; blocks start at multiples of it.
 pub const BLOCK: usize = 32;
@@ -93,17 +94,21 @@ impl Block<'_> {
     fn advance(&mut self, first: usize, last: usize, track: &mut Track) -> usize {
         for cell in first + 1..=last {
             let next = track.next(&self.problems[cell]);
-            let Some(critical) = next.as_ref().and_then(of_found) else {
+            let found = next.and_then(|found| of_found(&found, Method::GrazeOrbit));
+            let Some(mut critical) = found else {
                 return cell - 1;
             };
+            critical.decided = track.decided;
             if cell == last {
-                return match self.found[last]
-                    .as_ref()
-                    .is_some_and(|c| meets(c, &critical))
-                {
-                    true => last,
-                    false => cell - 1,
+                let met = self.found[last].filter(|there| meets(there, &critical));
+                let Some(there) = met else {
+                    return cell - 1;
                 };
+                // What is in doubt at one end is so on the way.
+                for between in self.found[first + 1..last].iter_mut().flatten() {
+                    between.decided &= there.decided;
+                }
+                return last;
             }
             self.found[cell] = Some(critical);
         }

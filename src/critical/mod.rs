@@ -1,30 +1,36 @@
 //! The critical velocity v_c: the velocity of the pull below which stick-slip survives.
 //!
 //! - [`limit`]: Coulomb friction, load control, τ → 0: closed form (the letter's Fig. 4)
-//! - [`graze`]: as the velocity at which the orbit's slip grazes ẋ = 0
-//! - [`mod@line`]: grazes along a line of delays, each from its neighbour's orbit
+//! - `search`: by the first road that leads to it; `one_slip` and `orbit` raise v0 (`climb`) to where stick-slip ends (`ends`)
+//! - [`mod@line`]: along a line of delays, each from its neighbour's orbit
 //! - [`follow`]: by simulation, v0 raised step by step
 //! - [`switch_on`]: by the other protocol, the windows in which stick-slip survives switching on
 //! - [`cycle`]: one slip and one stick
 
+mod beyond;
 mod climb;
 pub mod cycle;
+mod ends;
 pub mod follow;
-pub mod graze;
 pub mod limit;
 pub mod line;
+mod one_slip;
+mod orbit;
+mod search;
 mod stops;
 pub mod switch_on;
+mod track;
 mod trend;
 
 use crate::linear::rightmost::Rightmost;
 use crate::linear::{Count, Crossings, MarginalTolerance};
 use crate::model::friction::Kind;
 use crate::model::{FrictionLaw, Groups};
-use crate::slip::motion::{Accuracy, Motion, Parameters};
+use crate::slip::motion::{Accuracy, Parameters};
 use crate::slip::outcome::Outcome;
+use cycle::Period;
+use ends::Found;
 use follow::{Fate, Followed, Pace, Sustained};
-use graze::{Found, Graze, Track};
 
 /// A controlled oscillator whose critical velocity is asked for, in the units of [`crate::slip::motion`].
 #[derive(Debug, Clone, PartialEq)]
@@ -147,9 +153,9 @@ impl End {
 /// What gave a critical velocity.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Method {
-    /// One slip without memory, see [`graze`].
+    /// One slip without memory, at its graze or at its lift-off.
     GrazeSlip,
-    /// The orbit at its graze, see [`graze`].
+    /// The orbit, at its graze, at its lift-off or where its stick vanishes.
     GrazeOrbit,
     /// Simulation, see [`follow`].
     Simulation,
@@ -217,39 +223,7 @@ const FOLLOW_TOLERANCE: f64 = 1e-8;
 /// The largest v0 at which stick-slip of `problem` persists while v0 is raised from low values: protocol `follow`.
 #[must_use]
 pub fn critical_velocity(problem: &Problem) -> Critical {
-    from_scratch(problem).0
-}
-
-/// The same, with what a neighbour may start from.
-fn from_scratch(problem: &Problem) -> (Critical, Option<Track>) {
-    if persists_without_control(problem) {
-        let critical = nothing(f64::NAN, End::Persists, Method::Simulation);
-        return (critical, None);
-    }
-    let (found, track) = graze::find(problem, Accuracy::of(GRAZE_TOLERANCE));
-    let critical = of_found(&found).unwrap_or_else(|| match found {
-        Found::Unclear(Some(motion)) => simulated_from(problem, *motion),
-        _ => simulated(problem),
-    });
-    (critical, track)
-}
-
-/// By simulation from a motion in stick-slip on; from low velocities where it is not sustained.
-fn simulated_from(problem: &Problem, mut motion: Motion) -> Critical {
-    motion.refine(Accuracy::of(FOLLOW_TOLERANCE));
-    let search = |pace: &Pace| follow::from(problem, motion.clone(), pace);
-    let followed = search(&Pace::default());
-    match followed.last {
-        Some(_) => confirmed(&followed, search),
-        None => simulated(problem),
-    }
-}
-
-/// By simulation from low velocities on.
-fn simulated(problem: &Problem) -> Critical {
-    let accuracy = Accuracy::of(FOLLOW_TOLERANCE);
-    let search = |pace: &Pace| follow::critical_velocity(problem, pace, accuracy);
-    confirmed(&search(&Pace::default()), search)
+    search::from_scratch(problem).0
 }
 
 /// The first step of v0 of a search that confirms another one.
@@ -257,15 +231,15 @@ const CONFIRM_FIRST: f64 = 0.2;
 
 /// What `followed` tells. v0 is raised slowly: an end that is another one with other steps of v0 is not decided.
 ///
-/// Without chance on the way steps do not matter. Lift-off, which is looked for by the smallest load, is left to the sample
-/// of a map: of 229 such cells one depended on the steps.
+/// Without chance on the way steps do not matter.
 fn confirmed(followed: &Followed, search: impl Fn(&Pace) -> Followed) -> Critical {
     let critical = of_followed(followed);
-    if !followed.chance || !critical.decided || critical.end == End::LiftOff {
+    if !followed.chance || !critical.decided {
         return critical;
     }
     let again = of_followed(&search(&Pace {
         first: CONFIRM_FIRST,
+        largest: CONFIRM_FIRST,
         ..Pace::default()
     }));
     Critical {
@@ -274,11 +248,13 @@ fn confirmed(followed: &Followed, search: impl Fn(&Pace) -> Followed) -> Critica
     }
 }
 
-fn of_found(found: &Found) -> Option<Critical> {
+/// What an end that was found by `method` tells; none where it does not.
+fn of_found(found: &Found, method: Method) -> Option<Critical> {
     match found {
-        Found::Graze(graze) => Some(of_graze(graze)),
-        Found::LiftOff(v0, method) => Some(of_lift_off(*v0, *method)),
-        Found::Unclear(_) => None,
+        Found::Graze(v0, period) => Some(of_orbit((*v0, End::Grazing), period, method)),
+        Found::Vanish(v0, period) => Some(of_orbit((*v0, End::Fold), period, method)),
+        Found::LiftOff(v0) => Some(of_lift_off(*v0, method)),
+        Found::Changes(_) | Found::Persists(_) | Found::Irregular | Found::Unclear => None,
     }
 }
 
@@ -290,17 +266,17 @@ fn persists_without_control(problem: &Problem) -> bool {
     uncontrolled && matches!(problem.law.kind(), Kind::Coulomb { mu0 } if *mu0 < mu_s)
 }
 
-fn of_graze(graze: &Graze) -> Critical {
+fn of_orbit((vc, end): (f64, End), period: &Period, method: Method) -> Critical {
+    // At the graze itself, that of the first slip, it lasts until the minimum of ẋ.
+    let longer = match end {
+        End::Grazing => period.cycles()[0].to_minimum,
+        _ => 0.0,
+    };
     Critical {
-        vc: graze.v0,
-        end: End::Grazing,
-        method: graze.method,
-        v_liftoff: f64::NAN,
-        // At the graze itself the slip lasts until the minimum of ẋ.
-        stick_time: graze.cycle.stick - graze.cycle.to_minimum,
-        slip_time: graze.cycle.slip + graze.cycle.to_minimum,
-        n_min: graze.cycle.n_min,
-        decided: true,
+        stick_time: period.stick_time() - longer,
+        slip_time: period.slip_time() + longer,
+        n_min: period.n_min(),
+        ..nothing(vc, end, method)
     }
 }
 

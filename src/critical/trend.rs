@@ -1,5 +1,6 @@
 //! What stick-slip at one v0 and at the next one tell: whether it is of one kind, and where it is expected to end.
 
+use super::climb::thrown;
 use super::follow::Sustained;
 
 /// Whether a relative `step` of v0 threw the motion from one kind of periodic stick-slip to another: the mean cycle or the mean
@@ -7,11 +8,9 @@ use super::follow::Sustained;
 pub(super) fn jumps(last: &Sustained, there: &Sustained, step: f64) -> bool {
     let mean = |s: &Sustained| {
         let slips = f64::from(s.summary.slips.max(1));
-        (s.summary.period / slips, s.summary.slip_time / slips)
+        [s.summary.period / slips, s.summary.slip_time / slips]
     };
-    let (before, after) = (mean(last), mean(there));
-    let (period, slip) = (after.0 / before.0, after.1 / before.1);
-    !(0.8 / (1.0 + step)..=1.25).contains(&period) || !(0.8..=1.4).contains(&slip)
+    thrown(mean(last), mean(there), step)
 }
 
 /// The relative way within which sticks that become shorter vanish.

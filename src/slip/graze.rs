@@ -21,12 +21,15 @@ impl Step {
         Some((s, value(Self::range(&self.u, self.order), s)))
     }
 
-    /// The minimum ẋ < 0 that a slip forwards which stops at the end of this step would have reached, had the friction gone
-    /// on as for ẋ > 0, with the time from the stop to it: the minimum is a smooth function of the parameters that is zero
+    /// The minimum ẋ < 0 that a slip which stops at the end of this step would have reached, had the friction gone
+    /// on as for ẋ > 0 (minus the maximum, of a slip backwards), with the time from the stop to it: the minimum is a smooth function of the parameters that is zero
     /// where the stop is a graze.
     #[must_use]
     pub fn minimum_beyond_stop(&self) -> (f64, f64) {
-        let about = shifted(Self::range(&self.u, self.order), self.length);
+        let mut about = shifted(Self::range(&self.u, self.order), self.length);
+        if about[1] > 0.0 {
+            about.iter_mut().for_each(|c| *c = -*c);
+        }
         let (fall, bend) = (-about[1], 2.0 * about[2]);
         if bend <= 0.0 {
             // It falls faster and faster: nowhere near a graze.

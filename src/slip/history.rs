@@ -32,6 +32,16 @@ pub(super) const SMOOTH: u32 = u32::MAX;
 /// The part of a polynomial's radius within which it stands in for its neighbours.
 const SHARE: f64 = 0.75;
 
+/// A stretch of time in a past that is extrapolated, and what it corresponds to in the two pasts that it is told from.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Stretch {
+    /// Its length, and those in the last past and in the one before.
+    pub lengths: [f64; 3],
+}
+
+/// Pasts correspond to one another to this, compared with all of their span.
+const SLIVER: f64 = 1e-7;
+
 /// The elongation over a window of time that moves along, of bounded length.
 #[derive(Debug, Clone, Default)]
 pub(super) struct History {
@@ -40,6 +50,8 @@ pub(super) struct History {
     at: usize,
     /// Jumps of this order and higher are not felt.
     felt: u32,
+    /// The part of its radius to which the last polynomial stands in for what is yet to come.
+    ahead: f64,
 }
 
 impl History {
@@ -70,6 +82,17 @@ impl History {
         piece.a[1] = rate;
     }
 
+    /// The last polynomial stands in for what is yet to come as far as its errors, times a `gain`, stay within the tolerance,
+    /// which at the end of its radius is its last term, of this `order`.
+    pub fn look_ahead(&mut self, gain: f64, order: usize) {
+        self.ahead = SHARE.min(gain.powf(-1.0 / order as f64));
+    }
+
+    /// The part of a radius to which it does so.
+    pub fn ahead(&self) -> f64 {
+        self.ahead
+    }
+
     /// Jumps of the order `felt` and higher are not felt from now on.
     pub fn feel(&mut self, felt: u32) {
         self.felt = felt;
@@ -79,7 +102,81 @@ impl History {
     pub fn copy_from(&mut self, other: &Self) {
         self.pieces.clear();
         self.pieces.extend(other.pieces.iter().cloned());
-        (self.at, self.felt) = (other.at, other.felt);
+        (self.at, self.felt, self.ahead) = (other.at, other.felt, other.ahead);
+    }
+
+    /// Becomes, over `span` until time 0, `last` and `share` of the way from `before` to it beyond it, both as of their ends.
+    ///
+    /// What is alike in the two pasts stands at the same place of stretches of time that follow one another, back and back
+    /// again through `stretches`, the last one first.
+    pub fn extrapolate(
+        &mut self,
+        (last, before): (&mut Self, &mut Self),
+        share: f64,
+        span: f64,
+        stretches: &[Stretch],
+    ) {
+        (self.at, self.felt, self.ahead) = (0, last.felt, last.ahead);
+        self.pieces.clear();
+        let orders = |h: &Self| h.pieces.iter().map(|p| p.order).max().unwrap_or(0);
+        let order = orders(last).max(orders(before));
+        // The ends of the present stretch.
+        let ends = [&*last, &*before].map(|h| h.pieces.back().map_or(0.0, |p| p.to));
+        let mut end = [0.0, ends[0], ends[1]];
+        let mut back = 0;
+        let stretch = |back: usize| &stretches[back % stretches.len()].lengths;
+        while end[0] - stretch(back)[0] > -span {
+            end = std::array::from_fn(|i| end[i] - stretch(back)[i]);
+            back += 1;
+        }
+        let shortest = SLIVER * span;
+        let mut from = -span;
+        loop {
+            let lengths = stretch(back);
+            let rates = [1, 2].map(|i| lengths[i] / lengths[0]);
+            // A stretch begins where something happened.
+            let mut kink = 2;
+            while from < end[0] {
+                // A little later: where a stretch begins, what is alike does so to rounding only.
+                let ahead = (from + shortest).min(end[0]);
+                let mut c = [[0.0; MOST_ORDER + 1]; 2];
+                let mut until = [0.0; 2];
+                let mut next = [SMOOTH; 2];
+                for (i, past) in [&mut *last, &mut *before].into_iter().enumerate() {
+                    let time = |t: f64| end[i + 1] - (end[0] - t) * rates[i];
+                    let reach = past.read(time(ahead), SMOOTH, &mut c[i]);
+                    c[i] = shifted(&c[i][..=order], (from - ahead) * rates[i]);
+                    until[i] = ahead + (reach.until - time(ahead)) / rates[i];
+                    next[i] = reach.kink;
+                }
+                let sooner = usize::from(until[1] < until[0]);
+                let to = match until[sooner].max(ahead) {
+                    to if to > end[0] - shortest => end[0],
+                    to => to,
+                };
+                let mut powers = [1.0; 2];
+                let mut a = [0.0; MOST_ORDER + 1];
+                for (k, a) in a.iter_mut().enumerate().take(order + 1) {
+                    let [one, other] = [0, 1].map(|i| c[i][k] * powers[i]);
+                    *a = one + share * (one - other);
+                    powers = [0, 1].map(|i| powers[i] * rates[i]);
+                }
+                self.pieces.push_back(Piece {
+                    from,
+                    to,
+                    radius: to - from,
+                    order,
+                    a,
+                    kink,
+                });
+                (from, kink) = (to, next[sooner]);
+            }
+            if back == 0 {
+                return;
+            }
+            back -= 1;
+            end = std::array::from_fn(|i| end[i] + stretch(back)[i]);
+        }
     }
 
     /// Moves everything by `time`.
@@ -141,6 +238,8 @@ impl History {
     fn farthest(&self, time: f64, latest: u32) -> (usize, Reach) {
         let mut best = (self.at, self.pieces[self.at].to);
         let mut kink = if latest < self.felt { latest } else { SMOOTH };
+        // Where nothing happens at the end of the last step, its polynomial goes on to be the motion.
+        let smooth_end = kink == SMOOTH && self.felt > 0;
         let mut end = f64::INFINITY;
         for (index, piece) in self.pieces.iter().enumerate().skip(self.at) {
             if index > self.at {
@@ -159,7 +258,12 @@ impl History {
             }
             end = piece.to;
         }
-        // Nothing is known beyond the last piece, nor beyond a kink.
+        if smooth_end && best.0 + 1 == self.pieces.len() {
+            let last = &self.pieces[best.0];
+            let until = last.to.max(last.from + self.ahead * last.radius);
+            return (best.0, Reach { until, kink });
+        }
+        // Nothing is known beyond a kink.
         let until = best.1.min(end.max(self.pieces[self.at].to));
         let kink = if until == end { kink } else { SMOOTH };
         (best.0, Reach { until, kink })
@@ -200,6 +304,47 @@ mod tests {
         assert_eq!(history.read(2.0, SMOOTH, &mut a), reach(SMOOTH));
         history.forget_before(1.5);
         assert_eq!(history.pieces.len(), 2);
+    }
+
+    /// Two pasts of a slope and a rest each, whose stretches differ: what lies beyond the second one has the lengths and values
+    /// that go on evenly, with a kink where the stretches meet.
+    #[test]
+    fn pasts_are_extrapolated_with_their_stretches_aligned() {
+        let past = |slip: f64, stick: f64, start: f64| {
+            let mut history = History::default();
+            history.restart(start, start, 10);
+            history.push(start + slip, slip, &[start, 0.5], 2);
+            history.push(start + slip + stick, stick, &[start + 0.5 * slip, 2.0], 2);
+            history
+        };
+        let (mut before, mut last) = (past(1.0, 2.0, 5.0), past(1.2, 1.5, 7.0));
+        let lengths = |last: f64, before: f64| Stretch {
+            lengths: [last + 0.5 * (last - before), last, before],
+        };
+        let stretches = [lengths(1.5, 2.0), lengths(1.2, 1.0)];
+        let mut third = History::default();
+        third.extrapolate((&mut last, &mut before), 0.5, 2.0, &stretches);
+        // It sticks for 1.25: half of the way on from 2 and 1.5.
+        let ends = |history: &mut History, time: f64| {
+            let mut a = [0.0; MOST_ORDER + 1];
+            history.read(time, SMOOTH, &mut a);
+            (a[0], a[1])
+        };
+        for part in [0.01, 0.3, 0.9] {
+            let at = [5.0 + 3.0, 7.0 + 2.7, 0.0];
+            let sticks = [2.0, 1.5, 1.25];
+            let value = |history: &mut History, i: usize| ends(history, at[i] - part * sticks[i]).0;
+            let (one, two) = (value(&mut before, 0), value(&mut last, 1));
+            let expected = two + 0.5 * (two - one);
+            let found = value(&mut third, 2);
+            assert!(
+                (found - expected).abs() < 1e-12,
+                "{part}: {found} {expected}"
+            );
+        }
+        let kinks = third.pieces.iter().filter(|p| p.kink == 2);
+        let at: Vec<f64> = kinks.map(|p| p.from).collect();
+        assert!(at.iter().any(|t| (t + 1.25).abs() < 1e-12), "{at:?}");
     }
 
     #[test]

@@ -13,6 +13,7 @@
 //! the tolerance: kinks are stepped on, one delay after the other, until they are too smooth to be felt.
 
 use super::friction_series::FrictionSeries;
+pub use super::history::Stretch;
 use super::history::{History, SMOOTH};
 use super::series::{Coefficients, MOST_ORDER, first_zero, value};
 use super::step::{Control, Step};
@@ -96,12 +97,21 @@ impl Default for Accuracy {
 /// Speeds below this, in units of N0/√(κM), need no relative accuracy.
 const SLOWEST: f64 = 1e-3;
 
+/// Steps shorter than this, relative to what their series allow, have fewer terms; and how many more than they seem to need.
+const SHORT: f64 = 0.5;
+const SPARE_TERMS: usize = 2;
+const LEAST_ORDER: usize = 4;
+
+/// The part of what a polynomial looks ahead that steps take where they outlast the delay: they need the one before beyond its
+/// end.
+const BALANCED: f64 = 0.53;
+
 /// Rounding of a force, relative.
 const ROUNDING: f64 = 64.0 * f64::EPSILON;
 
 /// The order at which Taylor's method does least work per unit of time (Jorba and Zou 2005).
 fn order(tolerance: f64) -> usize {
-    ((2.0 - 0.5 * tolerance.ln()).ceil() as usize).clamp(4, MOST_ORDER)
+    ((2.0 - 0.5 * tolerance.ln()).ceil() as usize).clamp(LEAST_ORDER, MOST_ORDER)
 }
 
 /// The order of jumps that are not felt.
@@ -161,6 +171,8 @@ impl Motion {
         let mut friction = FrictionSeries::new(&parameters.law, parameters.velocity_unit);
         friction.restart(u.abs());
         history.restart(a, 0.0, felt(accuracy, order));
+        let gain = parameters.alpha_v.abs().max(parameters.alpha_n.abs());
+        history.look_ahead(gain, order);
         let zero = [0.0; MOST_ORDER + 1];
         let mut motion = Self {
             parameters,
@@ -227,6 +239,12 @@ impl Motion {
         self.tolerance = accuracy.tolerance.clamp(1e-15, 1e-3);
         self.order = order(self.tolerance);
         self.history.feel(felt(accuracy, self.order));
+        let gain = self
+            .parameters
+            .alpha_v
+            .abs()
+            .max(self.parameters.alpha_n.abs());
+        self.history.look_ahead(gain, self.order);
     }
 
     /// Becomes a copy of `other`, a motion with the same law and accuracy, in memory that is there.
@@ -238,6 +256,31 @@ impl Motion {
         (self.t, self.u, self.a, self.x) = (other.t, other.u, other.a, other.x);
         (self.kink, self.stuck_since) = (other.kink, other.stuck_since);
         self.step.clone_from(&other.step);
+    }
+
+    /// Becomes a block that is released at t = 0 at `v0` and with the delay `tau`, with a past that differs from that of `last`
+    /// by `share` of the difference between `last` and `before`: two motions of the same law, gains and accuracy as they
+    /// are released. Stretches of time that correspond to one another, the last one first, are slips and sticks; they are
+    /// gone through again and again.
+    ///
+    /// `tau` is less than twice the delays of both, whose past is known for so long.
+    pub fn extrapolate(
+        &mut self,
+        (last, before): (&mut Self, &mut Self),
+        share: f64,
+        (v0, tau): (f64, f64),
+        stretches: &[Stretch],
+    ) {
+        self.parameters.clone_from(&last.parameters);
+        (self.parameters.v0, self.parameters.tau) = (v0, tau);
+        let pasts = (&mut last.history, &mut before.history);
+        self.history
+            .extrapolate(pasts, share, 1.01 * tau, stretches);
+        self.friction.restart(0.0);
+        self.mode = Mode::Forwards;
+        self.a = last.a + share * (last.a - before.a);
+        (self.t, self.u, self.x) = (0.0, 0.0, 0.0);
+        (self.kink, self.stuck_since) = (1, f64::INFINITY);
     }
 
     /// Makes the present t = 0 and x = 0, with control acting from `switch_on` on. The past stays what it is.
@@ -277,6 +320,13 @@ impl Motion {
         &self.step
     }
 
+    /// The force that is missing for a block to move that has just stopped.
+    #[must_use]
+    pub fn hold_now(&self) -> f64 {
+        let n = value(&self.step.n[..=self.step.order], self.step.length);
+        self.parameters.law.mu_s() * n - self.a.abs()
+    }
+
     /// The mode of the present state under the load `n`.
     fn mode_at(&self, n: f64) -> Mode {
         let moving = if self.u != 0.0 {
@@ -303,12 +353,19 @@ impl Motion {
         if !controlled {
             limit = limit.min(until_switch);
         }
+        self.step.order = self.order_within(limit);
         self.expand(controlled);
         if self.step.n[0] <= 0.0 {
             self.step.length = 0.0;
             return Some(Event::LiftOff);
         }
-        let free = self.free_length();
+        let mut free = self.free_length();
+        let radius = free;
+        let balanced = BALANCED * self.history.ahead() * free;
+        if controlled && self.parameters.tau < balanced {
+            // The next step, one delay behind, uses the polynomial of this one beyond its end.
+            free = balanced;
+        }
         // Two halves rather than a long and a tiny step.
         let length = match free / limit {
             r if r >= 1.0 => limit,
@@ -323,7 +380,7 @@ impl Motion {
             length = crossing.s;
             event = None;
         }
-        self.finish(length, free);
+        self.finish(length, radius);
         self.kink = SMOOTH;
         if let Some(crossing) = crossing {
             self.kink = crossing.kink;
@@ -401,7 +458,6 @@ impl Motion {
         let step = &mut self.step;
         step.u[0] = self.u;
         step.a[0] = self.a;
-        step.order = self.order;
         let direction = match self.mode {
             Mode::Stick => return step.stick(control),
             Mode::Forwards => 1.0,
@@ -415,6 +471,20 @@ impl Motion {
         }
     }
 
+    /// The order that a step no longer than `limit` needs: where delays or kinks end steps long before the series does, a
+    /// lower one will do. Told from the step before; the error is held by [`Self::free_length`], whatever the order.
+    fn order_within(&self, limit: f64) -> usize {
+        let last = &self.step;
+        let known = self.kink == SMOOTH && last.radius.is_finite();
+        if !known || limit > SHORT * last.radius {
+            return self.order;
+        }
+        // The terms of a series of radius R fall as (s/R)^k, and last.radius was where that is the tolerance.
+        let digits = self.tolerance.ln();
+        let fall = (limit / last.radius).ln() + digits / last.order as f64;
+        ((digits / fall).ceil() as usize + SPARE_TERMS).clamp(LEAST_ORDER, self.order)
+    }
+
     /// How long a step may be for its last terms to stay below the tolerance.
     fn free_length(&self) -> f64 {
         let step = &self.step;
@@ -423,7 +493,7 @@ impl Motion {
         let stretch = a[0].abs().max(self.parameters.law.mu_s());
         // log₂ to 0.1: enough to tell which of the last two terms asks for the shorter step.
         let rough_log2 = |x: f64| (x.to_bits() >> 42) as f64 / 1024.0 - 1023.0;
-        let asked = [self.order - 1, self.order].map(|k| {
+        let asked = [step.order - 1, step.order].map(|k| {
             // What is not a number ends the motion elsewhere, not here.
             let ratio = (u[k].abs() / speed).max(a[k].abs() / stretch).max(0.0);
             let room = self.tolerance / ratio;

@@ -162,6 +162,12 @@ pub fn largest(c: &[f64], end: f64, known: f64) -> f64 {
         return known;
     }
     let mut found = known.max(c[0]).max(value(c, end));
+    // Where the slope cannot change its sign the ends tell.
+    let bend = c.iter().enumerate().skip(2).rev();
+    let change = bend.fold(0.0, |sum, (k, c)| (sum + k as f64 * c.abs()) * end);
+    if c.get(1).is_some_and(|slope| slope.abs() >= change) {
+        return found;
+    }
     let at = |i: u32| end * f64::from(i) / 8.0;
     let mut slope_before = value_and_slope(c, 0.0).1;
     for i in 1..=8 {

@@ -97,6 +97,9 @@ impl Step {
         if (u[0] - v0).abs() + spread <= band {
             return None;
         }
+        if (value(u, self.length) - v0).abs() > band {
+            return Some(self.length);
+        }
         // Backwards from the end.
         let mut reversed = shifted(u, self.length);
         reversed
@@ -104,9 +107,6 @@ impl Step {
             .skip(1)
             .step_by(2)
             .for_each(|c| *c = -*c);
-        if (reversed[0] - v0).abs() > band {
-            return Some(self.length);
-        }
         let crossing = |factor: f64| {
             let room = Self::scaled(&reversed, -factor, band + factor * v0);
             first_zero(Self::range(&room, self.order), self.length)

@@ -216,6 +216,7 @@ const SAMPLE_ACCURACY: f64 = 1e-10;
 pub fn simulation_agrees(problem: &Problem, units: &CaseUnits, found: &Critical) -> bool {
     let pace = Pace {
         first: SAMPLE_FIRST,
+        largest: SAMPLE_FIRST,
         patient: true,
         ..Pace::default()
     };

@@ -1,0 +1,155 @@
+//! Where the orbit of stick-slip ends: a slip grazes ẋ = ẍ = 0, or the load or a stick vanishes. How an end that a climb came to
+//! is checked, and what comes after it.
+
+use super::Problem;
+use super::beyond::{Beyond, PRECISION, beyond, without_stick};
+use super::climb::{Climbed, Place, Ran, Road};
+use super::cycle::{Period, Ride, STICK, ride};
+use super::orbit::Orbit;
+use crate::slip::motion::Motion;
+
+/// The end of an orbit.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) enum Found {
+    /// The first slip of the period grazes.
+    Graze(f64, Period),
+    /// The stick of the period vanishes.
+    Vanish(f64, Period),
+    /// N ≤ 0.
+    LiftOff(f64),
+    /// Another kind of stick-slip goes on beyond it, with so many slips in a period; from the motion that was tried last.
+    Persists(usize),
+    /// It becomes of another kind at this v0.
+    Changes(f64),
+    /// Stick-slip goes on, but does not repeat.
+    Irregular,
+    /// Not known.
+    Unclear,
+}
+
+impl Found {
+    /// The v0 at which stick-slip ends, where that is known.
+    pub fn end(&self) -> Option<f64> {
+        match self {
+            Self::Graze(v0, _) | Self::Vanish(v0, _) | Self::LiftOff(v0) => Some(*v0),
+            Self::Changes(_) | Self::Persists(_) | Self::Irregular | Self::Unclear => None,
+        }
+    }
+}
+
+/// The most kinds of stick-slip that are followed one after the other.
+pub(super) const MOST_KINDS: usize = 24;
+/// The first relative step of v0 with another kind of stick-slip than the first.
+pub(super) const FIRST_STEP: f64 = 0.02;
+
+/// How far beyond a change of kind the next one is looked for, relative: forces have to differ by more than their noise.
+pub(super) const CHANGED: f64 = 1e-4;
+/// How much the slip may lengthen on the last bit of the way, where it grows as a square root.
+const SAME_SLIP: f64 = 0.1;
+
+/// Whether the slip `i` of two periods is one.
+pub(super) fn same_slip(one: &Period, other: &Period, i: usize) -> bool {
+    (one.cycles()[i].slip / other.cycles()[i].slip - 1.0).abs() <= SAME_SLIP
+}
+
+/// What the end of a climb comes to. The road's kept motion is just below it.
+pub(super) fn finish(problem: &Problem, road: &mut Orbit, climbed: Climbed, at: &Place) -> Found {
+    match climbed {
+        Climbed::Graze { v0, slip } => grazes(problem, road, v0, slip, at),
+        Climbed::Vanish(v0) => vanishes(problem, road, v0, at),
+        Climbed::Changes(v0) => Found::Changes(v0),
+        Climbed::LiftOff(v0) if lifts(road, v0) => Found::LiftOff(v0),
+        Climbed::LiftOff(_) | Climbed::Unclear => Found::Unclear,
+    }
+}
+
+fn grazes(problem: &Problem, road: &mut Orbit, v0: f64, slip: usize, at: &Place) -> Found {
+    let below = v0 * (1.0 - PRECISION);
+    let Ran::Period(period, _) = road.trial(below, Some(&at.period), f64::INFINITY) else {
+        return Found::Unclear;
+    };
+    if !same_slip(&period, &at.period, slip) {
+        return Found::Unclear;
+    }
+    road.keep();
+    if slip > 0 && !road.rotate(slip, &period) {
+        return Found::Unclear;
+    }
+    let period = period.rotated(slip);
+    if !period.cycles()[0].to_minimum.is_finite() {
+        return Found::Unclear;
+    }
+    let slip = period.cycles()[0].slip;
+    told(beyond(problem, (v0, slip), road), Found::Graze(v0, period))
+}
+
+/// A stick that vanishes leaves less than this of it, over √(M/κ), just below its end.
+const VANISHING: f64 = 1e-3;
+
+fn vanishes(problem: &Problem, road: &mut Orbit, v0: f64, at: &Place) -> Found {
+    let below = v0 * (1.0 - PRECISION);
+    let Ran::Period(period, gauges) = road.trial(below, Some(&at.period), CHECKED) else {
+        return Found::Unclear;
+    };
+    if -gauges[STICK] > VANISHING {
+        return Found::Unclear;
+    }
+    road.keep();
+    if !attracts(road.motion().clone(), &period) {
+        return Found::Unclear;
+    }
+    told(without_stick(problem, v0, road), Found::Vanish(v0, period))
+}
+
+/// An orbit is disturbed by v0 being lower by this in one period, relative, and has so many to come back.
+const DISTURBED: f64 = 2e-4;
+const PERIODS_BACK: usize = 30;
+/// Sticks do not come nearer to one another than this.
+const STICKS_NOISE: f64 = 1e-7;
+
+/// Whether stick-slip comes back to the orbit that a motion is on when it is disturbed: an unstable one, followed from close by, seems to
+/// be at rest as well.
+fn attracts(mut motion: Motion, period: &Period) -> bool {
+    let v0 = motion.parameters().v0;
+    let stick = period.cycles()[0].stick;
+    motion.set_v0(v0 * (1.0 - DISTURBED));
+    let mut distances = (0..=PERIODS_BACK).map_while(|i| {
+        let mut first = None;
+        for _ in period.cycles() {
+            let Ride::Cycle(cycle) = ride(&mut motion, None) else {
+                return None;
+            };
+            first.get_or_insert(cycle.stick);
+        }
+        if i == 0 {
+            motion.set_v0(v0);
+        }
+        first.map(|first| (first - stick).abs())
+    });
+    let disturbed = distances.next();
+    let back = distances.nth(PERIODS_BACK - 1);
+    disturbed
+        .zip(back)
+        .is_some_and(|(disturbed, back)| back < (0.5 * disturbed).max(STICKS_NOISE))
+}
+
+fn told(beyond: Beyond, end: Found) -> Found {
+    match beyond {
+        Beyond::Ends => end,
+        Beyond::Persists(slips) => Found::Persists(slips),
+        Beyond::Irregular => Found::Irregular,
+        Beyond::Unknown => Found::Unclear,
+    }
+}
+
+/// The velocity of lift-off is checked this far below and above it, relative.
+const LIFT_PRECISION: f64 = 1e-4;
+/// How well periods repeat where an end is checked, relative.
+const CHECKED: f64 = 1e-3;
+
+/// Whether periods just below `v0` do not lift off, and just above it do.
+fn lifts(road: &mut Orbit, v0: f64) -> bool {
+    let [below, above] = [1.0 - LIFT_PRECISION, 1.0 + LIFT_PRECISION].map(|f| f * v0);
+    road.trial(below, None, CHECKED) != Ran::LiftOff
+        && road.trial(above, None, CHECKED) == Ran::LiftOff
+}
