@@ -132,16 +132,16 @@ start_slurm() {
 
 nodes_are_idle() { [ "$(sinfo -h -t idle -o %D 2>/dev/null)" = 2 ]; }
 
-# pieces SHARD: how many of the shard are computed and safe.
+# pieces MAP SHARD: how many of the shard are computed and safe.
 pieces() {
-    "$SLIPMAP" status cluster.h5 --json 2>/dev/null | "$python" -c '
+    "$SLIPMAP" status "$1" --json 2>/dev/null | "$python" -c '
 import json, sys
 shards = {s["shard"]: s["pieces_done"] for s in json.loads(sys.stdin.read() or "{\"shards\": []}")["shards"]}
-print(shards.get(sys.argv[1], 0))' "$1/$SHARDS"
+print(shards.get(sys.argv[1], 0))' "$2/$SHARDS"
 }
 
-# begun SHARD: some pieces of it are computed.
-begun() { [ "$(pieces "$1")" -gt 0 ]; }
+# more_than PIECES MAP SHARD: so many are computed, and more.
+more_than() { [ "$(pieces "$2" "$3")" -gt "$1" ]; }
 
 # task_on NODE: the shard that runs there.
 task_on() { squeue -h -t RUNNING -w "$1" -o %K; }
@@ -170,9 +170,6 @@ restarts() { scontrol show job -o "${shards}_$1" 2>/dev/null | sed -n 's/.* Rest
 
 # restarted SHARD [TIMES]
 restarted() { [ "$(restarts "$1")" = "${2:-1}" ]; }
-
-# computes SHARD: its program runs, and has for a moment.
-computes() { [ -n "$(program_of "$1")" ] && sleep 1 && [ -n "$(program_of "$1")" ]; }
 
 gone() { [ -z "$(squeue -h -j "$1" -o %i 2>/dev/null)" ]; }
 
@@ -205,8 +202,8 @@ if [ -z "$shards" ] || [ -z "$merge" ]; then fail "submit.sh said: $submitted"; 
 wait_for "shard on n1" runs_on n1
 wait_for "shard on n2" runs_on n2
 on_n1=$(task_on n1) on_n2=$(task_on n2)
-wait_for "pieces of shard $on_n1" begun "$on_n1"
-wait_for "pieces of shard $on_n2" begun "$on_n2"
+wait_for "pieces of shard $on_n1" more_than 0 cluster.h5 "$on_n1"
+wait_for "pieces of shard $on_n2" more_than 0 cluster.h5 "$on_n2"
 
 say "node n1 fails under shard $on_n1"
 kill_node n1
@@ -220,11 +217,12 @@ wait_for "restart of shard $on_n2" restarted "$on_n2"
 for third in 1 2 3; do
     if [ $third != "$on_n1" ] && [ $third != "$on_n2" ]; then break; fi
 done
-wait_for "shard $third" computes "$third"
+wait_for "pieces of shard $third" more_than 0 cluster.h5 "$third"
 say "shard $third is told that its time is up"
 scancel --batch --signal=USR1 "${shards}_$third"
 wait_for "restart of shard $third" restarted "$third"
-wait_for "shard $third" computes "$third"
+computed=$(pieces cluster.h5 "$third")
+wait_for "more pieces of shard $third" more_than "$computed" cluster.h5 "$third"
 say "shard $third is requeued"
 scontrol requeue "${shards}_$third"
 wait_for "second restart of shard $third" restarted "$third" 2
@@ -243,7 +241,7 @@ if grep 'No error' slipmap-*.log; then fail "a shard has requeued others"; fi
 
 say "a task is cancelled"
 shards=$(sbatch --parsable --array=1 --cpus-per-task=2 "$root/scripts/slurm/shard.sbatch" sweep.toml cancelled.h5 $SHARDS)
-wait_for "shard 1" computes 1
+wait_for "pieces of shard 1" more_than 0 cancelled.h5 1
 scancel "$shards"
 wait_for "end of the cancelled task" gone "$shards"
 state=$(scontrol show job -o "${shards}_1" | grep -o 'JobState=[A-Z]*')
