@@ -8,10 +8,11 @@ use crate::slip::motion::{Event, Mode, Motion};
 use crate::slip::outcome::{Observer, Outcome};
 
 /// What becomes of stick-slip beyond a graze.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Beyond {
-    /// It ends.
-    Ends,
+    /// It ends; the minima of ẋ after that, over v0, are not below this, where that is known, else 0; 1 where the block slides
+    /// and turns back at once.
+    Ends(f64),
     /// It is stick-slip of another kind, with so many slips in a period.
     Persists(usize),
     /// It is stick-slip that does not repeat.
@@ -53,17 +54,17 @@ pub(super) fn beyond(problem: &Problem, (v0, slip): (f64, f64), road: &mut impl 
         Some(Ok(lowest)) => lowest,
     };
     if lowest.u > CLEAR * v0 {
-        return Beyond::Ends;
+        return Beyond::Ends(lowest.u / v0);
     }
     let ends = |above: &f64| {
         let motion = road.place(v0 * (1.0 + above));
         // Else the graze is not known to that.
         !passes(motion, slip)
             || !stops_within(motion, lowest.since + AFTER)
-            || kind(problem, motion) == Beyond::Ends
+            || matches!(kind(problem, motion), Beyond::Ends(_))
     };
     match OTHER_STEPS.iter().all(ends) {
-        true => Beyond::Ends,
+        true => Beyond::Ends(lowest.u / v0),
         false => Beyond::Unknown,
     }
 }
@@ -73,9 +74,9 @@ pub(super) fn kind(problem: &Problem, motion: &mut Motion) -> Beyond {
     let v0 = motion.parameters().v0;
     let sustained = follow::fate(problem, motion, v0);
     match sustained.fate {
-        Fate::Slips => Beyond::Ends,
+        Fate::Slips => Beyond::Ends(0.0),
         Fate::Lost(Outcome::Undecided) | Fate::LiftOff => Beyond::Unknown,
-        Fate::Lost(_) => Beyond::Ends,
+        Fate::Lost(_) => Beyond::Ends(0.0),
         Fate::Periodic => Beyond::Persists(sustained.summary.slips as usize),
         Fate::Irregular => Beyond::Irregular,
     }
@@ -92,7 +93,7 @@ pub(super) fn without_stick(problem: &Problem, v0: f64, road: &mut impl Road) ->
             return kind(problem, motion);
         }
     }
-    Beyond::Ends
+    Beyond::Ends(1.0)
 }
 
 /// How far beyond a vanished stick is looked, relative, and for how long, in delays and two periods of free oscillation.

@@ -12,6 +12,8 @@ const NEAR: f64 = 1e-4;
 /// As near as this the last two trials tell, if they agree to that on where it ends.
 const QUITE_NEAR: f64 = 3e-3;
 const AGREES: f64 = 3e-6;
+/// As near as this by slopes of a problem like it.
+const AT_ONCE: f64 = 2e-5;
 /// The most trials.
 const MOST_TRIALS: u32 = 60;
 /// Periods that have not come to rest after a step larger than this may do so after a smaller one.
@@ -128,6 +130,8 @@ pub(super) struct Place {
     pub settled: f64,
     /// The gauges' derivatives with respect to v0; NaN before they are known.
     pub slopes: [f64; GAUGES],
+    /// Whether they are of this problem, not of one like it.
+    pub own: bool,
     /// Where the end was expected before this place was reached; NaN where it was not.
     pub expected: f64,
 }
@@ -141,6 +145,7 @@ impl Place {
             gauges,
             settled,
             slopes: [f64::NAN; GAUGES],
+            own: true,
             expected: f64::NAN,
         }
     }
@@ -168,12 +173,20 @@ impl Place {
         end / self.v0 - 1.0 < QUITE_NEAR && (end / self.expected - 1.0).abs() < AGREES
     }
 
+    /// Whether it is near enough for slopes that are not its own.
+    fn tells(&self) -> bool {
+        let end = self.end();
+        let as_expected = (end / self.expected - 1.0).abs() < AT_ONCE;
+        self.own || as_expected && end / self.v0 - 1.0 < AT_ONCE
+    }
+
     /// The next one.
     fn moved_to(&self, v0: f64, (period, gauges): (Period, [f64; GAUGES]), settled: f64) -> Self {
-        let mut slopes = self.slopes;
+        let (mut slopes, mut own) = (self.slopes, self.own);
         // At the same v0 only the gauges are better known.
         if v0 > self.v0 {
             slopes = std::array::from_fn(|i| (gauges[i] - self.gauges[i]) / (v0 - self.v0));
+            own = true;
         }
         Self {
             v0,
@@ -181,6 +194,7 @@ impl Place {
             gauges,
             settled,
             slopes,
+            own,
             expected: self.end(),
         }
     }
@@ -194,6 +208,8 @@ const CONTRACTION: f64 = 0.8;
 const NOISE: f64 = 1e-6;
 /// The share of the way to the expected end that is taken at once.
 const SHARE: f64 = 0.97;
+/// The same where slopes are not its own, and transients are of the first order in the step.
+const FIRST_SHARE: f64 = 0.7;
 
 /// How settled a trial has to be after a step of v0.
 fn needed(step: f64) -> f64 {
@@ -217,8 +233,8 @@ struct Reach {
 }
 
 impl Reach {
-    fn step(&self, v0: f64, gap: f64) -> f64 {
-        let step = (SHARE * gap).min(self.most);
+    fn step(&self, v0: f64, wanted: f64) -> f64 {
+        let step = wanted.min(self.most);
         let Some((failed, by)) = self.failed else {
             return step;
         };
@@ -252,8 +268,8 @@ pub(super) fn climb(road: &mut impl Road, mut at: Place, most: f64) -> (Climbed,
     let mut last = false;
     for _ in 0..MOST_TRIALS {
         let gap = at.gap().0;
-        let mut step = reach.step(at.v0, gap);
-        if step < SHARE * NEAR || at.agrees() {
+        let mut step = reach.step(at.v0, if at.own { SHARE } else { FIRST_SHARE } * gap);
+        if (step < SHARE * NEAR || at.agrees()) && at.tells() {
             if at.settled > SETTLED {
                 step = 0.0;
             } else if last || gap < NEAR || at.agrees() {

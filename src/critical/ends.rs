@@ -54,24 +54,57 @@ pub(super) fn same_slip(one: &Period, other: &Period, i: usize) -> bool {
 
 /// What the end of a climb comes to. The road's kept motion is just below it.
 pub(super) fn finish(problem: &Problem, road: &mut Orbit, climbed: Climbed, at: &Place) -> Found {
+    let end = arrive(road, climbed, at);
+    verify(problem, road, end).0
+}
+
+/// The same, before it is known what comes after it.
+pub(super) fn arrive(road: &mut Orbit, climbed: Climbed, at: &Place) -> Found {
     match climbed {
-        Climbed::Graze { v0, slip } => grazes(problem, road, v0, slip, at),
-        Climbed::Vanish(v0) => vanishes(problem, road, v0, at),
+        Climbed::Graze { v0, slip } => grazes(road, v0, slip, at),
+        Climbed::Vanish(v0) => vanishes(road, v0, at),
         Climbed::Changes(v0) => Found::Changes(v0),
-        Climbed::LiftOff(v0) if lifts(road, v0) => Found::LiftOff(v0),
-        Climbed::LiftOff(_) | Climbed::Unclear => Found::Unclear,
+        Climbed::LiftOff(v0) => Found::LiftOff(v0),
+        Climbed::Unclear => Found::Unclear,
     }
 }
 
-fn grazes(problem: &Problem, road: &mut Orbit, v0: f64, slip: usize, at: &Place) -> Found {
-    let below = v0 * (1.0 - PRECISION);
-    let Ran::Period(period, _) = road.trial(below, Some(&at.period), f64::INFINITY) else {
-        return Found::Unclear;
+/// What an end that was arrived at is when what comes after it is looked at; and how clearly, as a share of v0 that the block
+/// is away from stopping once more.
+pub(super) fn verify(problem: &Problem, road: &mut Orbit, end: Found) -> (Found, f64) {
+    let beyond = match end {
+        Found::Graze(v0, period) => beyond(problem, (v0, period.cycles()[0].slip), road),
+        Found::Vanish(v0, period) if attracts(road.motion().clone(), &period) => {
+            without_stick(problem, v0, road)
+        }
+        Found::LiftOff(v0) if lifts(road, v0) => return (end, 1.0),
+        Found::Vanish(..) | Found::LiftOff(_) => return (Found::Unclear, 0.0),
+        _ => return (end, 0.0),
     };
-    if !same_slip(&period, &at.period, slip) {
-        return Found::Unclear;
+    match beyond {
+        Beyond::Ends(clear) => (end, clear),
+        Beyond::Persists(slips) => (Found::Persists(slips), 0.0),
+        Beyond::Irregular => (Found::Irregular, 0.0),
+        Beyond::Unknown => (Found::Unclear, 0.0),
     }
-    road.keep();
+}
+
+/// A period this near below its end, relative, is as good as one at the end.
+const AT_END: f64 = 2.0 * PRECISION;
+
+fn grazes(road: &mut Orbit, v0: f64, slip: usize, at: &Place) -> Found {
+    let mut period = at.period;
+    if v0 > at.v0 * (1.0 + AT_END) {
+        let below = v0 * (1.0 - PRECISION);
+        let Ran::Period(last, _) = road.trial(below, Some(&at.period), f64::INFINITY) else {
+            return Found::Unclear;
+        };
+        if !same_slip(&last, &at.period, slip) {
+            return Found::Unclear;
+        }
+        road.keep();
+        period = last;
+    }
     if slip > 0 && !road.rotate(slip, &period) {
         return Found::Unclear;
     }
@@ -79,14 +112,13 @@ fn grazes(problem: &Problem, road: &mut Orbit, v0: f64, slip: usize, at: &Place)
     if !period.cycles()[0].to_minimum.is_finite() {
         return Found::Unclear;
     }
-    let slip = period.cycles()[0].slip;
-    told(beyond(problem, (v0, slip), road), Found::Graze(v0, period))
+    Found::Graze(v0, period)
 }
 
 /// A stick that vanishes leaves less than this of it, over √(M/κ), just below its end.
 const VANISHING: f64 = 1e-3;
 
-fn vanishes(problem: &Problem, road: &mut Orbit, v0: f64, at: &Place) -> Found {
+fn vanishes(road: &mut Orbit, v0: f64, at: &Place) -> Found {
     let below = v0 * (1.0 - PRECISION);
     let Ran::Period(period, gauges) = road.trial(below, Some(&at.period), CHECKED) else {
         return Found::Unclear;
@@ -95,15 +127,15 @@ fn vanishes(problem: &Problem, road: &mut Orbit, v0: f64, at: &Place) -> Found {
         return Found::Unclear;
     }
     road.keep();
-    if !attracts(road.motion().clone(), &period) {
-        return Found::Unclear;
-    }
-    told(without_stick(problem, v0, road), Found::Vanish(v0, period))
+    Found::Vanish(v0, period)
 }
 
 /// An orbit is disturbed by v0 being lower by this in one period, relative, and has so many to come back.
 const DISTURBED: f64 = 2e-4;
 const PERIODS_BACK: usize = 30;
+/// It has come back where so many in a row are nearer than this, relative to the first.
+const NEAR_IN_A_ROW: u32 = 4;
+const BACK: f64 = 0.05;
 /// Sticks do not come nearer to one another than this.
 const STICKS_NOISE: f64 = 1e-7;
 
@@ -126,20 +158,24 @@ fn attracts(mut motion: Motion, period: &Period) -> bool {
         }
         first.map(|first| (first - stick).abs())
     });
-    let disturbed = distances.next();
-    let back = distances.nth(PERIODS_BACK - 1);
-    disturbed
-        .zip(back)
-        .is_some_and(|(disturbed, back)| back < (0.5 * disturbed).max(STICKS_NOISE))
-}
-
-fn told(beyond: Beyond, end: Found) -> Found {
-    match beyond {
-        Beyond::Ends => end,
-        Beyond::Persists(slips) => Found::Persists(slips),
-        Beyond::Irregular => Found::Irregular,
-        Beyond::Unknown => Found::Unclear,
+    let Some(disturbed) = distances.next() else {
+        return false;
+    };
+    let (mut periods, mut near) = (0, 0);
+    for back in distances {
+        periods += 1;
+        near = match back < (BACK * disturbed).max(STICKS_NOISE) {
+            true => near + 1,
+            false => 0,
+        };
+        if near == NEAR_IN_A_ROW {
+            return true;
+        }
+        if periods == PERIODS_BACK {
+            return back < (0.5 * disturbed).max(STICKS_NOISE);
+        }
     }
+    false
 }
 
 /// The velocity of lift-off is checked this far below and above it, relative.

@@ -2,14 +2,14 @@
 //!
 //! Such a continuation may go on along a branch of grazes that stick-slip raised from low velocities does not come to. So the
 //! cells at both ends of a stretch are looked for from scratch, and what is continued from the one has to meet the other;
-//! else the stretch is halved. A line is cut into blocks for that, so that the answer in a cell depends on its block alone.
+//! else the stretch is halved. Where a kind of stick-slip ends, so does a stretch. A line is cut into blocks for that, so that the answer in a cell depends on its block alone.
 
 use super::search::from_scratch;
 use super::track::Track;
 use super::{Critical, End, Method, Problem, of_found};
 
 /// Cells of a block; blocks start at multiples of it.
-pub const BLOCK: usize = 32;
+pub const BLOCK: usize = 128;
 /// How well a continuation has to meet what was found from scratch, relative.
 const MEETS: f64 = 3e-5;
 
@@ -72,37 +72,57 @@ impl Block<'_> {
             if reached == last {
                 return;
             }
-            // From scratch: the next cell where there is nothing to continue, else the middle of the way that does not meet.
-            let next = match reached == first {
-                true => first + 1,
-                false => usize::midpoint(first, reached + 1),
-            };
-            let continued = self.found[next];
-            let from = self.start(next);
-            let met = match (&continued, &self.found[next]) {
-                (Some(a), Some(b)) => next <= reached && meets(a, b),
-                _ => false,
-            };
-            if !met {
-                self.fill(first, next, start);
+            if reached > first {
+                let (met, there) = self.meet(reached);
+                if !met {
+                    self.halve(first, reached, start);
+                    (first, track) = (reached, there);
+                    continue;
+                }
             }
-            (first, track) = (next, from);
+            // Its kind of stick-slip ends there.
+            first = reached + 1;
+            if first < last {
+                track = self.start(first);
+            }
         }
     }
 
-    /// Continues from `first` on; how far it leads: `last` if it meets what is known there.
+    /// Fills the cells between two that were found from scratch where the first one does not lead to the other.
+    fn halve(&mut self, first: usize, last: usize, track: Option<Track>) {
+        let middle = usize::midpoint(first, last);
+        if middle == first {
+            return;
+        }
+        let (met, there) = self.meet(middle);
+        if !met {
+            self.halve(first, middle, track);
+        }
+        self.fill(middle, last, there);
+    }
+
+    /// Looks for a cell from scratch that was continued to: whether that meets, and its track.
+    fn meet(&mut self, cell: usize) -> (bool, Option<Track>) {
+        let continued = self.found[cell];
+        let track = self.start(cell);
+        let both = continued.zip(self.found[cell]);
+        (both.is_some_and(|(a, b)| meets(&a, &b)), track)
+    }
+
+    /// Continues from `first` on; how far it is known to lead: to `last` if it meets what is known there.
     fn advance(&mut self, first: usize, last: usize, track: &mut Track) -> usize {
+        let mut seen = first;
         for cell in first + 1..=last {
             let next = track.next(&self.problems[cell]);
             let found = next.and_then(|found| of_found(&found, Method::GrazeOrbit));
             let Some(mut critical) = found else {
-                return cell - 1;
+                return seen;
             };
             critical.decided = track.decided;
             if cell == last {
                 let met = self.found[last].filter(|there| meets(there, &critical));
                 let Some(there) = met else {
-                    return cell - 1;
+                    return seen;
                 };
                 // What is in doubt at one end is so on the way.
                 for between in self.found[first + 1..last].iter_mut().flatten() {
@@ -111,6 +131,9 @@ impl Block<'_> {
                 return last;
             }
             self.found[cell] = Some(critical);
+            if track.seen() {
+                seen = cell;
+            }
         }
         last
     }

@@ -108,7 +108,7 @@ fn slip_grazes(road: &mut Slips, v0: f64, at: &Place) -> Option<Found> {
     }
     let slip = period.cycles()[0].slip;
     match beyond(road.problem, (v0, slip), road) {
-        Beyond::Ends => Some(Found::Graze(v0, period)),
+        Beyond::Ends(_) => Some(Found::Graze(v0, period)),
         // From here on the orbit is followed.
         _ => None,
     }

@@ -204,6 +204,7 @@ impl Orbit {
         self.before.v0 = f64::NAN;
         Some(Place {
             slopes: like.slopes,
+            own: false,
             ..Place::first(v0, period, gauges, SETTLED)
         })
     }

@@ -95,7 +95,7 @@ impl Next {
         match beyond {
             Beyond::Persists(slips) => Self::Periodic(motion, slips),
             Beyond::Irregular => Self::Irregular(motion),
-            Beyond::Ends => Self::Ends(step),
+            Beyond::Ends(_) => Self::Ends(step),
             Beyond::Unknown => Self::Unknown,
         }
     }

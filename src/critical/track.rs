@@ -1,8 +1,8 @@
 //! The end of an orbit as the start of its neighbour's search, on a line of delays.
 
 use super::Problem;
-use super::climb::{Place, climb};
-use super::ends::{Found, finish};
+use super::climb::{Place, climb, jumps};
+use super::ends::{Found, arrive, verify};
 use super::orbit::{At, Orbit};
 
 /// An orbit at its end, from which the next cell of a line starts.
@@ -14,23 +14,80 @@ pub(super) struct Track {
     before: Option<At>,
     /// Delays and ends of the cells before, the last ones.
     ends: Vec<(f64, f64)>,
-    /// Whether it ends by lift-off.
-    lifts: bool,
+    /// How it ends.
+    ending: Ending,
     /// How far off the end was last expected, relative.
     off: f64,
+    /// How far below the expected end the next cell starts at least, relative, and how much nearer the one after it may.
+    near: f64,
+    nearer: f64,
+    /// Cells in a row that ended by the slopes of one before.
+    borrowed: u32,
+    /// How clearly stick-slip was seen to end where that was looked at last, and by how much that changed from cell to cell; NaN
+    /// where it is not known.
+    clear: f64,
+    change: f64,
+    /// Ends since then.
+    unseen: u32,
     /// Whether it is known that stick-slip leads there.
     pub decided: bool,
 }
 
 /// How far off an end is taken to be before anything is known.
 const FIRST_OFF: f64 = 0.02;
-/// The least and the largest distance from the expected end at which a cell starts, relative.
-const NEAREST: f64 = 3e-4;
+/// How orbits end that can be continued.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Ending {
+    Graze,
+    Vanish,
+    LiftOff,
+}
+
+impl Ending {
+    fn of(found: &Found) -> Self {
+        match found {
+            Found::LiftOff(_) => Self::LiftOff,
+            Found::Vanish(..) => Self::Vanish,
+            _ => Self::Graze,
+        }
+    }
+
+    /// From how far below the expected end a cell starts, relative: at first, as the transient of a new start, of a size that is
+    /// not known yet, can bring about an end too early; and at least, as gauges have their noise.
+    fn nearest(self) -> [f64; 2] {
+        match self {
+            Self::Graze => [3e-4, 1e-5],
+            Self::Vanish => [3e-3, 1e-3],
+            Self::LiftOff => [3e-3, 1e-5],
+        }
+    }
+}
+
+/// Why a cell is not come to.
+enum Lost {
+    /// Its orbit goes on as another one.
+    Goes,
+    /// Not known.
+    Unknown,
+}
+
+/// The largest distance from the expected end at which a cell starts, relative.
 const FARTHEST: f64 = 0.1;
-/// The least one from lift-off, which the transient of a new start can bring about too early.
-const NEAREST_LIFT: f64 = 3e-3;
+/// So many cells in a row may end by the slopes of one before, and from so far below its end, relative, the next one starts.
+const MOST_BORROWED: u32 = 8;
+const FOR_SLOPES: f64 = 1e-4;
+/// How much nearer the next cell may start, where this was as easy, and where it was not.
+const NEARER: [f64; 2] = [0.1, 0.5];
+/// How many ends there may be in a row of which it is not looked at what comes after them; how clearly, at least, stick-slip ended
+/// before; and how many times as much as it did that may change.
+const MOST_UNSEEN: u32 = 3;
+const CLEAR: f64 = 2e-3;
+const CAUTION: f64 = 6.0;
+const SMALL_CHANGE: f64 = 0.03;
 /// The largest change of the delay from cell to cell, relative.
 const LARGEST_CHANGE: f64 = 0.5;
+/// No way that is shorter is cut into parts.
+const LEAST_CHANGE: f64 = 2e-3;
 /// How far from the last end, in its logarithm, the next one is looked for.
 const FARTHEST_LOG: f64 = 0.5;
 /// The most trials on the way from one cell to the next, and the part of a way that is tried where the whole of it failed.
@@ -42,6 +99,7 @@ const KNOWN_ENDS: usize = 3;
 impl Track {
     /// From the end that was `found` of `problem` at the last place of `road`.
     pub fn new(problem: &Problem, road: Orbit, at: Place, found: &Found) -> Self {
+        let ending = Ending::of(found);
         Self {
             road,
             at,
@@ -51,8 +109,14 @@ impl Track {
                 .map(|end| (problem.tau, end))
                 .into_iter()
                 .collect(),
-            lifts: matches!(found, Found::LiftOff(..)),
+            ending,
             off: FIRST_OFF,
+            near: ending.nearest()[0],
+            nearer: NEARER[0],
+            borrowed: 0,
+            clear: f64::NAN,
+            change: f64::NAN,
+            unseen: 0,
             decided: true,
         }
     }
@@ -66,13 +130,28 @@ impl Track {
 
     /// The same, by way of delays in between where the whole way is too far, within so many `trials`.
     fn approach(&mut self, problem: &Problem, trials: &mut u32) -> Option<Found> {
-        *trials = trials.checked_sub(1)?;
-        let from = self.clone();
-        if let Some(found) = self.attempt(problem) {
-            return Some(found);
+        let first = self.ending.nearest()[0];
+        loop {
+            *trials = trials.checked_sub(1)?;
+            let from = self.clone();
+            let lost = match self.attempt(problem) {
+                Ok(found) => return Some(found),
+                Err(lost) => lost,
+            };
+            *self = from;
+            if self.near >= first {
+                match lost {
+                    Lost::Goes => return None,
+                    Lost::Unknown => break,
+                }
+            }
+            // It may have been too near.
+            (self.near, self.nearer) = (first, NEARER[1]);
         }
-        *self = from;
         let last = self.ends.last()?.0;
+        if (problem.tau / last - 1.0).abs() < LEAST_CHANGE {
+            return None;
+        }
         let between = Problem {
             tau: last + PART * (problem.tau - last),
             ..problem.clone()
@@ -81,53 +160,110 @@ impl Track {
         self.approach(problem, trials)
     }
 
-    fn attempt(&mut self, problem: &Problem) -> Option<Found> {
-        let last = *self.ends.last()?;
+    fn attempt(&mut self, problem: &Problem) -> Result<Found, Lost> {
+        let last = *self.ends.last().ok_or(Lost::Unknown)?;
         if (problem.tau / last.0 - 1.0).abs() > LARGEST_CHANGE {
-            return None;
+            return Err(Lost::Unknown);
         }
         let expected = self.expected(problem.tau);
-        let nearest = if self.lifts { NEAREST_LIFT } else { NEAREST };
-        // An orbit that has to change starts with a transient, a small one where its past is extrapolated.
-        let change = (expected / last.1 - 1.0).abs();
-        let transient = if self.before.is_some() { 0.01 } else { 0.15 };
-        let off = (2.0 * self.off)
-            .max(transient * change)
-            .clamp(nearest, FARTHEST);
+        let mut off = (2.0 * self.off).max(self.near).min(FARTHEST);
+        if self.before.is_none() {
+            // An orbit that has to change starts with a transient, a small one where its past is extrapolated.
+            off = (0.15 * (expected / last.1 - 1.0).abs()).clamp(off, FARTHEST);
+        }
+        if self.borrowed == MOST_BORROWED {
+            off = off.max(FOR_SLOPES);
+        }
         let ended = self.road.place_kept().clone();
-        let offs = [off, 4.0 * off, 2.0 * FARTHEST].into_iter();
-        let from = offs
-            .map(|off| expected * (1.0 - off))
-            .find_map(|v0| self.start(problem.tau, v0))?;
+        let offs = [off, 4.0 * off, 2.0 * FARTHEST];
+        let tried = (0..offs.len()).find_map(|i| {
+            let from = self.start(problem.tau, expected * (1.0 - offs[i]))?;
+            Some((i, Place { expected, ..from }))
+        });
+        let (tries, from) = tried.ok_or(Lost::Unknown)?;
+        if tries > 0 {
+            self.nearer = NEARER[1];
+        }
+        let nearest = self.ending.nearest()[1];
+        self.near = (self.nearer * offs[tries]).max(nearest);
         let (climbed, at) = climb(&mut self.road, from, FARTHEST);
-        let found = finish(problem, &mut self.road, climbed, &at);
-        let end = found.end()?;
+        let mut found = arrive(&mut self.road, climbed, &at);
+        if self.unseen >= self.may_be_unseen(problem.tau) {
+            let (seen, clear) = verify(problem, &mut self.road, found);
+            found = seen;
+            self.see(clear);
+        } else {
+            self.unseen += 1;
+        }
+        let end = match found {
+            Found::Persists(_) | Found::Irregular | Found::Changes(_) => return Err(Lost::Goes),
+            _ => found.end().ok_or(Lost::Unknown)?,
+        };
         self.off = (end / expected - 1.0).abs();
+        self.borrowed = if at.own { 0 } else { self.borrowed + 1 };
         self.at = at;
-        self.lifts = matches!(found, Found::LiftOff(..));
+        self.ending = Ending::of(&found);
         self.before = Some(ended);
         if self.ends.len() == KNOWN_ENDS {
             self.ends.remove(0);
         }
         self.ends.push((problem.tau, end));
-        Some(found)
+        Ok(found)
+    }
+
+    /// How many ends in a row may be taken for ends of stick-slip because it clearly ended at those before: what the block does
+    /// beyond them changes smoothly along a line.
+    fn may_be_unseen(&self, tau: f64) -> u32 {
+        if self.ending == Ending::Vanish {
+            // Sticks are as short beyond their end as before it: only a small change says that nothing else becomes of it.
+            let small = self
+                .ends
+                .last()
+                .is_some_and(|last| (tau / last.0 - 1.0).abs() < SMALL_CHANGE);
+            return if small && self.clear > 0.0 {
+                MOST_UNSEEN
+            } else {
+                0
+            };
+        }
+        let changes = CAUTION * self.change;
+        match self.clear {
+            // Not for NaN.
+            clear if clear > CLEAR && changes < clear => {
+                ((clear / changes) as u32).min(MOST_UNSEEN + 1) - 1
+            }
+            _ => 0,
+        }
+    }
+
+    /// Learns how clearly stick-slip ends.
+    fn see(&mut self, clear: f64) {
+        self.change = (clear - self.clear).abs() / f64::from(self.unseen + 1);
+        (self.clear, self.unseen) = (clear, 0);
+    }
+
+    /// Whether it was seen that stick-slip ends where the last cell says.
+    pub fn seen(&self) -> bool {
+        self.unseen == 0
     }
 
     /// A first place at another delay.
     fn start(&mut self, tau: f64, v0: f64) -> Option<Place> {
-        let [.., one, other] = self.ends[..] else {
-            return self.road.restart(None, (v0, tau), &self.at);
+        let last = self.ends.last()?.0;
+        let before = match (&self.ends[..], &mut self.before) {
+            ([.., one, other], Some(before)) => Some((before, (tau - other.0) / (other.0 - one.0))),
+            _ => None,
         };
-        let share = (tau - other.0) / (other.0 - one.0);
-        let before = self.before.as_mut().map(|before| (before, share));
-        self.road.restart(before, (v0, tau), &self.at)
+        let place = self.road.restart(before, (v0, tau), &self.at)?;
+        let change = (v0 / self.at.v0 - 1.0).abs().max((tau / last - 1.0).abs());
+        (!jumps(&self.at.period, &place.period, change)).then_some(place)
     }
 
     /// Learns of the cell before, whose end was found otherwise: an end like its own expects the next one better.
     pub fn recall(&mut self, tau: f64, end: f64) {
         if self.ends.len() < KNOWN_ENDS && self.ends.first().is_some_and(|first| tau < first.0) {
             self.ends.insert(0, (tau, end));
-            self.off = NEAREST.max(0.25 * self.off);
+            self.off = self.ending.nearest()[1].max(0.25 * self.off);
         }
     }
 

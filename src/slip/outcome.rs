@@ -355,7 +355,13 @@ impl Watch {
             self.window.equal = 0;
             return;
         }
-        let deviation = step.deviation(self.v0, self.rest);
+        // What is large matters where it is larger than what was seen before.
+        let now = (motion.u - self.v0).abs().max((motion.a - self.rest).abs());
+        let known = match now > SMALL * self.v0 {
+            true => self.window.amplitude.max(now),
+            false => 0.0,
+        };
+        let deviation = step.deviation((self.v0, self.rest), known);
         self.see_decay(motion.t, step.length, deviation);
         self.see_amplitude(motion.t, deviation);
     }

@@ -34,17 +34,42 @@ const BINOMIAL: [Coefficients; MOST_ORDER + 1] = {
     rows
 };
 
-/// Σ c_k s^k, by Horner's scheme for even and for odd powers: half as long a chain of operations.
+/// Σ f(c_k) s^k, by Horner's scheme for every fourth power: a quarter as long a chain of operations.
+#[inline(always)]
+fn sum(c: &[f64], s: f64, f: impl Fn(f64) -> f64) -> f64 {
+    let square = s * s;
+    let fourth = square * square;
+    let fours = c.chunks_exact(4);
+    let mut sums = [0.0; 4];
+    for (sum, c) in sums.iter_mut().zip(fours.remainder()) {
+        *sum = f(*c);
+    }
+    for four in fours.rev() {
+        for (sum, c) in sums.iter_mut().zip(four) {
+            *sum = *sum * fourth + f(*c);
+        }
+    }
+    (sums[0] + s * sums[1]) + square * (sums[2] + s * sums[3])
+}
+
+/// Σ c_k s^k.
 #[inline]
 #[must_use]
 pub fn value(c: &[f64], s: f64) -> f64 {
-    let square = s * s;
-    let pairs = c.chunks_exact(2);
-    let last = pairs.remainder().first().copied().unwrap_or(0.0);
-    let (even, odd) = pairs.rev().fold((last, 0.0), |(even, odd), pair| {
-        (even * square + pair[0], odd * square + pair[1])
-    });
-    even + s * odd
+    sum(c, s, |c| c)
+}
+
+/// Σ |c_k| s^k.
+#[inline]
+fn size(c: &[f64], s: f64) -> f64 {
+    sum(c, s, f64::abs)
+}
+
+/// How far from c₀ a polynomial may come on [0, `end`] at most.
+#[inline]
+#[must_use]
+pub fn spread(c: &[f64], end: f64) -> f64 {
+    end * size(&c[1..], end)
 }
 
 /// Value and derivative.
@@ -101,24 +126,24 @@ pub fn product(p: &Coefficients, q: &Coefficients, k: usize) -> f64 {
 pub fn first_zero(c: &[f64], end: f64) -> Option<f64> {
     let multiplicity = c.iter().position(|&c| c != 0.0)?;
     let c = &c[multiplicity..];
-    let size = |from: usize, weight: fn(f64) -> f64| {
-        let mut power = 1.0;
-        let mut sum = 0.0;
-        for (k, c) in c.iter().enumerate().skip(from) {
-            sum += weight(k as f64) * c.abs() * power;
-            power *= end;
-        }
-        sum
-    };
     // The rest of the series cannot outweigh its first term.
-    if c[0] > 0.0 && c[0] > end * size(1, |_| 1.0) {
+    if c[0] > 0.0 && c[0] > spread(c, end) {
         return None;
     }
-    let bend = size(2, |k| k * (k - 1.0));
+    let (mut bend, mut rounding) = (0.0, c[0].abs());
+    let mut power = 1.0;
+    for (k, c) in c.iter().enumerate().skip(1) {
+        let k = k as f64;
+        let before = c.abs() * power;
+        power *= end;
+        bend += k * (k - 1.0) * before;
+        rounding += (1.0 + k) * c.abs() * power;
+    }
+    bend /= end;
     if !bend.is_finite() {
         return None;
     }
-    let rounding = 4.0 * f64::EPSILON * size(0, |k| 1.0 + k);
+    rounding *= 4.0 * f64::EPSILON;
     let mut s = 0.0;
     loop {
         let (value, slope) = value_and_slope(c, s);
@@ -154,40 +179,64 @@ pub fn first_zero(c: &[f64], end: f64) -> Option<f64> {
 /// Extrema are looked for in eighths of the range; a step of an integrator holds one at most.
 #[must_use]
 pub fn largest(c: &[f64], end: f64, known: f64) -> f64 {
-    let bound = c[1..]
-        .iter()
-        .rev()
-        .fold(0.0, |sum, c| (sum + c.abs()) * end);
-    if c[0] + bound <= known {
+    let Some((first, rest)) = c.split_first() else {
+        return known;
+    };
+    if first + spread(c, end) <= known {
         return known;
     }
-    let mut found = known.max(c[0]).max(value(c, end));
+    let mut found = known.max(*first).max(value(c, end));
+    let mut slopes = [0.0; MOST_ORDER + 1];
+    let slopes = &mut slopes[..rest.len()];
+    for (k, (slope, c)) in slopes.iter_mut().zip(rest).enumerate() {
+        *slope = (k + 1) as f64 * c;
+    }
     // Where the slope cannot change its sign the ends tell.
-    let bend = c.iter().enumerate().skip(2).rev();
-    let change = bend.fold(0.0, |sum, (k, c)| (sum + k as f64 * c.abs()) * end);
-    if c.get(1).is_some_and(|slope| slope.abs() >= change) {
+    let alone = |c: &[f64]| c.len() < 2 || c[0].abs() >= spread(c, end);
+    if alone(slopes) {
         return found;
     }
-    let at = |i: u32| end * f64::from(i) / 8.0;
-    let mut slope_before = value_and_slope(c, 0.0).1;
-    for i in 1..=8 {
-        let slope = value_and_slope(c, at(i)).1;
-        if slope_before > 0.0 && slope <= 0.0 {
-            let (mut from, mut to) = (at(i - 1), at(i));
-            // Quadratic at its top: half the digits of the place are all of the value.
-            for _ in 0..27 {
-                let middle = 0.5 * (from + to);
-                if value_and_slope(c, middle).1 > 0.0 {
-                    from = middle;
-                } else {
-                    to = middle;
-                }
-            }
-            found = found.max(value(c, from));
+    let mut bends = [0.0; MOST_ORDER + 1];
+    let bends = &mut bends[..slopes.len() - 1];
+    for (k, (bend, c)) in bends.iter_mut().zip(&slopes[1..]).enumerate() {
+        *bend = (k + 1) as f64 * c;
+    }
+    // Where the slope only grows or only falls, they tell whether there is a top.
+    let parts = if alone(bends) { 1 } else { 8 };
+    let at = |i: u32| end * f64::from(i) / f64::from(parts);
+    let mut from = slopes[0];
+    for i in 0..parts {
+        let to = value(slopes, at(i + 1));
+        if from > 0.0 && to <= 0.0 {
+            found = found.max(value(c, top(slopes, bends, (at(i), at(i + 1)))));
         }
-        slope_before = slope;
+        from = to;
     }
     found
+}
+
+/// Where the slope changes its sign, by Newton's method kept between `from`, where it is positive, and `to`.
+fn top(slopes: &[f64], bends: &[f64], (mut from, mut to): (f64, f64)) -> f64 {
+    let near = 1e-9 * (to - from);
+    let mut s = 0.5 * (from + to);
+    // Halves at least; quadratic at its top, half the digits of the place are all of the value.
+    for _ in 0..30 {
+        let slope = value(slopes, s);
+        match slope > 0.0 {
+            true => from = s,
+            false => to = s,
+        }
+        let newton = s - slope / value(bends, s);
+        let next = match newton > from && newton < to {
+            true => newton,
+            false => 0.5 * (from + to),
+        };
+        if (next - s).abs() <= near {
+            return next;
+        }
+        s = next;
+    }
+    s
 }
 
 #[cfg(test)]

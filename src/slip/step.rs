@@ -2,7 +2,9 @@
 //! off them.
 
 use super::friction_series::Series;
-use super::series::{Coefficients, MOST_ORDER, PER_NEXT, first_zero, largest, shifted, value};
+use super::series::{
+    Coefficients, MOST_ORDER, PER_NEXT, first_zero, largest, shifted, spread, value,
+};
 
 /// The polynomials of one step, of the time since its start.
 #[derive(Debug, Clone)]
@@ -61,6 +63,9 @@ impl Step {
     /// The smaller one of `known` and the smallest load of the step.
     #[must_use]
     pub fn smallest_load(&self, known: f64) -> f64 {
+        if self.n[0] - spread(Self::range(&self.n, self.order), self.length) >= known {
+            return known;
+        }
         let flipped = Self::scaled(&self.n, -1.0, 0.0);
         -largest(Self::range(&flipped, self.order), self.length, -known)
     }
@@ -68,33 +73,32 @@ impl Step {
     /// The larger one of `known` and the largest |a| of the step.
     #[must_use]
     pub fn largest_elongation(&self, known: f64) -> f64 {
-        let flipped = Self::scaled(&self.a, -1.0, 0.0);
-        let one_way = largest(Self::range(&self.a, self.order), self.length, known);
-        largest(Self::range(&flipped, self.order), self.length, one_way)
+        self.farthest(&self.a, 0.0, known)
     }
 
-    /// The largest |ẋ − `v0`| or |a − `rest`| of the step.
+    /// The largest |ẋ − `v0`| or |a − `rest`| of the step, or `known` if that is larger.
     #[must_use]
-    pub fn deviation(&self, v0: f64, rest: f64) -> f64 {
-        let mut found = 0.0;
-        for (c, centre) in [(&self.u, v0), (&self.a, rest)] {
-            for factor in [1.0, -1.0] {
-                let c = Self::scaled(c, factor, -factor * centre);
-                found = largest(Self::range(&c, self.order), self.length, found);
-            }
+    pub fn deviation(&self, (v0, rest): (f64, f64), known: f64) -> f64 {
+        let one = self.farthest(&self.u, v0, known);
+        self.farthest(&self.a, rest, one)
+    }
+
+    /// The largest distance of `c` from `centre`, or `known` if that is larger.
+    fn farthest(&self, c: &Coefficients, centre: f64, known: f64) -> f64 {
+        if (c[0] - centre).abs() + spread(Self::range(c, self.order), self.length) <= known {
+            return known;
         }
-        found
+        [1.0, -1.0].iter().fold(known, |found, factor| {
+            let c = Self::scaled(c, *factor, -factor * centre);
+            largest(Self::range(&c, self.order), self.length, found)
+        })
     }
 
     /// The last time in the step at which |ẋ − `v0`| exceeds `band`; none if it never does.
     #[must_use]
     pub fn last_outside(&self, v0: f64, band: f64) -> Option<f64> {
         let u = Self::range(&self.u, self.order);
-        let spread = u[1..]
-            .iter()
-            .rev()
-            .fold(0.0, |sum, c| (sum + c.abs()) * self.length);
-        if (u[0] - v0).abs() + spread <= band {
+        if (u[0] - v0).abs() + spread(u, self.length) <= band {
             return None;
         }
         if (value(u, self.length) - v0).abs() > band {
