@@ -10,6 +10,12 @@ use super::{Critical, End, Method, Problem, of_found};
 
 /// Cells of a block; blocks start at multiples of it.
 pub const BLOCK: usize = 128;
+/// Cells of a stretch, at both ends of which cells are looked for from scratch; and the same where stick-slip of one kind followed
+/// that of another on the way to its end, and may end earlier.
+const STRETCH: usize = 64;
+const SHORT_STRETCH: usize = 16;
+/// Every so many ends that are not where they were expected are looked for from scratch.
+const SURPRISES: usize = 2;
 /// How well a continuation has to meet what was found from scratch, relative.
 const MEETS: f64 = 3e-5;
 
@@ -29,8 +35,8 @@ pub fn critical_velocities(
         let track = block.start(0);
         if last > 0 {
             block.start(last);
-            block.fill(0, last, track);
         }
+        block.fill(0, last, track);
     }
     block.found
 }
@@ -61,16 +67,29 @@ impl Block<'_> {
         track
     }
 
-    /// Fills the cells between two that were found from scratch, the first one with its track.
-    fn fill(&mut self, mut first: usize, last: usize, mut track: Option<Track>) {
-        while last - first > 1 && !(self.stopped)() {
+    /// Fills the cells between two that were found from scratch, the first one with its track; the track that led to the last one
+    /// if one did.
+    fn fill(&mut self, mut first: usize, last: usize, mut track: Option<Track>) -> Option<Track> {
+        while first < last && !(self.stopped)() {
+            let one_kind = track.as_ref().is_none_or(|track| track.one_kind);
+            let next = first + if one_kind { STRETCH } else { SHORT_STRETCH };
+            if next < last {
+                let there = self.start(next);
+                track = match (self.fill(first, next, track), there) {
+                    // It goes on where it is well on its way.
+                    (Some(led), Some(there)) => Some(led.like(&there)),
+                    (_, there) => there,
+                };
+                first = next;
+                continue;
+            }
             let start = track.clone();
             let reached = match &mut track {
                 Some(track) => self.advance(first, last, track),
                 None => first,
             };
             if reached == last {
-                return;
+                return track;
             }
             if reached > first {
                 let (met, there) = self.meet(reached);
@@ -86,6 +105,7 @@ impl Block<'_> {
                 track = self.start(first);
             }
         }
+        None
     }
 
     /// Fills the cells between two that were found from scratch where the first one does not lead to the other.
@@ -111,7 +131,7 @@ impl Block<'_> {
 
     /// Continues from `first` on; how far it is known to lead: to `last` if it meets what is known there.
     fn advance(&mut self, first: usize, last: usize, track: &mut Track) -> usize {
-        let mut seen = first;
+        let (mut seen, mut checked) = (first, first);
         for cell in first + 1..=last {
             let next = track.next(&self.problems[cell]);
             let found = next.and_then(|found| of_found(&found, Method::GrazeOrbit));
@@ -131,7 +151,13 @@ impl Block<'_> {
                 return last;
             }
             self.found[cell] = Some(critical);
-            if track.seen() {
+            if track.surprised() && cell >= checked + SURPRISES {
+                // Where ends change as fast as that along the line, stick-slip may have another one below.
+                if !self.meet(cell).0 {
+                    return seen;
+                }
+                (checked, seen) = (cell, cell);
+            } else if track.seen() {
                 seen = cell;
             }
         }

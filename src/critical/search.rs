@@ -114,7 +114,7 @@ impl Kinds<'_> {
     /// From a place of an orbit on.
     fn follow(&mut self, mut road: Orbit, mut place: Place) -> Reached {
         let mut step = LARGEST_STEP;
-        for _ in 0..MOST_KINDS {
+        for kind in 0..MOST_KINDS {
             let start = road.motion().clone();
             let (climbed, at) = climb_finely(&mut road, place, step);
             let found = finish(self.problem, &mut road, climbed, &at);
@@ -123,12 +123,14 @@ impl Kinds<'_> {
                 Found::Irregular => Next::Irregular(road.tried().clone()),
                 Found::Changes(v0) => match changed(self.problem, &mut road, v0) {
                     // Nothing is left of it.
-                    Next::Ends(_) => return self.end(road, at, &Found::Vanish(v0, at.period)),
+                    Next::Ends(_) => {
+                        return self.end(road, at, &Found::Vanish(v0, at.period), kind);
+                    }
                     next => next,
                 },
                 Found::Unclear => recognised(self.problem, &road, &at),
                 Found::Graze(..) | Found::Vanish(..) | Found::LiftOff(..) => {
-                    return self.end(road, at, &found);
+                    return self.end(road, at, &found, kind);
                 }
             };
             let from = |road: &Orbit| [road.motion().clone(), start.clone()].to_vec();
@@ -155,10 +157,12 @@ impl Kinds<'_> {
         Reached::Motion(vec![road.motion().clone()], FIRST_STEP)
     }
 
-    fn end(&self, road: Orbit, at: Place, found: &Found) -> Reached {
+    /// The end that the last kind of stick-slip has, after so many others.
+    fn end(&self, road: Orbit, at: Place, found: &Found, others: usize) -> Reached {
         match of_found(found, Method::GrazeOrbit) {
             Some(critical) => {
-                let track = Track::new(self.problem, road, at, found);
+                let mut track = Track::new(self.problem, road, at, found);
+                track.one_kind = others == 0 && self.entry.is_none();
                 Reached::End(critical, Box::new(track))
             }
             None => Reached::Motion(vec![road.motion().clone()], FIRST_STEP),

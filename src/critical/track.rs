@@ -31,6 +31,8 @@ pub(super) struct Track {
     unseen: u32,
     /// Whether it is known that stick-slip leads there.
     pub decided: bool,
+    /// Whether stick-slip is of one kind all the way from low velocities.
+    pub one_kind: bool,
 }
 
 /// How far off an end is taken to be before anything is known.
@@ -95,6 +97,8 @@ const FARTHEST_LOG: f64 = 0.5;
 /// The most trials on the way from one cell to the next, and the part of a way that is tried where the whole of it failed.
 const MOST_TRIALS: u32 = 8;
 const PART: f64 = 0.25;
+/// An end so far from where it was expected, relative, is one that changes fast along the line.
+const SURPRISE: f64 = 3e-4;
 /// Ends that an expectation is made of.
 const KNOWN_ENDS: usize = 3;
 
@@ -120,7 +124,14 @@ impl Track {
             change: f64::NAN,
             unseen: 0,
             decided: true,
+            one_kind: true,
         }
+    }
+
+    /// The same with what is known of one that was come to from scratch at the same delay.
+    pub fn like(mut self, other: &Self) -> Self {
+        (self.decided, self.one_kind) = (other.decided, other.one_kind);
+        self
     }
 
     /// The end of stick-slip of `problem`, which differs by its delay alone from the one before; none where the orbit before
@@ -244,6 +255,11 @@ impl Track {
     fn see(&mut self, clear: f64) {
         self.change = (clear - self.clear).abs() / f64::from(self.unseen + 1);
         (self.clear, self.unseen) = (clear, 0);
+    }
+
+    /// Whether the last end was not where the ends before made it expected.
+    pub fn surprised(&self) -> bool {
+        self.ends.len() == KNOWN_ENDS && self.off > SURPRISE
     }
 
     /// Whether it was seen that stick-slip ends where the last cell says.
