@@ -367,6 +367,26 @@ fn lines_are_what_their_cells_are() {
     assert!(none.iter().all(Option::is_none));
 }
 
+/// Over a few delays a graze opens below the one that a line follows: stick-slip raised from low velocities ends there.
+#[test]
+fn ends_that_open_below_a_branch_are_found() {
+    let law = FrictionLaw::weakening(0.5, 0.44869374168435217, 1.0).unwrap();
+    let delay = |i: usize| 1.0 + 4.0 * i as f64 / 199.0;
+    let line = |i: usize| problem(law.clone(), -0.3866554997326608, 0.0, delay(i));
+    let problems: Vec<Problem> = (128..200).map(line).collect();
+    let found = critical_velocities(&problems, || false);
+    let mut below = 0;
+    for (problem, found) in problems[24..40].iter().zip(&found[24..40]) {
+        let (found, alone) = (found.unwrap(), critical_velocity(problem));
+        if found.decided && alone.decided {
+            let off = (found.vc / alone.vc - 1.0).abs();
+            assert!(off < 5e-5, "{problem:?} {found:?} {alone:?}");
+            below += u32::from(found.vc < 0.25);
+        }
+    }
+    assert!(below > 3, "{below}");
+}
+
 /// Without control Coulomb friction keeps stick-slip at any v0. Under weakening friction the swing of a slip grows: from
 /// some v0 on the block slips backwards where it stuck, sticks become shorter, and at a finite v0 none is left.
 #[test]

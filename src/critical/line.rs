@@ -1,8 +1,9 @@
-//! The critical velocities of a line of delays: each graze starts from its neighbour's orbit.
+//! The critical velocities of a line of delays: each end of stick-slip starts from its neighbour's orbit.
 //!
-//! Such a continuation may go on along a branch of grazes that stick-slip raised from low velocities does not come to. So the
+//! Such a continuation may go on along a branch of ends that stick-slip raised from low velocities does not come to. So the
 //! cells at both ends of a stretch are looked for from scratch, and what is continued from the one has to meet the other;
-//! else the stretch is halved. Where a kind of stick-slip ends, so does a stretch. A line is cut into blocks for that, so that the answer in a cell depends on its block alone.
+//! else the stretch is halved. Where a kind of stick-slip ends, so does a stretch, and where ends change fast more cells are
+//! looked for from scratch. A line is cut into blocks for that, so that the answer in a cell depends on its block alone.
 
 use super::search::from_scratch;
 use super::track::Track;

@@ -37,6 +37,7 @@ pub(super) struct Track {
 
 /// How far off an end is taken to be before anything is known.
 const FIRST_OFF: f64 = 0.02;
+
 /// How orbits end that can be continued.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Ending {
@@ -80,13 +81,14 @@ const MOST_BORROWED: u32 = 8;
 const FOR_SLOPES: f64 = 1e-4;
 /// How much nearer the next cell may start, where this was as easy, and where it was not.
 const NEARER: [f64; 2] = [0.1, 0.5];
-/// How many ends there may be in a row of which it is not looked at what comes after them; how clearly, at least, stick-slip ended
-/// before; and how many times as much as it did that may change.
+/// How many ends there may be in a row of which it is not looked at what comes after them; as well as this they are where they were
+/// expected, relative.
 const MOST_UNSEEN: u32 = 3;
-/// As well as this, relative, such ends are where they were expected.
 const AS_EXPECTED: f64 = 3e-5;
+/// How clearly, at least, stick-slip ended before, and how many times the change of that from cell to cell has to fit into it.
 const CLEAR: f64 = 2e-3;
 const CAUTION: f64 = 6.0;
+/// The same where a stick vanishes: the largest change of the delay, relative.
 const SMALL_CHANGE: f64 = 0.03;
 /// The largest change of the delay from cell to cell, relative.
 const LARGEST_CHANGE: f64 = 0.5;
@@ -231,15 +233,9 @@ impl Track {
     fn may_be_unseen(&self, tau: f64) -> u32 {
         if self.ending == Ending::Vanish {
             // Sticks are as short beyond their end as before it: only a small change says that nothing else becomes of it.
-            let small = self
-                .ends
-                .last()
-                .is_some_and(|last| (tau / last.0 - 1.0).abs() < SMALL_CHANGE);
-            return if small && self.clear > 0.0 {
-                MOST_UNSEEN
-            } else {
-                0
-            };
+            let near = |last: &(f64, f64)| (tau / last.0 - 1.0).abs() < SMALL_CHANGE;
+            let small = self.ends.last().is_some_and(near);
+            return u32::from(small && self.clear > 0.0) * MOST_UNSEEN;
         }
         let changes = CAUTION * self.change;
         match self.clear {
