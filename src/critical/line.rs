@@ -84,7 +84,6 @@ impl Block<'_> {
                 first = next;
                 continue;
             }
-            let start = track.clone();
             let reached = match &mut track {
                 Some(track) => self.advance(first, last, track),
                 None => first,
@@ -95,7 +94,7 @@ impl Block<'_> {
             if reached > first {
                 let (met, there) = self.meet(reached);
                 if !met {
-                    self.halve(first, reached, start);
+                    self.halve(first, reached);
                     (first, track) = (reached, there);
                     continue;
                 }
@@ -109,15 +108,16 @@ impl Block<'_> {
         None
     }
 
-    /// Fills the cells between two that were found from scratch where the first one does not lead to the other.
-    fn halve(&mut self, first: usize, last: usize, track: Option<Track>) {
+    /// Looks where a continuation that led from one cell to another, but does not meet it, meets cells in between, and fills what is
+    /// left.
+    fn halve(&mut self, first: usize, last: usize) {
         let middle = usize::midpoint(first, last);
         if middle == first {
             return;
         }
         let (met, there) = self.meet(middle);
         if !met {
-            self.halve(first, middle, track);
+            self.halve(first, middle);
         }
         self.fill(middle, last, there);
     }
