@@ -15,10 +15,12 @@ pub const BLOCK: usize = 128;
 /// that of another on the way to its end, and may end earlier.
 const STRETCH: usize = 64;
 const SHORT_STRETCH: usize = 16;
-/// Every so many ends that are not where they were expected are looked for from scratch.
+/// An end that is not where it was expected is looked for from scratch, unless one was so few cells before.
 const SURPRISES: usize = 2;
-/// How well a continuation has to meet what was found from scratch, relative.
+/// How well a continuation has to meet what was found from scratch, relative; and how well in the time of slip, which tells how
+/// many slips a period has.
 const MEETS: f64 = 3e-5;
+const MEETS_IN_TIME: f64 = 1e-2;
 
 /// The critical velocities of a block of a line: problems that differ by their delay alone, which increases. None of a cell
 /// where `stopped` came before it.
@@ -98,8 +100,9 @@ impl Block<'_> {
                     (first, track) = (reached, there);
                     continue;
                 }
+                self.doubt(first, reached);
             }
-            // Its kind of stick-slip ends there.
+            // Its kind of stick-slip ends there, or leads no further.
             first = reached + 1;
             if first < last {
                 track = self.start(first);
@@ -116,10 +119,19 @@ impl Block<'_> {
             return;
         }
         let (met, there) = self.meet(middle);
-        if !met {
-            self.halve(first, middle);
+        match met {
+            true => self.doubt(first, middle),
+            false => self.halve(first, middle),
         }
         self.fill(middle, last, there);
+    }
+
+    /// What is in doubt at the `last` cell is so on the way to it.
+    fn doubt(&mut self, first: usize, last: usize) {
+        let decided = self.found[last].is_some_and(|there| there.decided);
+        for between in self.found[first + 1..last].iter_mut().flatten() {
+            between.decided &= decided;
+        }
     }
 
     /// Looks for a cell from scratch that was continued to: whether that meets, and its track.
@@ -141,14 +153,10 @@ impl Block<'_> {
             };
             critical.decided = track.decided;
             if cell == last {
-                let met = self.found[last].filter(|there| meets(there, &critical));
-                let Some(there) = met else {
+                if self.found[last].is_none_or(|there| !meets(&there, &critical)) {
                     return seen;
-                };
-                // What is in doubt at one end is so on the way.
-                for between in self.found[first + 1..last].iter_mut().flatten() {
-                    between.decided &= there.decided;
                 }
+                self.doubt(first, last);
                 return last;
             }
             self.found[cell] = Some(critical);
@@ -176,6 +184,11 @@ fn end(critical: &Critical) -> f64 {
 
 /// Whether two answers are one.
 fn meets(a: &Critical, b: &Critical) -> bool {
-    let near = |a: f64, b: f64| a.is_nan() && b.is_nan() || (a - b).abs() <= MEETS * a.abs();
-    a.end == b.end && a.method == b.method && near(a.vc, b.vc) && near(a.v_liftoff, b.v_liftoff)
+    let near =
+        |within: f64, a: f64, b: f64| a.is_nan() && b.is_nan() || (a - b).abs() <= within * a.abs();
+    a.end == b.end
+        && a.method == b.method
+        && near(MEETS, a.vc, b.vc)
+        && near(MEETS, a.v_liftoff, b.v_liftoff)
+        && near(MEETS_IN_TIME, a.slip_time, b.slip_time)
 }

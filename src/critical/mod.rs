@@ -269,7 +269,7 @@ fn persists_without_control(problem: &Problem) -> bool {
 fn of_orbit((vc, end): (f64, End), period: &Period, method: Method) -> Critical {
     // At the graze itself, that of the first slip, it lasts until the minimum of ẋ.
     let longer = match end {
-        End::Grazing => period.cycles()[0].to_minimum,
+        End::Grazing => period.cycles()[0].to_minimum.min(period.stick_time()),
         _ => 0.0,
     };
     Critical {

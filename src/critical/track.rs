@@ -23,9 +23,10 @@ pub(super) struct Track {
     nearer: f64,
     /// Cells in a row that ended by the slopes of one before.
     borrowed: u32,
-    /// How clearly stick-slip was seen to end where that was looked at last, and by how much that changed from cell to cell; NaN
-    /// where it is not known.
+    /// How clearly stick-slip was seen to end where that was looked at last, the delay there, and the change with the delay's logarithm;
+    /// NaN where it is not known.
     clear: f64,
+    seen_at: f64,
     change: f64,
     /// Ends since then.
     unseen: u32,
@@ -85,7 +86,7 @@ const NEARER: [f64; 2] = [0.1, 0.5];
 /// expected, relative.
 const MOST_UNSEEN: u32 = 3;
 const AS_EXPECTED: f64 = 3e-5;
-/// How clearly, at least, stick-slip ended before, and how many times the change of that from cell to cell has to fit into it.
+/// How clearly, at least, stick-slip ended before, and how many times the change of that since then has to fit into it.
 const CLEAR: f64 = 2e-3;
 const CAUTION: f64 = 6.0;
 /// The same where a stick vanishes: the largest change of the delay, relative.
@@ -123,6 +124,7 @@ impl Track {
             nearer: NEARER[0],
             borrowed: 0,
             clear: f64::NAN,
+            seen_at: f64::NAN,
             change: f64::NAN,
             unseen: 0,
             decided: true,
@@ -186,7 +188,7 @@ impl Track {
             // An orbit that has to change starts with a transient, a small one where its past is extrapolated.
             off = (0.15 * (expected / last.1 - 1.0).abs()).clamp(off, FARTHEST);
         }
-        if self.borrowed == MOST_BORROWED {
+        if self.borrowed >= MOST_BORROWED {
             off = off.max(FOR_SLOPES);
         }
         let ended = self.road.place_kept().clone();
@@ -205,10 +207,10 @@ impl Track {
         let mut found = arrive(&mut self.road, climbed, &at);
         let as_expected = |end: f64| (end / expected - 1.0).abs() < AS_EXPECTED;
         let alike = Ending::of(&found) == self.ending && found.end().is_some_and(as_expected);
-        if !alike || self.unseen >= self.may_be_unseen(problem.tau) {
+        if !alike || !self.may_be_unseen(problem.tau) {
             let (seen, clear) = verify(problem, &mut self.road, found);
             found = seen;
-            self.see(clear);
+            self.see(problem.tau, clear);
         } else {
             self.unseen += 1;
         }
@@ -228,29 +230,26 @@ impl Track {
         Ok(found)
     }
 
-    /// How many ends in a row may be taken for ends of stick-slip because it clearly ended at those before: what the block does
-    /// beyond them changes smoothly along a line.
-    fn may_be_unseen(&self, tau: f64) -> u32 {
+    /// Whether the next end, at `tau`, may be taken for that of stick-slip because it clearly ended at those before: what the block
+    /// does beyond them changes smoothly along a line.
+    fn may_be_unseen(&self, tau: f64) -> bool {
+        if self.unseen == MOST_UNSEEN {
+            return false;
+        }
         if self.ending == Ending::Vanish {
             // Sticks are as short beyond their end as before it: only a small change says that nothing else becomes of it.
             let near = |last: &(f64, f64)| (tau / last.0 - 1.0).abs() < SMALL_CHANGE;
-            let small = self.ends.last().is_some_and(near);
-            return u32::from(small && self.clear > 0.0) * MOST_UNSEEN;
+            return self.clear > 0.0 && self.ends.last().is_some_and(near);
         }
-        let changes = CAUTION * self.change;
-        match self.clear {
-            // Not for NaN.
-            clear if clear > CLEAR && changes < clear => {
-                ((clear / changes) as u32).min(MOST_UNSEEN + 1) - 1
-            }
-            _ => 0,
-        }
+        // Not for NaN.
+        let since = (tau / self.seen_at).ln().abs();
+        self.clear > CLEAR && CAUTION * self.change * since < self.clear
     }
 
-    /// Learns how clearly stick-slip ends.
-    fn see(&mut self, clear: f64) {
-        self.change = (clear - self.clear).abs() / f64::from(self.unseen + 1);
-        (self.clear, self.unseen) = (clear, 0);
+    /// Learns how clearly stick-slip ends at `tau`.
+    fn see(&mut self, tau: f64, clear: f64) {
+        self.change = ((clear - self.clear) / (tau / self.seen_at).ln()).abs();
+        (self.clear, self.seen_at, self.unseen) = (clear, tau, 0);
     }
 
     /// Whether the last end was not where the ends before made it expected.

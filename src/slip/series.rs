@@ -168,7 +168,7 @@ pub fn first_zero(c: &[f64], end: f64) -> Option<f64> {
         };
         s += step.max(f64::EPSILON * end);
         // Also where something is not a number.
-        if s.is_nan() || s > end {
+        if !s.is_finite() || s > end {
             return None;
         }
     }
@@ -219,7 +219,7 @@ pub fn largest(c: &[f64], end: f64, known: f64) -> f64 {
 fn top(slopes: &[f64], bends: &[f64], (mut from, mut to): (f64, f64)) -> f64 {
     let near = 1e-9 * (to - from);
     let mut s = 0.5 * (from + to);
-    // Halves at least; quadratic at its top, half the digits of the place are all of the value.
+    // Quadratic at its top: half the digits of the place are all of the value.
     for _ in 0..30 {
         let slope = value(slopes, s);
         match slope > 0.0 {
@@ -260,6 +260,7 @@ mod tests {
         let zero = first_zero(&[0.0, 2.0, -3.0, 1.0], 5.0).expect("at one");
         assert!((zero - 1.0).abs() < 1e-15);
         assert_eq!(first_zero(&[0.0, 0.0, 1.0], 5.0), None);
+        assert_eq!(first_zero(&[1.0], f64::INFINITY), None);
     }
 
     #[test]
