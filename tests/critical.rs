@@ -328,6 +328,12 @@ fn sticks_again(motion: &mut Motion, stops: usize) -> bool {
     seen == stops
 }
 
+/// The same problem at other delays.
+fn along(one: &Problem, delays: impl Iterator<Item = f64>) -> Vec<Problem> {
+    let at = |tau| Problem { tau, ..one.clone() };
+    delays.map(at).collect()
+}
+
 /// A cell that starts from its neighbour's orbit is what it is from scratch.
 #[test]
 fn lines_are_what_their_cells_are() {
@@ -335,13 +341,7 @@ fn lines_are_what_their_cells_are() {
     let (mut continued, mut worst, mut worst_time) = (0, 0.0_f64, 0.0_f64);
     for _ in 0..cases(120) / 20 {
         let one = chance.problem();
-        let delay = |i: usize| 0.3 + 0.05 * i as f64;
-        let problems: Vec<Problem> = (0..BLOCK)
-            .map(|i| Problem {
-                tau: delay(i),
-                ..one.clone()
-            })
-            .collect();
+        let problems = along(&one, (0..BLOCK).map(|i| 0.3 + 0.05 * i as f64));
         let line = critical_velocities(&problems, || false);
         for (problem, found) in problems.iter().zip(line) {
             let found = found.unwrap();
@@ -376,9 +376,8 @@ fn lines_are_what_their_cells_are() {
 #[test]
 fn ends_that_open_below_a_branch_are_found() {
     let law = FrictionLaw::weakening(0.5, 0.44869374168435217, 1.0).unwrap();
-    let delay = |i: usize| 1.0 + 4.0 * i as f64 / 199.0;
-    let line = |i: usize| problem(law.clone(), -0.3866554997326608, 0.0, delay(i));
-    let problems: Vec<Problem> = (128..200).map(line).collect();
+    let one = problem(law, -0.3866554997326608, 0.0, 1.0);
+    let problems = along(&one, (128..200).map(|i| 1.0 + 4.0 * f64::from(i) / 199.0));
     let found = critical_velocities(&problems, || false);
     let mut below = 0;
     for (problem, found) in problems[24..40].iter().zip(&found[24..40]) {
@@ -396,9 +395,8 @@ fn ends_that_open_below_a_branch_are_found() {
 #[test]
 fn kinds_that_end_alike_are_told_apart() {
     let law = FrictionLaw::weakening(0.954641831528965, 0.5410746973058337, 1.0).unwrap();
-    let delay = |i: usize| 0.05 + 4.95 * i as f64 / 127.0;
-    let line = |i: usize| problem(law.clone(), -0.1982310607443836, 0.0, delay(i));
-    let problems: Vec<Problem> = (0..48).map(line).collect();
+    let one = problem(law, -0.1982310607443836, 0.0, 1.0);
+    let problems = along(&one, (0..48).map(|i| 0.05 + 4.95 * f64::from(i) / 127.0));
     let found = critical_velocities(&problems, || false);
     for (problem, found) in problems.iter().zip(&found).skip(8) {
         let (found, alone) = (found.unwrap(), critical_velocity(problem));

@@ -161,9 +161,8 @@ fn attracts(mut motion: Motion, period: &Period) -> bool {
     let Some(disturbed) = distances.next() else {
         return false;
     };
-    let (mut periods, mut near) = (0, 0);
-    for back in distances {
-        periods += 1;
+    let mut near = 0;
+    for (period, back) in distances.enumerate() {
         near = match back < (BACK * disturbed).max(STICKS_NOISE) {
             true => near + 1,
             false => 0,
@@ -171,7 +170,7 @@ fn attracts(mut motion: Motion, period: &Period) -> bool {
         if near == NEAR_IN_A_ROW {
             return true;
         }
-        if periods == PERIODS_BACK {
+        if period + 1 == PERIODS_BACK {
             return back < (0.5 * disturbed).max(STICKS_NOISE);
         }
     }

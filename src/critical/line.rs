@@ -51,7 +51,7 @@ struct Block<'p> {
 }
 
 impl Block<'_> {
-    /// Looks for a cell from scratch, unless that was done.
+    /// Looks for a cell from scratch.
     fn start(&mut self, cell: usize) -> Option<Track> {
         if (self.stopped)() {
             return None;
@@ -86,19 +86,21 @@ impl Block<'_> {
                 first = next;
                 continue;
             }
-            let reached = match &mut track {
+            let (reached, known) = match &mut track {
                 Some(track) => self.advance(first, last, track),
-                None => first,
+                None => (first, true),
             };
             if reached == last {
                 return track;
             }
             if reached > first {
-                let (met, there) = self.meet(reached);
-                if !met {
-                    self.halve(first, reached);
-                    (first, track) = (reached, there);
-                    continue;
+                if !known {
+                    let (met, there) = self.meet(reached);
+                    if !met {
+                        self.halve(first, reached);
+                        (first, track) = (reached, there);
+                        continue;
+                    }
                 }
                 self.doubt(first, reached);
             }
@@ -142,35 +144,36 @@ impl Block<'_> {
         (both.is_some_and(|(a, b)| meets(&a, &b)), track)
     }
 
-    /// Continues from `first` on; how far it is known to lead: to `last` if it meets what is known there.
-    fn advance(&mut self, first: usize, last: usize, track: &mut Track) -> usize {
+    /// Continues from `first` on; how far it is known to lead, to `last` if it meets what is known there, and whether that cell
+    /// was found from scratch.
+    fn advance(&mut self, first: usize, last: usize, track: &mut Track) -> (usize, bool) {
         let (mut seen, mut checked) = (first, first);
         for cell in first + 1..=last {
             let next = track.next(&self.problems[cell]);
             let found = next.and_then(|found| of_found(&found, Method::GrazeOrbit));
             let Some(mut critical) = found else {
-                return seen;
+                return (seen, seen == checked);
             };
             critical.decided = track.decided;
             if cell == last {
                 if self.found[last].is_none_or(|there| !meets(&there, &critical)) {
-                    return seen;
+                    return (seen, seen == checked);
                 }
                 self.doubt(first, last);
-                return last;
+                return (last, true);
             }
             self.found[cell] = Some(critical);
             if track.surprised() && cell >= checked + SURPRISES {
                 // Where ends change as fast as that along the line, stick-slip may have another one below.
                 if !self.meet(cell).0 {
-                    return seen;
+                    return (seen, seen == checked);
                 }
                 (checked, seen) = (cell, cell);
             } else if track.seen() {
                 seen = cell;
             }
         }
-        last
+        (last, true)
     }
 }
 

@@ -1,6 +1,6 @@
 //! How near ẋ comes to zero in slip: minima that are passed, and the depth to which a stop would have gone.
 
-use super::series::{Coefficients, first_zero, shifted, value};
+use super::series::{derivative, first_zero, shifted, value};
 use super::step::Step;
 
 /// Steps of Newton's method on the way to a minimum.
@@ -59,13 +59,4 @@ impl Step {
             (parabola, -0.5 * fall * parabola)
         }
     }
-}
-
-/// The coefficients of the derivative of `c`, times `factor`.
-fn derivative(c: &[f64], factor: f64) -> Coefficients {
-    let mut slope = [0.0; super::series::MOST_ORDER + 1];
-    for (k, (slope, c)) in slope.iter_mut().zip(&c[1..]).enumerate() {
-        *slope = factor * (k + 1) as f64 * c;
-    }
-    slope
 }

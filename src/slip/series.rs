@@ -118,6 +118,16 @@ pub fn product(p: &Coefficients, q: &Coefficients, k: usize) -> f64 {
     low + high
 }
 
+/// The coefficients of the derivative of `c`, times `factor`.
+#[must_use]
+pub fn derivative(c: &[f64], factor: f64) -> Coefficients {
+    let mut slope = [0.0; MOST_ORDER + 1];
+    for (k, (slope, c)) in slope.iter_mut().zip(&c[1..]).enumerate() {
+        *slope = factor * (k + 1) as f64 * c;
+    }
+    slope
+}
+
 /// The first zero in (0, `end`] of a polynomial that is positive just after 0; none if it stays positive.
 ///
 /// No zero is stepped over: a parabola below the polynomial says how far it stays positive at least. Near a simple zero the
@@ -186,21 +196,15 @@ pub fn largest(c: &[f64], end: f64, known: f64) -> f64 {
         return known;
     }
     let mut found = known.max(*first).max(value(c, end));
-    let mut slopes = [0.0; MOST_ORDER + 1];
-    let slopes = &mut slopes[..rest.len()];
-    for (k, (slope, c)) in slopes.iter_mut().zip(rest).enumerate() {
-        *slope = (k + 1) as f64 * c;
-    }
+    let slopes = derivative(c, 1.0);
+    let slopes = &slopes[..rest.len()];
     // Where the slope cannot change its sign the ends tell.
     let alone = |c: &[f64]| c.len() < 2 || c[0].abs() >= spread(c, end);
     if alone(slopes) {
         return found;
     }
-    let mut bends = [0.0; MOST_ORDER + 1];
-    let bends = &mut bends[..slopes.len() - 1];
-    for (k, (bend, c)) in bends.iter_mut().zip(&slopes[1..]).enumerate() {
-        *bend = (k + 1) as f64 * c;
-    }
+    let bends = derivative(slopes, 1.0);
+    let bends = &bends[..slopes.len() - 1];
     // Where the slope only grows or only falls, they tell whether there is a top.
     let parts = if alone(bends) { 1 } else { 8 };
     let at = |i: u32| end * f64::from(i) / f64::from(parts);
