@@ -2,9 +2,12 @@
 
 use std::process::Command;
 
+#[path = "common/map.rs"]
+mod map;
 #[path = "common/program.rs"]
 mod program;
 
+use map::{edit, settle};
 use program::{Folder, err, expect, out};
 
 const SMALL: &str = "title = \"small\"\n[axes]\nmu_prime = [-0.1, -0.3]\nalpha_n = { from = -3, to = 1, points = 41 }\ntau = { from = 0, to = 12, points = 61 }\n";
@@ -245,10 +248,9 @@ fn files_that_are_no_maps_are_answered() {
     expect(&folder.run(&["run", "small.toml"]), 0, "cells");
     let whole = std::fs::read(folder.path().join("small.h5")).unwrap();
     std::fs::write(folder.path().join("half.h5"), &whole[..whole.len() / 2]).unwrap();
-    hdf5::File::create(folder.path().join("bare.h5"))
-        .unwrap()
-        .close()
-        .unwrap();
+    let bare = folder.path().join("bare.h5");
+    hdf5::File::create(&bare).unwrap().close().unwrap();
+    settle(&bare);
     for name in ["text.h5", "empty.h5", "half.h5", "bare.h5"] {
         for command in ["info", "plot"] {
             expect(&folder.run(&[command, name]), 2, "is not a slipmap map");
@@ -257,6 +259,11 @@ fn files_that_are_no_maps_are_answered() {
     for name in ["missing.h5", "."] {
         assert_eq!(folder.run(&["info", name]).status.code(), Some(2), "{name}");
     }
+    edit(&folder.path().join("small.h5"), |_| {
+        let busy = "another program has small.h5 open for writing";
+        expect(&folder.run(&["info", "small.h5"]), 1, busy);
+    });
+    expect(&folder.run(&["info", "small.h5"]), 0, "title        small");
 }
 
 #[test]

@@ -5,6 +5,8 @@
 
 #[path = "damaged/checksums.rs"]
 mod checksums;
+#[path = "common/map.rs"]
+mod map;
 #[path = "common/program.rs"]
 mod program;
 
@@ -378,7 +380,7 @@ fn odd_maps_are_refused() {
     for (edit, says) in edits {
         sound.put("info", &sound.map);
         let path = sound.folder.path().join("map.h5");
-        edit(&hdf5::File::open_rw(&path).unwrap()).unwrap();
+        map::edit(&path, edit).unwrap();
         let found = MapFile::open(&path).and_then(|map| map.curves().map(drop));
         let error = found.expect_err(says).to_string();
         assert!(error.contains(says), "{error}");

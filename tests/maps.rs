@@ -12,7 +12,7 @@ use slipmap::sweep::{Parameter, Plan, engine};
 
 #[path = "common/map.rs"]
 mod map;
-use map::write;
+use map::{edit, write};
 
 fn plan(text: &str) -> Plan {
     Plan::new(text.parse().unwrap_or_else(|e| panic!("{e}\n{text}"))).unwrap()
@@ -239,8 +239,7 @@ fn maps_of_the_first_version_are_read() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("map.h5");
     write(&plan(SWEEPS[1]), 1, &path);
-    let set_version = |version: i32| {
-        let file = hdf5::File::open_rw(&path).unwrap();
+    let set_version = |file: &hdf5::File, version: i32| {
         let attribute = file.attr("slipmap_format_version").unwrap();
         attribute.write_raw(&[version]).unwrap();
         let group = file.group("boundaries").unwrap();
@@ -251,11 +250,11 @@ fn maps_of_the_first_version_are_read() {
         }
     };
     let found = MapFile::open(&path).unwrap().curves().unwrap();
-    set_version(1);
+    edit(&path, |file| set_version(file, 1));
     assert_eq!(MapFile::open(&path).unwrap().curves().unwrap(), found);
     assert!(!found.is_empty() && found.iter().all(|c| c.degree_of_stability == 0.0));
     for version in [0, 3] {
-        set_version(version);
+        edit(&path, |file| set_version(file, version));
         let error = MapFile::open(&path).unwrap_err().to_string();
         assert!(error.contains("this program reads 1 to 2"), "{error}");
     }

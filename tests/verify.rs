@@ -7,8 +7,8 @@ mod program;
 
 use std::path::Path;
 use std::str::FromStr;
-use std::sync::{Mutex, MutexGuard, PoisonError};
 
+use map::edit;
 use program::{Folder, expect, out};
 use slipmap::linear::status::{MARGINAL, NOT_CONVERGED};
 use slipmap::store::MapFile;
@@ -26,15 +26,8 @@ const OUTCOME: &str = "fields = [\"outcome\"]\n[axes]\ntau = [0.5, 1.5, 2.5]\n[f
 const LIMIT: &str = "protocol = \"limit\"\nfields = [\"vc_over_vtilde\"]\n[axes]\ngamma = { from = 0.1, to = 0.9, points = 10 }\n\
                      [fixed]\nmu_ratio = 0.5\n";
 
-/// One test at a time: a child that is just being started would hold the locks of maps that another test writes.
-fn alone() -> MutexGuard<'static, ()> {
-    static ONE: Mutex<()> = Mutex::new(());
-    ONE.lock().unwrap_or_else(PoisonError::into_inner)
-}
-
 #[test]
 fn sound_maps_pass() {
-    let _alone = alone();
     for (text, questions) in [
         (DECAY, &["abscissa, by", "n_unstable, by"][..]),
         (
@@ -61,7 +54,6 @@ fn sound_maps_pass() {
 /// Every byte of every chunk is under a checksum, and a changed attribute or axis is noticed too.
 #[test]
 fn changed_maps_do_not() {
-    let _alone = alone();
     let folder = Folder::with(&[("map.toml", DECAY)]);
     expect(&folder.run(&["run", "map.toml"]), 0, "map.h5: ");
     let original = std::fs::read(folder.path().join("map.h5")).unwrap();
@@ -82,8 +74,8 @@ fn changed_maps_do_not() {
         });
         expect(&flipped, 1, &format!("{field}: its checksum does not fit"));
     }
-    let written = changed(&|path| {
-        let file = hdf5::File::open_rw(path).unwrap();
+    let edited = |change: &dyn Fn(&hdf5::File)| changed(&|path| edit(path, change));
+    let written = edited(&|file| {
         file.dataset("abscissa")
             .unwrap()
             .write_slice(
@@ -102,28 +94,22 @@ fn changed_maps_do_not() {
             .unwrap();
     });
     expect(&written, 1, "abscissa: its checksum does not fit");
-    let axis = changed(&|path| {
-        let file = hdf5::File::open_rw(path).unwrap();
+    let axis = edited(&|file| {
         file.dataset("mu_prime")
             .unwrap()
             .write_raw(&[-0.3, -0.2])
             .unwrap();
     });
     expect(&axis, 1, "the axis mu_prime is not that of the sweep");
-    let scalar = changed(&|path| {
-        let file = hdf5::File::open_rw(path).unwrap();
+    let scalar = edited(&|file| {
         file.dataset("mass").unwrap().write_scalar(&2.0).unwrap();
     });
     expect(&scalar, 1, "mass is not that of the sweep");
-    let gone = changed(&|path| {
-        hdf5::File::open_rw(path)
-            .unwrap()
-            .unlink("frequency")
-            .unwrap();
+    let gone = edited(&|file| {
+        file.unlink("frequency").unwrap();
     });
     expect(&gone, 1, "the field frequency is missing");
-    let described = changed(&|path| {
-        let file = hdf5::File::open_rw(path).unwrap();
+    let described = edited(&|file| {
         let units = file.dataset("abscissa").unwrap();
         units.delete_attr("units").unwrap();
         let furlong = hdf5::types::VarLenUnicode::from_str("furlong").unwrap();
@@ -135,8 +121,7 @@ fn changed_maps_do_not() {
             .unwrap();
     });
     expect(&described, 1, "a description has changed");
-    let curve = changed(&|path| {
-        let file = hdf5::File::open_rw(path).unwrap();
+    let curve = edited(&|file| {
         let delays = file.dataset("boundaries/tau").unwrap();
         let longer: Vec<f64> = delays
             .read_raw::<f64>()
@@ -187,7 +172,6 @@ fn looked(
 /// Second methods see wrong values, and keep quiet where the cell itself says that it is in doubt.
 #[test]
 fn wrong_values_are_seen_by_second_methods() {
-    let _alone = alone();
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("map.h5");
     for (text, field, wrong, question, doubt) in [
@@ -245,7 +229,6 @@ fn wrong_values_are_seen_by_second_methods() {
 
 #[test]
 fn a_map_of_another_revision_is_not_compared_bit_by_bit() {
-    let _alone = alone();
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("map.h5");
     map::write(&plan(DECAY), 2, &path);

@@ -50,6 +50,12 @@ pub enum StoreError {
         /// The map's final name, or the folder of tiles.
         path: PathBuf,
     },
+    /// Another program has the file open to write it.
+    #[error("another program has {} open for writing", path.display())]
+    InUse {
+        /// Which file.
+        path: PathBuf,
+    },
     /// A folder of tiles belongs to another sweep, program or format.
     #[error("{} has tiles of something else: {difference}", path.display())]
     OtherTiles {

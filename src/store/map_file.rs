@@ -8,6 +8,7 @@ use super::attributes::text;
 use super::contents_hash::contents_hash;
 pub use super::curve_reader::MapCurve;
 use super::error::StoreError;
+use super::open;
 use super::schema::{self, BEST, BOUNDARIES, DEGREE_OF_STABILITY, PLANE, STATUS, root};
 use crate::sweep::axis::{Axis, MOST_POINTS};
 use crate::sweep::engine::{FEW_FILL, N_UNSTABLE_FILL, STATUS_FILL};
@@ -53,18 +54,9 @@ impl MapFile {
     /// Opens a map for reading.
     ///
     /// # Errors
-    /// When the file is missing, no HDF5 file, no map, of another format version, or damaged.
+    /// When the file is missing, in use by a program that writes it, no HDF5 file, no map, of another format version, or damaged.
     pub fn open(path: &Path) -> Result<Self, StoreError> {
-        let metadata = std::fs::metadata(path).map_err(StoreError::io("open", path))?;
-        if metadata.is_dir() {
-            return Err(StoreError::not_a_map(path, "it is a folder"));
-        }
-        if !metadata.is_file() {
-            return Err(StoreError::not_a_map(path, "it is no regular file"));
-        }
-        std::fs::File::open(path).map_err(StoreError::io("open", path))?;
-        let file = File::open(path)
-            .map_err(|_| StoreError::not_a_map(path, "it is no HDF5 file, or a damaged one"))?;
+        let file = open::to_read(path, StoreError::not_a_map)?;
         let version: i32 = first_number(&file, root::FORMAT_VERSION).ok_or_else(|| {
             StoreError::not_a_map(path, format!("it has no {}", root::FORMAT_VERSION))
         })?;

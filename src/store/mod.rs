@@ -28,6 +28,7 @@ pub mod map_maker;
 mod map_summary;
 pub mod map_writer;
 mod netcdf;
+mod open;
 pub mod output;
 pub mod schema;
 pub mod source;

@@ -11,6 +11,7 @@ use super::codec::DEFLATE_LEVEL;
 use super::error::StoreError;
 use super::map_writer::{Provenance, create_file, put_friction, put_provenance, put_scalars};
 use super::netcdf::{DimensionId, Dimensions, named};
+use super::open;
 use super::output::Output;
 use super::schema::{self, trace};
 use crate::sweep::parameter::Units;
@@ -110,12 +111,7 @@ pub fn write(
 /// # Errors
 /// When there is no file, or it is no trace, or one of another format version.
 pub fn case_of(path: &Path) -> Result<String, StoreError> {
-    if path.is_dir() {
-        return Err(StoreError::not_a_trace(path, "it is a folder"));
-    }
-    std::fs::File::open(path).map_err(StoreError::io("open", path))?;
-    let file = File::open(path)
-        .map_err(|_| StoreError::not_a_trace(path, "it is no HDF5 file, or a damaged one"))?;
+    let file = open::to_read(path, StoreError::not_a_trace)?;
     let missing = |name: &str| StoreError::not_a_trace(path, format!("it has no {name}"));
     let version = file.attr(trace::FORMAT_VERSION);
     let version = version.and_then(|a| a.read_raw::<i32>());

@@ -16,10 +16,25 @@ use slipmap::sweep::Plan;
 pub fn write(plan: &Plan, threads: usize, path: &Path) {
     let plan = Arc::new(plan.clone());
     make_in_memory(&plan, path, threads, &Provenance::default()).unwrap();
+    settle(path);
+}
+
+/// Changes a file.
+pub fn edit<T>(path: &Path, change: impl FnOnce(&hdf5::File) -> T) -> T {
+    settle(path);
+    let done = change(&hdf5::File::open_rw(path).unwrap());
+    settle(path);
+    done
+}
+
+/// Waits until a file that was open can be opened again: a child that another test started meanwhile holds its lock too.
+pub fn settle(path: &Path) {
+    std::fs::File::open(path).unwrap().lock().unwrap();
 }
 
 /// The bytes of every dataset of a file, by name.
 pub fn datasets(path: &Path) -> BTreeMap<String, Vec<u8>> {
+    settle(path);
     let mut all = BTreeMap::new();
     collect(&hdf5::File::open(path).unwrap(), &mut all);
     all
