@@ -392,6 +392,51 @@ fn ends_that_open_below_a_branch_are_found() {
 }
 
 /// One cell ends with two slips in a period, its neighbours at nearly the same v0 with one: none is continued to the other.
+/// Irregular stick-slip leads to an orbit that ends soon, and another kind goes on above that: steps that are too large for it
+/// come to the other one.
+#[test]
+fn an_end_soon_after_irregular_stick_slip_is_found() {
+    let law = FrictionLaw::weakening(0.5, 0.296875, 1.0).unwrap();
+    for (tau, end) in [(155, 0.2816683), (156, 0.2746766), (157, 0.2681374)] {
+        let tau = 1.0 + 4.0 * f64::from(tau) / 199.0;
+        let alone = critical_velocity(&problem(law.clone(), -0.3745728643216081, 0.0, tau));
+        assert!(
+            alone.decided && (alone.vc / end - 1.0).abs() < 2e-5,
+            "{alone:?}"
+        );
+    }
+}
+
+/// Stick-slip goes on just beyond a graze, in a cell of a line whose neighbours end by theirs: the slip is another one there.
+#[test]
+fn what_changes_along_a_line_is_looked_beyond() {
+    let law = FrictionLaw::weakening(0.5, 0.5 / (2.0 - 1.5 * 13.0 / 19.0), 1.0).unwrap();
+    let one = problem(law, -1.0 + 0.98 * 128.0 / 199.0, 0.0, 1.0);
+    let problems = along(&one, (128..200).map(|i| 1.0 + 4.0 * f64::from(i) / 199.0));
+    let found = critical_velocities(&problems, || false)[147 - 128].unwrap();
+    let simulated = simulated(&problems[147 - 128]);
+    assert!(
+        found.decided && found.ends_like(&simulated),
+        "{found:?} {simulated:?}"
+    );
+}
+
+/// Stick-slip doubles its period just below its end, and the orbit is lost there.
+#[test]
+fn an_orbit_that_is_lost_just_below_its_end_is_not_thrown_off() {
+    let law = FrictionLaw::weakening(0.5, 0.5 / (2.0 - 1.5 * 3.0 / 19.0), 1.0).unwrap();
+    for (alpha_n, tau, end) in [
+        (-4.0542713567839195, 0.9652926, 0.1508455),
+        (-2.6311557788944725, 1.1888074, 0.2553216),
+    ] {
+        let alone = critical_velocity(&problem(law.clone(), 0.0, alpha_n, tau));
+        assert!(
+            alone.decided && (alone.vc / end - 1.0).abs() < 2e-5,
+            "{alone:?}"
+        );
+    }
+}
+
 #[test]
 fn kinds_that_end_alike_are_told_apart() {
     let law = FrictionLaw::weakening(0.954641831528965, 0.5410746973058337, 1.0).unwrap();

@@ -13,7 +13,7 @@ const NEAR: f64 = 1e-4;
 const QUITE_NEAR: f64 = 3e-3;
 const AGREES: f64 = 3e-6;
 /// As near as this by slopes of a problem like it.
-const AT_ONCE: f64 = 2e-5;
+const AT_ONCE: f64 = 3e-5;
 /// The most trials.
 const MOST_TRIALS: u32 = 60;
 /// Periods that have not come to rest after a step larger than this may do so after a smaller one.
@@ -95,6 +95,11 @@ impl Seen {
         Self([[f64::NAN; 3]; GAUGES])
     }
 
+    /// Whether there is none yet.
+    pub fn none_yet(&self) -> bool {
+        self.0[LOAD][2].is_nan()
+    }
+
     /// One more period.
     pub fn push(&mut self, period: &Period) {
         for (seen, gauge) in self.0.iter_mut().zip(period.gauges()) {
@@ -151,7 +156,7 @@ impl Place {
     }
 
     /// By how much v0 has to grow until the first gauge vanishes, relative, and which one; +∞ where none comes to that.
-    fn gap(&self) -> (f64, usize) {
+    pub fn gap(&self) -> (f64, usize) {
         let mut first = (f64::INFINITY, LOAD);
         for (i, (gauge, slope)) in self.gauges.iter().zip(&self.slopes).enumerate() {
             let gap = -gauge / slope / self.v0;

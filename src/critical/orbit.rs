@@ -6,7 +6,7 @@
 
 use super::Problem;
 use super::climb::{Place, Ran, Road, SETTLED, Seen};
-use super::cycle::{Cycle, MOST_SLIPS, Period, Ride, Stop, ride};
+use super::cycle::{Cycle, GAUGES, MOST_SLIPS, Period, Ride, Stop, ride};
 use super::follow::Pace;
 use crate::slip::motion::{Accuracy, Motion, Stretch};
 
@@ -70,6 +70,8 @@ pub(super) struct Orbit {
     tried: At,
     kept: At,
     before: At,
+    /// The gauges of the first period of the last trial.
+    first: [f64; GAUGES],
 }
 
 impl Road for Orbit {
@@ -136,12 +138,18 @@ impl Orbit {
                 ..at.clone()
             },
             kept: at,
+            first: [f64::NAN; GAUGES],
         }
     }
 
     /// The motion that was kept last.
     pub fn motion(&self) -> &Motion {
         &self.kept.motion
+    }
+
+    /// The gauges of the first period of the last trial, before it came to rest.
+    pub fn first_gauges(&self) -> &[f64; GAUGES] {
+        &self.first
     }
 
     /// Where it was kept last.
@@ -227,6 +235,9 @@ impl Orbit {
             let period = Period::new(n, cycles);
             stops = stops.map(|_| period.stops());
             self.tried.period = period;
+            if seen.none_yet() {
+                self.first = period.gauges();
+            }
             seen.push(&period);
             if settled == f64::INFINITY {
                 return Ran::Period(period, period.gauges());

@@ -40,7 +40,7 @@ pub(super) fn from_scratch(problem: &Problem) -> (Critical, Option<Track>) {
         crossing: CROSSINGS[0],
         entry: None,
     };
-    let (mut critical, mut track) = kinds.follow(road, place).end(problem);
+    let (mut critical, mut track) = kinds.follow(road, place, LARGEST_STEP).end(problem);
     if let Some(entry) = kinds.entry.take()
         && critical.decided
     {
@@ -53,7 +53,7 @@ pub(super) fn from_scratch(problem: &Problem) -> (Critical, Option<Track>) {
 }
 
 /// Relative steps of v0 through irregular stick-slip: where it leads should not depend on them.
-const CROSSINGS: [f64; 2] = [0.25, 0.1];
+const CROSSINGS: [f64; 2] = [0.1, 0.03];
 /// The last ones: what ends by chance is known to this.
 const LAST_CROSSING: f64 = 1e-3;
 
@@ -111,9 +111,8 @@ struct Kinds<'p> {
 }
 
 impl Kinds<'_> {
-    /// From a place of an orbit on.
-    fn follow(&mut self, mut road: Orbit, mut place: Place) -> Reached {
-        let mut step = LARGEST_STEP;
+    /// From a place of an orbit on, by this relative `step` of v0 at first.
+    fn follow(&mut self, mut road: Orbit, mut place: Place, mut step: f64) -> Reached {
         for kind in 0..MOST_KINDS {
             let start = road.motion().clone();
             let (climbed, at) = climb_finely(&mut road, place, step);
@@ -204,7 +203,7 @@ impl Kinds<'_> {
         };
         let mut road = Orbit::of(motion, slips);
         let reached = match road.first_place() {
-            Some(place) => self.follow(road, place),
+            Some(place) => self.follow(road, place, FIRST_STEP),
             None => Reached::Motion(vec![road.motion().clone()], FIRST_STEP),
         };
         reached.end(self.problem).0
@@ -249,7 +248,10 @@ fn simulated_from(problem: &Problem, motions: Vec<Motion>, step: f64) -> Critica
             let first = step * pace.first;
             follow::from(problem, motion.clone(), &Pace { first, ..*pace })
         };
-        let followed = search(&Pace::default());
+        let followed = search(&Pace {
+            patient: true,
+            ..Pace::default()
+        });
         if followed.last.is_some() {
             return confirmed(&followed, search);
         }

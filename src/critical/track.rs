@@ -18,9 +18,8 @@ pub(super) struct Track {
     ending: Ending,
     /// How far off the end was last expected, relative.
     off: f64,
-    /// How far below the expected end the next cell starts at least, relative, and how much nearer the one after it may.
+    /// How far below the expected end the next cell starts at least, relative.
     near: f64,
-    nearer: f64,
     /// Cells in a row that ended by the slopes of one before.
     borrowed: u32,
     /// How clearly stick-slip was seen to end where that was looked at last, the delay there, and the change with the delay's logarithm;
@@ -28,8 +27,9 @@ pub(super) struct Track {
     clear: f64,
     seen_at: f64,
     change: f64,
-    /// Ends since then.
+    /// Ends since then, and the time in slip at that one.
     unseen: u32,
+    slip_seen: f64,
     /// Whether it is known that stick-slip leads there.
     pub decided: bool,
     /// Whether stick-slip is of one kind all the way from low velocities.
@@ -62,7 +62,7 @@ impl Ending {
         match self {
             Self::Graze => [3e-4, 1e-5],
             Self::Vanish => [3e-3, 1e-3],
-            Self::LiftOff => [3e-3, 1e-5],
+            Self::LiftOff => [3e-3, 2e-5],
         }
     }
 }
@@ -80,12 +80,16 @@ const FARTHEST: f64 = 0.1;
 /// So many cells in a row may end by the slopes of one before, and from so far below its end, relative, the next one starts.
 const MOST_BORROWED: u32 = 8;
 const FOR_SLOPES: f64 = 1e-4;
-/// How much nearer the next cell may start, where this was as easy, and where it was not.
-const NEARER: [f64; 2] = [0.1, 0.5];
+/// A cell starts so many times further below its end than the transient of the cell before reached.
+const ROOM: f64 = 1.5;
+/// How much nearer it starts at least.
+const NEARER: f64 = 0.5;
 /// How many ends there may be in a row of which it is not looked at what comes after them; as well as this they are where they were
 /// expected, relative.
 const MOST_UNSEEN: u32 = 3;
 const AS_EXPECTED: f64 = 3e-5;
+/// And as well as this its time in slip is that of the one that was looked at, relative.
+const SAME_SLIP: f64 = 0.02;
 /// How clearly, at least, stick-slip ended before, and how many times the change of that since then has to fit into it.
 const CLEAR: f64 = 2e-3;
 const CAUTION: f64 = 6.0;
@@ -103,7 +107,7 @@ const PART: f64 = 0.25;
 /// An end so far from where it was expected, relative, is one that changes fast along the line.
 const SURPRISE: f64 = 3e-4;
 /// Ends that an expectation is made of.
-const KNOWN_ENDS: usize = 3;
+const KNOWN_ENDS: usize = 4;
 
 impl Track {
     /// From the end that was `found` of `problem` at the last place of `road`.
@@ -121,12 +125,12 @@ impl Track {
             ending,
             off: FIRST_OFF,
             near: ending.nearest()[0],
-            nearer: NEARER[0],
             borrowed: 0,
             clear: f64::NAN,
             seen_at: f64::NAN,
             change: f64::NAN,
             unseen: 0,
+            slip_seen: f64::NAN,
             decided: true,
             one_kind: true,
         }
@@ -163,7 +167,7 @@ impl Track {
                 }
             }
             // It may have been too near.
-            (self.near, self.nearer) = (first, NEARER[1]);
+            self.near = first;
         }
         let last = self.ends.last()?.0;
         if (problem.tau / last - 1.0).abs() < LEAST_CHANGE {
@@ -188,6 +192,7 @@ impl Track {
             // An orbit that has to change starts with a transient, a small one where its past is extrapolated.
             off = (0.15 * (expected / last.1 - 1.0).abs()).clamp(off, FARTHEST);
         }
+        let near = off;
         if self.borrowed >= MOST_BORROWED {
             off = off.max(FOR_SLOPES);
         }
@@ -198,19 +203,25 @@ impl Track {
             Some((i, Place { expected, ..from }))
         });
         let (tries, from) = tried.ok_or(Lost::Unknown)?;
-        if tries > 0 {
-            self.nearer = NEARER[1];
-        }
-        let nearest = self.ending.nearest()[1];
-        self.near = (self.nearer * offs[tries]).max(nearest);
+        let first = *self.road.first_gauges();
         let (climbed, at) = climb(&mut self.road, from, FARTHEST);
+        let gauge = at.gap().1;
+        let transient = (first[gauge] - from.gauges[gauge]) / at.slopes[gauge] / at.v0;
+        let failed = if tries > 0 { offs[tries - 1] } else { 0.0 };
+        self.near = (ROOM * transient)
+            .max(failed)
+            .min(NEARER * if tries > 0 { offs[tries] } else { near })
+            .max(self.ending.nearest()[1]);
         let mut found = arrive(&mut self.road, climbed, &at);
         let as_expected = |end: f64| (end / expected - 1.0).abs() < AS_EXPECTED;
         let alike = Ending::of(&found) == self.ending && found.end().is_some_and(as_expected);
+        let slip = at.period.slip_time();
+        let alike = alike && (slip / self.slip_seen - 1.0).abs() < SAME_SLIP;
         if !alike || !self.may_be_unseen(problem.tau) {
             let (seen, clear) = verify(problem, &mut self.road, found);
             found = seen;
             self.see(problem.tau, clear);
+            self.slip_seen = slip;
         } else {
             self.unseen += 1;
         }
