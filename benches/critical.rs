@@ -3,8 +3,10 @@
 //! `cargo bench --bench critical`. Random problems (seed fixed): weakening and Coulomb friction under load, velocity and mixed
 //! control; `SLIPMAP_CELLS` asks for more than 300. Each cell is done from scratch as `slipmap vc` does it, and by simulation
 //! alone right after, which waits for every outcome; medians, means and the slowest cell of every road. Then lines of 256 delays as a map does
-//! them, where cells start from their neighbours; every block is timed three times, and the least counts.
+//! them, where cells start from their neighbours; every block is timed three times, and the least counts: per cell, everything
+//! included, and each single visit to a cell.
 
+use std::cell::RefCell;
 use std::time::Instant;
 
 use slipmap::critical::follow::Pace;
@@ -99,7 +101,7 @@ const DELAYS: usize = 256;
 /// Lines as a map does them, with about as many blocks as there are `cells` of the other part.
 fn lines(cells: usize) {
     let mut chance = Chance(8);
-    let (mut by_orbit, mut all) = (Vec::new(), Vec::new());
+    let (mut by_orbit, mut all, mut visits) = (Vec::new(), Vec::new(), Vec::new());
     for _ in 0..cells.div_ceil(DELAYS / BLOCK * 4) {
         let one = chance.problem();
         let line: Vec<Problem> = (0..DELAYS)
@@ -109,23 +111,38 @@ fn lines(cells: usize) {
             })
             .collect();
         for block in line.chunks(BLOCK) {
-            let once = || timed(|| critical_velocities(block, || false));
+            let once = || {
+                let begun = RefCell::new(Vec::new());
+                let (found, micros) = timed(|| {
+                    critical_velocities(block, || {
+                        begun.borrow_mut().push(Instant::now());
+                        false
+                    })
+                });
+                (found, micros, begun.into_inner())
+            };
             let mut runs = [once(), once(), once()];
             runs.sort_by(|p, q| p.1.total_cmp(&q.1));
-            let (found, micros) = &runs[0];
+            let (found, micros, begun) = &runs[0];
             let orbit = |c: &Option<Critical>| c.is_some_and(|c| c.method == Method::GrazeOrbit);
             if found.iter().all(orbit) {
                 by_orbit.push(micros / block.len() as f64);
+                let each = begun.windows(2).map(|w| (w[1] - w[0]).as_secs_f64() * 1e6);
+                visits.extend(each);
             }
             all.push(micros / block.len() as f64);
         }
     }
-    for (name, mut micros) in [("all blocks", all), ("blocks by the orbit", by_orbit)] {
+    for (name, mut micros) in [
+        ("all blocks", all),
+        ("blocks by the orbit", by_orbit),
+        ("visits to their cells", visits),
+    ] {
         micros.sort_by(f64::total_cmp);
         let Some(most) = micros.last() else { continue };
         let mean = micros.iter().sum::<f64>() / micros.len() as f64;
         println!(
-            "lines, {name:<20} {:>4}: µs a cell: median {:.1}, mean {mean:.1}, slowest {most:.0}",
+            "lines, {name:<22} {:>5}: µs a cell: median {:.1}, mean {mean:.1}, slowest {most:.0}",
             micros.len(),
             micros[micros.len() / 2],
         );

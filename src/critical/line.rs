@@ -22,8 +22,8 @@ const SURPRISES: usize = 2;
 const MEETS: f64 = 3e-5;
 const MEETS_IN_TIME: f64 = 1e-2;
 
-/// The critical velocities of a block of a line: problems that differ by their delay alone, which increases. None of a cell
-/// where `stopped` came before it.
+/// The critical velocities of a block of a line: problems that differ by their delay alone, which increases. `stopped` is asked
+/// before every visit to a cell; where it came first, some are none.
 #[must_use]
 pub fn critical_velocities(
     problems: &[Problem],
@@ -149,6 +149,9 @@ impl Block<'_> {
     fn advance(&mut self, first: usize, last: usize, track: &mut Track) -> (usize, bool) {
         let (mut seen, mut checked) = (first, first);
         for cell in first + 1..=last {
+            if (self.stopped)() {
+                return (seen, seen == checked);
+            }
             let next = track.next(&self.problems[cell]);
             let found = next.and_then(|found| of_found(&found, Method::GrazeOrbit));
             let Some(mut critical) = found else {

@@ -2,7 +2,7 @@
 
 use std::collections::VecDeque;
 
-use super::series::{Coefficients, MOST_ORDER, shifted};
+use super::series::{Coefficients, MOST_ORDER, shift, shifted};
 
 /// One step's elongation.
 #[derive(Debug, Clone)]
@@ -225,11 +225,11 @@ impl History {
         let (index, reach) = self.farthest(time, latest);
         let piece = &self.pieces[index];
         let since = time - piece.from;
-        *out = if since.is_finite() && since.abs() > close {
-            shifted(&piece.a[..=piece.order], since)
-        } else {
-            piece.a
+        let by = match since.is_finite() && since.abs() > close {
+            true => since,
+            false => 0.0,
         };
+        shift(&piece.a[..=piece.order], by, out);
         reach
     }
 

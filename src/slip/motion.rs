@@ -131,14 +131,12 @@ pub struct Motion {
     friction: FrictionSeries,
     history: History,
     mode: Mode,
-    /// Time, velocity, elongation, position.
+    /// Time.
     pub t: f64,
     /// ẋ.
     pub u: f64,
     /// Elongation.
     pub a: f64,
-    /// Displacement since the start.
-    pub x: f64,
     /// Order of the lowest derivative of a that jumps now.
     kink: u32,
     /// Since when the block has stuck while v0 was the same; +∞ while it does not.
@@ -184,7 +182,6 @@ impl Motion {
             t: 0.0,
             u,
             a,
-            x: 0.0,
             kink: 1,
             stuck_since: f64::INFINITY,
             step: Step {
@@ -209,7 +206,7 @@ impl Motion {
     pub fn release_from(&mut self, a: f64) {
         let v0 = self.parameters.v0;
         self.history.restart_rising(a, v0, self.parameters.tau);
-        (self.t, self.u, self.a, self.x) = (0.0, 0.0, a, 0.0);
+        (self.t, self.u, self.a) = (0.0, 0.0, a);
         self.mode = Mode::Forwards;
         self.friction.restart(0.0);
         self.stuck_since = f64::INFINITY;
@@ -253,7 +250,7 @@ impl Motion {
         self.history.copy_from(&other.history);
         self.friction.copy_place(&other.friction);
         self.mode = other.mode;
-        (self.t, self.u, self.a, self.x) = (other.t, other.u, other.a, other.x);
+        (self.t, self.u, self.a) = (other.t, other.u, other.a);
         (self.kink, self.stuck_since) = (other.kink, other.stuck_since);
         self.step.clone_from(&other.step);
     }
@@ -279,16 +276,15 @@ impl Motion {
         self.friction.restart(0.0);
         self.mode = Mode::Forwards;
         self.a = last.a + share * (last.a - before.a);
-        (self.t, self.u, self.x) = (0.0, 0.0, 0.0);
+        (self.t, self.u) = (0.0, 0.0);
         (self.kink, self.stuck_since) = (1, f64::INFINITY);
     }
 
-    /// Makes the present t = 0 and x = 0, with control acting from `switch_on` on. The past stays what it is.
+    /// Makes the present t = 0, with control acting from `switch_on` on. The past stays what it is.
     pub(super) fn begin_here(&mut self, switch_on: f64) {
         self.history.shift(-self.t);
         self.stuck_since -= self.t;
         self.t = 0.0;
-        self.x = 0.0;
         self.parameters.switch_on = switch_on;
         if switch_on <= 0.0 {
             self.kink = 1;
@@ -413,7 +409,7 @@ impl Motion {
         if self.stuck_since + self.parameters.tau <= self.t && self.parameters.alpha_v == 0.0 {
             // The elongation grows evenly until release, one delay ago as now.
             let v0 = self.parameters.v0;
-            self.step.delayed = [0.0; MOST_ORDER + 1];
+            self.step.delayed.fill(0.0);
             self.step.delayed[0] = self.a - v0 * self.parameters.tau;
             self.step.delayed[1] = v0;
             return DelayLimit {
@@ -595,7 +591,6 @@ impl Motion {
         let (u, a) = (&self.step.u[..=order], &self.step.a[..=order]);
         self.u = value(u, length);
         self.a = value(a, length);
-        self.x += self.step.displacement(length);
         self.t += length;
         self.history.push(self.t, radius, a, self.kink);
         self.step.length = length;

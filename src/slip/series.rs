@@ -1,7 +1,7 @@
 //! Polynomials in the time since the start of a step: Taylor series of a solution, cut off.
 
 /// Highest order of a series.
-pub const MOST_ORDER: usize = 24;
+pub const MOST_ORDER: usize = 20;
 
 /// Coefficients c₀ … c_N of Σ c_k s^k; those beyond the order in use mean nothing.
 pub type Coefficients = [f64; MOST_ORDER + 1];
@@ -83,23 +83,31 @@ fn value_and_slope(c: &[f64], s: f64) -> (f64, f64) {
     (value, slope)
 }
 
-/// The coefficients about s = `by` of those in `c`, Σ_m (j + m over j) c_{j+m} by^m.
-///
-/// Horner's scheme takes as many operations, but each waits for the one before.
+/// The coefficients about s = `by` of those in `c`, see [`shift`].
 #[inline]
 #[must_use]
 pub fn shifted(c: &[f64], by: f64) -> Coefficients {
     let mut about = [0.0; MOST_ORDER + 1];
-    about[..c.len()].copy_from_slice(c);
+    shift(c, by, &mut about);
+    about
+}
+
+/// Writes the coefficients about s = `by` of those in `c` to `about`: Σ_m (j + m over j) c_{j+m} by^m, and zero beyond.
+///
+/// Horner's scheme takes as many operations, but each waits for the one before.
+#[inline]
+pub fn shift(c: &[f64], by: f64, about: &mut Coefficients) {
+    let (low, high) = about.split_at_mut(c.len());
+    low.copy_from_slice(c);
+    high.fill(0.0);
     let mut power = 1.0;
     for (m, row) in BINOMIAL.iter().enumerate().take(c.len()).skip(1) {
         power *= by;
         let terms = row.iter().zip(&c[m..]);
-        for (sum, (binomial, c)) in about.iter_mut().zip(terms) {
+        for (sum, (binomial, c)) in low.iter_mut().zip(terms) {
             *sum += power * (binomial * c);
         }
     }
-    about
 }
 
 /// Coefficient k of the product of `p` and `q`, from the middle to both ends: what was found last is waited for last.

@@ -162,6 +162,8 @@ fn physical(motion: &Motion, kind: Event, units: CaseUnits) -> TraceEvent {
 /// Samples a motion step by step.
 struct Recorder {
     motion: Motion,
+    /// Displacement since the start.
+    x: f64,
     units: CaseUnits,
     steps: u64,
     sampling: Sampling,
@@ -183,6 +185,7 @@ impl Recorder {
     fn new(case: &Case, sampling: Sampling) -> Result<Self, CaseError> {
         Ok(Self {
             motion: case.motion()?,
+            x: 0.0,
             units: case.units(),
             steps: case.steps,
             sampling,
@@ -198,11 +201,13 @@ impl Recorder {
         for _ in 0..self.steps {
             let begun = Begun {
                 t: self.motion.t,
-                x: self.motion.x,
+                x: self.x,
                 mode: self.motion.mode(),
                 marked,
             };
             let event = self.motion.advance(end);
+            let step = self.motion.last_step();
+            self.x += step.displacement(step.length);
             self.sample_step(begun);
             let over = event == Some(Event::LiftOff) || self.motion.t >= end;
             if over || event == Some(Event::SwitchOn) {

@@ -134,8 +134,7 @@ pub fn find_in(problem: &Problem, units: &CaseUnits, protocol: Protocol) -> Foun
     }
 }
 
-/// The critical velocities of a block of a line by the protocol `follow`, see [`line::critical_velocities`]; none of a cell
-/// where `stopped` came before it.
+/// The critical velocities of a block of a line by the protocol `follow`, see [`line::critical_velocities`].
 #[must_use]
 pub fn find_in_line(
     problems: &[Problem],
