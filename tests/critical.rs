@@ -437,6 +437,19 @@ fn an_orbit_that_is_lost_just_below_its_end_is_not_thrown_off() {
     }
 }
 
+/// Sticks shorten as a square root towards a graze here, and errors of the integration within a tolerance of 1e-6 move it by 1e-3.
+#[test]
+fn ends_are_checked_by_a_finer_integration() {
+    let law = FrictionLaw::stribeck(0.4244, 0.304, 1.0).unwrap();
+    let problem = problem(law, -0.8625, 0.0, 0.233);
+    let (found, simulated) = (critical_velocity(&problem), simulated(&problem));
+    assert!(found.method == Method::GrazeOrbit && found.decided);
+    assert!(
+        (found.vc / simulated.vc - 1.0).abs() < 5e-5,
+        "{found:?} {simulated:?}"
+    );
+}
+
 #[test]
 fn kinds_that_end_alike_are_told_apart() {
     let law = FrictionLaw::weakening(0.954641831528965, 0.5410746973058337, 1.0).unwrap();

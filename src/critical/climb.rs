@@ -327,17 +327,43 @@ pub(super) fn thrown(before: [f64; 2], after: [f64; 2], step: f64) -> bool {
 /// with v0.
 const SLOW: f64 = 0.03;
 
-/// The same, once more from there with a finer integration where the end is at a low v0.
-pub(super) fn climb_finely(road: &mut impl Road, from: Place, most: f64) -> (Climbed, Place) {
+/// A finer integration, and how well an end has to be the same by it, relative.
+const FINER: f64 = 1e-2;
+const SAME_END: f64 = 1e-5;
+
+/// The same, once more from there with a finer integration where the end is at a low v0, or is another one by it, if it leads to
+/// one.
+pub(super) fn climb_finely<R: Road + Clone>(
+    road: &mut R,
+    from: Place,
+    most: f64,
+) -> (Climbed, Place) {
     let (climbed, at) = climb(road, from, most);
-    let slow = at.v0 < SLOW && !matches!(climbed, Climbed::Unclear);
-    if !slow {
+    if matches!(climbed, Climbed::Unclear) {
         return (climbed, at);
     }
-    road.refine(Accuracy::of(super::GRAZE_TOLERANCE * at.v0 / SLOW));
+    let slow = at.v0 < SLOW;
+    let tolerance = super::GRAZE_TOLERANCE * if slow { at.v0 / SLOW } else { FINER };
+    let roughly = road.clone();
+    road.refine(Accuracy::of(tolerance));
+    if slow {
+        return climb_again(road, &at);
+    }
+    if !ends_alike(road, &at) {
+        let (climbed, at) = climb_again(road, &at);
+        if !matches!(climbed, Climbed::Unclear) {
+            return (climbed, at);
+        }
+    }
+    *road = roughly;
+    (climbed, at)
+}
+
+/// Climbs the last bit of the way to the end near `at` once more.
+fn climb_again(road: &mut impl Road, at: &Place) -> (Climbed, Place) {
     let v0 = at.v0 * (1.0 - BACK);
     let Ran::Period(period, gauges) = road.trial(v0, Some(&at.period), SETTLED) else {
-        return (Climbed::Unclear, at);
+        return (Climbed::Unclear, *at);
     };
     road.keep();
     let from = Place {
@@ -345,6 +371,18 @@ pub(super) fn climb_finely(road: &mut impl Road, from: Place, most: f64) -> (Cli
         ..Place::first(v0, period, gauges, SETTLED)
     };
     climb(road, from, BACK)
+}
+
+/// Whether what vanishes at the end of a climb says by the road as it is now that it ends where it told before.
+fn ends_alike(road: &mut impl Road, at: &Place) -> bool {
+    let gauge = at.gap().1;
+    match road.trial(at.v0, Some(&at.period), SETTLED) {
+        Ran::Period(_, gauges) => {
+            let moved = (gauges[gauge] - at.gauges[gauge]) / at.slopes[gauge] / at.v0;
+            moved.abs() < SAME_END
+        }
+        _ => false,
+    }
 }
 
 /// From so far below an end, relative, it is looked for once more.

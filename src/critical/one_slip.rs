@@ -11,6 +11,7 @@ use crate::slip::motion::{Accuracy, Motion};
 /// Where v0 of one slip starts, in order, in units of μ_S N0/√(κM): what has no memory ends in the same way from anywhere.
 const STARTS: [f64; 4] = [6e-2, 6e-3, 1e-4, 1e-6];
 /// Slips that start without memory.
+#[derive(Clone)]
 struct Slips<'p> {
     problem: &'p Problem,
     motion: Motion,
