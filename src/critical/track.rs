@@ -182,49 +182,20 @@ impl Track {
     }
 
     fn attempt(&mut self, problem: &Problem) -> Result<Found, Lost> {
-        let last = *self.ends.last().ok_or(Lost::Unknown)?;
-        if (problem.tau / last.0 - 1.0).abs() > LARGEST_CHANGE {
-            return Err(Lost::Unknown);
-        }
-        let expected = self.expected(problem.tau);
-        let mut off = (2.0 * self.off).max(self.near).min(FARTHEST);
-        if self.before.is_none() {
-            // An orbit that has to change starts with a transient, a small one where its past is extrapolated.
-            off = (0.15 * (expected / last.1 - 1.0).abs()).clamp(off, FARTHEST);
-        }
-        let near = off;
-        if self.borrowed >= MOST_BORROWED {
-            off = off.max(FOR_SLOPES);
-        }
+        let tau = problem.tau;
+        let expected = self.expected(tau);
         let ended = self.road.place_kept().clone();
-        let offs = [off, 4.0 * off, (30.0 * off).min(FARTHEST), 2.0 * FARTHEST];
-        let tried = (0..offs.len()).find_map(|i| {
-            let from = self.start(problem.tau, expected * (1.0 - offs[i]))?;
-            Some((i, Place { expected, ..from }))
-        });
-        let (tries, from) = tried.ok_or(Lost::Unknown)?;
+        let (from, nearest) = self.set_out(tau, expected)?;
         let first = *self.road.first_gauges();
         let (climbed, at) = climb(&mut self.road, from, FARTHEST);
         let gauge = at.gap().1;
         let transient = (first[gauge] - from.gauges[gauge]) / at.slopes[gauge] / at.v0;
-        let failed = if tries > 0 { offs[tries - 1] } else { 0.0 };
         self.near = (ROOM * transient)
-            .max(failed)
-            .min(NEARER * if tries > 0 { offs[tries] } else { near })
+            .max(nearest[0])
+            .min(nearest[1])
             .max(self.ending.nearest()[1]);
-        let mut found = arrive(&mut self.road, climbed, &at);
-        let as_expected = |end: f64| (end / expected - 1.0).abs() < AS_EXPECTED;
-        let alike = Ending::of(&found) == self.ending && found.end().is_some_and(as_expected);
-        let slip = at.period.slip_time();
-        let alike = alike && (slip / self.slip_seen - 1.0).abs() < SAME_SLIP;
-        if !alike || !self.may_be_unseen(problem.tau) {
-            let (seen, clear) = verify(problem, &mut self.road, found);
-            found = seen;
-            self.see(problem.tau, clear);
-            self.slip_seen = slip;
-        } else {
-            self.unseen += 1;
-        }
+        let found = arrive(&mut self.road, climbed, &at);
+        let found = self.look(problem, found, (expected, at.period.slip_time()));
         let end = match found {
             Found::Persists(_) | Found::Irregular | Found::Changes(_) => return Err(Lost::Goes),
             _ => found.end().ok_or(Lost::Unknown)?,
@@ -237,8 +208,51 @@ impl Track {
         if self.ends.len() == KNOWN_ENDS {
             self.ends.remove(0);
         }
-        self.ends.push((problem.tau, end));
+        self.ends.push((tau, end));
         Ok(found)
+    }
+
+    /// A first place at the delay `tau`, below the `expected` end; and from how far below its end the next cell may start, relative:
+    /// not nearer than the first number, and not farther than the second, unless something else asks for it.
+    fn set_out(&mut self, tau: f64, expected: f64) -> Result<(Place, [f64; 2]), Lost> {
+        let last = *self.ends.last().ok_or(Lost::Unknown)?;
+        if (tau / last.0 - 1.0).abs() > LARGEST_CHANGE {
+            return Err(Lost::Unknown);
+        }
+        let mut near = (2.0 * self.off).max(self.near).min(FARTHEST);
+        if self.before.is_none() {
+            // An orbit that has to change starts with a transient, a small one where its past is extrapolated.
+            near = (0.15 * (expected / last.1 - 1.0).abs()).clamp(near, FARTHEST);
+        }
+        let off = match self.borrowed >= MOST_BORROWED {
+            true => near.max(FOR_SLOPES),
+            false => near,
+        };
+        let mut nearest = [0.0, NEARER * near];
+        for off in [off, 4.0 * off, (30.0 * off).min(FARTHEST), 2.0 * FARTHEST] {
+            if let Some(from) = self.start(tau, expected * (1.0 - off)) {
+                return Ok((Place { expected, ..from }, nearest));
+            }
+            nearest = [off, NEARER * 4.0 * off];
+        }
+        Err(Lost::Unknown)
+    }
+
+    /// What an end that was arrived at is, looked at what comes after it unless that can be told from the ends before. There it was
+    /// expected at `expected`, and its orbit slips for `slip` in a period.
+    fn look(&mut self, problem: &Problem, end: Found, (expected, slip): (f64, f64)) -> Found {
+        let as_expected = |end: f64| (end / expected - 1.0).abs() < AS_EXPECTED;
+        let alike = Ending::of(&end) == self.ending
+            && end.end().is_some_and(as_expected)
+            && (slip / self.slip_seen - 1.0).abs() < SAME_SLIP;
+        if alike && self.may_be_unseen(problem.tau) {
+            self.unseen += 1;
+            return end;
+        }
+        let (seen, clear) = verify(problem, &mut self.road, end);
+        self.see(problem.tau, clear);
+        self.slip_seen = slip;
+        seen
     }
 
     /// Whether the next end, at `tau`, may be taken for that of stick-slip because it clearly ended at those before: what the block
