@@ -391,7 +391,6 @@ fn ends_that_open_below_a_branch_are_found() {
     assert!(below > 3, "{below}");
 }
 
-/// One cell ends with two slips in a period, its neighbours at nearly the same v0 with one: none is continued to the other.
 /// Irregular stick-slip leads to an orbit that ends soon, and another kind goes on above that: steps that are too large for it
 /// come to the other one.
 #[test]
@@ -450,6 +449,7 @@ fn ends_are_checked_by_a_finer_integration() {
     );
 }
 
+/// One cell ends with two slips in a period, its neighbours at nearly the same v0 with one: none is continued to the other.
 #[test]
 fn kinds_that_end_alike_are_told_apart() {
     let law = FrictionLaw::weakening(0.954641831528965, 0.5410746973058337, 1.0).unwrap();
