@@ -449,6 +449,20 @@ fn ends_are_checked_by_a_finer_integration() {
     );
 }
 
+/// Simulation that tells another end by other steps of v0 or a finer integration decides nothing.
+#[test]
+fn ends_that_are_not_confirmed_are_not_decided() {
+    let fast = FrictionLaw::stribeck(0.3501457278180179, 0.270275760886004, 1.0).unwrap();
+    let found = critical_velocity(&problem(fast, -0.7553344615011054, 0.0, 0.01));
+    let told = (found.vc / 88.1329 - 1.0).abs() < 1e-4;
+    assert!(!found.decided || told, "{found:?}");
+    // It lifts off in a transient, by some steps.
+    let law = FrictionLaw::weakening(0.7659505970022644, 1.0087382393833446, 1.0).unwrap();
+    let lifted = problem(law, 0.10212109734575425, -0.4470567829329153, 15.8);
+    let found = critical_velocity(&lifted);
+    assert!(!found.decided, "{found:?}");
+}
+
 /// One cell ends with two slips in a period, its neighbours at nearly the same v0 with one: none is continued to the other.
 #[test]
 fn kinds_that_end_alike_are_told_apart() {

@@ -331,8 +331,8 @@ const SLOW: f64 = 0.03;
 const FINER: f64 = 1e-2;
 const SAME_END: f64 = 1e-5;
 
-/// The same, once more from there with a finer integration where the end is at a low v0, or is another one by it, if it leads to
-/// one.
+/// The same, once more from there with a finer integration where the end is at a low v0, which it is not known at without; or where it is
+/// another one by it, if that leads to one.
 pub(super) fn climb_finely<R: Road + Clone>(
     road: &mut R,
     from: Place,

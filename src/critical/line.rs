@@ -23,7 +23,7 @@ const MEETS: f64 = 3e-5;
 const MEETS_IN_TIME: f64 = 1e-2;
 
 /// The critical velocities of a block of a line: problems that differ by their delay alone, which increases. `stopped` is asked
-/// before every visit to a cell; where it came first, some are none.
+/// before every visit to a cell; where it came first, some are none and the others are not to be used.
 #[must_use]
 pub fn critical_velocities(
     problems: &[Problem],

@@ -226,22 +226,27 @@ pub fn critical_velocity(problem: &Problem) -> Critical {
     search::from_scratch(problem).0
 }
 
-/// The first step of v0 of a search that confirms another one.
+/// The first step of v0 of a search that confirms another one, and the error allowed in a step of the integrator.
 const CONFIRM_FIRST: f64 = 0.2;
+const CONFIRM_TOLERANCE: f64 = 1e-10;
 
-/// What `followed` tells. v0 is raised slowly: an end that is another one with other steps of v0 is not decided.
-///
-/// Without chance on the way steps do not matter.
-fn confirmed(followed: &Followed, search: impl Fn(&Pace) -> Followed) -> Critical {
+/// What was `followed` by a `search` at this pace tells. v0 is raised slowly: an end that is another one with other steps of v0, and
+/// a finer integration, is not decided.
+fn confirmed(
+    followed: &Followed,
+    pace: &Pace,
+    search: impl Fn(&Pace, f64) -> Followed,
+) -> Critical {
     let critical = of_followed(followed);
-    if !followed.chance || !critical.decided {
+    if !critical.decided {
         return critical;
     }
-    let again = of_followed(&search(&Pace {
+    let pace = Pace {
         first: CONFIRM_FIRST,
         largest: CONFIRM_FIRST,
-        ..Pace::default()
-    }));
+        ..*pace
+    };
+    let again = of_followed(&search(&pace, CONFIRM_TOLERANCE));
     Critical {
         decided: again.decided && critical.ends_like(&again),
         ..critical
@@ -314,18 +319,16 @@ fn of_followed(followed: &Followed) -> Critical {
     let rounding = |last: &Sustained| last.summary.stick_time < VANISHING && !followed.vanish;
     // Irregular stick-slip ends by chance: where, depends on the steps of v0 and on how long each is waited for.
     let irregular = |last: &Sustained| last.fate == Fate::Irregular;
-    let lifts = followed
-        .lost
-        .as_ref()
-        .is_some_and(|lost| lost.fate == Fate::LiftOff);
-    let by_chance =
-        !lifts && followed.lost.is_some() && followed.last.as_ref().is_some_and(irregular);
+    let by_chance = followed.lost.is_some() && followed.last.as_ref().is_some_and(irregular);
     let decided = followed.complete
         && !by_chance
         && !followed.lost.as_ref().is_some_and(undecided)
         && !followed.last.as_ref().is_some_and(rounding);
     match (followed.last, followed.lost) {
-        (_, Some(lost)) if lost.fate == Fate::LiftOff => of_lift_off(lost.v0, method),
+        (_, Some(lost)) if lost.fate == Fate::LiftOff => Critical {
+            decided: followed.complete && !by_chance,
+            ..of_lift_off(lost.v0, method)
+        },
         (None, _) => Critical {
             decided,
             ..nothing(0.0, End::Never, method)

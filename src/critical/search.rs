@@ -242,18 +242,20 @@ fn changed(problem: &Problem, road: &mut Orbit, v0: f64) -> Next {
 /// By simulation from the first of some motions in stick-slip on that is sustained, v0 raised by a relative `step` at first;
 /// from low velocities where none is.
 fn simulated_from(problem: &Problem, motions: Vec<Motion>, step: f64) -> Critical {
-    for mut motion in motions {
-        motion.refine(Accuracy::of(FOLLOW_TOLERANCE));
-        let search = |pace: &Pace| {
+    for motion in motions {
+        let search = |pace: &Pace, tolerance: f64| {
+            let mut motion = motion.clone();
+            motion.refine(Accuracy::of(tolerance));
             let first = step * pace.first;
-            follow::from(problem, motion.clone(), &Pace { first, ..*pace })
+            follow::from(problem, motion, &Pace { first, ..*pace })
         };
-        let followed = search(&Pace {
+        let patient = Pace {
             patient: true,
             ..Pace::default()
-        });
+        };
+        let followed = search(&patient, FOLLOW_TOLERANCE);
         if followed.last.is_some() {
-            return confirmed(&followed, search);
+            return confirmed(&followed, &patient, search);
         }
     }
     simulated(problem)
@@ -261,7 +263,9 @@ fn simulated_from(problem: &Problem, motions: Vec<Motion>, step: f64) -> Critica
 
 /// By simulation from low velocities on.
 fn simulated(problem: &Problem) -> Critical {
-    let accuracy = Accuracy::of(FOLLOW_TOLERANCE);
-    let search = |pace: &Pace| follow::critical_velocity(problem, pace, accuracy);
-    confirmed(&search(&Pace::default()), search)
+    let search = |pace: &Pace, tolerance: f64| {
+        follow::critical_velocity(problem, pace, Accuracy::of(tolerance))
+    };
+    let pace = Pace::default();
+    confirmed(&search(&pace, FOLLOW_TOLERANCE), &pace, search)
 }

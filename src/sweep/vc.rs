@@ -207,15 +207,16 @@ fn in_motion_units(phase: Phase, units: &CaseUnits) -> Phase {
 /// First steps of v0, relative, and those through what ends by chance, where a cell is recomputed: other ones than where it was
 /// computed; and small ones, which throw stick-slip from one kind to another least, where these lead elsewhere.
 const SAMPLE_STEPS: [[f64; 2]; 2] = [[0.35, 0.1], [0.02, 0.005]];
-/// The error of a step of the integrator there.
-const SAMPLE_ACCURACY: f64 = 1e-10;
+/// The errors of a step of the integrator there.
+const SAMPLE_ACCURACIES: [f64; 2] = [1e-10, 1e-12];
 
 /// Whether simulation alone, with steps of its own, does not contradict `found`, the answer for `problem` by the protocol
 /// `follow`, in `units`: it has to see stick-slip end at the same velocity, see [`Critical::ends_like`]. A cell that is not
 /// decided claims nothing.
 #[must_use]
 pub fn simulation_agrees(problem: &Problem, units: &CaseUnits, found: &Critical) -> bool {
-    let agrees = |&[first, unseen]: &[f64; 2]| {
+    let mut contradicted = false;
+    for ([first, unseen], accuracy) in SAMPLE_STEPS.into_iter().zip(SAMPLE_ACCURACIES) {
         let pace = Pace {
             first,
             largest: first,
@@ -223,10 +224,13 @@ pub fn simulation_agrees(problem: &Problem, units: &CaseUnits, found: &Critical)
             patient: true,
             ..Pace::default()
         };
-        let again = by_simulation(problem, &pace, Accuracy::of(SAMPLE_ACCURACY));
-        found.ends_like(&in_units(&again, units))
-    };
-    !found.decided || SAMPLE_STEPS.iter().any(agrees)
+        let again = by_simulation(problem, &pace, Accuracy::of(accuracy));
+        if !found.decided || found.ends_like(&in_units(&again, units)) {
+            return true;
+        }
+        contradicted |= again.decided;
+    }
+    !contradicted
 }
 
 /// What a working velocity v0 is good for.

@@ -29,7 +29,10 @@ pub fn edit<T>(path: &Path, change: impl FnOnce(&hdf5::File) -> T) -> T {
 
 /// Waits until a file that was open can be opened again: a child that another test started meanwhile holds its lock too.
 pub fn settle(path: &Path) {
-    std::fs::File::open(path).unwrap().lock().unwrap();
+    let file = std::fs::File::open(path).unwrap();
+    file.lock().unwrap();
+    // Not by closing it: a child may have inherited this one.
+    file.unlock().unwrap();
 }
 
 /// The bytes of every dataset of a file, by name.
