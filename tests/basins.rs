@@ -4,7 +4,6 @@
 mod program;
 
 use std::path::Path;
-use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use program::{Folder, err, expect, out};
 use serde_json::Value;
@@ -20,12 +19,6 @@ use map::write;
 
 const LAW: &str = "[friction]\nlaw = \"weakening\"\nmu0 = 0.5\nv_s = 0.5\n";
 
-/// One test at a time: a child that is just being started would hold the locks of maps that another test writes.
-fn alone() -> MutexGuard<'static, ()> {
-    static ONE: Mutex<()> = Mutex::new(());
-    ONE.lock().unwrap_or_else(PoisonError::into_inner)
-}
-
 fn outcomes(path: &Path) -> Vec<Outcome> {
     let file = hdf5::File::open(path).unwrap();
     let numbers = file.dataset("outcome").unwrap().read_raw::<u8>().unwrap();
@@ -36,7 +29,6 @@ fn outcomes(path: &Path) -> Vec<Outcome> {
 /// The topmost velocities at which stick-slip survives that control is switched on so long after a release.
 #[test]
 fn stick_slip_ends_at_the_known_velocities() {
-    let _alone = alone();
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("map.h5");
     for (phase, v_c) in [
@@ -101,7 +93,6 @@ const SWEEPS: [&str; 3] = [
 
 #[test]
 fn every_cell_is_what_simulate_says() {
-    let _alone = alone();
     let folder = Folder::new();
     let map = folder.path().join("map.h5");
     for text in SWEEPS {
@@ -162,7 +153,6 @@ fn case_of(plan: &Plan, mut cell: usize) -> String {
 
 #[test]
 fn maps_do_not_depend_on_threads_or_tiles() {
-    let _alone = alone();
     let folder = tempfile::tempdir().unwrap();
     let [one, two] = ["one.h5", "two.h5"].map(|name| folder.path().join(name));
     for text in SWEEPS {
@@ -209,7 +199,6 @@ fn maps_do_not_depend_on_threads_or_tiles() {
 /// A delay of more cycles than can be followed.
 #[test]
 fn cells_that_cannot_start_are_undecided() {
-    let _alone = alone();
     let text = format!(
         "fields = [\"outcome\", \"n_min\"]\n[axes]\nv0 = [0.1, 0.2]\nswitch_on_phase = [0.1, 0.4]\n\
          [fixed]\nalpha_v = -0.33\ntau = 1e9\n{LAW}"
@@ -225,7 +214,6 @@ fn cells_that_cannot_start_are_undecided() {
 
 #[test]
 fn mistakes_are_shown_in_place() {
-    let _alone = alone();
     let folder = Folder::new();
     let fixed = "[fixed]\nalpha_v = 1\ntau = 1\n";
     let mut shown = String::new();

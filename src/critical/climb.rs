@@ -342,13 +342,13 @@ pub(super) fn climb_finely<R: Road + Clone>(
     if matches!(climbed, Climbed::Unclear) {
         return (climbed, at);
     }
-    let slow = at.v0 < SLOW;
-    let tolerance = super::GRAZE_TOLERANCE * if slow { at.v0 / SLOW } else { FINER };
-    let roughly = road.clone();
-    road.refine(Accuracy::of(tolerance));
-    if slow {
+    let finer = |by: f64| Accuracy::of(super::GRAZE_TOLERANCE * by);
+    if at.v0 < SLOW {
+        road.refine(finer(at.v0 / SLOW));
         return climb_again(road, &at);
     }
+    let roughly = road.clone();
+    road.refine(finer(FINER));
     if !ends_alike(road, &at) {
         let (climbed, at) = climb_again(road, &at);
         if !matches!(climbed, Climbed::Unclear) {

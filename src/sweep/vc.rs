@@ -215,6 +215,9 @@ const SAMPLE_ACCURACIES: [f64; 2] = [1e-10, 1e-12];
 /// decided claims nothing.
 #[must_use]
 pub fn simulation_agrees(problem: &Problem, units: &CaseUnits, found: &Critical) -> bool {
+    if !found.decided {
+        return true;
+    }
     let mut contradicted = false;
     for ([first, unseen], accuracy) in SAMPLE_STEPS.into_iter().zip(SAMPLE_ACCURACIES) {
         let pace = Pace {
@@ -225,7 +228,7 @@ pub fn simulation_agrees(problem: &Problem, units: &CaseUnits, found: &Critical)
             ..Pace::default()
         };
         let again = by_simulation(problem, &pace, Accuracy::of(accuracy));
-        if !found.decided || found.ends_like(&in_units(&again, units)) {
+        if found.ends_like(&in_units(&again, units)) {
             return true;
         }
         contradicted |= again.decided;
