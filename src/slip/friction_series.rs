@@ -1,6 +1,6 @@
 //! The Taylor series of the friction coefficient along a motion.
 
-use super::series::{Coefficients, MOST_ORDER, PER_NEXT, product};
+use super::series::{Coefficients, MOST_ORDER, PER_NEXT, product, spread};
 use super::table_series::TableSeries;
 use crate::model::FrictionLaw;
 use crate::model::friction::Kind;
@@ -54,6 +54,18 @@ impl FrictionSeries {
     pub fn restart(&mut self, speed: f64) {
         if let Self::Table(series) = self {
             series.restart(speed);
+        }
+    }
+
+    /// The longest step, at most `length`, in which the series of the law tells the law to `error`, relative to the
+    /// load; `speed` are the coefficients of ẋ.
+    ///
+    /// Coulomb's law and a cubic of a table are polynomials of the speed, and the pole of velocity weakening makes its
+    /// coefficients grow as fast as its distance asks for. Stribeck's Gaussian alone can hide from them.
+    pub fn resolved(&self, speed: &[f64], length: f64, error: f64) -> f64 {
+        match self {
+            Self::Stribeck(series) => series.resolved(speed, length, error),
+            Self::Coulomb(_) | Self::Weakening(_) | Self::Table(_) => length,
         }
     }
 
@@ -134,11 +146,104 @@ impl Series for Stribeck {
     }
 }
 
+/// Radii of the discs on which the Gaussian is bounded, over the length of a step.
+const DISCS: [f64; 4] = [1.25, 2.0, 3.0, 4.5];
+/// A step on which the series is not known to be the law becomes shorter by this, so often at most.
+const SHORTER: f64 = 0.8;
+const MOST_TIMES: u32 = 60;
+
+impl Stribeck {
+    /// See [`FrictionSeries::resolved`].
+    ///
+    /// Coefficient k of the Gaussian about z = ẋ/v_s is a Hermite function. These oscillate, and tell how large those of
+    /// higher order are, up to z² = 2k; beyond that the first ones are as small as exp(−z²) whatever comes after them. There
+    /// Cauchy's estimate tells instead: on a disc of radius ρ the rest of a series of order N is at most
+    /// M(ρ) (s/ρ)^N/(1 − s/ρ), where M is the largest absolute value on that disc.
+    fn resolved(&self, speed: &[f64], length: f64, error: f64) -> f64 {
+        let order = (speed.len() - 1) as f64;
+        let centre = self.scaled[0].abs();
+        if centre * centre <= order || self.fall == 0.0 || !length.is_finite() {
+            return length;
+        }
+        let allowed = (error / self.fall).ln();
+        let rest = |length: f64, disc: &f64| {
+            let off = spread(speed, disc * length) * self.per_v_s;
+            largest_exponent(centre, off) - order * disc.ln() - (1.0 - 1.0 / disc).ln()
+        };
+        let mut length = length;
+        for _ in 0..MOST_TIMES {
+            if DISCS.iter().any(|disc| rest(length, disc) <= allowed) {
+                return length;
+            }
+            length *= SHORTER;
+        }
+        length
+    }
+}
+
+/// The largest real part of −z² over a disc of radius `off` about `centre` ≥ 0.
+fn largest_exponent(centre: f64, off: f64) -> f64 {
+    if 2.0 * off < centre {
+        -(centre - off).powi(2)
+    } else {
+        off * off - 0.5 * centre * centre
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::super::series::value;
     use super::*;
     use crate::model::Table;
+
+    #[test]
+    fn the_gaussian_is_bounded_on_discs() {
+        for (centre, off) in [(5.0, 1.0), (5.0, 2.4), (5.0, 2.6), (3.0, 9.0), (0.0, 2.0)] {
+            let on_circle = (0..4000).map(|i| {
+                let z = num_complex::Complex64::from_polar(off, f64::from(i) * 1e-3 * 1.6) + centre;
+                (-z * z).re
+            });
+            let largest = on_circle.fold(f64::NEG_INFINITY, f64::max);
+            let bound = largest_exponent(centre, off);
+            assert!((bound - largest).abs() < 1e-3 * bound.abs(), "{centre} {off}: {bound} {largest}");
+        }
+    }
+
+    /// A speed that falls onto the flank of the Gaussian from far above it: no step is longer than the series holds.
+    #[test]
+    fn no_step_passes_over_the_flank() {
+        let (fall, v_s) = (0.6, 0.1);
+        let law = FrictionLaw::stribeck(0.4, v_s, 1.0).unwrap();
+        let mut load = [0.0; MOST_ORDER + 1];
+        load[0] = 1.0;
+        for from in [0.3, 0.5, 0.7, 1.0, 3.0, 10.0] {
+            for order in [4, 8, 16, 20] {
+                let FrictionSeries::Stribeck(mut series) = FrictionSeries::new(&law, 1.0) else {
+                    panic!("another law");
+                };
+                // ẋ falls as a parabola, and is 0 at s = 1.
+                let mut speed = [0.0; MOST_ORDER + 1];
+                (speed[0], speed[1], speed[2]) = (from, -0.5 * from, -0.5 * from);
+                let mut coefficients = [0.0; MOST_ORDER + 1];
+                for k in 0..order {
+                    coefficients[k] = series.extend(k, speed[k], &load);
+                }
+                let error = 1e-10;
+                let length = series.resolved(&speed[..=order], 1.0, error);
+                if from * from <= order as f64 * v_s * v_s {
+                    assert_eq!(length, 1.0);
+                    continue;
+                }
+                assert!(length > 0.01, "{from} {order}: {length}");
+                for part in [0.3, 0.7, 0.9, 1.0] {
+                    let s = part * length;
+                    let z = value(&speed[..=order], s) / v_s;
+                    let off = value(&coefficients[..order], s) - 0.4 - fall * (-z * z).exp();
+                    assert!(off.abs() <= error, "{from} {order}: {off:e} at {s} of {length}");
+                }
+            }
+        }
+    }
 
     #[test]
     fn the_series_is_the_law_along_a_motion() {

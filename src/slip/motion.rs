@@ -497,7 +497,12 @@ impl Motion {
         });
         let shorter = if asked[0].0 < asked[1].0 { 0 } else { 1 };
         let (_, room, k) = asked[shorter];
-        room.powf(1.0 / k as f64)
+        let length = room.powf(1.0 / k as f64);
+        if self.mode == Mode::Stick {
+            return length;
+        }
+        let error = self.tolerance * speed / (length * step.n[0].abs());
+        self.friction.resolved(&u[..=step.order], length, error)
     }
 
     /// The first event within `length`.
