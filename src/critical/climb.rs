@@ -327,6 +327,9 @@ pub(super) fn thrown(before: [f64; 2], after: [f64; 2], step: f64) -> bool {
 /// with v0.
 const SLOW: f64 = 0.03;
 
+/// Above this v0, in the same units, what ends a slip is a difference of forces that falls as 1/v0, of speeds that grow as v0.
+const FAST: f64 = 1.0;
+
 /// A finer integration, and how well an end has to be the same by it, relative.
 const FINER: f64 = 1e-2;
 const SAME_END: f64 = 1e-5;
@@ -348,7 +351,7 @@ pub(super) fn climb_finely<R: Road + Clone>(
         return climb_again(road, &at);
     }
     let roughly = road.clone();
-    road.refine(finer(FINER));
+    road.refine(finer(FINER * (FAST / at.v0).powi(2).min(1.0)));
     if !ends_alike(road, &at) {
         let (climbed, at) = climb_again(road, &at);
         if !matches!(climbed, Climbed::Unclear) {

@@ -21,6 +21,11 @@ pub struct Pace {
     pub unseen: f64,
     /// The last relative step: v_c is known to it.
     pub last: f64,
+    /// Up to this v0, in the units of a motion, v0 glides: it is held for a few cycles only, and what stick-slip comes to
+    /// there is not waited for. 0 where every v0 is held.
+    pub glide: f64,
+    /// The most v0 that are tried.
+    pub trials: u32,
     /// v0 up to which stick-slip is followed, in units of μ_S N0/√(κM).
     pub v_max: f64,
     /// How well cycles have to repeat near the end, relative.
@@ -44,6 +49,8 @@ impl Default for Pace {
             unseen: 0.1,
             repeated: 1e-6,
             last: 1e-6,
+            glide: 0.0,
+            trials: 400,
             v_max: 100.0,
             steps: 50_000,
             total_steps: 3_000_000,
@@ -182,8 +189,8 @@ fn start_sticking(problem: &Problem, v0: f64, accuracy: Accuracy) -> Motion {
     motion
 }
 
-/// The most v0 that are tried.
-const MOST_TRIALS: u32 = 400;
+/// Relative steps of v0 no larger than this are held while v0 glides as well: they look for an end.
+const GLIDE_LAST: f64 = 2e-3;
 /// How well cycles have to repeat after a large step of v0.
 const ROUGHLY: f64 = 1e-4;
 
@@ -196,6 +203,19 @@ struct Holding {
 }
 
 impl Holding {
+    /// At `v0`, after a relative step to it.
+    fn after(pace: &Pace, v0: f64, step: f64) -> Self {
+        let glides = v0 < pace.glide && step > GLIDE_LAST && step.is_finite();
+        Self {
+            waiting: if glides {
+                Waiting::Brief
+            } else {
+                Self::new(pace, step).waiting
+            },
+            ..Self::new(pace, step)
+        }
+    }
+
     /// After a relative step of v0.
     fn new(pace: &Pace, step: f64) -> Self {
         Self {
@@ -235,7 +255,7 @@ fn hold(problem: &Problem, motion: &mut Motion, v0: f64, how: &Holding) -> Susta
             _ => None,
         },
         repeated: how.repeated,
-        cycles: how.waiting.cycles() + problem.tau as usize,
+        cycles: how.waiting.cycles(problem.tau),
     };
     let slides = problem.count(v0).stable();
     let mut stops = Stops::new(motion, slides, how.waiting);
@@ -320,7 +340,7 @@ impl Climb<'_> {
     /// Raises v0 until two v0 as near as asked for differ in their fate; false where that takes too long.
     fn run(&mut self) -> bool {
         let end = self.pace.v_max * self.problem.law.mu_s();
-        for _ in 0..MOST_TRIALS {
+        for _ in 0..self.pace.trials {
             let repeats = self.pace.until_periodic && self.last.fate == Fate::Periodic;
             if self.last.v0 >= end || repeats {
                 return true;
@@ -421,7 +441,7 @@ impl Climb<'_> {
     /// Tries `v0`, a relative `step` away.
     fn attempt(&mut self, v0: f64, step: f64) {
         self.trial.copy_from(&self.motion);
-        let how = Holding::new(&self.pace, step);
+        let how = Holding::after(&self.pace, v0, step);
         let there = hold(self.problem, &mut self.trial, v0, &how);
         self.spent += there.summary.steps;
         if !there.persists() {
@@ -487,7 +507,7 @@ const NEARBY: f64 = 0.15;
 const MOST_PASSED: u32 = 6;
 const SHORT_WAY: f64 = 1e-3;
 /// The last relative step from irregular stick-slip.
-const LAST_IRREGULAR: f64 = 1e-4;
+const LAST_IRREGULAR: f64 = 2e-5;
 
 /// The share of the expected way that is taken at first, and at least.
 const SHARE: f64 = 0.9;

@@ -7,7 +7,7 @@
 
 use super::search::from_scratch;
 use super::track::Track;
-use super::{Critical, End, Method, Problem, of_found};
+use super::{Critical, Method, Problem, of_found};
 
 /// Cells of a block; blocks start at multiples of it.
 pub const BLOCK: usize = 128;
@@ -63,7 +63,7 @@ impl Block<'_> {
                 break;
             };
             if let Some(track) = &mut track {
-                track.recall(self.problems[before].tau, end(known));
+                track.recall(self.problems[before].tau, known.end_of_stick_slip());
             }
         }
         self.found[cell] = Some(critical);
@@ -177,14 +177,6 @@ impl Block<'_> {
             }
         }
         (last, true)
-    }
-}
-
-/// Where stick-slip ends.
-fn end(critical: &Critical) -> f64 {
-    match critical.end {
-        End::LiftOff => critical.v_liftoff,
-        _ => critical.vc,
     }
 }
 

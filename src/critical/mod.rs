@@ -198,6 +198,15 @@ pub struct Critical {
 }
 
 impl Critical {
+    /// The v0 at which stick-slip ends, or the model with it; NaN where it persists.
+    #[must_use]
+    pub fn end_of_stick_slip(&self) -> f64 {
+        match self.end {
+            End::LiftOff => self.v_liftoff,
+            _ => self.vc,
+        }
+    }
+
     /// Whether `other` says the same of the end of stick-slip: at v_c, or the velocity of lift-off, within
     /// [`GRAZE_PRECISION`].
     ///
@@ -229,26 +238,50 @@ pub fn critical_velocity(problem: &Problem) -> Critical {
 /// The first step of v0 of a search that confirms another one, and the error allowed in a step of the integrator.
 const CONFIRM_FIRST: f64 = 0.2;
 const CONFIRM_TOLERANCE: f64 = 1e-10;
+/// Relative steps of v0 that glides; and how far below the end, relative, it does no longer.
+const GLIDE_STEP: f64 = 0.01;
+const APPROACH: f64 = 0.02;
+/// The most v0 on the way: more than lead from the lowest to the largest.
+const GLIDE_TRIALS: u32 = 3000;
 
-/// What was `followed` by a `search` at this pace tells. v0 is raised slowly: an end that is another one with other steps of v0, and
-/// a finer integration, is not decided.
+/// v0 glides to near the end of stick-slip that was found: by small steps, without waiting for what it comes to on the way.
+fn gliding(found: &Critical) -> Pace {
+    let end = found.end_of_stick_slip();
+    Pace {
+        first: GLIDE_STEP,
+        largest: GLIDE_STEP,
+        unseen: GLIDE_STEP,
+        glide: if end.is_nan() {
+            f64::INFINITY
+        } else {
+            end * (1.0 - APPROACH)
+        },
+        trials: GLIDE_TRIALS,
+        ..Pace::default()
+    }
+}
+
+/// What was `followed` by a `search` at this pace tells. v0 is raised slowly: an end that is another one with other steps of v0,
+/// a finer integration, or while v0 glides, is not decided. What ends by chance is where all of these tell the same.
 fn confirmed(
     followed: &Followed,
     pace: &Pace,
     search: impl Fn(&Pace, f64) -> Followed,
 ) -> Critical {
-    let critical = of_followed(followed);
-    if !critical.decided {
-        return critical;
-    }
-    let pace = Pace {
+    let critical = told(followed);
+    let other = Pace {
         first: CONFIRM_FIRST,
         largest: CONFIRM_FIRST,
         ..*pace
     };
-    let again = of_followed(&search(&pace, CONFIRM_TOLERANCE));
+    let agrees = |pace: &Pace, tolerance: f64| {
+        let again = told(&search(pace, tolerance));
+        again.decided && critical.ends_like(&again)
+    };
     Critical {
-        decided: again.decided && critical.ends_like(&again),
+        decided: critical.decided
+            && agrees(&other, CONFIRM_TOLERANCE)
+            && agrees(&gliding(&critical), FOLLOW_TOLERANCE),
         ..critical
     }
 }
@@ -312,21 +345,30 @@ pub fn by_simulation(problem: &Problem, pace: &Pace, accuracy: Accuracy) -> Crit
     of_followed(&follow::critical_velocity(problem, pace, accuracy))
 }
 
+/// What one search tells. Where irregular stick-slip ends depends on the steps of v0 and on how long each is waited for: one search
+/// does not decide it.
 fn of_followed(followed: &Followed) -> Critical {
+    let irregular = |last: &Sustained| last.fate == Fate::Irregular;
+    let by_chance = followed.lost.is_some() && followed.last.as_ref().is_some_and(irregular);
+    let critical = told(followed);
+    Critical {
+        decided: critical.decided && !by_chance,
+        ..critical
+    }
+}
+
+/// What a search tells, to be compared with others where it ends by chance.
+fn told(followed: &Followed) -> Critical {
     let method = Method::Simulation;
     let undecided = |lost: &Sustained| lost.fate == Fate::Lost(Outcome::Undecided);
     // To rounding sticks are lost as well where they only become shorter and shorter.
     let rounding = |last: &Sustained| last.summary.stick_time < VANISHING && !followed.vanish;
-    // Irregular stick-slip ends by chance: where, depends on the steps of v0 and on how long each is waited for.
-    let irregular = |last: &Sustained| last.fate == Fate::Irregular;
-    let by_chance = followed.lost.is_some() && followed.last.as_ref().is_some_and(irregular);
     let decided = followed.complete
-        && !by_chance
         && !followed.lost.as_ref().is_some_and(undecided)
         && !followed.last.as_ref().is_some_and(rounding);
     match (followed.last, followed.lost) {
         (_, Some(lost)) if lost.fate == Fate::LiftOff => Critical {
-            decided: followed.complete && !by_chance,
+            decided: followed.complete,
             ..of_lift_off(lost.v0, method)
         },
         (None, _) => Critical {

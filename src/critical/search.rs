@@ -8,8 +8,8 @@ use super::one_slip::by_one_slip;
 use super::orbit::{Orbit, STARTS};
 use super::track::Track;
 use super::{
-    Critical, End, FOLLOW_TOLERANCE, GRAZE_TOLERANCE, Method, Problem, confirmed, nothing,
-    of_followed, of_found, persists_without_control,
+    Critical, End, FOLLOW_TOLERANCE, GRAZE_TOLERANCE, Method, Problem, confirmed, gliding, nothing,
+    of_found, persists_without_control, told,
 };
 use crate::slip::motion::{Accuracy, Motion};
 
@@ -44,7 +44,9 @@ pub(super) fn from_scratch(problem: &Problem) -> (Critical, Option<Track>) {
     if let Some(entry) = kinds.entry.take()
         && critical.decided
     {
-        critical.decided = critical.ends_like(&kinds.again(*entry));
+        let again = kinds.again((*entry).clone());
+        let glided = kinds.glide(*entry, &critical);
+        critical.decided = critical.ends_like(&again) && critical.ends_like(&glided);
     }
     if let Some(track) = &mut track {
         track.decided = critical.decided;
@@ -55,7 +57,7 @@ pub(super) fn from_scratch(problem: &Problem) -> (Critical, Option<Track>) {
 /// Relative steps of v0 through irregular stick-slip: where it leads should not depend on them.
 const CROSSINGS: [f64; 2] = [0.1, 0.03];
 /// The last ones: what ends by chance is known to this.
-const LAST_CROSSING: f64 = 1e-3;
+const LAST_CROSSING: f64 = 2e-5;
 
 /// Where one kind of stick-slip after the other leads.
 enum Reached {
@@ -185,7 +187,7 @@ impl Kinds<'_> {
         let followed = follow::carry(self.problem, &mut motion, &pace);
         match followed.last {
             Some(last) if last.fate == Fate::Periodic => Ok((motion, last.summary.slips as usize)),
-            Some(_) => Err(of_followed(&followed)),
+            Some(_) => Err(told(&followed)),
             // It was lost where it was come to.
             None => Err(Critical {
                 decided: false,
@@ -207,6 +209,19 @@ impl Kinds<'_> {
             None => Reached::Motion(vec![road.motion().clone()], FIRST_STEP),
         };
         reached.end(self.problem).0
+    }
+
+    /// Once more from the first irregular stick-slip on, while v0 glides to near the end that was `found`.
+    fn glide(&mut self, mut entry: Motion, found: &Critical) -> Critical {
+        let pace = gliding(found);
+        let v_max = pace.v_max.min(pace.glide / self.problem.law.mu_s());
+        if entry.parameters().v0 < pace.glide {
+            let followed = follow::carry(self.problem, &mut entry, &Pace { v_max, ..pace });
+            if followed.lost.is_some() || followed.last.is_none() || !followed.complete {
+                return told(&followed);
+            }
+        }
+        self.again(entry)
     }
 }
 

@@ -6,6 +6,8 @@ use crate::slip::outcome::Observer;
 /// How long a block that slips is waited for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Waiting {
+    /// For a few cycles: v0 glides on.
+    Brief,
     /// Until the minima of ẋ have not fallen for three windows of time.
     Short,
     /// For ten.
@@ -15,18 +17,19 @@ pub enum Waiting {
 }
 
 impl Waiting {
-    /// Stick-slip that does not repeat within so many cycles, and one more for every unit of the delay, is irregular.
+    /// Stick-slip that does not repeat within so many cycles under the delay `tau` is irregular.
     #[must_use]
-    pub fn cycles(self) -> usize {
+    pub fn cycles(self, tau: f64) -> usize {
         match self {
-            Self::Short => 12,
-            Self::Long | Self::Patient => 24,
+            Self::Brief => 4 + (0.5 * tau) as usize,
+            Self::Short => 12 + tau as usize,
+            Self::Long | Self::Patient => 24 + tau as usize,
         }
     }
 
     fn windows(self) -> u32 {
         match self {
-            Self::Short => 3,
+            Self::Brief | Self::Short => 3,
             Self::Long => 10,
             Self::Patient => u32::MAX,
         }

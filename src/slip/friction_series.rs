@@ -205,7 +205,10 @@ mod tests {
             });
             let largest = on_circle.fold(f64::NEG_INFINITY, f64::max);
             let bound = largest_exponent(centre, off);
-            assert!((bound - largest).abs() < 1e-3 * bound.abs(), "{centre} {off}: {bound} {largest}");
+            assert!(
+                (bound - largest).abs() < 1e-3 * bound.abs(),
+                "{centre} {off}: {bound} {largest}"
+            );
         }
     }
 
@@ -239,7 +242,10 @@ mod tests {
                     let s = part * length;
                     let z = value(&speed[..=order], s) / v_s;
                     let off = value(&coefficients[..order], s) - 0.4 - fall * (-z * z).exp();
-                    assert!(off.abs() <= error, "{from} {order}: {off:e} at {s} of {length}");
+                    assert!(
+                        off.abs() <= error,
+                        "{from} {order}: {off:e} at {s} of {length}"
+                    );
                 }
             }
         }
