@@ -114,6 +114,8 @@ pub struct Followed {
     pub lost: Option<Sustained>,
     /// Whether the search came to its end: to the end of the range, or to two v0 as near as asked for.
     pub complete: bool,
+    /// Whether stick-slip survived again and again where it had been lost: it is thrown off by chance.
+    pub creeps: bool,
     /// Whether sticks become shorter such that none is left just beyond the last v0.
     pub vanish: bool,
     /// The relative way beyond the last v0 to where the depth of the stops is expected to vanish; infinite where it is not.
@@ -152,6 +154,7 @@ pub fn critical_velocity(problem: &Problem, pace: &Pace, accuracy: Accuracy) -> 
         last: None,
         lost,
         complete: true,
+        creeps: false,
         vanish: false,
         graze_way: f64::INFINITY,
         chance: false,
@@ -176,6 +179,7 @@ pub fn carry(problem: &Problem, motion: &mut Motion, pace: &Pace) -> Followed {
         last: None,
         lost: Some(first),
         complete: true,
+        creeps: false,
         vanish: false,
         graze_way: f64::INFINITY,
         chance: false,
@@ -189,8 +193,8 @@ fn start_sticking(problem: &Problem, v0: f64, accuracy: Accuracy) -> Motion {
     motion
 }
 
-/// Relative steps of v0 no larger than this are held while v0 glides as well: they look for an end.
-const GLIDE_LAST: f64 = 2e-3;
+/// Relative steps of v0 no larger than this look for an end: irregular stick-slip is held for long.
+const FINAL_STEP: f64 = 2e-3;
 /// How well cycles have to repeat after a large step of v0.
 const ROUGHLY: f64 = 1e-4;
 
@@ -205,14 +209,14 @@ struct Holding {
 impl Holding {
     /// At `v0`, after a relative step to it.
     fn after(pace: &Pace, v0: f64, step: f64) -> Self {
-        let glides = v0 < pace.glide && step > GLIDE_LAST && step.is_finite();
+        let how = Self::new(pace, step);
         Self {
-            waiting: if glides {
-                Waiting::Brief
-            } else {
-                Self::new(pace, step).waiting
+            waiting: match how.waiting {
+                Waiting::Short if step <= FINAL_STEP => Waiting::Lasting,
+                Waiting::Short if v0 < pace.glide => Waiting::Brief,
+                waiting => waiting,
             },
-            ..Self::new(pace, step)
+            ..how
         }
     }
 
@@ -330,6 +334,7 @@ fn raise(problem: &Problem, motion: &mut Motion, first: Sustained, pace: &Pace) 
         last: Some(climb.last),
         lost: climb.lost.map(|(lost, _)| lost),
         complete,
+        creeps: climb.creeps(),
         vanish: climb.vanish,
         graze_way: ways(climb.before, &climb.last)[0],
         chance: climb.chance,
@@ -348,7 +353,7 @@ impl Climb<'_> {
             let step = self.next_step();
             if self.lost.is_some() && step < 0.75 * self.precision() {
                 if self.is_lost() {
-                    return !self.creeps();
+                    return true;
                 }
                 continue;
             }

@@ -352,7 +352,7 @@ fn of_followed(followed: &Followed) -> Critical {
     let by_chance = followed.lost.is_some() && followed.last.as_ref().is_some_and(irregular);
     let critical = told(followed);
     Critical {
-        decided: critical.decided && !by_chance,
+        decided: critical.decided && !by_chance && !followed.creeps,
         ..critical
     }
 }

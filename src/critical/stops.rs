@@ -10,6 +10,8 @@ pub enum Waiting {
     Brief,
     /// Until the minima of ẋ have not fallen for three windows of time.
     Short,
+    /// As short, of stick-slip that does not repeat for many cycles.
+    Lasting,
     /// For ten.
     Long,
     /// Until the outcome of the motion is known.
@@ -24,12 +26,13 @@ impl Waiting {
             Self::Brief => 4 + (0.5 * tau) as usize,
             Self::Short => 12 + tau as usize,
             Self::Long | Self::Patient => 24 + tau as usize,
+            Self::Lasting => 60 + (4.0 * tau) as usize,
         }
     }
 
     fn windows(self) -> u32 {
         match self {
-            Self::Brief | Self::Short => 3,
+            Self::Brief | Self::Short | Self::Lasting => 3,
             Self::Long => 10,
             Self::Patient => u32::MAX,
         }
