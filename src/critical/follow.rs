@@ -120,8 +120,6 @@ pub struct Followed {
     pub vanish: bool,
     /// The relative way beyond the last v0 to where the depth of the stops is expected to vanish; infinite where it is not.
     pub graze_way: f64,
-    /// Whether irregular stick-slip, or a jump from one kind to another, was on the way: what follows may depend on the steps.
-    pub chance: bool,
 }
 
 /// Follows stick-slip of `problem` from low v0 on.
@@ -157,7 +155,6 @@ pub fn critical_velocity(problem: &Problem, pace: &Pace, accuracy: Accuracy) -> 
         creeps: false,
         vanish: false,
         graze_way: f64::INFINITY,
-        chance: false,
     }
 }
 
@@ -182,7 +179,6 @@ pub fn carry(problem: &Problem, motion: &mut Motion, pace: &Pace) -> Followed {
         creeps: false,
         vanish: false,
         graze_way: f64::INFINITY,
-        chance: false,
     }
 }
 
@@ -337,7 +333,6 @@ fn raise(problem: &Problem, motion: &mut Motion, first: Sustained, pace: &Pace) 
         creeps: climb.creeps(),
         vanish: climb.vanish,
         graze_way: ways(climb.before, &climb.last)[0],
-        chance: climb.chance,
     }
 }
 

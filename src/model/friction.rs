@@ -135,7 +135,23 @@ impl FrictionLaw {
             Kind::Table(table) => table.slope(speed),
         }
     }
+
+    /// The change of speed over which μ_K is another function, length/time, at the sliding speed `speed` ≥ 0: steps of a
+    /// method that knows the law by its values have to be small against it. Infinite for Coulomb's law, and for a table, whose
+    /// cubics steps end on.
+    #[must_use]
+    pub fn speed_scale(&self, speed: f64) -> f64 {
+        match &self.kind {
+            Kind::Coulomb { .. } | Kind::Table(_) => f64::INFINITY,
+            Kind::Weakening { v_s, .. } => v_s + speed,
+            // Far above v_s nothing is left of the Gaussian until its flank comes near.
+            Kind::Stribeck { v_s, .. } => v_s.max(speed - FLANK * v_s),
+        }
+    }
 }
+
+/// The Gaussian of Stribeck's law is below rounding beyond this, in units of v_s.
+const FLANK: f64 = 6.0;
 
 fn gaussian(s: f64) -> f64 {
     (-s * s).exp()
@@ -178,6 +194,19 @@ mod tests {
                     (numeric - law.mu_prime(v)).abs() < 1e-8,
                     "{law:?} at {v}: {numeric}"
                 );
+            }
+        }
+    }
+
+    /// Over a quarter of its scale every law is a cubic to a few per cent of its change from rest.
+    #[test]
+    fn a_law_is_smooth_over_its_scale_of_speed() {
+        for law in laws().into_iter().skip(1) {
+            for v in [0.0, 0.05, 0.35, 1.0, 1.3, 4.0] {
+                let h = 0.25 * law.speed_scale(v).min(1.0) / 4.0;
+                let at = |i: f64| law.mu_k(v + i * h);
+                let fourth = at(0.0) - 4.0 * at(1.0) + 6.0 * at(2.0) - 4.0 * at(3.0) + at(4.0);
+                assert!(fourth.abs() < 1e-3, "{law:?} at {v}: {fourth}");
             }
         }
     }

@@ -187,7 +187,7 @@ impl History {
         }
     }
 
-    /// Adds the step from the end of the last one to `to`; its polynomial holds for `radius` from its start.
+    /// Adds the step from the end of the last one to `to`; its polynomial holds there, and for `radius` from its start, both ways.
     pub fn push(&mut self, to: f64, radius: f64, a: &[f64], kink: u32) {
         let from = self.pieces.back().map_or(to, |p| p.to);
         let mut coefficients = [0.0; MOST_ORDER + 1];
@@ -195,7 +195,7 @@ impl History {
         self.pieces.push_back(Piece {
             from,
             to,
-            radius: radius.max(to - from),
+            radius,
             order: a.len() - 1,
             a: coefficients,
             kink,

@@ -8,6 +8,7 @@
 //! - [`series`]: polynomials in time, their first zeros
 
 pub mod case;
+mod collocation;
 pub mod cycle;
 mod friction_series;
 mod graze;

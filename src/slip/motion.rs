@@ -12,6 +12,9 @@
 //! events are zeros of polynomials. A step ends where the delayed polynomial ends, if the next one is another by more than
 //! the tolerance: kinks are stepped on, one delay after the other, until they are too smooth to be felt.
 
+mod collocated;
+
+use super::collocation::NODES;
 use super::friction_series::FrictionSeries;
 pub use super::history::Stretch;
 use super::history::{History, SMOOTH};
@@ -65,9 +68,20 @@ pub struct Parameters {
     pub switch_on: f64,
 }
 
+/// How steps are made.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Integrator {
+    /// By Taylor series.
+    Taylor,
+    /// By collocation, from values of the friction law: a second opinion, some ten times slower.
+    Collocation,
+}
+
 /// How exact a motion is.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Accuracy {
+    /// How steps are made.
+    pub integrator: Integrator,
     /// Error allowed in a step, relative to the size of the motion; 1e-15 to 1e-3.
     pub tolerance: f64,
     /// Whether steps end on kinks of the delayed elongation.
@@ -88,6 +102,7 @@ impl Accuracy {
 impl Default for Accuracy {
     fn default() -> Self {
         Self {
+            integrator: Integrator::Taylor,
             tolerance: 1e-12,
             step_on_kinks: true,
         }
@@ -109,8 +124,11 @@ const BALANCED: f64 = 0.53;
 /// Rounding of a force, relative.
 const ROUNDING: f64 = 64.0 * f64::EPSILON;
 
-/// The order at which Taylor's method does least work per unit of time (Jorba and Zou 2005).
-fn order(tolerance: f64) -> usize {
+/// The order of collocation; that at which Taylor's method does least work per unit of time (Jorba and Zou 2005).
+fn order(integrator: Integrator, tolerance: f64) -> usize {
+    if integrator == Integrator::Collocation {
+        return NODES;
+    }
     ((2.0 - 0.5 * tolerance.ln()).ceil() as usize).clamp(LEAST_ORDER, MOST_ORDER)
 }
 
@@ -126,6 +144,7 @@ fn felt(accuracy: Accuracy, order: usize) -> u32 {
 #[derive(Debug, Clone)]
 pub struct Motion {
     parameters: Parameters,
+    integrator: Integrator,
     tolerance: f64,
     order: usize,
     friction: FrictionSeries,
@@ -165,7 +184,7 @@ impl Motion {
         mut history: History,
     ) -> Self {
         let tolerance = accuracy.tolerance.clamp(1e-15, 1e-3);
-        let order = order(tolerance);
+        let order = order(accuracy.integrator, tolerance);
         let mut friction = FrictionSeries::new(&parameters.law, parameters.velocity_unit);
         friction.restart(u.abs());
         history.restart(a, 0.0, felt(accuracy, order));
@@ -174,6 +193,7 @@ impl Motion {
         let zero = [0.0; MOST_ORDER + 1];
         let mut motion = Self {
             parameters,
+            integrator: accuracy.integrator,
             tolerance,
             order,
             friction,
@@ -231,10 +251,10 @@ impl Motion {
         self.kink = 1;
     }
 
-    /// Goes on with another accuracy.
+    /// Goes on with another accuracy, by the same integrator.
     pub fn refine(&mut self, accuracy: Accuracy) {
         self.tolerance = accuracy.tolerance.clamp(1e-15, 1e-3);
-        self.order = order(self.tolerance);
+        self.order = order(self.integrator, self.tolerance);
         self.history.feel(felt(accuracy, self.order));
         let gain = self
             .parameters
@@ -349,16 +369,21 @@ impl Motion {
         if !controlled {
             limit = limit.min(until_switch);
         }
-        self.step.order = self.order_within(limit);
-        self.expand(controlled);
+        let mut free = match self.integrator {
+            Integrator::Taylor => {
+                self.step.order = self.order_within(limit);
+                self.expand(controlled);
+                self.free_length()
+            }
+            Integrator::Collocation => self.collocate(controlled, limit),
+        };
         if self.step.n[0] <= 0.0 {
             self.step.length = 0.0;
             return Some(Event::LiftOff);
         }
-        let mut free = self.free_length();
         let radius = free;
         let balanced = BALANCED * self.history.ahead() * free;
-        if controlled && self.parameters.tau < balanced {
+        if controlled && self.parameters.tau < balanced && self.integrator == Integrator::Taylor {
             // The next step, one delay behind, uses the polynomial of this one beyond its end.
             free = balanced;
         }
@@ -443,14 +468,18 @@ impl Motion {
         kink + smoother
     }
 
-    /// Works out the coefficients of the step, Eqs. (1) and (2) of the module.
-    fn expand(&mut self, controlled: bool) {
+    fn control(&self, controlled: bool) -> Control {
         let p = &self.parameters;
-        let control = Control {
+        Control {
             v0: p.v0,
             alpha_v: if controlled { p.alpha_v } else { 0.0 },
             alpha_n: if controlled { p.alpha_n } else { 0.0 },
-        };
+        }
+    }
+
+    /// Works out the coefficients of the step, Eqs. (1) and (2) of the module.
+    fn expand(&mut self, controlled: bool) {
+        let control = self.control(controlled);
         let step = &mut self.step;
         step.u[0] = self.u;
         step.a[0] = self.a;
@@ -597,7 +626,12 @@ impl Motion {
         self.u = value(u, length);
         self.a = value(a, length);
         self.t += length;
-        self.history.push(self.t, radius, a, self.kink);
+        let around = match self.integrator {
+            Integrator::Taylor => radius.max(length),
+            // Nothing holds a polynomial by its values outside of its step.
+            Integrator::Collocation => 0.0,
+        };
+        self.history.push(self.t, around, a, self.kink);
         self.step.length = length;
         self.step.radius = radius;
     }

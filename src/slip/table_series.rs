@@ -79,6 +79,13 @@ impl TableSeries {
         (self.region, self.piece) = (other.region, other.piece);
     }
 
+    /// μ_K by the cubic in use, which goes on beyond its ends.
+    pub fn value(&self, speed: f64) -> f64 {
+        let w = (speed - self.piece.from) / self.piece.width;
+        let [c0, c1, c2, c3] = self.piece.c;
+        ((c3 * w + c2) * w + c1) * w + c0
+    }
+
     /// The speed of a point, if it is there and a speed can cross it.
     fn knot(&self, point: Option<usize>) -> Option<f64> {
         let speed = *self.table.speeds().get(point?)?;

@@ -1,0 +1,212 @@
+//! A step by collocation: the rates of ẋ and a at Chebyshev's nodes, from the friction law itself, by Picard's iteration.
+//!
+//! A second method for [`super::motion`], which shares with Taylor series the equations and the events and nothing of how a
+//! step is made: no coefficients of the law, no radius of convergence, and steps from the law's own scale of speed. It is some
+//! ten times slower, and there to contradict the first one.
+//!
+//! With M nodes s_i of a step of length h, u̇ and ȧ are the polynomials of degree M − 1 through their values there, and
+//!
+//! ```text
+//! u(s_i) = u(0) + h Σ_j Q_ij u̇(s_j),     a(s_i) = a(0) + h Σ_j Q_ij ȧ(s_j)
+//! ```
+//!
+//! Source: C. W. Clenshaw and H. J. Norton, Comput. J. 6 (1963) 88.
+
+use std::f64::consts::PI;
+use std::sync::LazyLock;
+
+use super::series::{Coefficients, MOST_ORDER, PER_NEXT, value};
+
+/// The number of nodes, which is the order of the polynomials of u and a.
+pub(super) const NODES: usize = 12;
+/// The most iterations of a step, and the change at which they end, relative to the size of the motion.
+const MOST_ITERATIONS: u32 = 60;
+const AT_REST: f64 = 2e-16;
+
+type Matrix = [[f64; NODES]; NODES];
+
+/// What depends on the nodes alone.
+struct Rule {
+    /// Where they are, over the length of the step.
+    nodes: [f64; NODES],
+    /// Q: from values at the nodes to integrals from 0 to the nodes.
+    integrals: Matrix,
+    /// From values at the nodes to coefficients of powers of s/h.
+    powers: Matrix,
+    /// From values at the nodes to the last two coefficients of Chebyshev's polynomials.
+    tail: [[f64; NODES]; 2],
+}
+
+static RULE: LazyLock<Rule> = LazyLock::new(Rule::new);
+
+impl Rule {
+    fn new() -> Self {
+        let m = NODES as f64;
+        let angle = |i: usize| PI * (i as f64 + 0.5) / m;
+        let nodes = std::array::from_fn(|i| 0.5 * (1.0 + angle(i).cos()));
+        // Coefficient k of Chebyshev's polynomials, from the value at node i.
+        let chebyshev = |k: usize, i: usize| {
+            let whole = if k == 0 { 1.0 } else { 2.0 };
+            whole / m * (k as f64 * angle(i)).cos()
+        };
+        let shifted = shifted_chebyshev();
+        let powers: Matrix = std::array::from_fn(|p| {
+            std::array::from_fn(|i| (0..NODES).map(|k| shifted[k][p] * chebyshev(k, i)).sum())
+        });
+        let integrals = std::array::from_fn(|to| {
+            let node: f64 = nodes[to];
+            std::array::from_fn(|i| {
+                let term = |p: usize| powers[p][i] * PER_NEXT[p] * node.powi(p as i32 + 1);
+                (0..NODES).map(term).sum()
+            })
+        });
+        let tail = [NODES - 2, NODES - 1].map(|k| std::array::from_fn(|i| chebyshev(k, i)));
+        Self {
+            nodes,
+            integrals,
+            powers,
+            tail,
+        }
+    }
+}
+
+/// Coefficients of Chebyshev's polynomials on [0, 1]: T₀ = 1, T₁ = 2x − 1, T_{k+1} = 2 (2x − 1) T_k − T_{k−1}.
+fn shifted_chebyshev() -> Matrix {
+    let mut t = [[0.0; NODES]; NODES];
+    t[0][0] = 1.0;
+    (t[1][0], t[1][1]) = (-1.0, 2.0);
+    for k in 1..NODES - 1 {
+        for p in 0..NODES {
+            let lower = if p > 0 { 4.0 * t[k][p - 1] } else { 0.0 };
+            t[k + 1][p] = lower - 2.0 * t[k][p] - t[k - 1][p];
+        }
+    }
+    t
+}
+
+fn dot(row: &[f64; NODES], values: &[f64; NODES]) -> f64 {
+    row.iter().zip(values).map(|(r, v)| r * v).sum()
+}
+
+/// A step that was solved.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Solved {
+    /// The coefficients of ẋ and of a, of the time since the step's start.
+    pub u: Coefficients,
+    pub a: Coefficients,
+    /// The size of the last terms of Chebyshev's series of the rates, times the length: what the polynomials leave out.
+    pub rest: f64,
+}
+
+/// The step of `length` from ẋ = `u`, a = `a`. `rates` gives u̇ and ȧ of a state, of which the delayed elongation is the third
+/// number, whose polynomial is `delayed`. None where the iteration does not come to rest.
+pub(super) fn solve(
+    (u, a): (f64, f64),
+    length: f64,
+    delayed: &[f64],
+    rates: impl Fn(f64, f64, f64) -> (f64, f64),
+) -> Option<Solved> {
+    let rule = &*RULE;
+    let start = [(u, a), rates(u, a, delayed[0])];
+    let past: [f64; NODES] = rule.nodes.map(|node| value(delayed, node * length));
+    let (mut at_u, mut at_a) = ([u; NODES], [a; NODES]);
+    let (mut rate_u, mut rate_a) = ([0.0; NODES], [0.0; NODES]);
+    let scale = 1.0 + u.abs() + a.abs();
+    for iteration in 0.. {
+        for i in 0..NODES {
+            (rate_u[i], rate_a[i]) = rates(at_u[i], at_a[i], past[i]);
+        }
+        let mut change = 0.0_f64;
+        for (i, row) in rule.integrals.iter().enumerate() {
+            let next = [
+                u + length * dot(row, &rate_u),
+                a + length * dot(row, &rate_a),
+            ];
+            change = change
+                .max((next[0] - at_u[i]).abs())
+                .max((next[1] - at_a[i]).abs());
+            [at_u[i], at_a[i]] = next;
+        }
+        if change <= AT_REST * scale {
+            break;
+        }
+        if iteration == MOST_ITERATIONS || !change.is_finite() {
+            // Rounding may go on for ever.
+            return (change <= 64.0 * AT_REST * scale)
+                .then(|| solved(rule, start, length, (&rate_u, &rate_a)));
+        }
+    }
+    Some(solved(rule, start, length, (&rate_u, &rate_a)))
+}
+
+/// From the state and its rates at the start, and the rates at the nodes. The rates at the start are put in: whether a block that
+/// was just released begins to move is seen from them.
+fn solved(
+    rule: &Rule,
+    [(u, a), first]: [(f64, f64); 2],
+    length: f64,
+    (rate_u, rate_a): (&[f64; NODES], &[f64; NODES]),
+) -> Solved {
+    let series = |start: f64, first: f64, rates: &[f64; NODES]| {
+        let mut c = [0.0; MOST_ORDER + 1];
+        c[0] = start;
+        let mut scale = 1.0;
+        for (p, row) in rule.powers.iter().enumerate() {
+            c[p + 1] = dot(row, rates) * PER_NEXT[p] * scale;
+            scale /= length;
+        }
+        c[1] = first;
+        c
+    };
+    let tails = rule
+        .tail
+        .iter()
+        .flat_map(|row| [dot(row, rate_u), dot(row, rate_a)]);
+    Solved {
+        u: series(u, first.0, rate_u),
+        a: series(a, first.1, rate_a),
+        rest: length * tails.map(f64::abs).fold(0.0, f64::max),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_harmonic_oscillation_is_solved_to_rounding() {
+        // u̇ = a − d, ȧ = −u with d = 0.3 + 0.1 s.
+        let solved = solve((0.2, 0.5), 0.5, &[0.3, 0.1], |u, a, d| (a - d, -u)).unwrap();
+        for s in [0.0, 0.1, 0.37, 0.5_f64] {
+            // ä = −(a − d): a = d + A cos s + B sin s, ȧ(0) = 0.1 + B = −0.2.
+            let (cos, sin) = (s.cos(), s.sin());
+            let a = 0.3 + 0.1 * s + 0.2 * cos - 0.3 * sin;
+            let u = -0.1 + 0.2 * sin + 0.3 * cos;
+            assert!((value(&solved.a, s) - a).abs() < 1e-14);
+            assert!((value(&solved.u, s) - u).abs() < 1e-14);
+        }
+        assert!(solved.rest < 1e-15, "{:e}", solved.rest);
+    }
+
+    /// y′ = −y² from 1 is 1/(1 + s): what is left out falls with the length as its order says.
+    #[test]
+    fn the_rest_falls_with_the_length() {
+        let error = |length: f64| {
+            let solved = solve((1.0, 0.0), length, &[0.0], |u, _, _| (-u * u, 0.0)).unwrap();
+            let off = (value(&solved.u, length) - 1.0 / (1.0 + length)).abs();
+            assert!(
+                off <= 10.0 * solved.rest + 1e-15,
+                "{length}: {off:e} {:e}",
+                solved.rest
+            );
+            solved.rest
+        };
+        let order = (error(0.8) / error(0.4)).log2();
+        assert!((8.0..14.0).contains(&order), "{order}");
+    }
+
+    #[test]
+    fn what_does_not_come_to_rest_is_not_solved() {
+        assert!(solve((1.0, 0.0), 20.0, &[0.0], |u, _, _| (u * u, 0.0)).is_none());
+    }
+}

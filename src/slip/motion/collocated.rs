@@ -1,0 +1,92 @@
+//! Steps of a motion by collocation: how long they are, and what the rates are there.
+
+use super::{Control, Mode, Motion};
+use crate::model::friction::Kind;
+use crate::slip::collocation::solve;
+use crate::slip::friction_series::FrictionSeries;
+
+/// The longest step, over √(M/κ), and over the time in which rates change by a factor of e.
+const LONGEST: f64 = 0.5;
+/// The change of speed in a step, over the law's own scale of it.
+const SHARE: f64 = 0.25;
+/// Beyond a stop within a step velocity weakening goes on to negative speeds, down to this share of v_s.
+const BEYOND: f64 = 0.5;
+/// Steps that are not solved to the tolerance become shorter by this, so often at most.
+const SHORTER: f64 = 0.5;
+const MOST_TIMES: u32 = 40;
+
+impl Motion {
+    /// Solves a step of `limit` at most from here on, its polynomials with it; its length. The delayed polynomial is there.
+    pub(super) fn collocate(&mut self, controlled: bool, limit: f64) -> f64 {
+        let control = self.control(controlled);
+        let load = 1.0 + control.alpha_n * (self.a - self.step.delayed[0]);
+        let mut length = self.step_of_scale(control, load).min(limit);
+        for _ in 0..MOST_TIMES {
+            if self.solve_step(control, length) {
+                break;
+            }
+            length *= SHORTER;
+        }
+        length
+    }
+
+    /// A step within which the law, the spring and the control change little.
+    fn step_of_scale(&self, control: Control, load: f64) -> f64 {
+        let p = &self.parameters;
+        let speed = self.u.abs() * p.velocity_unit;
+        let gains = control.alpha_v.abs() + control.alpha_n.abs();
+        if self.mode == Mode::Stick {
+            return LONGEST / (1.0 + gains);
+        }
+        let slope = p.law.mu_prime(speed).abs() * p.velocity_unit * load.abs();
+        let force =
+            self.a.abs() + p.law.mu_s() * (load.abs() + gains * LONGEST) + p.v0.abs() * LONGEST;
+        let scale = p.law.speed_scale(speed) / p.velocity_unit;
+        (LONGEST / (1.0 + gains + slope)).min(SHARE * scale / force)
+    }
+
+    /// Whether a step of this length is solved to the tolerance.
+    fn solve_step(&mut self, control: Control, length: f64) -> bool {
+        let direction = match self.mode {
+            Mode::Stick => 0.0,
+            Mode::Forwards => 1.0,
+            Mode::Backwards => -1.0,
+        };
+        let order = self.order;
+        let rates = |u: f64, a: f64, delayed: f64| {
+            let difference = a - delayed;
+            let pull = control.v0 + control.alpha_v * difference;
+            let load = 1.0 + control.alpha_n * difference;
+            match direction {
+                0.0 => (0.0, pull),
+                _ => {
+                    let friction = self.friction_at(direction * u) * load;
+                    (a - direction * friction, pull - u)
+                }
+            }
+        };
+        let delayed = &self.step.delayed[..=order];
+        let Some(solved) = solve((self.u, self.a), length, delayed, rates) else {
+            return false;
+        };
+        let size = self.a.abs().max(self.u.abs()).max(self.parameters.v0);
+        let step = &mut self.step;
+        (step.order, step.u, step.a) = (order, solved.u, solved.a);
+        for (n, (a, delayed)) in step.n.iter_mut().zip(step.a.iter().zip(&step.delayed)) {
+            *n = control.alpha_n * (a - delayed);
+        }
+        step.n[0] += 1.0;
+        solved.rest <= self.tolerance * size
+    }
+
+    /// μ_K at a speed in the motion's units, a little below 0 as well.
+    fn friction_at(&self, speed: f64) -> f64 {
+        let p = &self.parameters;
+        let speed = match (&self.friction, p.law.kind()) {
+            (FrictionSeries::Table(series), _) => return series.value(speed),
+            (_, Kind::Weakening { v_s, .. }) => (speed * p.velocity_unit).max(-BEYOND * v_s),
+            _ => speed * p.velocity_unit,
+        };
+        p.law.mu_k(speed)
+    }
+}
