@@ -11,6 +11,7 @@ use sha2::{Digest, Sha256};
 use super::attributes::text;
 use super::error::StoreError;
 use super::map_file::MapFile;
+use super::sample::sample;
 use super::schema::{self, STATUS, root};
 use super::tiles::RecordEncoder;
 use super::tiles::record::Content;
@@ -264,8 +265,7 @@ fn look_at_cells(
     cells: u64,
     report: &mut Report,
 ) -> Result<(), StoreError> {
-    for sample in 0..cells.min(plan.cells()) {
-        let number = (spread(sample) * plan.cells() as f64) as u64;
+    for number in sample(map, plan, cells)? {
         let index = index_of(number, plan.shape());
         let status = map.cell_status(&index)?;
         if status == STATUS_FILL {

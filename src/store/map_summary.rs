@@ -135,7 +135,7 @@ fn piece_shape(dataset: &Dataset) -> Vec<usize> {
 }
 
 /// Every piece of a dataset as a hyperslab, cut at the dataset's edges.
-fn for_each_chunk<E>(
+pub(super) fn for_each_chunk<E>(
     dataset: &Dataset,
     mut visit: impl FnMut(Vec<SliceOrIndex>) -> Result<(), E>,
 ) -> Result<(), E> {

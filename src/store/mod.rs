@@ -30,6 +30,7 @@ pub mod map_writer;
 mod netcdf;
 mod open;
 pub mod output;
+mod sample;
 pub mod schema;
 pub mod source;
 pub mod tiles;

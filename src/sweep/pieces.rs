@@ -223,6 +223,15 @@ pub fn spread(sample: u64) -> f64 {
 
 const GOLDEN: f64 = 0.618_033_988_749_895;
 
+/// SplitMix64's finalizer: neighbouring numbers become unrelated ones.
+#[must_use]
+pub fn mixed(number: u64) -> u64 {
+    let mut z = number.wrapping_add(0x9e37_79b9_7f4a_7c15);
+    z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+    z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+    z ^ (z >> 31)
+}
+
 /// A number without common factor with `total`, near its golden section: its multiples visit every place once.
 fn stride(total: u64) -> u64 {
     let golden = (total as f64 * GOLDEN) as u64;

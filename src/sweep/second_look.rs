@@ -8,6 +8,8 @@ use crate::critical::{Critical, End, Method};
 use crate::linear::certificate::roots_right_of;
 use crate::linear::status::{DISAGREE, MARGINAL, NOT_CONVERGED, SATURATED};
 use crate::model::{Groups, ModelError};
+use crate::slip::case::Case;
+use crate::slip::motion::{Accuracy, Integrator};
 use crate::slip::outcome::Outcome;
 
 /// What a map holds of one cell.
@@ -25,9 +27,9 @@ pub enum Question {
     Count,
     /// Whether a root has the abscissa, and none lies right of it, by the argument principle.
     Abscissa,
-    /// What becomes of the motion, followed with a tenth of the error allowed in a step.
+    /// What becomes of the motion, followed by collocation.
     Outcome,
-    /// The critical velocity, by simulation with steps of its own.
+    /// The critical velocity, by simulation with collocation and steps of v0 of its own.
     CriticalVelocity,
 }
 
@@ -46,8 +48,8 @@ impl Question {
         match self {
             Self::Count => "n_unstable, by the argument principle",
             Self::Abscissa => "abscissa, by the argument principle",
-            Self::Outcome => "outcome, with smaller steps",
-            Self::CriticalVelocity => "vc, by simulation",
+            Self::Outcome => "outcome, by collocation",
+            Self::CriticalVelocity => "vc, by simulation with collocation",
         }
     }
 }
@@ -135,16 +137,27 @@ fn abscissa(groups: Groups, (tau, unit): (f64, f64), stored: &Stored) -> Answer 
     }
 }
 
+/// The error allowed in a step of collocation at least, and how many times as many steps it takes.
+const SECOND_TOLERANCE: f64 = 1e-11;
+const MORE_STEPS: u64 = 100;
+
 fn outcome(plan: &Plan, setting: &Setting, stored: &Stored) -> Result<Answer, ModelError> {
-    let mut finer = plan.spec.simulation.clone();
-    finer.tolerance /= 10.0;
     let number = (stored.value)(Field::Outcome);
     let undecided = Outcome::Undecided as u8;
     if stored.status & NOT_CONVERGED != 0 || number == f64::from(undecided) {
         return Ok(Answer::Open);
     }
-    let Some(case) = finer.case(setting, 0.0)? else {
+    let Some(case) = plan.spec.simulation.case(setting, 0.0)? else {
         return Ok(Answer::Open);
+    };
+    let case = Case {
+        accuracy: Accuracy {
+            integrator: Integrator::Collocation,
+            tolerance: case.accuracy.tolerance.max(SECOND_TOLERANCE),
+            ..case.accuracy
+        },
+        steps: case.steps.saturating_mul(MORE_STEPS),
+        ..case
     };
     let followed = case.motion().and_then(|mut motion| {
         let abscissa = case.stable_abscissa()?;
@@ -187,5 +200,8 @@ fn critical_velocity(
         n_min: f64::NAN,
         decided: true,
     };
-    Ok(told(vc::simulation_agrees(&problem, &units, &found)))
+    let integrator = Integrator::Collocation;
+    Ok(told(vc::simulation_agrees(
+        &problem, &units, &found, integrator,
+    )))
 }

@@ -9,7 +9,7 @@ use crate::critical::{
 use crate::linear::{Crossings, MarginalTolerance};
 use crate::model::ModelError;
 use crate::slip::case::CaseUnits;
-use crate::slip::motion::Accuracy;
+use crate::slip::motion::{Accuracy, Integrator};
 
 /// Phases over one cycle for the worst case.
 pub const PHASES: u32 = 32;
@@ -208,18 +208,29 @@ fn in_motion_units(phase: Phase, units: &CaseUnits) -> Phase {
 /// computed; and small ones, which throw stick-slip from one kind to another least, where these lead elsewhere.
 const SAMPLE_STEPS: [[f64; 2]; 2] = [[0.35, 0.1], [0.02, 0.005]];
 /// The errors of a step of the integrator there.
-const SAMPLE_ACCURACIES: [f64; 2] = [1e-10, 1e-12];
+const fn sample_tolerances(integrator: Integrator) -> [f64; 2] {
+    match integrator {
+        Integrator::Taylor => [1e-10, 1e-12],
+        Integrator::Collocation => [1e-9, 1e-10],
+    }
+}
 
-/// Whether simulation alone, with steps of its own, does not contradict `found`, the answer for `problem` by the protocol
+/// Whether simulation alone, with steps of its own by this `integrator`, does not contradict `found`, the answer for `problem` by the protocol
 /// `follow`, in `units`: it has to see stick-slip end at the same velocity, see [`Critical::ends_like`]. A cell that is not
 /// decided claims nothing.
 #[must_use]
-pub fn simulation_agrees(problem: &Problem, units: &CaseUnits, found: &Critical) -> bool {
+pub fn simulation_agrees(
+    problem: &Problem,
+    units: &CaseUnits,
+    found: &Critical,
+    integrator: Integrator,
+) -> bool {
     if !found.decided {
         return true;
     }
     let mut contradicted = false;
-    for ([first, unseen], accuracy) in SAMPLE_STEPS.into_iter().zip(SAMPLE_ACCURACIES) {
+    let tolerances = sample_tolerances(integrator);
+    for ([first, unseen], tolerance) in SAMPLE_STEPS.into_iter().zip(tolerances) {
         let pace = Pace {
             first,
             largest: first,
@@ -227,7 +238,11 @@ pub fn simulation_agrees(problem: &Problem, units: &CaseUnits, found: &Critical)
             patient: true,
             ..Pace::default()
         };
-        let again = by_simulation(problem, &pace, Accuracy::of(accuracy));
+        let accuracy = Accuracy {
+            integrator,
+            ..Accuracy::of(tolerance)
+        };
+        let again = by_simulation(problem, &pace, accuracy);
         if found.ends_like(&in_units(&again, units)) {
             return true;
         }

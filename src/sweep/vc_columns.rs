@@ -5,6 +5,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use super::field::{Field, number_of_end};
 use super::parameter::{Parameter, Setting};
+use super::pieces::mixed;
 use super::spec::SweepSpec;
 use super::vc::{self, Class, Found, Protocol, Search};
 use super::worker::{FEW_FILL, TileBuffers};
@@ -15,6 +16,7 @@ use crate::linear::MarginalTolerance;
 use crate::linear::status::{DISAGREE, NOT_CONVERGED, SAMPLED};
 use crate::model::ModelError;
 use crate::slip::case::CaseUnits;
+use crate::slip::motion::Integrator;
 
 /// Fills the columns of one thread's tiles.
 pub(super) struct VcColumns {
@@ -193,7 +195,8 @@ impl VcColumns {
         };
         if sampled {
             status |= SAMPLED;
-            if !vc::simulation_agrees(&problem, &units, &found.critical) {
+            let critical = &found.critical;
+            if !vc::simulation_agrees(&problem, &units, critical, Integrator::Taylor) {
                 status |= DISAGREE;
             }
         }
@@ -263,14 +266,6 @@ fn store_nothing(buffers: &mut TileBuffers, place: usize) {
 /// Whether a cell belongs to the sample of `share` of all cells: by its number alone.
 fn is_sampled(number: u64, share: f64) -> bool {
     (mixed(number) >> 11) as f64 * 2_f64.powi(-53) < share
-}
-
-/// SplitMix64's finalizer: neighbouring numbers become unrelated ones.
-fn mixed(number: u64) -> u64 {
-    let mut z = number.wrapping_add(0x9e37_79b9_7f4a_7c15);
-    z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-    z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-    z ^ (z >> 31)
 }
 
 #[cfg(test)]
