@@ -1,0 +1,211 @@
+//! slipmap against a referee that shares no code with it, and against tables that other programs
+//! worked out.
+//!
+//! The referee (`tests/referee/`) has friction laws, an integrator in fixed steps and protocols of
+//! its own. `SLIPMAP_CASES` asks for so many motions by chance, and for a tenth as many critical
+//! velocities and phases of switch-on; `SLIPMAP_SEED` for others.
+
+#[path = "referee/against.rs"]
+mod against;
+#[path = "referee/asked.rs"]
+mod asked;
+#[path = "referee/block.rs"]
+mod block;
+#[path = "referee/checks.rs"]
+mod checks;
+#[path = "referee/crowd.rs"]
+mod crowd;
+#[path = "referee/echoes.rs"]
+mod echoes;
+#[path = "referee/law.rs"]
+mod law;
+#[path = "common/map.rs"]
+mod map;
+#[path = "referee/past.rs"]
+mod past;
+#[path = "referee/pchip.rs"]
+mod pchip;
+#[path = "referee/ramp.rs"]
+mod ramp;
+#[path = "referee/random.rs"]
+mod random;
+#[path = "referee/setting.rs"]
+mod setting;
+#[path = "referee/steps.rs"]
+mod steps;
+#[path = "referee/switch_on.rs"]
+mod switch_on;
+#[path = "referee/tables.rs"]
+mod tables;
+
+use slipmap::slip::outcome::Outcome;
+use slipmap::sweep::Plan;
+
+use block::Event;
+use crowd::{Tally, ask};
+use random::Chance;
+use setting::Setting;
+use steps::Pace;
+use switch_on::Fate;
+
+/// An event and its time.
+type Happened = (Event, f64);
+
+/// A whole number that the environment gives.
+fn given(name: &str) -> Option<u64> {
+    let text = std::env::var(name).ok()?;
+    Some(text.parse().expect("a whole number"))
+}
+
+fn seed() -> u64 {
+    given("SLIPMAP_SEED").unwrap_or(20261122)
+}
+
+/// A tenth of the cases asked for, or so many by default.
+fn tenth_of_cases(default: usize) -> usize {
+    given("SLIPMAP_CASES").map_or(default, |n| n as usize / 10)
+}
+
+/// Nothing differs; the referee or slipmap says nothing for no more than these shares of the
+/// questions.
+fn holds(tally: &Tally, knife_edges: f64, undecided: f64) {
+    assert!(tally.differ.is_empty(), "{} differ", tally.differ.len());
+    let most = |share: f64| 2 + (share * tally.asked as f64) as usize;
+    assert!(tally.knife_edges <= most(knife_edges), "{tally:?}");
+    assert!(tally.undecided <= most(undecided), "{tally:?}");
+}
+
+/// Motions of all four laws under both controls, alone and together, with reversals and lift-off:
+/// kinds and times of events.
+#[test]
+fn motions_by_chance() {
+    let total = given("SLIPMAP_CASES").map_or(300, |n| n as usize);
+    let tally = ask("motions", total, |number| {
+        against::motion(&random::start(&mut Chance::of(seed(), number)))
+    });
+    holds(&tally, 0.01, 0.0);
+    assert!(tally.compared > 10 * tally.asked, "{tally:?}");
+}
+
+/// The motions by chance have events of all kinds, laws and controls of all kinds.
+#[test]
+fn chance_leaves_nothing_out() {
+    let mut counts = std::collections::BTreeMap::new();
+    let mut count = |what: String| *counts.entry(what).or_insert(0) += 1;
+    for number in 0..300 {
+        let start = random::start(&mut Chance::of(seed(), number));
+        let s = &start.setting;
+        count(format!("{:?}", std::mem::discriminant(&s.friction.law)));
+        count(format!("control {} {}", s.alpha_v != 0.0, s.alpha_n != 0.0));
+        for (event, _) in against::events(&start, Pace::of(4.0)).0 {
+            count(format!("{event:?}"));
+        }
+    }
+    println!("{counts:?}");
+    // Four laws, three controls, five events.
+    assert_eq!(counts.len(), 12);
+    assert!(counts.values().all(|n| *n >= 10), "{counts:?}");
+}
+
+/// What slipmap claims of the critical velocity, against two ramps of v0.
+#[test]
+fn critical_velocities_by_chance() {
+    let total = tenth_of_cases(60);
+    let tally = ask("critical velocities", total, |number| {
+        against::velocity(&random::problem(&mut Chance::of(seed(), number)))
+    });
+    holds(&tally, 0.1, 0.2);
+}
+
+/// What becomes of stick-slip when control is switched on at a phase.
+#[test]
+fn switching_on_by_chance() {
+    let total = tenth_of_cases(60);
+    let tally = ask("phases of switch-on", total, |number| {
+        let (setting, phase) = random::phase(&mut Chance::of(seed(), number));
+        against::fate(&setting, phase)
+    });
+    holds(&tally, 0.1, 0.2);
+}
+
+/// Event times of the table, by slipmap at its default tolerance and by this referee.
+#[test]
+fn motions_of_the_reference() {
+    let motions = tables::motions();
+    assert_eq!(motions.len(), 60);
+    let mut wrong = [0; 2];
+    for (start, expected) in &motions {
+        let text = asked::case_file(start);
+        let slipmap = against::events_of_slipmap(&text, start.horizon);
+        let (referee, _) = against::events(start, Pace::of(0.5));
+        for (who, found) in [slipmap, referee].into_iter().enumerate() {
+            let differs = |(a, b): (&Happened, &Happened)| a.0 != b.0 || (a.1 - b.1).abs() > 1e-7;
+            let pairs = expected.iter().zip(&found);
+            if found.len() < expected.len() || pairs.into_iter().any(differs) {
+                println!(
+                    "{}\n# {found:?}, expected {expected:?}",
+                    asked::simulate_command(&text)
+                );
+                wrong[who] += 1;
+            }
+        }
+    }
+    assert_eq!(wrong, [0, 0], "of slipmap and of the referee");
+}
+
+/// Critical velocities of the table, by slipmap and by this referee.
+#[test]
+fn critical_velocities_of_the_reference() {
+    let velocities = tables::velocities();
+    assert_eq!(velocities.len(), 54);
+    let tally = ask("critical velocities of the table", 54, |row| {
+        let (setting, expected) = &velocities[row];
+        against::known_velocity(setting, *expected)
+    });
+    holds(&tally, 0.0, 0.15);
+}
+
+/// What becomes of stick-slip in the table's settings, followed alone, as a cell of a map and as in
+/// a scan of v0, and by this referee.
+#[test]
+fn switching_on_of_the_reference() {
+    let fates = tables::fates();
+    assert_eq!(fates.len(), 80);
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("map.h5");
+    let mut wrong = [0; 4];
+    for (setting, phase, expected) in &fates {
+        let text = asked::phase_file(setting, *phase);
+        let alone = against::fate_of_slipmap(&text);
+        let cell = cell(setting, *phase, &path);
+        let referee = switch_on::fate(setting, Pace::of(2.0), *phase, 60.0);
+        let trial = against::fate_of_trial(setting, *phase);
+        for (who, found) in [alone, cell, trial, referee].into_iter().enumerate() {
+            if found != Some(*expected) {
+                println!(
+                    "{}\n# {found:?}, expected {expected:?}",
+                    asked::simulate_command(&text)
+                );
+                wrong[who] += 1;
+            }
+        }
+    }
+    assert_eq!(
+        wrong, [0; 4],
+        "of slipmap alone, in a map, in a scan; of the referee"
+    );
+}
+
+/// The one cell of a map of outcomes.
+fn cell(setting: &Setting, phase: f64, path: &std::path::Path) -> Option<Fate> {
+    let sweep = format!(
+        "fields = [\"outcome\"]\n[axes]\nswitch_on_phase = [{phase:?}]\n{}",
+        asked::law_and_parameters(setting)
+    );
+    let plan = Plan::new(sweep.parse().unwrap()).unwrap();
+    map::write(&plan, 1, path);
+    map::settle(path);
+    let file = hdf5::File::open(path).unwrap();
+    let numbers = file.dataset("outcome").unwrap().read_raw::<u8>().unwrap();
+    against::fate_of(Outcome::ALL[usize::from(numbers[0])])
+}

@@ -1,0 +1,110 @@
+//! What slipmap is asked, in its own words: case files, flags, and shell commands that ask the same
+//! again.
+
+use super::law::{Friction, Law};
+use super::random::Start;
+use super::setting::Setting;
+
+/// A number as files and flags take it, to the last bit.
+fn number(value: f64) -> String {
+    format!("{value:?}")
+}
+
+/// The names and values of a law's coefficients.
+fn coefficients(friction: &Friction) -> (&'static str, Vec<(&'static str, f64)>) {
+    let (name, mut named) = match friction.law {
+        Law::Coulomb { mu0 } => ("coulomb", vec![("mu0", mu0)]),
+        Law::Weakening { mu0, v_s } => ("weakening", vec![("mu0", mu0), ("v_s", v_s)]),
+        Law::Stribeck { mu0, v_s } => ("stribeck", vec![("mu0", mu0), ("v_s", v_s)]),
+        Law::Table(_) => ("table", Vec::new()),
+    };
+    named.push(("mu_s", friction.mu_s));
+    (name, named)
+}
+
+/// M, κ, N0, the gains and the delay, as far as they are not by default.
+fn parameters(s: &Setting) -> Vec<(&'static str, f64)> {
+    let plain = [
+        ("mass", s.mass),
+        ("stiffness", s.stiffness),
+        ("normal_load", s.load),
+    ];
+    let mut given: Vec<_> = plain.into_iter().filter(|(_, x)| *x != 1.0).collect();
+    let gains = [("alpha_v", s.alpha_v), ("alpha_n", s.alpha_n)];
+    given.extend(gains.into_iter().filter(|(_, x)| *x != 0.0));
+    given.push(("tau", s.tau));
+    given
+}
+
+fn lines(named: &[(&str, f64)]) -> String {
+    let line = |(name, value): &(&str, f64)| format!("{name} = {}\n", number(*value));
+    named.iter().map(line).collect()
+}
+
+/// The tables `[friction]` and `[fixed]` of a file, with v0.
+pub fn law_and_parameters(s: &Setting) -> String {
+    let (name, named) = coefficients(&s.friction);
+    let mut text = format!("[friction]\nlaw = \"{name}\"\n{}", lines(&named));
+    if let Law::Table(curve) = &s.friction.law {
+        text += &format!("speeds = {:?}\nmu_k = {:?}\n", curve.x, curve.y);
+    }
+    text + "[fixed]\n" + &lines(&parameters(s)) + &lines(&[("v0", s.v0)])
+}
+
+/// A case file that traces a motion to its horizon.
+pub fn case_file(start: &Start) -> String {
+    let s = &start.setting;
+    let switch_on = match s.switch_on.is_finite() {
+        true => number(s.switch_on),
+        false => "false".into(),
+    };
+    // The horizon has to be later than the switch-on; events are told to the end of the trace in
+    // any case.
+    let horizon = 1.0
+        + start.horizon
+        + if s.switch_on.is_finite() {
+            s.switch_on
+        } else {
+            0.0
+        };
+    format!(
+        "switch_on = {switch_on}\nhorizon = {}\n{}[start]\n{}[trace]\nuntil = {}\n",
+        number(horizon),
+        law_and_parameters(s),
+        lines(&[("x_dot0", start.x_dot0), ("a0", start.a0)]),
+        number(start.horizon)
+    )
+}
+
+/// A case file in which control is switched on at a phase of uncontrolled stick-slip.
+pub fn phase_file(s: &Setting, phase: f64) -> String {
+    format!(
+        "{}[start]\n{}",
+        law_and_parameters(s),
+        lines(&[("switch_on_phase", phase)])
+    )
+}
+
+/// Shell commands that write a case file and simulate it.
+pub fn simulate_command(case: &str) -> String {
+    format!("cat > case.toml <<'END'\n{case}END\nslipmap simulate case.toml --json --fresh")
+}
+
+/// A shell command that asks for the critical velocity.
+pub fn vc_command(s: &Setting) -> String {
+    let (name, named) = coefficients(&s.friction);
+    let mut command = String::new();
+    if let Law::Table(curve) = &s.friction.law {
+        let rows = curve.x.iter().zip(&curve.y);
+        let rows: String = rows.map(|(x, y)| format!("{x:?},{y:?}\n")).collect();
+        command = format!("cat > curve.csv <<'END'\n{rows}END\n");
+    }
+    command += &format!("slipmap vc --friction {name}");
+    if name == "table" {
+        command += " --table curve.csv";
+    }
+    for (name, value) in named.into_iter().chain(parameters(s)) {
+        command += &format!(" --{}={}", name.replace('_', "-"), number(value));
+    }
+    command
+}

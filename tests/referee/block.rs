@@ -1,0 +1,389 @@
+//! The block itself: Runge–Kutta's classical steps of a length that is set beforehand, never by an
+//! estimate of the error.
+//!
+//! M ẍ = κ a − sgn(ẋ) μ_K(|ẋ|) N in slip, ẋ = 0 while |κ a| < μ_S N in stick, ȧ = v − ẋ, v = v0 +
+//! α_v [a(t) − a(t−τ)], N = N0 + α_N [a(t) − a(t−τ)]. A step ends at every kink of the delayed
+//! elongation and of its echoes, and where the speed passes a point of a table.
+
+use super::echoes::Echoes;
+use super::past::Past;
+use super::setting::Setting;
+use super::steps::{Pace, first_below};
+
+/// What the block does; a slip has the sign of ẋ.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Mode {
+    Stick,
+    Slip(f64),
+}
+
+/// What happens to it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum Event {
+    Release,
+    Stick,
+    Reversal,
+    LiftOff,
+    SwitchOn,
+}
+
+/// What ends a mode, or the piece of the friction law that holds: each is a number that falls below
+/// 0.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Guard {
+    /// |ẋ|.
+    Stop,
+    /// N.
+    LiftOff,
+    /// The speed above the piece's lower end, and below its upper one.
+    Slower,
+    Faster,
+    /// What holds a stuck block against a pull in this direction.
+    Release(f64),
+}
+
+const IN_SLIP: [Guard; 4] = [Guard::LiftOff, Guard::Stop, Guard::Slower, Guard::Faster];
+const IN_STICK: [Guard; 3] = [Guard::LiftOff, Guard::Release(1.0), Guard::Release(-1.0)];
+
+/// The state at one time with all rates of change.
+#[derive(Debug, Clone, Copy)]
+struct Look {
+    t: f64,
+    u: f64,
+    a: f64,
+    u_rate: f64,
+    a_rate: f64,
+    n: f64,
+    n_rate: f64,
+}
+
+/// Where the speed passes a point of a table the elongation's kink is as smooth as a third echo.
+const OF_A_TABLE: u32 = 3;
+
+/// A moving block with its past.
+#[derive(Debug, Clone)]
+pub struct Block {
+    pub setting: Setting,
+    pace: Pace,
+    past: Past,
+    echoes: Echoes,
+    pub t: f64,
+    pub u: f64,
+    pub a: f64,
+    pub mode: Mode,
+    piece: usize,
+    controlled: bool,
+    stuck_since: f64,
+}
+
+impl Block {
+    /// A block at t = 0 with the elongation `a`, which was `a` at all times before.
+    pub fn at_rest_or_sliding(setting: Setting, pace: Pace, u: f64, a: f64) -> Self {
+        let mode = match u == 0.0 {
+            true if (setting.stiffness * a).abs() <= setting.friction.mu_s * setting.load => {
+                Mode::Stick
+            }
+            true => Mode::Slip(a.signum()),
+            false => Mode::Slip(u.signum()),
+        };
+        Self::with_past(setting, pace, (u, a, mode), Past::rising(0.0, a, 0.0))
+    }
+
+    /// A block that is released at t = 0, after a stick that outlasted the delay; none where N ≤ 0
+    /// before that.
+    pub fn released(setting: Setting, pace: Pace) -> Option<Self> {
+        let s = &setting;
+        let load = s.load + s.alpha_n * s.v0 * s.tau;
+        let a = s.friction.mu_s * load / s.stiffness;
+        let past = Past::rising(0.0, a, s.v0);
+        (load > 0.0).then(|| Self::with_past(setting, pace, (0.0, a, Mode::Slip(1.0)), past))
+    }
+
+    fn with_past(setting: Setting, pace: Pace, (u, a, mode): (f64, f64, Mode), past: Past) -> Self {
+        let mut block = Self {
+            piece: setting.friction.piece(u.abs()),
+            controlled: setting.switch_on <= 0.0,
+            setting,
+            pace,
+            past,
+            echoes: Echoes::default(),
+            t: 0.0,
+            u,
+            a,
+            mode,
+            stuck_since: 0.0,
+        };
+        block.kink(1);
+        block
+    }
+
+    /// Changes v0 from now on.
+    pub fn set_v0(&mut self, v0: f64) {
+        self.setting.v0 = v0;
+        self.stuck_since = self.t;
+        self.kink(1);
+    }
+
+    /// Control acts from now on.
+    pub fn switch_on(&mut self) {
+        self.controlled = true;
+        self.setting.switch_on = self.t;
+        self.stuck_since = self.t;
+        self.kink(1);
+    }
+
+    /// One step, not beyond `until`, and the event that ends it, if one does.
+    pub fn advance(&mut self, until: f64) -> Option<Event> {
+        if !self.controlled && self.t >= self.setting.switch_on {
+            self.switch_on();
+            return Some(Event::SwitchOn);
+        }
+        self.echoes.pass(self.t, &self.setting, self.controlled);
+        let from = self.look(self.t, self.u, self.a);
+        self.past.leave(from.a_rate);
+        if from.n <= 0.0 {
+            return Some(Event::LiftOff);
+        }
+        if self.is_torn_off(&from) {
+            return Some(self.release());
+        }
+        let h = self.step_length(&from, until);
+        let to = self.rk(&from, h);
+        let found = self.first_guard(&from, &to);
+        let to = found.map_or(to, |(_, there)| there);
+        self.go(&to);
+        found.and_then(|(guard, _)| self.meet(guard, to.n))
+    }
+
+    fn guards(&self) -> &'static [Guard] {
+        match self.mode {
+            Mode::Stick => &IN_STICK,
+            Mode::Slip(_) => &IN_SLIP,
+        }
+    }
+
+    /// A guard's value and rate of change.
+    fn value(&self, guard: Guard, at: &Look) -> (f64, f64) {
+        let sign = match self.mode {
+            Mode::Stick => 0.0,
+            Mode::Slip(sign) => sign,
+        };
+        let (speed, gain) = (sign * at.u, sign * at.u_rate);
+        let (lower, upper) = self.setting.friction.bounds(self.piece);
+        let (mu_s, stiffness) = (self.setting.friction.mu_s, self.setting.stiffness);
+        match guard {
+            Guard::Stop => (speed, gain),
+            Guard::LiftOff => (at.n, at.n_rate),
+            Guard::Slower if lower <= 0.0 => (f64::INFINITY, 0.0),
+            Guard::Slower => (speed - lower, gain),
+            Guard::Faster if upper == f64::INFINITY => (upper, 0.0),
+            Guard::Faster => (upper - speed, -gain),
+            Guard::Release(way) => (
+                mu_s * at.n - way * stiffness * at.a,
+                mu_s * at.n_rate - way * stiffness * at.a_rate,
+            ),
+        }
+    }
+
+    /// Whether a stuck block is pulled by more than holds it already now: control was just switched
+    /// on.
+    fn is_torn_off(&self, now: &Look) -> bool {
+        let below = |guard: &Guard| self.value(*guard, now).0 < 0.0;
+        self.mode == Mode::Stick && IN_STICK[1..].iter().any(below)
+    }
+
+    /// The state and its rates at a time.
+    fn look(&self, t: f64, u: f64, a: f64) -> Look {
+        let s = &self.setting;
+        let (delayed, delayed_rate) = self.delayed(t);
+        let (u_rate, a_rate) = self.rates(u, a, delayed);
+        let mut look = Look {
+            t,
+            u,
+            a,
+            u_rate,
+            a_rate,
+            n: s.load,
+            n_rate: 0.0,
+        };
+        if self.controlled {
+            look.n += s.alpha_n * (a - delayed);
+            look.n_rate = s.alpha_n * (a_rate - delayed_rate);
+        }
+        look
+    }
+
+    /// a(t−τ) and its rate; whatever, where no control acts.
+    fn delayed(&self, t: f64) -> (f64, f64) {
+        match self.controlled {
+            true => self.past.at(t - self.setting.tau),
+            false => (0.0, 0.0),
+        }
+    }
+
+    /// ẍ and ȧ.
+    fn rates(&self, u: f64, a: f64, delayed: f64) -> (f64, f64) {
+        let s = &self.setting;
+        let difference = if self.controlled { a - delayed } else { 0.0 };
+        let v = s.v0 + s.alpha_v * difference;
+        let Mode::Slip(sign) = self.mode else {
+            return (0.0, v);
+        };
+        let n = s.load + s.alpha_n * difference;
+        let friction = s.friction.coefficient(self.piece, sign * u) * n;
+        ((s.stiffness * a - sign * friction) / s.mass, v - u)
+    }
+
+    /// The state after a step.
+    fn rk(&self, from: &Look, h: f64) -> Look {
+        let (t, u, a) = (from.t, from.u, from.a);
+        let middle = self.delayed(t + 0.5 * h).0;
+        let end = self.delayed(t + h).0;
+        let k1 = (from.u_rate, from.a_rate);
+        let k2 = self.rates(u + 0.5 * h * k1.0, a + 0.5 * h * k1.1, middle);
+        let k3 = self.rates(u + 0.5 * h * k2.0, a + 0.5 * h * k2.1, middle);
+        let k4 = self.rates(u + h * k3.0, a + h * k3.1, end);
+        self.look(
+            t + h,
+            u + h / 6.0 * (k1.0 + 2.0 * (k2.0 + k3.0) + k4.0),
+            a + h / 6.0 * (k1.1 + 2.0 * (k2.1 + k3.1) + k4.1),
+        )
+    }
+
+    /// The length of the next step: shares of the time in which each part of the equations changes,
+    /// up to the next kink.
+    fn step_length(&self, now: &Look, until: f64) -> f64 {
+        let s = &self.setting;
+        let mut end = until;
+        if !self.controlled {
+            end = end.min(s.switch_on);
+        } else {
+            end = end.min(self.echoes.next());
+        }
+        let room = end - self.t;
+        if self.stretches_evenly() {
+            return room.min(self.time_to_guards(now));
+        }
+        let mut h = match self.mode {
+            Mode::Stick => self.pace.stuck(s.time(), self.feedback()),
+            Mode::Slip(sign) => {
+                let (law, speed) = (&s.friction, sign * now.u);
+                let growth = (law.slope(self.piece, speed) * now.n / s.mass).abs();
+                let bend = (now.u_rate / law.reach(self.piece, speed)).abs();
+                self.pace.slipping(s.time(), self.feedback() + growth, bend)
+            }
+        };
+        if self.controlled {
+            let then = self.t - s.tau;
+            h = h.min(self.pace.delayed(s.tau));
+            h = h.min(self.past.end_of_step(then, self.pace.seen_at_once()) - then);
+        }
+        // No tiny step before an end.
+        if room < h {
+            room
+        } else {
+            h.min(0.5 * room.max(h))
+        }
+    }
+
+    /// The rates at which control alone would move the block.
+    fn feedback(&self) -> f64 {
+        let s = &self.setting;
+        match self.controlled {
+            true => s.alpha_v.abs() + (s.alpha_n.abs() * s.friction.mu_s / s.mass).sqrt(),
+            false => 0.0,
+        }
+    }
+
+    /// Whether the spring is stretched at the rate v0, and was one delay ago: then one step leads
+    /// to the release.
+    fn stretches_evenly(&self) -> bool {
+        let s = &self.setting;
+        let evenly = s.alpha_v == 0.0 && self.t - self.stuck_since >= s.tau;
+        self.mode == Mode::Stick && (!self.controlled || evenly)
+    }
+
+    /// A little more than the time until a guard falls below 0, if all go on as they do.
+    fn time_to_guards(&self, now: &Look) -> f64 {
+        let times = self.guards().iter().map(|guard| {
+            let (value, rate) = self.value(*guard, now);
+            match rate < 0.0 {
+                true => value / -rate,
+                false => f64::INFINITY,
+            }
+        });
+        1.001 * times.fold(f64::INFINITY, f64::min) + 1e-9 * self.setting.time()
+    }
+
+    /// The first guard that falls below 0 in a step, and the state there.
+    fn first_guard(&self, from: &Look, to: &Look) -> Option<(Guard, Look)> {
+        let mut first: Option<(Guard, Look)> = None;
+        for guard in self.guards() {
+            let h = first.map_or(to.t, |(_, there)| there.t) - from.t;
+            let end = first.map_or(*to, |(_, there)| there);
+            let ends = (self.value(*guard, from), self.value(*guard, &end));
+            let value = |s: f64| self.value(*guard, &self.rk(from, s)).0;
+            if let Some(s) = first_below(h, ends, from.t, value) {
+                first = Some((*guard, self.rk(from, s)));
+            }
+        }
+        first
+    }
+
+    /// Moves on.
+    fn go(&mut self, to: &Look) {
+        (self.t, self.u, self.a) = (to.t, to.u, to.a);
+        self.past.arrive(to.t, to.a, to.a_rate);
+        self.past.forget_before(to.t - 1.5 * self.setting.tau);
+    }
+
+    /// A guard has fallen below 0.
+    fn meet(&mut self, guard: Guard, n: f64) -> Option<Event> {
+        match guard {
+            Guard::LiftOff => Some(Event::LiftOff),
+            Guard::Slower | Guard::Faster => {
+                self.piece = match guard {
+                    Guard::Faster => self.piece + 1,
+                    _ => self.piece - 1,
+                };
+                self.kink(OF_A_TABLE);
+                None
+            }
+            Guard::Release(_) => Some(self.release()),
+            Guard::Stop => Some(self.stop(n)),
+        }
+    }
+
+    fn release(&mut self) -> Event {
+        self.mode = Mode::Slip(self.a.signum());
+        self.begin();
+        Event::Release
+    }
+
+    fn stop(&mut self, n: f64) -> Event {
+        let pull = self.setting.stiffness * self.a;
+        let before = self.mode;
+        self.mode = match pull.abs() < self.setting.friction.mu_s * n {
+            true => Mode::Stick,
+            false => Mode::Slip(pull.signum()),
+        };
+        self.begin();
+        match self.mode != Mode::Stick && self.mode != before {
+            true => Event::Reversal,
+            false => Event::Stick,
+        }
+    }
+
+    /// A mode begins, at rest.
+    fn begin(&mut self) {
+        self.u = 0.0;
+        self.piece = self.setting.friction.piece(0.0);
+        self.stuck_since = self.t;
+        self.kink(1);
+    }
+
+    /// The elongation has a kink now, as smooth as an echo of this number.
+    fn kink(&mut self, echo: u32) {
+        self.echoes.follow(self.t + self.setting.tau, echo);
+    }
+}

@@ -1,0 +1,162 @@
+//! Settings by chance: SplitMix64, and what the referee is asked about.
+
+use super::law::{Friction, Law};
+use super::pchip::Curve;
+use super::setting::Setting;
+
+/// Numbers that look random, the same for the same seed.
+pub struct Chance(u64);
+
+impl Chance {
+    /// The `number`-th sequence of a seed, which depends on no other.
+    pub fn of(seed: u64, number: usize) -> Self {
+        let mut chance = Self(seed ^ (number as u64).wrapping_mul(0xd134_2543_de82_ef95));
+        chance.unit();
+        chance
+    }
+
+    pub fn unit(&mut self) -> f64 {
+        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
+        let mut z = self.0;
+        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+        ((z ^ (z >> 31)) >> 11) as f64 / (1_u64 << 53) as f64
+    }
+
+    pub fn between(&mut self, from: f64, to: f64) -> f64 {
+        from + (to - from) * self.unit()
+    }
+
+    pub fn log(&mut self, from: f64, to: f64) -> f64 {
+        self.between(from.ln(), to.ln()).exp()
+    }
+
+    pub fn below(&mut self, n: usize) -> usize {
+        (self.unit() * n as f64) as usize
+    }
+}
+
+/// A block set in motion at t = 0, and until when it is followed.
+pub struct Start {
+    pub setting: Setting,
+    pub x_dot0: f64,
+    pub a0: f64,
+    pub horizon: f64,
+}
+
+/// One of the four laws; v_s, and speeds of a table, of about the size 0.02 to 1.
+fn friction(chance: &mut Chance) -> Friction {
+    let mu_s = [1.0, chance.between(0.5, 1.2)][chance.below(2)];
+    let mu0 = mu_s * chance.between(0.25, 0.9);
+    let v_s = chance.log(0.02, 1.0);
+    let law = match chance.below(10) {
+        0 | 1 => Law::Coulomb { mu0 },
+        2..5 => Law::Weakening { mu0, v_s },
+        5..8 => Law::Stribeck { mu0, v_s },
+        _ => Law::Table(curve(chance, mu_s, v_s)),
+    };
+    Friction { law, mu_s }
+}
+
+/// A curve that falls from rest, over three to six points, and may rise again.
+fn curve(chance: &mut Chance, mu_s: f64, v_s: f64) -> Curve {
+    let mut x = vec![[0.0, 0.3 * v_s][chance.below(2)]];
+    let mut y = vec![mu_s * chance.between(0.7, 1.0)];
+    let points = 3 + chance.below(4);
+    while x.len() < points {
+        let last = x.len() - 1;
+        x.push(x[last] + v_s * chance.between(0.3, 2.0));
+        y.push(y[last] * chance.between(0.6, 1.08));
+    }
+    Curve::through(&x, &y)
+}
+
+/// Velocity control, load control, or both.
+fn gains(chance: &mut Chance) -> (f64, f64) {
+    let sign = |chance: &mut Chance| [-1.0, -1.0, -1.0, 0.3][chance.below(4)];
+    let alpha_v = sign(chance) * chance.log(0.02, 1.0);
+    let alpha_n = sign(chance) * chance.log(0.05, 6.0);
+    match chance.below(3) {
+        0 => (alpha_v, 0.0),
+        1 => (0.0, alpha_n),
+        _ => (alpha_v, alpha_n),
+    }
+}
+
+/// M, κ and N0: 1, or others in one of four settings.
+fn units(chance: &mut Chance) -> [f64; 3] {
+    let others = [0; 3].map(|_| chance.log(0.3, 3.0));
+    [[1.0; 3], [1.0; 3], [1.0; 3], others][chance.below(4)]
+}
+
+/// A motion, in the time unit followed for some cycles and delays.
+pub fn start(chance: &mut Chance) -> Start {
+    let [mass, stiffness, load] = units(chance);
+    let (time, length) = ((mass / stiffness).sqrt(), load / stiffness);
+    let friction = friction_in(friction(chance), length / time);
+    let (alpha_v, alpha_n) = gains(chance);
+    let tau = chance.log(0.05, 30.0);
+    let v0 = chance.log(0.015, 1.0);
+    let switch_on = [0.0, 0.0, chance.between(0.0, 20.0), f64::INFINITY][chance.below(4)];
+    let x_dot0 = [
+        0.0,
+        v0,
+        chance.between(-2.0, 3.0),
+        chance.between(-2.0, 3.0),
+    ][chance.below(4)];
+    let a0 = friction.mu_s * chance.between(-1.2, 1.2);
+    let horizon = (60.0 + 3.0 * tau + 5.0 * friction.mu_s / v0).min(300.0);
+    Start {
+        setting: Setting {
+            friction,
+            mass,
+            stiffness,
+            load,
+            alpha_v: alpha_v / time,
+            alpha_n: alpha_n * stiffness,
+            tau: tau * time,
+            v0: v0 * length / time,
+            switch_on: switch_on * time,
+        },
+        x_dot0: x_dot0 * length / time,
+        a0: a0 * length,
+        horizon: horizon * time,
+    }
+}
+
+/// A law whose speeds are given over a unit of velocity.
+fn friction_in(mut friction: Friction, velocity: f64) -> Friction {
+    match &mut friction.law {
+        Law::Coulomb { .. } => {}
+        Law::Weakening { v_s, .. } | Law::Stribeck { v_s, .. } => *v_s *= velocity,
+        Law::Table(curve) => {
+            let x: Vec<f64> = curve.x.iter().map(|x| x * velocity).collect();
+            *curve = Curve::through(&x, &curve.y);
+        }
+    }
+    friction
+}
+
+/// A block under control whose critical velocity is asked for; M = κ = N0 = 1.
+pub fn problem(chance: &mut Chance) -> Setting {
+    let friction = friction(chance);
+    let (alpha_v, alpha_n) = gains(chance);
+    Setting {
+        friction,
+        mass: 1.0,
+        stiffness: 1.0,
+        load: 1.0,
+        alpha_v,
+        alpha_n,
+        tau: chance.log(0.05, 10.0),
+        v0: 1.0,
+        switch_on: 0.0,
+    }
+}
+
+/// A block in uncontrolled stick-slip, and the phase at which control is switched on.
+pub fn phase(chance: &mut Chance) -> (Setting, f64) {
+    let mut setting = problem(chance);
+    setting.v0 = chance.log(0.03, 3.0);
+    (setting, [0.0, chance.between(0.0, 6.0)][chance.below(2)])
+}

@@ -1,0 +1,120 @@
+//! Reference tables that another program worked out, by two step sizes each.
+
+use super::block::Event;
+use super::law::{Friction, Law};
+use super::ramp::End;
+use super::random::Start;
+use super::setting::Setting;
+use super::switch_on::Fate;
+
+/// A row by the names of its columns.
+struct Row<'a> {
+    names: Vec<&'a str>,
+    words: Vec<&'a str>,
+}
+
+fn rows(table: &str) -> Vec<Row<'_>> {
+    let mut lines = table.lines().map(|line| line.split(',').collect());
+    let names: Vec<&str> = lines.next().expect("names of columns");
+    let row = |words| Row {
+        names: names.clone(),
+        words,
+    };
+    lines.map(row).collect()
+}
+
+impl Row<'_> {
+    fn word(&self, name: &str) -> Option<&str> {
+        let column = self.names.iter().position(|n| *n == name)?;
+        Some(self.words[column])
+    }
+
+    fn number(&self, name: &str) -> f64 {
+        let word = self.word(name).expect("a column");
+        word.parse().expect("a number")
+    }
+
+    /// The setting of a row; M, κ and N0 are 1, and so is μ_S unless a column says otherwise.
+    fn setting(&self) -> Setting {
+        let mu0 = self.number("mu0");
+        let law = match self.word("friction_law") {
+            Some("coulomb") => Law::Coulomb { mu0 },
+            Some("weakening") => Law::Weakening {
+                mu0,
+                v_s: self.number("v_s"),
+            },
+            Some("stribeck") => Law::Stribeck {
+                mu0,
+                v_s: self.number("v_s"),
+            },
+            other => panic!("{other:?}"),
+        };
+        let mu_s = self.word("mu_s").map_or(1.0, |_| self.number("mu_s"));
+        Setting {
+            friction: Friction { law, mu_s },
+            mass: 1.0,
+            stiffness: 1.0,
+            load: 1.0,
+            alpha_v: self.number("alpha_v"),
+            alpha_n: self.number("alpha_n"),
+            tau: self.number("tau"),
+            v0: self.word("v0").map_or(1.0, |_| self.number("v0")),
+            switch_on: 0.0,
+        }
+    }
+}
+
+/// `motion_events.csv`: starts, and their first events.
+pub fn motions() -> Vec<(Start, Vec<(Event, f64)>)> {
+    let table = include_str!("../reference/motion_events.csv");
+    let motion = |row: Row| {
+        let events = row.word("events").expect("events").split(';');
+        let events: Vec<_> = events.map(event).collect();
+        let horizon = events.last().expect("an event").1 + 1.0;
+        let start = Start {
+            setting: row.setting(),
+            x_dot0: row.number("x_dot0"),
+            a0: row.number("a0"),
+            horizon,
+        };
+        (start, events)
+    };
+    rows(table).into_iter().map(motion).collect()
+}
+
+fn event(text: &str) -> (Event, f64) {
+    let (t, kind) = text.split_once(':').expect("a time and a kind");
+    let kind = match kind {
+        "release" => Event::Release,
+        "stick" => Event::Stick,
+        "reversal" => Event::Reversal,
+        "liftoff" => Event::LiftOff,
+        other => panic!("{other}"),
+    };
+    (kind, t.parse().expect("a time"))
+}
+
+/// `vc_referee.csv`: critical velocities.
+pub fn velocities() -> Vec<(Setting, End)> {
+    let table = include_str!("../reference/vc_referee.csv");
+    let velocity = |row: Row| {
+        assert_eq!(row.word("outcome"), Some("lost"));
+        (row.setting(), End::Lost(row.number("vc")))
+    };
+    rows(table).into_iter().map(velocity).collect()
+}
+
+/// `switch_on_fate.csv`: settings, phases of switch-on, and what becomes of stick-slip.
+pub fn fates() -> Vec<(Setting, f64, Fate)> {
+    let table = include_str!("../reference/switch_on_fate.csv");
+    let fate = |row: Row| {
+        let fate = match row.word("fate") {
+            Some("survives") => Fate::Survives,
+            Some("ends") => Fate::Ends,
+            Some("lift") => Fate::LiftsOff,
+            other => panic!("{other:?}"),
+        };
+        (row.setting(), row.number("switch_on_phase"), fate)
+    };
+    rows(table).into_iter().map(fate).collect()
+}
