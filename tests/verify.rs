@@ -32,7 +32,10 @@ fn sound_maps_pass() {
         (DECAY, &["abscissa, by", "n_unstable, by"][..]),
         (
             VC,
-            &["vc, by simulation with collocation 4 agree, 0 differ", "n_unstable, by"],
+            &[
+                "vc, by simulation with collocation 4 agree, 0 differ",
+                "n_unstable, by",
+            ],
         ),
         (OUTCOME, &["outcome, by collocation 3 agree, 0 differ"]),
         (LIMIT, &[]),

@@ -2,7 +2,7 @@
 
 use std::collections::VecDeque;
 
-use super::series::{Coefficients, MOST_ORDER, shift, shifted};
+use super::series::{Coefficients, MOST_ORDER, shift, shifted, value};
 
 /// One step's elongation.
 #[derive(Debug, Clone)]
@@ -231,6 +231,13 @@ impl History {
         };
         shift(&piece.a[..=piece.order], by, out);
         reach
+    }
+
+    /// What the last polynomial says at `time`, beyond its end.
+    pub fn foreseen(&self, time: f64) -> f64 {
+        self.pieces.back().map_or(f64::NAN, |last| {
+            value(&last.a[..=last.order], time - last.from)
+        })
     }
 
     /// The piece that may be used longest from `time` on, and until when. Over a boundary that is no more than a step's end

@@ -121,6 +121,12 @@ const LEAST_ORDER: usize = 4;
 /// end.
 const BALANCED: f64 = 0.53;
 
+/// How well what was foreseen has to be what comes, in units of the tolerance; a step that goes on for too long becomes shorter
+/// by this, so often at most.
+const FORESEEN: f64 = 2.0;
+const SHORTER: f64 = 0.7;
+const MOST_SHORTER: u32 = 12;
+
 /// Rounding of a force, relative.
 const ROUNDING: f64 = 64.0 * f64::EPSILON;
 
@@ -393,6 +399,10 @@ impl Motion {
             r if r > 0.5 && delay_limit.kink != SMOOTH => 0.5 * limit,
             _ => free,
         };
+        let length = match controlled && self.integrator == Integrator::Taylor {
+            true => self.as_foreseen(length),
+            false => length,
+        };
         let found = self.first_event(length);
         let mut length = found.map_or(length, |(s, _)| s);
         let mut event = found.map(|(_, event)| event);
@@ -448,6 +458,35 @@ impl Motion {
             length: reach.until - time,
             kink: reach.kink,
         }
+    }
+
+    /// `length`, or less of it where it outlasts the delay: the polynomial of the last step stood in for what was yet to come, and
+    /// the step may go on for as long as that is what has come.
+    ///
+    /// The last terms of a series do not tell this. Errors of the terms in its middle grow from step to step where a polynomial
+    /// is used far beyond its end, as those of a stick do, which has no terms of its own to hold against them.
+    fn as_foreseen(&self, length: f64) -> f64 {
+        let mut beyond = length - self.parameters.tau;
+        if beyond <= 0.0 {
+            return length;
+        }
+        let a = &self.step.a[..=self.step.order];
+        let stretch = a[0].abs().max(self.parameters.law.mu_s());
+        let holds = |s: f64| {
+            let off = value(a, s) - self.history.foreseen(self.t + s);
+            // What is not a number ends the motion elsewhere, not here.
+            off.is_nan() || off.abs() <= FORESEEN * self.tolerance * stretch
+        };
+        if holds(beyond) {
+            return length;
+        }
+        for _ in 0..MOST_SHORTER {
+            beyond *= SHORTER;
+            if holds(beyond) {
+                return beyond + self.parameters.tau;
+            }
+        }
+        self.parameters.tau
     }
 
     /// More than the time until release of a block whose elongation has grown evenly for a delay.
