@@ -1,24 +1,18 @@
-//! Puts the git revision into the program, so that every map can name it.
+//! Puts the revision of the source into the program, so that every map can name it.
 
-use std::process::Command;
+use std::path::Path;
+
+#[path = "src/revision.rs"]
+mod revision;
 
 fn main() {
-    println!("cargo:rerun-if-changed=.git/HEAD");
-    println!("cargo:rerun-if-changed=.git/refs");
-    println!("cargo:rerun-if-changed=src");
-    let revision = Command::new("git")
-        .args([
-            "describe",
-            "--always",
-            "--dirty",
-            "--abbrev=12",
-            "--exclude=*",
-        ])
-        .output()
-        .ok()
-        .filter(|output| output.status.success())
-        .and_then(|output| String::from_utf8(output.stdout).ok())
-        .map(|text| text.trim().to_owned())
-        .unwrap_or_else(|| "unknown".to_owned());
+    // A path that is not there would make every build a new one.
+    for path in [".git/HEAD", ".git/refs", ".cargo_vcs_info.json", "src"] {
+        if Path::new(path).exists() {
+            println!("cargo:rerun-if-changed={path}");
+        }
+    }
+    let manifest = std::env::var("CARGO_MANIFEST_DIR").unwrap_or_else(|_| ".".to_owned());
+    let revision = revision::of(Path::new(&manifest));
     println!("cargo:rustc-env=SLIPMAP_GIT_REVISION={revision}");
 }

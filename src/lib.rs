@@ -42,6 +42,8 @@ pub mod critical;
 pub mod linear;
 pub mod model;
 pub mod report;
+#[cfg(test)]
+mod revision;
 pub mod slip;
 pub mod store;
 pub mod sweep;

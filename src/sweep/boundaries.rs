@@ -8,6 +8,7 @@ use crate::linear::Crossings;
 use crate::linear::curves::{PlaneCurves, TooManyCurves, Window, scan_breakpoints, trace};
 use crate::linear::decay;
 use crate::linear::gains::{load_gain_breakpoints, velocity_gain_breakpoints};
+use crate::model::friction::Kind;
 use crate::model::{Groups, ModelError};
 
 /// Steps in which breakpoints are looked for along a parameter that is no gain.
@@ -87,7 +88,7 @@ fn trace_window(
         setting.set(parameter, p);
         setting.groups()
     };
-    let (start, time_unit) = groups_at(*window.p.start())?;
+    groups_at(*window.p.start())?;
     groups_at(*window.p.end())?;
     // Between two valid ends the model stays valid: its ranges are intervals.
     let valid_groups_at = |p: f64| groups_at(p).unwrap_or((Groups::new(1.0, 0.0, 0.0), 1.0));
@@ -95,7 +96,39 @@ fn trace_window(
         let (groups, unit) = valid_groups_at(p);
         Crossings::of(groups).in_physical_time(unit)
     };
-    let breakpoints: Vec<f64> = match parameter {
+    let traced = |sigma: f64| -> Result<DegreeCurves, ModelError> {
+        let mut curves = Ok(PlaneCurves::default());
+        for part in split(window, &jumps(&setting, parameter)?) {
+            let more = match sigma {
+                0.0 => {
+                    let start = valid_groups_at(*part.p.start());
+                    let scanned =
+                        || scan_breakpoints(|p| valid_groups_at(p).0, &part.p, SCAN_STEPS);
+                    let breakpoints = breakpoints(&setting, parameter, start, scanned)?;
+                    trace(crossings_at, &breakpoints, &part)
+                }
+                _ => decay::trace(valid_groups_at, sigma, &part),
+            };
+            curves = joined(curves, more);
+        }
+        Ok(DegreeCurves {
+            degree_of_stability: sigma,
+            curves,
+        })
+    };
+    let degrees = degrees_of_stability.iter().copied();
+    std::iter::once(0.0).chain(degrees).map(traced).collect()
+}
+
+/// Values of `parameter` at which the number of crossing curves changes, `start` being the groups at one of them and the unit of
+/// time; `scanned` where they have no closed form.
+fn breakpoints(
+    setting: &Setting,
+    parameter: Parameter,
+    (start, time_unit): (Groups, f64),
+    scanned: impl Fn() -> Vec<f64>,
+) -> Result<Vec<f64>, ModelError> {
+    Ok(match parameter {
         Parameter::AlphaV => velocity_gain_breakpoints(start.b, start.a_n)
             .into_iter()
             .map(|a_v| a_v / time_unit)
@@ -107,15 +140,117 @@ fn trace_window(
                 .map(|a_n| a_n * to_physical)
                 .collect()
         }
-        _ => scan_breakpoints(|p| valid_groups_at(p).0, &window.p, SCAN_STEPS),
+        _ => scanned(),
+    })
+}
+
+/// The last value of `parameter` below a jump of the groups, and the first one above it. The slope of a table jumps at its first
+/// and at its last speed, which themselves belong to the curve between them.
+fn jumps(setting: &Setting, parameter: Parameter) -> Result<Vec<[f64; 2]>, ModelError> {
+    let law = setting.friction_law()?;
+    let (Parameter::V0, Some(Kind::Table(table))) = (parameter, law.as_ref().map(|l| l.kind()))
+    else {
+        return Ok(Vec::new());
     };
-    let boundary = DegreeCurves {
-        degree_of_stability: 0.0,
-        curves: trace(crossings_at, &breakpoints, window),
+    let speeds = table.speeds();
+    let (first, last) = (speeds[0], speeds[speeds.len() - 1]);
+    Ok(vec![[first.next_down(), first], [last, last.next_up()]])
+}
+
+/// The parts of a window between jumps. Nothing crosses the imaginary axis at a jump itself, so no curve runs along it.
+fn split(window: &Window, jumps: &[[f64; 2]]) -> Vec<Window> {
+    let (mut start, end) = (*window.p.start(), *window.p.end());
+    let mut parts = Vec::new();
+    for &[below, above] in jumps {
+        if start < below && above < end {
+            parts.push(start..=below);
+            start = above;
+        }
+    }
+    parts.push(start..=end);
+    let part = |p| Window {
+        p,
+        tau: window.tau.clone(),
     };
-    let degrees = degrees_of_stability.iter().map(|&sigma| DegreeCurves {
-        degree_of_stability: sigma,
-        curves: decay::trace(valid_groups_at, sigma, window),
-    });
-    Ok(std::iter::once(boundary).chain(degrees).collect())
+    parts.into_iter().map(part).collect()
+}
+
+fn joined(
+    curves: Result<PlaneCurves, TooManyCurves>,
+    more: Result<PlaneCurves, TooManyCurves>,
+) -> Result<PlaneCurves, TooManyCurves> {
+    let (mut curves, more) = (curves?, more?);
+    curves.pieces.extend(more.pieces);
+    curves.corners.extend(more.corners);
+    Ok(curves)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::linear::certificate::roots_right_of;
+    use crate::sweep::SweepSpec;
+
+    fn sweep(speeds: &[f64], mu_k: &[f64], alpha_n: f64) -> Plan {
+        let text = format!(
+            "fields = [\"n_unstable\"]\nboundaries = true\n[axes]\n\
+             v0 = {{ from = 0.02, to = 3.0, points = 61 }}\n\
+             tau = {{ from = 0.01, to = 20.0, points = 101 }}\n\
+             [friction]\nlaw = \"table\"\nspeeds = {speeds:?}\nmu_k = {mu_k:?}\n\
+             [fixed]\nalpha_n = {alpha_n:?}\n"
+        );
+        Plan::new(text.parse::<SweepSpec>().unwrap()).unwrap()
+    }
+
+    /// The number of unstable roots by the argument principle changes, along every column of the plane, where a curve is, and only there.
+    #[test]
+    fn curves_bound_the_counts_on_both_sides_of_the_ends_of_a_table() {
+        let (mut changes, mut beyond) = (0, 0);
+        for (speeds, mu_k, alpha_n) in [
+            (vec![0.0, 0.8, 1.0], vec![0.9, 0.85, 0.3], 0.9),
+            (vec![0.0, 0.5, 2.0], vec![0.8, 0.5, 0.35], 0.7),
+            (vec![0.3, 0.5, 2.2], vec![0.8, 0.5, 0.3], -1.3),
+            (vec![0.4, 1.1], vec![0.6, 0.9], 1.2),
+        ] {
+            let plan = sweep(&speeds, &mu_k, alpha_n);
+            let plane = trace_plane(&plan, &planes(&plan)[0]).unwrap();
+            let curves = plane.curves[0].curves.as_ref().unwrap();
+            let columns = plan.spec.axes[0].values.iter().enumerate();
+            for (i, &v0) in columns.filter(|(i, _)| (1..60).contains(i)) {
+                // Where the curves are in this column.
+                let mut at: Vec<f64> = Vec::new();
+                for piece in &curves.pieces {
+                    for pair in piece.vertices.windows(2) {
+                        let (p, q) = (pair[0], pair[1]);
+                        if (p.p <= v0) != (q.p <= v0) {
+                            at.push(p.tau + (q.tau - p.tau) * (v0 - p.p) / (q.p - p.p));
+                        }
+                    }
+                }
+                let count = |tau: f64| {
+                    let (groups, unit) = plan.setting(&[i, 0]).groups().unwrap();
+                    roots_right_of(groups, tau / unit, 0.0)
+                };
+                for pair in plan.spec.axes[1].values.windows(2) {
+                    // Polylines are exact at their vertices only.
+                    let near = |edge: f64| at.iter().any(|tau| (tau - edge).abs() < 0.02);
+                    if near(pair[0]) || near(pair[1]) {
+                        continue;
+                    }
+                    let (Some(below), Some(above)) = (count(pair[0]), count(pair[1])) else {
+                        continue;
+                    };
+                    let curve = at.iter().any(|tau| pair[0] < *tau && *tau < pair[1]);
+                    assert!(
+                        curve || below == above,
+                        "{speeds:?} v0 {v0} {pair:?}: {below} {above}"
+                    );
+                    changes += u32::from(below != above);
+                    let outside = v0 < speeds[0] || v0 > speeds[speeds.len() - 1];
+                    beyond += u32::from(outside && below != above);
+                }
+            }
+        }
+        assert!(changes > 100 && beyond > 20, "{changes} {beyond}");
+    }
 }
