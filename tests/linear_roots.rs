@@ -15,6 +15,7 @@ use slipmap::linear::{Crossings, MarginalTolerance};
 use slipmap::model::{FrictionLaw, Groups, Table};
 
 /// What the tracker tells of a line: all roots of each cell, its margin and its status.
+#[derive(Debug)]
 struct Line {
     roots: Vec<Vec<Complex64>>,
     margins: Vec<f64>,
@@ -147,6 +148,83 @@ fn a_million_random_cells_are_certified() {
         half(0x2545_f491_4f6c_dd1d) + other.join().unwrap()
     });
     assert!(certified > 999_990, "{certified}");
+}
+
+/// Strong gains with a short delay leave ordinary roots between terms that nearly cancel.
+#[test]
+fn strong_gains_with_short_delays_have_their_reference_roots() {
+    let table = include_str!("reference/strong_gains.csv");
+    let mut rows = 0;
+    for row in table.lines().filter(|line| !line.starts_with(['#', 'b'])) {
+        let v: Vec<f64> = row.split(',').map(|x| x.parse().unwrap()).collect();
+        let (groups, tau) = (Groups::new(v[0], v[1], v[2]), v[3]);
+        let count = Crossings::of(groups).count(tau, MarginalTolerance::default());
+        assert_eq!(
+            (count.n_unstable as f64, count.marginal),
+            (v[4], false),
+            "{row}"
+        );
+        for delays in [vec![tau], even(0.1 * tau, tau, 40)] {
+            let line = follow(groups, &delays, 0, 1);
+            let (root, margin) = (
+                line.roots[delays.len() - 1][0],
+                line.margins[delays.len() - 1],
+            );
+            assert!(
+                line.status.iter().all(|&s| s == CERTIFIED),
+                "{row} {line:?}"
+            );
+            // D is a sum of terms of the size of the gains, up to 1e7.
+            let size = v[5].hypot(v[6]).max(1.0);
+            assert!(margin < 1e-6, "{row} {margin}");
+            assert!((root.re - v[5]).abs() < 1e-8 * size, "{row}: {root}");
+            assert!((root.im - v[6]).abs() < 1e-8 * size, "{row}: {root}");
+        }
+        rows += 1;
+    }
+    assert_eq!(rows, 120);
+}
+
+/// 20,000 random cells with gains up to 10⁷ and delays down to 10⁻⁸: certified, every one. Right of
+/// the axis, and of two lines next to the abscissa, are as many roots as the argument turns.
+#[test]
+fn strong_gains_with_short_delays_are_certified() {
+    let mut number = numbers(31);
+    let mut strong = |from: f64, to: f64| 10_f64.powf(from + (to - from) * number());
+    let mut turned = 0;
+    for i in 0..20_000_u32 {
+        let sign = |bit: u32| if i >> bit & 1 == 0 { 1.0 } else { -1.0 };
+        let of = |absent: u32, gain: f64| if i % 3 == absent { 0.0 } else { gain };
+        let (b, a_v, a_n) = (
+            -2.5 + 3.5 * strong(0.0, 1.0).log10(),
+            of(0, sign(2) * strong(3.0, 7.0)),
+            of(1, sign(3) * strong(3.0, 7.0)),
+        );
+        let tau = strong(-8.0, -4.0);
+        let line = follow(Groups::new(b, a_v, a_n), &[tau], 0, 1);
+        let at = format!("{b} {a_v} {a_n} {tau} {line:?}");
+        assert_eq!(line.status, [CERTIFIED], "{at}");
+        if i % 20 > 0 {
+            continue;
+        }
+        let root = line.roots[0][0];
+        let beside = 1e-3 * root.re.abs().max(1.0);
+        for (sigma, expected) in [
+            (0.0, Crossings::of(Groups::new(b, a_v, a_n)).n_unstable(tau)),
+            (root.re + beside, 0),
+            (root.re - beside, if root.im == 0.0 { 1 } else { 2 }),
+        ] {
+            if let Some(found) = winding::roots_right_of(b, a_v, a_n, tau, sigma) {
+                let more = sigma < root.re && found > expected;
+                assert!(
+                    found == expected || more,
+                    "{sigma}: {found} {expected} {at}"
+                );
+                turned += 1;
+            }
+        }
+    }
+    assert!(turned > 2900, "{turned}");
 }
 
 /// Where anything may be degenerate: no damping, no control, huge and tiny gains and delays.

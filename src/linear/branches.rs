@@ -122,6 +122,25 @@ pub(super) fn quadratic_zeros(linear: f64, constant: f64) -> impl Iterator<Item 
     zeros.into_iter().flatten()
 }
 
+/// Starting values for roots that hardly change within the delay: the zeros of D where
+/// 1 − E = λτ − (λτ)²/2,
+///
+/// ```text
+/// (1 − a_v τ + Q(0) τ²/2) λ² + (b − Q(0) τ) λ + 1,
+/// ```
+///
+/// Strong gains with a short delay put them where neither the branches nor the parts of the real
+/// axis lead.
+pub(super) fn slow_starts(groups: Groups, tau: f64) -> impl Iterator<Item = Complex64> {
+    let Pair { q0, q1, .. } = Pair::new(groups);
+    let (leading, linear) = (1.0 - q1 * tau + 0.5 * q0 * tau * tau, groups.b - q0 * tau);
+    // The zeros of its mirror image are 1/λ: the leading coefficient may vanish.
+    quadratic_zeros(linear, leading)
+        .map(|z| divide(Complex64::ONE, z))
+        .filter(|z| z.re.is_finite() && z.im.is_finite())
+        .map(|z| Complex64::new(z.re, z.im.abs()))
+}
+
 /// A start in each part of the real axis right of `line` in which D changes its sign.
 fn real_starts(pair: &Pair, tau: f64, line: f64, radius: f64, starts: &mut Vec<Complex64>) {
     let value = |s: f64| {

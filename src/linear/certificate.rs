@@ -16,24 +16,27 @@
 //!
 //! ```text
 //! m(ω) = round[(arg P − arg Q + ωτ)/2π],                                                    (2)
+//! −P Q* = (y q₀ − p q₁ x) − i ω (r q₀ + (x − s) q₁),      s = B(σ),  r = B′(σ)              (3)
 //! ```
 //!
 //! and D, which behaves like λ² far out and has no poles, has to the right of the line
 //!
 //! ```text
-//! n = 1 − [arg P(∞) − arg D(0)]/π + 2m(ω₊) − 2m(ω₋)                                         (3)
+//! n = 1 − [arg P(∞) − arg D(0)]/π + 2m(ω₊) − 2m(ω₋)                                         (4)
 //! ```
 //!
 //! roots, the term m(ω₋) being absent where κQ is the larger one at ω = 0. The count needs ω± only to the accuracy at which
 //! (2) rounds: it is undecided only where a root lies within rounding of the line. Nothing here is shared with the tracker,
 //! the spectrum or the crossing delays.
+//!
+//! Strong gains with a short delay make P and κQ large and nearly opposite: D is what little they
+//! leave. So B, in which the gains are not, and κ − 1 stand for P and κ wherever the two cancel,
+//! and (2) rounds by the small angle of (3).
 
 use std::f64::consts::TAU;
 
+use super::rounded::{ROUNDINGS, Rounded};
 use crate::model::Groups;
-
-/// Rounding errors that an expression here may gather, each of ε/2 of its largest term.
-const ROUNDINGS: f64 = 8.0 * f64::EPSILON;
 
 /// The number of roots with Re λ > `line`, or none where a root is too near to the line to tell.
 ///
@@ -65,43 +68,10 @@ impl UnstableCount {
     }
 }
 
-/// A number and a bound on its rounding error.
-#[derive(Clone, Copy)]
-struct Rounded {
-    value: f64,
-    error: f64,
-}
-
-impl Rounded {
-    /// The sum of `terms`.
-    #[inline(always)]
-    fn sum<const N: usize>(terms: [f64; N]) -> Self {
-        let (mut value, mut size) = (0.0, 0.0);
-        for term in terms {
-            value += term;
-            size += term.abs();
-        }
-        Self {
-            value,
-            error: ROUNDINGS * size,
-        }
-    }
-
-    fn plus_error(self, error: f64) -> Self {
-        Self {
-            error: self.error + error,
-            ..self
-        }
-    }
-
-    /// The sign is beyond doubt.
-    fn decided(self) -> bool {
-        self.value.abs() > self.error
-    }
-}
-
 /// D on a vertical line, in the symbols of the module.
 struct Line {
+    s: Rounded,
+    r: Rounded,
     c: Rounded,
     p: Rounded,
     q0: Rounded,
@@ -114,7 +84,7 @@ struct Line {
     echo: Rounded,
 }
 
-/// Equation (3) with what does not depend on the delay, κ given, worked out.
+/// Equation (4) with what does not depend on the delay, κ given, worked out.
 #[derive(Debug, Clone, Copy)]
 struct Turning {
     /// 1 − [arg P(∞) − arg D(0)]/π.
@@ -126,11 +96,11 @@ struct Turning {
 /// A place ω where the larger one of P and κQ changes.
 #[derive(Debug, Clone, Copy)]
 struct Switch {
-    omega: f64,
-    omega_error: f64,
-    /// arg P − arg Q.
-    phase: f64,
-    phase_error: f64,
+    omega: Rounded,
+    /// The argument of (3), in [−π, π].
+    phase: Rounded,
+    /// How many turns arg P − arg Q + π is ahead of it.
+    ahead: f64,
 }
 
 impl Line {
@@ -145,27 +115,30 @@ impl Line {
             return None;
         }
         let q0 = Rounded::sum([a_n, a_v * b, a_v * line]);
-        let open_loop = Rounded::sum([line * line, b * line, 1.0]);
-        let c = Rounded::sum([open_loop.value, -q0.value]).plus_error(open_loop.error + q0.error);
+        let s = Rounded::sum([line * line, b * line, 1.0]);
+        let r = Rounded::sum([2.0 * line, b]);
+        let c = s.minus(q0);
         let p = Rounded::sum([2.0 * line, b, -a_v]);
-        let kappa_error = ROUNDINGS * kappa * (1.0 + (line * tau).abs());
+        let exponent_error = ROUNDINGS * kappa * (line * tau).abs();
+        let kappa_error = ROUNDINGS * kappa + exponent_error;
+        let decay_error = ROUNDINGS * decay.abs() + exponent_error;
         // D(σ) = B − A(1 − κ): exact where στ is small.
-        let fed_back = q0.value * decay;
-        let sum = Rounded::sum([open_loop.value, fed_back])
-            .plus_error(open_loop.error + q0.error * decay.abs() + q0.value.abs() * kappa_error);
+        let sum = Rounded::sum([s.value, q0.value * decay])
+            .plus_error(s.error + q0.error * decay.abs() + q0.value.abs() * decay_error);
         let echo = Rounded {
             value: kappa * q0.value,
             error: kappa * q0.error + q0.value.abs() * kappa_error,
         };
-        let mirror = Rounded::sum([c.value, -echo.value]).plus_error(c.error + echo.error);
-        let delayed_slope = kappa * a_v;
-        let h = Rounded::sum([
-            0.5 * p.value * p.value,
-            -0.5 * delayed_slope * delayed_slope,
-        ]);
-        let h =
-            h.plus_error(p.value.abs() * p.error + delayed_slope.abs() * a_v.abs() * kappa_error);
+        let mirror = c.minus(echo);
+        // h = (p + κq₁)(p − κq₁)/2.
+        let ahead =
+            Rounded::sum([r.value, a_v * decay]).plus_error(r.error + a_v.abs() * decay_error);
+        let behind = Rounded::sum([r.value, -a_v * (1.0 + kappa)])
+            .plus_error(r.error + a_v.abs() * kappa_error);
+        let h = ahead.times(behind).scaled(0.5);
         Some(Self {
+            s,
+            r,
             c,
             p,
             q0,
@@ -183,9 +156,8 @@ impl Line {
         if !self.sum.decided() {
             return None;
         }
-        let beta =
-            Rounded::sum([self.h.value, -self.c.value]).plus_error(self.h.error + self.c.error);
-        let gamma = self.gamma();
+        let beta = self.h.minus(self.c);
+        let gamma = self.sum.times(self.mirror);
         let discriminant = self.discriminant();
         if gamma.value > gamma.error {
             if beta.value > beta.error || discriminant.value < -discriminant.error {
@@ -195,7 +167,7 @@ impl Line {
                 return self.nearly_touching(discriminant.error);
             }
         }
-        let root = discriminant.value.max(discriminant.error).sqrt();
+        let root = larger(discriminant.value, discriminant.error).sqrt();
         let root = Rounded {
             value: root,
             error: discriminant.error / root,
@@ -211,7 +183,7 @@ impl Line {
             });
         }
         let per_upper = 1.0 / upper.value;
-        let lower = (gamma.value * per_upper).max(0.0);
+        let lower = larger(gamma.value * per_upper, 0.0);
         let lower = Rounded {
             value: lower,
             error: (gamma.error + lower * upper.error) * per_upper,
@@ -230,7 +202,7 @@ impl Line {
             value: -self.h.value,
             error: self.h.error + (2.0 * discriminant_error).sqrt(),
         };
-        let x = Rounded::sum([self.c.value, y.value]).plus_error(self.c.error + y.error);
+        let x = self.c.minus(y.scaled(-1.0));
         let both = Some(self.switch(x, y));
         Some(Turning {
             up: both,
@@ -246,7 +218,7 @@ impl Line {
         let (c, h, echo) = (self.c, self.h, self.echo);
         let large = -(h.value + root.value.copysign(h.value));
         let large_error = h.error + root.error + ROUNDINGS * large.abs();
-        let per_large = 1.0 / large.abs();
+        let per_large = 1.0 / large;
         let terms = [2.0 * h.value * c.value, -echo.value * echo.value];
         let product = Rounded::sum(terms).plus_error(
             2.0 * (h.value.abs() * c.error
@@ -254,14 +226,16 @@ impl Line {
                 + echo.value.abs() * echo.error),
         );
         let small = Rounded {
-            value: product.value / large,
-            error: (product.error + product.value.abs() * large_error * per_large) * per_large,
+            value: product.value * per_large,
+            error: (product.error + (product.value * large_error * per_large).abs())
+                * per_large.abs(),
         };
         let large = Rounded {
             value: large,
             error: large_error,
         };
-        if h.value < 0.0 {
+        // As the sign is copied: h may be −0.
+        if h.value.is_sign_negative() {
             [large, small]
         } else {
             [small, large]
@@ -282,18 +256,6 @@ impl Line {
                 + 2.0 * h.value.abs() * c.error
                 + 2.0 * echo.value.abs() * echo.error,
         )
-    }
-
-    #[inline(always)]
-    fn gamma(&self) -> Rounded {
-        let (sum, mirror) = (self.sum, self.mirror);
-        let value = sum.value * mirror.value;
-        Rounded {
-            value,
-            error: sum.value.abs() * mirror.error
-                + mirror.value.abs() * sum.error
-                + ROUNDINGS * value.abs(),
-        }
     }
 
     /// Where P is larger than κQ all along the line: the zeros of P decide.
@@ -323,53 +285,112 @@ impl Line {
     /// The place ω² = `x`, where Re P = −`y`.
     #[inline(always)]
     fn switch(&self, x: Rounded, y: Rounded) -> Switch {
-        let omega = x.value.max(0.0).sqrt();
-        let omega_error = if omega > 0.0 {
-            (x.error / omega).min(x.error.sqrt()) + ROUNDINGS * omega
-        } else {
-            x.error.sqrt()
-        };
-        let (p_re, p_im) = (-y.value, self.p.value * omega);
-        let (q_re, q_im) = (self.q0.value, self.q1 * omega);
-        // + 0.0: a negative zero would choose the wrong side of the cut.
-        let phase = (p_im + 0.0).atan2(p_re) - (q_im + 0.0).atan2(q_re);
-        let p_size = p_re.abs().max(p_im.abs());
-        let q_size = q_re.abs().max(q_im.abs());
-        let p_error = y.error + self.p.error * omega + self.p.value.abs() * omega_error;
-        let q_error = self.q0.error + self.q1.abs() * omega_error;
+        let omega = frequency(x);
+        let (p, q0, q1) = (self.p, self.q0, self.q1);
+        let p_im = p.value * omega.value;
+        let q_im = q1 * omega.value;
+        let per_p = 1.0 / larger(y.value.abs(), p_im.abs());
+        let per_q = 1.0 / larger(q0.value.abs(), q_im.abs());
+        let slope = self.slope(x, y);
+        // Over the sizes of P and Q, so that their product neither overflows nor is below 1.
+        let sine = -(slope.value * per_q) * (omega.value * per_p);
+        let cosine = (y.value * per_p) * (q0.value * per_q) - (p_im * per_p) * (q_im * per_q);
+        let phase = sine.atan2(cosine);
+        let sine_error = (slope.error * per_q) * (omega.value * per_p)
+            + (slope.value.abs() * per_q) * (omega.error * per_p);
+        let cosine_error = (y.error + p.error * omega.value + p.value.abs() * omega.error) * per_p
+            + (q0.error + q1.abs() * omega.error) * per_q;
         Switch {
             omega,
-            omega_error,
-            phase,
-            phase_error: p_error / p_size + q_error / q_size + ROUNDINGS * TAU,
+            phase: Rounded {
+                value: phase,
+                error: sine_error + sine.abs() * cosine_error + 4.0 * ROUNDINGS * phase.abs(),
+            },
+            ahead: nearest(self.middle() + 0.5 - phase * (1.0 / TAU)),
         }
+    }
+
+    /// r q₀ + (x − s) q₁ of (3).
+    #[inline(always)]
+    fn slope(&self, x: Rounded, y: Rounded) -> Rounded {
+        let (r, q0, q1) = (self.r, self.q0, self.q1);
+        // x − s = y − q₀: the terms of one cancel where the gains are strong, those of the other
+        // where they are weak.
+        let shifted = if q0.value.abs() < self.s.value.abs() {
+            y.minus(q0)
+        } else {
+            x.minus(self.s)
+        };
+        Rounded::sum([r.value * q0.value, shifted.value * q1]).plus_error(
+            r.value.abs() * q0.error + r.error * q0.value.abs() + shifted.error * q1.abs(),
+        )
+    }
+
+    /// A place within half a turn of arg P − arg Q, in turns: arg P keeps to a half-plane, arg Q to
+    /// a quadrant.
+    #[inline(always)]
+    fn middle(&self) -> f64 {
+        let half = if self.p.value < 0.0 { -0.25 } else { 0.25 };
+        let quadrant = if self.q0.value < 0.0 { 0.375 } else { 0.125 };
+        half - quadrant * if self.q1 < 0.0 { -1.0 } else { 1.0 }
+    }
+}
+
+/// `f64::max` but for NaN, which takes it longer.
+#[inline(always)]
+fn larger(a: f64, b: f64) -> f64 {
+    if a > b { a } else { b }
+}
+
+/// The integer nearest to `x` > −1.5.
+#[inline(always)]
+fn nearest(x: f64) -> f64 {
+    f64::from((x + 1.5) as i32 - 1)
+}
+
+/// √x, or 0 where x is negative.
+#[inline(always)]
+fn frequency(x: Rounded) -> Rounded {
+    let omega = larger(x.value, 0.0).sqrt();
+    let error = if x.value > x.error {
+        x.error / omega
+    } else {
+        x.error.sqrt()
+    };
+    Rounded {
+        value: omega,
+        error: error + ROUNDINGS * omega,
     }
 }
 
 /// ω₊² from (1), `root` being the square root of the discriminant; none where it is not positive.
 #[inline(always)]
 fn upper_zero(beta: Rounded, gamma: Rounded, root: Rounded) -> Option<Rounded> {
-    let value = if beta.value <= 0.0 {
-        root.value - beta.value
+    let error = beta.error + root.error + ROUNDINGS * (beta.value.abs() + root.value);
+    let (value, error) = if beta.value <= 0.0 {
+        (root.value - beta.value, error)
     } else {
-        -gamma.value / (beta.value + root.value)
+        let per_lower = 1.0 / (beta.value + root.value);
+        let value = -gamma.value * per_lower;
+        (value, (gamma.error + value * error) * per_lower)
     };
-    (value > 0.0).then_some(Rounded {
-        value,
-        error: beta.error + root.error + ROUNDINGS * (beta.value.abs() + root.value),
-    })
+    (value > 0.0).then_some(Rounded { value, error })
 }
 
 impl Switch {
     /// Equation (2); none where it might round either way.
     #[inline(always)]
     fn turns(&self, tau: f64) -> Option<f64> {
-        let angle = self.omega * tau;
-        let turns = (self.phase + angle) * (1.0 / TAU);
-        let whole = turns.round_ties_even();
-        let error = self.phase_error + self.omega_error * tau + ROUNDINGS * angle;
-        // NaN is undecided as well.
-        ((0.5 - (turns - whole).abs()) * TAU > error).then_some(whole)
+        let angle = self.omega.value * tau;
+        let turns = (self.phase.value + angle) * (1.0 / TAU);
+        let error = self.phase.error + self.omega.error * tau + ROUNDINGS * angle;
+        let whole = turns as i64 as f64;
+        let part = turns - whole;
+        let floor = if part < 0.0 { whole - 1.0 } else { whole };
+        // NaN is undecided as well, and so is what no integer holds.
+        let (low, high) = (part.abs(), 1.0 - part.abs());
+        let apart = if low < high { low } else { high };
+        (apart * TAU > error).then_some(floor + self.ahead)
     }
 }
 

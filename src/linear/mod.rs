@@ -28,6 +28,7 @@ pub mod lobes;
 pub mod newton;
 pub mod rightmost;
 mod roots;
+mod rounded;
 pub mod row;
 pub mod sensitivity;
 pub mod spectrum;

@@ -1,12 +1,13 @@
 //! All characteristic roots right of a vertical line, none missed.
 //!
-//! Starting values come from the branches of the logarithm, or, where these do not lead to every root, from collocation
-//! with as many nodes as it takes; each is polished, duplicates are removed, and the number that is left is compared with
-//! the number that the argument principle says there is ([`super::certificate`]).
+//! Starting values come from the branches of the logarithm; where these do not lead to every root,
+//! from D at small λτ; or else from collocation with as many nodes as it takes. Each is polished,
+//! duplicates are removed, and the number that is left is compared with the number that the
+//! argument principle says there is ([`super::certificate`]).
 
 use num_complex::Complex64;
 
-use super::branches::{quadratic_zeros, starting_values};
+use super::branches::{quadratic_zeros, slow_starts, starting_values};
 use super::certificate::roots_right_of;
 use super::characteristic::{Jet, root_bound, unstable_root_bound};
 use super::collocation::{MOST_NODES, eigenvalues, nodes_for};
@@ -61,6 +62,12 @@ impl RootFinder {
         }
         let count = roots_right_of(groups, tau, line).ok_or(incomplete)?;
         starting_values(groups, tau, line, &mut self.starts);
+        self.polish_starts(groups, tau, line);
+        if self.complete(groups, tau, count) {
+            return Ok(&self.roots);
+        }
+        self.starts.clear();
+        self.starts.extend(slow_starts(groups, tau));
         self.polish_starts(groups, tau, line);
         if self.complete(groups, tau, count) {
             return Ok(&self.roots);

@@ -22,17 +22,24 @@ pub fn roots_right_of(b: f64, a_v: f64, a_n: f64, tau: f64, line: f64) -> Option
     let kappa = (-line * tau).exp();
     let d = |m: Complex64| {
         let l = m + line;
-        l * l + b * l + 1.0 - (a_n + a_v * (b + l)) * (1.0 - (-l * tau).exp())
+        // 1 − e^(−z) = 2 e^(−z/2) sinh(z/2): exact where the delay is short.
+        let half = 0.5 * tau * l;
+        l * l + b * l + 1.0 - (a_n + a_v * (b + l)) * 2.0 * (-half).exp() * half.sinh()
     };
     // |D(σ + μ) − μ²| ≤ linear |μ| + constant for Re μ ≥ 0.
     let linear = (2.0 * line + b).abs() + a_v.abs() * (1.0 + kappa);
     let at_line = (a_n + a_v * (b + line)).abs();
     let constant = (line * line + b * line + 1.0).abs() + at_line * (1.0 + kappa);
     let beyond = 1.0 + 2.0 * (linear + constant.sqrt());
+    // |1 − e^(−λτ)| ≤ |λ|τ max(1, κ) as well.
+    let difference = |s: f64| (1.0 + kappa).min((line.abs() + s) * tau * kappa.max(1.0));
     let along_line = turn(
         |s| d(Complex64::new(0.0, s)),
         beyond,
-        |s| 2.0 * s + linear + (at_line + a_v.abs() * s) * kappa * tau,
+        |s| {
+            let open_loop = 2.0 * s + (2.0 * line + b).abs();
+            open_loop + a_v.abs() * difference(s) + (at_line + a_v.abs() * s) * kappa * tau
+        },
     )?;
     // On the arc D/μ² stays within 1 of 1, so its argument needs no tracking.
     let corner = Complex64::new(0.0, beyond);
