@@ -510,6 +510,8 @@ fn point_agrees_with_itself_in_other_units() {
     assert!((law["mu_prime"].as_f64().unwrap() + 1.0 / 1.44).abs() < 1e-12);
 }
 
+/// Gains, delays, abscissas and frequencies of the snapshot, and the gain of the triple root, solve D = D′ = 0 and
+/// D = D′ = D″ = 0 in 30-digit arithmetic (mpmath).
 #[test]
 fn best_says_where_decay_is_fastest() {
     let folder = Folder::new();

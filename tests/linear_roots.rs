@@ -339,16 +339,21 @@ fn roots_that_are_not_found_are_not_certified() {
     }
 }
 
-/// The optima of both controls are a double pair and a triple real root: found, and certified with a wider margin.
+/// The optima of both controls are a double pair and a triple real root: found, and certified with a wider margin. Settings and
+/// abscissas solve D = D′ = 0 and D = D′ = D″ = 0 in 30-digit arithmetic (mpmath); as rounded here the roots lie 1e-5 apart.
 #[test]
 fn multiple_roots_are_found() {
     for (groups, tau, abscissa) in [
         (
             Groups::new(-0.3, 0.0, -3.6525473882693595),
             0.46473703404347766,
-            -2.00177,
+            -2.00175449,
         ),
-        (Groups::new(-0.1, -0.174838541, 0.0), 3.42844561, -0.30506),
+        (
+            Groups::new(-0.1, -0.174838541, 0.0),
+            3.42844561,
+            -0.30505944,
+        ),
     ] {
         let line = follow(groups, &[tau], 0, 2);
         assert_eq!(line.status, [CERTIFIED], "{groups:?}");

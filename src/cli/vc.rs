@@ -5,9 +5,9 @@ use std::io::Write;
 
 use clap::ValueEnum;
 use serde::Serialize;
-use slipmap::critical::End;
 use slipmap::critical::switch_on::Phase;
 use slipmap::sweep::Parameter;
+use slipmap::sweep::field::{OUTCOMES, number_of_outcome};
 use slipmap::sweep::limit_columns::{LimitCell, LimitField};
 use slipmap::sweep::vc::{self, PHASES};
 
@@ -122,11 +122,7 @@ fn told(found: vc::Found, protocol: vc::Protocol) -> Found {
     Found {
         vc: finite(critical.vc),
         protocol: protocol.name(),
-        // Not told at some v0, and no stick-slip at the others.
-        outcome: match critical.end {
-            End::Never if !critical.decided => "undecided",
-            end => end.name(),
-        },
+        outcome: OUTCOMES[usize::from(number_of_outcome(&critical))],
         windows: found.windows,
         v_liftoff: finite(critical.v_liftoff),
         stick_time: finite(critical.stick_time),

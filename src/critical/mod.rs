@@ -17,6 +17,7 @@ pub mod line;
 mod one_slip;
 mod orbit;
 mod search;
+mod sticking;
 mod stops;
 pub mod switch_on;
 mod track;
@@ -193,6 +194,8 @@ pub struct Critical {
     pub slip_time: f64,
     /// The smallest N at v_c.
     pub n_min: f64,
+    /// Whether stick-slip was sustained at any v0 that was tried.
+    pub sustained: bool,
     /// Whether it is known what becomes of the motion beyond v_c.
     pub decided: bool,
 }
@@ -335,6 +338,7 @@ fn nothing(vc: f64, end: End, method: Method) -> Critical {
         stick_time: f64::NAN,
         slip_time: f64::NAN,
         n_min: f64::NAN,
+        sustained: end != End::Never,
         decided: true,
     }
 }
@@ -368,6 +372,7 @@ fn told(followed: &Followed) -> Critical {
         && !followed.last.as_ref().is_some_and(rounding);
     match (followed.last, followed.lost) {
         (_, Some(lost)) if lost.fate == Fate::LiftOff => Critical {
+            sustained: followed.last.is_some(),
             decided: followed.complete,
             ..of_lift_off(lost.v0, method)
         },

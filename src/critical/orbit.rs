@@ -111,15 +111,38 @@ impl Road for Orbit {
     }
 }
 
-/// Where v0 starts, in order, in units of μ_S N0/√(κM): as [`super::follow`] does, with smaller ones in the place of larger ones.
-pub(super) const STARTS: [f64; 4] = [1e-2, 1e-3, 1e-4, 1e-6];
+/// Where v0 starts, in order, in units of μ_S N0/√(κM), as [`super::follow`] does.
+const STARTS: [f64; 5] = [1e-2, 1e-1, 1e-3, 1e-4, 1e-6];
 
 impl Orbit {
     /// Of a block that is released from a memoryless stick at `v0`, which has one slip in a period.
-    pub fn released(problem: &Problem, v0: f64, accuracy: Accuracy) -> Self {
+    fn released(problem: &Problem, v0: f64, accuracy: Accuracy) -> Self {
         let mut motion = Motion::new(problem.at(v0, 0.0), accuracy, 0.0, 0.0);
         motion.release_from(problem.law.mu_s());
         Self::of(motion, 1)
+    }
+
+    /// The orbit from the first start at which the block sticks again, with its first place; none where it does so at none of them.
+    pub fn sustained(problem: &Problem, accuracy: Accuracy) -> Option<(Self, Place)> {
+        let mut lifted = f64::INFINITY;
+        for start in STARTS {
+            // What is asked for after lift-off is the smallest v0 of it.
+            if start > lifted {
+                continue;
+            }
+            let v0 = start * problem.law.mu_s();
+            let mut road = Self::released(problem, v0, accuracy);
+            match road.trial(v0, None, f64::INFINITY) {
+                Ran::Period(period, gauges) => {
+                    road.keep();
+                    let place = Place::first(v0, period, gauges, f64::INFINITY);
+                    return Some((road, place));
+                }
+                Ran::LiftOff => lifted = start,
+                Ran::Pass | Ran::Other | Ran::Over => {}
+            }
+        }
+        None
     }
 
     /// Of a `motion` that is released in stick-slip of so many `slips`, at most [`MOST_SLIPS`], in a period.

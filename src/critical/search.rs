@@ -5,7 +5,7 @@ use super::climb::{LARGEST_STEP, Place, Road, climb_finely, jumps};
 use super::ends::{CHANGED, FIRST_STEP, Found, MOST_KINDS, finish};
 use super::follow::{self, Fate, Pace};
 use super::one_slip::by_one_slip;
-use super::orbit::{Orbit, STARTS};
+use super::orbit::Orbit;
 use super::track::Track;
 use super::{
     Critical, End, FOLLOW_TOLERANCE, GRAZE_TOLERANCE, Method, Problem, confirmed, gliding, nothing,
@@ -27,12 +27,7 @@ pub(super) fn from_scratch(problem: &Problem) -> (Critical, Option<Track>) {
     if let Some(critical) = one_slip.and_then(|found| of_found(&found, Method::GrazeSlip)) {
         return (critical, None);
     }
-    let start = STARTS.iter().find_map(|start| {
-        let mut road = Orbit::released(problem, start * problem.law.mu_s(), accuracy);
-        let place = road.first_place()?;
-        Some((road, place))
-    });
-    let Some((road, place)) = start else {
+    let Some((road, place)) = Orbit::sustained(problem, accuracy) else {
         return (simulated(problem), None);
     };
     let mut kinds = Kinds {

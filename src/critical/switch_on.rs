@@ -2,6 +2,7 @@
 //! velocities v0 at which stick-slip survives that form windows.
 
 use super::Problem;
+use super::sticking::Sticking;
 use crate::slip::cycle::{NoCycle, UncontrolledCycle, restart_after_release};
 use crate::slip::motion::{Accuracy, Motion};
 use crate::slip::outcome::{Limits, Outcome, follow};
@@ -49,8 +50,10 @@ impl Default for Scan {
 /// What switching on comes to at one v0.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Survival {
-    /// Stick-slip goes on.
+    /// Stick-slip goes on, periodically.
     Survives,
+    /// It goes on for as long as was waited, in cycles that do not come to repeat: it may be lost by chance yet.
+    Irregular,
     /// It does not.
     Ends,
     /// N ≤ 0.
@@ -61,6 +64,23 @@ pub enum Survival {
     Undecided,
 }
 
+impl Survival {
+    /// Whether stick-slip goes on.
+    #[must_use]
+    pub const fn survives(self) -> bool {
+        matches!(self, Self::Survives | Self::Irregular)
+    }
+
+    const fn lifts(self) -> bool {
+        matches!(self, Self::LiftOff)
+    }
+
+    /// Whether an edge next to this one is where it was found to be: what ends by chance ends elsewhere with the next error.
+    const fn certain(self) -> bool {
+        !matches!(self, Self::Irregular | Self::Undecided)
+    }
+}
+
 /// Where stick-slip survives.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Windows {
@@ -68,12 +88,14 @@ pub struct Windows {
     pub survives: Vec<[f64; 2]>,
     /// The smallest v0 at which N ≤ 0 occurs; none where it does not.
     pub v_liftoff: Option<f64>,
-    /// Whether something was told at every v0.
+    /// Whether something was told at every v0, and no edge is that of irregular stick-slip.
     pub decided: bool,
+    /// Whether every v0 was tried within the steps allowed.
+    pub complete: bool,
 }
 
 impl Windows {
-    /// The topmost edge: above it stick-slip does not survive. None where it does nowhere.
+    /// The topmost edge: above it, as far as v0 was tried, stick-slip does not survive. None where it does nowhere.
     #[must_use]
     pub fn top(&self) -> Option<f64> {
         self.survives.last().map(|window| window[1])
@@ -117,35 +139,46 @@ impl<'p> Trials<'p> {
     /// What becomes of stick-slip at `v0`.
     pub fn at(&mut self, v0: f64) -> Survival {
         match self.phase {
-            Phase::After(phase) => self.once(v0, phase).0,
+            Phase::After(phase) => self.once(v0, phase, LONGEST).0,
             Phase::Worst(phases) => self.worst(v0, phases),
         }
     }
 
-    /// Survives if it does at one phase; else what is told first of: lift-off, undecided, the end.
+    /// Survives if it does at one phase; else what is told first of: irregular, lift-off, undecided, the end.
     fn worst(&mut self, v0: f64, phases: u32) -> Survival {
-        let (mut worst, period) = self.once(v0, 0.0);
+        let (mut worst, period) = self.once(v0, 0.0, LONGEST);
         if period.is_nan() {
             // Without an uncontrolled cycle there are no phases.
             return worst;
         }
+        let rank = |survival: Survival| match survival {
+            Survival::Survives => 4,
+            Survival::Irregular => 3,
+            Survival::LiftOff => 2,
+            Survival::Undecided => 1,
+            Survival::Ends | Survival::NoStickSlip => 0,
+        };
         for i in 1..phases {
-            if matches!(worst, Survival::Survives | Survival::NoStickSlip) {
+            if worst == Survival::Survives {
                 return worst;
             }
-            let (next, _) = self.once(v0, period * f64::from(i) / f64::from(phases));
-            worst = match (worst, next) {
-                (_, Survival::Survives) => Survival::Survives,
-                (Survival::LiftOff, _) | (_, Survival::LiftOff) => Survival::LiftOff,
-                (Survival::Undecided, _) => Survival::Undecided,
-                (_, next) => next,
+            // After one that is not told only what is seen soon counts.
+            let longest = match worst {
+                Survival::Undecided => 1.0,
+                _ => LONGEST,
             };
+            let phase = period * f64::from(i) / f64::from(phases);
+            let (next, _) = self.once(v0, phase, longest);
+            if rank(next) > rank(worst) {
+                worst = next;
+            }
         }
         worst
     }
 
-    /// At one phase, with the uncontrolled period.
-    fn once(&mut self, v0: f64, phase: f64) -> (Survival, f64) {
+    /// At one phase, with the uncontrolled period. What becomes of a slip is waited for `longest` times as long as stick-slip
+    /// is waited for to repeat.
+    fn once(&mut self, v0: f64, phase: f64, longest: f64) -> (Survival, f64) {
         let parameters = self.problem.at(v0, 0.0);
         let restarted = restart_after_release(&mut self.motion, &parameters, self.accuracy, phase);
         let cycle = match restarted {
@@ -153,31 +186,34 @@ impl<'p> Trials<'p> {
             Err(NoCycle::NoStickSlip) => return (Survival::NoStickSlip, f64::NAN),
             Err(NoCycle::LongDelay) => return (Survival::Undecided, f64::NAN),
         };
+        let patience = cycle.period() + self.problem.patience(v0);
         let limits = Limits {
-            horizon: cycle.period() + self.problem.patience(v0),
+            horizon: longest * patience,
             steps: self.steps,
             stable_abscissa: self.problem.stable_abscissa(v0),
             repeated: 1e-6,
             cycles: usize::MAX,
         };
-        let summary = follow(&mut self.motion, &limits, &mut ());
+        let mut sticking = Sticking::new(patience, limits.stable_abscissa.is_some());
+        let summary = follow(&mut self.motion, &limits, &mut sticking);
         let cycles = 1.0 + self.problem.tau / cycle.period();
         self.spent += summary.steps + STEPS_OF_A_CYCLE * cycles as u64;
-        let end = self.motion.t;
         let survival = match summary.outcome {
             Outcome::StickSlip => Survival::Survives,
             Outcome::LiftOff => Survival::LiftOff,
             Outcome::NoCycle => Survival::NoStickSlip,
             Outcome::Sliding | Outcome::Oscillation | Outcome::Diverged => Survival::Ends,
-            // It was released not long ago: it still sticks from time to time.
-            Outcome::Undecided if end - summary.last_release < 0.25 * end => Survival::Survives,
-            Outcome::Undecided if end >= limits.horizon => Survival::Ends,
+            Outcome::Undecided if sticking.goes_on() => Survival::Irregular,
+            Outcome::Undecided if sticking.calms_down() => Survival::Ends,
             Outcome::Undecided => Survival::Undecided,
         };
         (survival, cycle.period())
     }
 }
 
+/// A block that slips is waited for until it is known what becomes of it, so many times as long at most as stick-slip is waited
+/// for to repeat: near an unstable oscillation, or where sliding is hardly stable or unstable, that takes long.
+const LONGEST: f64 = 100.0;
 /// The windows of v0 in which stick-slip of `problem` survives switching on at `phase`.
 #[must_use]
 pub fn windows(problem: &Problem, phase: Phase, scan: &Scan, accuracy: Accuracy) -> Windows {
@@ -188,61 +224,92 @@ pub fn windows(problem: &Problem, phase: Phase, scan: &Scan, accuracy: Accuracy)
         let share = f64::from(i) / f64::from(points - 1);
         unit * scan.v_min * (scan.v_max / scan.v_min).powf(share)
     };
-    let mut found = Windows {
-        survives: Vec::new(),
-        v_liftoff: None,
-        decided: true,
-    };
-    let mut before = (v0(0), trials.at(v0(0)));
-    found.decided = before.1 != Survival::Undecided;
-    let mut open = (before.1 == Survival::Survives).then_some(before.0);
+    let mut walk = Walk::from((v0(0), trials.at(v0(0))));
     for i in 1..points {
         if trials.spent > scan.total_steps {
-            found.decided = false;
+            walk.found.decided = false;
+            walk.found.complete = false;
             break;
         }
         let here = (v0(i), trials.at(v0(i)));
-        found.decided &= here.1 != Survival::Undecided;
-        if (before.1 == Survival::Survives) != (here.1 == Survival::Survives) {
-            let survives = |s| s == Survival::Survives;
-            let edge = edge(&mut trials, before.0, here.0, scan.precision, survives);
-            match open.take() {
-                Some(from) => found.survives.push([from, edge]),
-                None => open = Some(edge),
-            }
-        }
-        if found.v_liftoff.is_none() {
-            let lifts = |s| s == Survival::LiftOff;
-            found.v_liftoff = match (lifts(before.1), lifts(here.1)) {
-                (true, _) => Some(before.0),
-                (false, true) => Some(edge(&mut trials, before.0, here.0, scan.precision, lifts)),
-                (false, false) => None,
-            };
-        }
-        before = here;
+        walk.to(here, &mut trials, scan.precision);
     }
-    if let Some(from) = open {
-        found.survives.push([from, before.0]);
-    }
-    found
+    walk.end()
 }
 
-/// Where between `low` and `high` the answer changes.
-fn edge(
-    trials: &mut Trials,
-    mut low: f64,
-    mut high: f64,
-    precision: f64,
-    answer: impl Fn(Survival) -> bool,
-) -> f64 {
-    let at_low = answer(trials.at(low));
-    while high - low > precision * high {
-        let middle = 0.5 * (low + high);
-        if answer(trials.at(middle)) == at_low {
-            low = middle;
-        } else {
-            high = middle;
+/// A velocity, and what switching on comes to there.
+type Tried = (f64, Survival);
+
+/// What is found on the way from one velocity to the next.
+struct Walk {
+    before: Tried,
+    /// Where the window began that goes on.
+    open: Option<f64>,
+    found: Windows,
+}
+
+impl Walk {
+    fn from(first: Tried) -> Self {
+        let (v0, survival) = first;
+        Self {
+            before: first,
+            open: survival.survives().then_some(v0),
+            found: Windows {
+                survives: Vec::new(),
+                v_liftoff: survival.lifts().then_some(v0),
+                decided: survival != Survival::Undecided,
+                complete: true,
+            },
         }
     }
-    0.5 * (low + high)
+
+    /// Goes on to `here`.
+    fn to(&mut self, here: Tried, trials: &mut Trials, precision: f64) {
+        let before = std::mem::replace(&mut self.before, here);
+        self.found.decided &= here.1 != Survival::Undecided;
+        if before.1.survives() != here.1.survives() {
+            let sides = edge(trials, (before, here), precision, Survival::survives);
+            self.found.decided &= sides.iter().all(|side| side.1.certain());
+            let edge = between(sides);
+            match self.open.take() {
+                Some(from) => self.found.survives.push([from, edge]),
+                None => self.open = Some(edge),
+            }
+        }
+        if self.found.v_liftoff.is_none() && here.1.lifts() {
+            let sides = edge(trials, (before, here), precision, Survival::lifts);
+            self.found.v_liftoff = Some(between(sides));
+        }
+    }
+
+    fn end(mut self) -> Windows {
+        if let Some(from) = self.open {
+            self.found.survives.push([from, self.before.0]);
+        }
+        self.found
+    }
+}
+
+/// The last two velocities on either side of where the answer changes.
+fn edge(
+    trials: &mut Trials,
+    (mut low, mut high): (Tried, Tried),
+    precision: f64,
+    answer: impl Fn(Survival) -> bool,
+) -> [Tried; 2] {
+    let at_low = answer(low.1);
+    while high.0 - low.0 > precision * high.0 {
+        let middle = 0.5 * (low.0 + high.0);
+        let survival = trials.at(middle);
+        if answer(survival) == at_low {
+            low = (middle, survival);
+        } else {
+            high = (middle, survival);
+        }
+    }
+    [low, high]
+}
+
+fn between([low, high]: [Tried; 2]) -> f64 {
+    0.5 * (low.0 + high.0)
 }

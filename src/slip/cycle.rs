@@ -4,9 +4,18 @@
 //! control the future depends on nothing else. So if the block sticks once more it goes on periodically, and what it did in
 //! the last delay is known at every phase.
 //!
-//! Whether it sticks again is seen in its first slip. Let ẋ have a minimum above 0 after its first maximum. The path from the
-//! release to there, the line μ_K(ẋ) = a from there to ẋ = 0 and the axis ẋ = 0 up to a = μ_S enclose a region which the
-//! motion enters and, since paths do not cross and both other sides are crossed inwards only, never leaves: it sticks no more.
+//! Whether it sticks again is known before its path in the plane of u = ẋ and a has gone round once. Paths do not cross. In
+//! slip forwards the maxima of u are above v0 and its minima below, whatever the friction law: ü = v0 − u where u̇ = 0. In slip
+//! backwards a grows all the time, so the block comes to rest again, at some a ≥ −μ_S. Two things keep it from sticking:
+//!
+//! - *u has a minimum above 0 in slip forwards.* The path from the release to there, the line μ_K(u) = a from there to u = 0
+//!   and the axis u = 0 up to a = μ_S enclose a region. The line and the axis are crossed inwards only, so the block never
+//!   leaves it, and does not come to rest again.
+//! - *It slides back and comes to rest at a > μ_S*, so that it slips forwards at once. Its path and the axis u = 0 from
+//!   a = μ_S to there enclose all states in which the block sticks. The axis is crossed outwards only, so it stays outside.
+//!
+//! Else it sticks: where it stops at |a| ≤ μ_S, forwards or after it has slid back. A stuck block is always released forwards,
+//! at a = μ_S, since a grows while it sticks.
 
 use std::f64::consts::TAU;
 
@@ -24,7 +33,7 @@ const SLIDING: f64 = 1e-9;
 /// How long the block slips and sticks in one cycle, in units of √(M/κ).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct UncontrolledCycle {
-    /// From release to stop.
+    /// From release to where it sticks; what it slides back before that is part of it.
     pub slip_time: f64,
     /// From stop to release.
     pub stick_time: f64,
@@ -108,26 +117,33 @@ pub fn restart_after_release(
 fn follow_cycle(motion: &mut Motion) -> Option<UncontrolledCycle> {
     let start = motion.t;
     let p = motion.parameters();
-    let horizon = start + LONGEST_SLIP + 2.0 * p.law.mu_s() / p.v0;
-    let (mut stick_time, mut slows) = (0.0, false);
+    let (v0, horizon) = (p.v0, start + LONGEST_SLIP + 2.0 * p.law.mu_s() / p.v0);
+    let (mut stick_time, mut overtook) = (0.0, false);
     for _ in 0..MOST_STEPS {
         let (from, mode) = (motion.t, motion.mode());
         let event = motion.advance(horizon);
-        if mode == Mode::Stick {
-            stick_time += motion.t - from;
-            if event == Some(Event::Release) {
-                let slip_time = motion.t - start - stick_time;
-                return Some(UncontrolledCycle {
-                    slip_time,
-                    stick_time,
-                });
+        match mode {
+            Mode::Stick => {
+                stick_time += motion.t - from;
+                if event == Some(Event::Release) {
+                    let slip_time = motion.t - start - stick_time;
+                    return Some(UncontrolledCycle {
+                        slip_time,
+                        stick_time,
+                    });
+                }
             }
-        } else {
-            let acceleration = motion.last_step().acceleration();
-            slows |= acceleration < 0.0;
-            if (slows && acceleration > 0.0) || slides(motion) {
-                return None;
+            Mode::Forwards => {
+                let (speed, acceleration) = motion.last_step().start();
+                overtook |= speed > v0;
+                let past_minimum = overtook && speed < v0 && acceleration > 0.0;
+                if past_minimum || slides(motion) {
+                    return None;
+                }
             }
+            // It has gone round.
+            Mode::Backwards if motion.mode() == Mode::Forwards => return None,
+            Mode::Backwards => {}
         }
         if motion.t >= horizon {
             return None;

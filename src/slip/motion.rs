@@ -121,6 +121,10 @@ const LEAST_ORDER: usize = 4;
 /// end.
 const BALANCED: f64 = 0.53;
 
+/// A block that was just released does not accelerate backwards. Under a law with μ_K(0⁺) = μ_S it does not accelerate at all at first, and
+/// the polynomials of its past before and after the release differ by more than one step's error: so many times the noise of forces.
+const RELEASED: f64 = 1e4;
+
 /// How well what was foreseen has to be what comes, in units of the tolerance; a step that goes on for too long becomes shorter
 /// by this, so often at most.
 const FORESEEN: f64 = 2.0;
@@ -634,7 +638,11 @@ impl Motion {
             speed.iter_mut().for_each(|u| *u = -*u);
         }
         if speed[0] == 0.0 {
-            speed[1] = self.without_noise(speed[1]);
+            let backwards = -RELEASED * self.force_noise()..0.0;
+            speed[1] = match backwards.contains(&speed[1]) {
+                true => 0.0,
+                false => self.without_noise(speed[1]),
+            };
         }
         speed
     }

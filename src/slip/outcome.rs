@@ -78,7 +78,7 @@ pub struct Summary {
     pub settle_time: f64,
     /// The smallest load since switch-on.
     pub n_min: f64,
-    /// The largest spring force |κa| since switch-on.
+    /// The largest spring force |κa| since switch-on; of a motion that grows beyond all bounds, until that was known.
     pub peak: f64,
     /// Period of stick-slip, and how long it sticks and slips in one; NaN else.
     pub period: f64,
@@ -277,14 +277,15 @@ impl Watch {
         // The time itself, not the end less the length: rounding would put the first step under control before it.
         let start = std::mem::replace(&mut self.seen, motion.t);
         let size = motion.a.abs().max(motion.u.abs());
-        if !(motion.a + motion.u).is_finite() || size > BEYOND * self.scale {
-            self.outcome = Some(Outcome::Diverged);
-            return;
-        }
+        let finite = (motion.a + motion.u).is_finite();
         let controlled = start >= self.switch_on || !self.switch_on.is_finite();
-        if controlled {
+        if controlled && finite {
             self.n_min = step.smallest_load(self.n_min);
             self.peak = step.largest_elongation(self.peak);
+        }
+        if !finite || (size > BEYOND * self.scale && event != Some(Event::LiftOff)) {
+            self.outcome = Some(Outcome::Diverged);
+            return;
         }
         if let Some(t) = step.last_outside(self.v0, SETTLED * self.v0) {
             self.unsettled = start + t;
@@ -611,6 +612,35 @@ mod tests {
         };
         let s = follow(&mut motion, &limits, &mut ());
         assert_eq!(s.outcome, Outcome::Oscillation, "{s:?}");
+    }
+
+    /// Over the first delay the delayed elongation is constant, and Coulomb friction leaves a linear equation: on its growing
+    /// direction the elongation is one exponential, and the load falls with it.
+    #[test]
+    fn the_last_step_of_a_diverged_motion_counts() {
+        let (mu, alpha_v, alpha_n, v0, a0) = (0.5, 2.5_f64, -1e-8, 3.0, 1.5);
+        let stiffness = 1.0 - mu * alpha_n;
+        let rate = 0.5 * (alpha_v + (alpha_v * alpha_v - 4.0 * stiffness).sqrt());
+        let rest = mu * (1.0 - alpha_n * a0) / stiffness;
+        let p = Parameters {
+            law: FrictionLaw::coulomb(mu, 1.0).unwrap(),
+            switch_on: 0.0,
+            ..letter(v0, alpha_v, alpha_n, 20.0)
+        };
+        let limits = Limits {
+            horizon: 20.0,
+            steps: 100_000,
+            stable_abscissa: None,
+            repeated: REPEATED,
+            cycles: usize::MAX,
+        };
+        let mut motion = Motion::new(p, Accuracy::default(), v0 - rate * (a0 - rest), a0);
+        let s = follow(&mut motion, &limits, &mut ());
+        assert_eq!(s.outcome, Outcome::Diverged, "{s:?}");
+        let elongation = rest + (a0 - rest) * (rate * s.decided).exp();
+        assert!((s.peak / elongation - 1.0).abs() < 1e-9, "{s:?}");
+        let load = 1.0 + alpha_n * (elongation - a0);
+        assert!(load < 0.97 && (s.n_min - load).abs() < 1e-9, "{s:?} {load}");
     }
 
     #[test]

@@ -45,9 +45,9 @@ impl Step {
         value(Self::range(&self.delayed, self.order), s)
     }
 
-    /// The acceleration at the start of the step.
-    pub(super) fn acceleration(&self) -> f64 {
-        self.u[1]
+    /// ẋ and the acceleration at the start of the step.
+    pub(super) fn start(&self) -> (f64, f64) {
+        (self.u[0], self.u[1])
     }
 
     /// The displacement since the start of the step at `s`.

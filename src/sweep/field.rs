@@ -3,7 +3,7 @@
 use super::limit_columns::LimitField;
 use super::parameter::{Parameter, Units};
 use super::vc::Class;
-use crate::critical::{End, Method};
+use crate::critical::{Critical, End, Method};
 use crate::linear::track::MOST_ROOTS;
 use crate::slip::outcome::Outcome;
 
@@ -93,7 +93,8 @@ pub enum Field {
     Method,
     /// Number of the [`Class`] of v0.
     Class,
-    /// Number of windows of v0 in which stick-slip survives.
+    /// Number of windows of v0, up to the largest one at which it is looked for, in which stick-slip survives, whatever ends
+    /// it there: v_c, N ≤ 0 or the range.
     Windows,
     /// Signed distance in τ to the nearest change of stability.
     DelayMargin,
@@ -146,6 +147,15 @@ pub const OUTCOMES: [&str; Outcome::ALL.len() + End::ALL.len() - 1] = {
     }
     names
 };
+
+/// The place in [`OUTCOMES`] of what is told of stick-slip: undecided where none was found, but not everywhere.
+#[must_use]
+pub fn number_of_outcome(critical: &Critical) -> u8 {
+    match critical.end {
+        End::Never if !critical.decided => Outcome::Undecided as u8,
+        end => number_of_end(end),
+    }
+}
 
 /// The place of an end in [`OUTCOMES`].
 pub(super) fn number_of_end(end: End) -> u8 {
@@ -292,7 +302,9 @@ impl Field {
             Self::Vc => "critical velocity, above which stick-slip does not survive".into(),
             Self::Method => "what gave the critical velocity".into(),
             Self::Class => "what the working velocity v0 is good for".into(),
-            Self::Windows => "number of windows of v0 in which stick-slip survives".into(),
+            Self::Windows => {
+                "number of windows of v0, up to v_max, in which stick-slip survives".into()
+            }
             Self::VLiftoff => "smallest v0 at which the normal load reaches 0".into(),
             Self::StickTime => "time stuck in a period at the critical velocity".into(),
             Self::SlipTime => "time in slip in a period at the critical velocity".into(),
@@ -366,7 +378,10 @@ impl Field {
                 "stable: sliding is linearly stable, without stick-slip beside it; bistable: stick-slip persists beside it; \
                  lift-off: linearly stable, but stick-slip leads to N <= 0 at v0 or below; undecided: marginal, or not known",
             ),
-            Self::Windows => Some("windows between the velocities that are tried may be missed"),
+            Self::Windows => Some(
+                "those that end where N <= 0 or reach v_max count; follow: one, from 0, or none; switch-on: windows between \
+                 the velocities that are tried may be missed",
+            ),
             Self::StickTime | Self::SlipTime => Some("no value for the protocol switch-on"),
             Self::VSmooth => {
                 Some("up to v_max; no value where sliding is not stable at v_max or there is no vc")
@@ -381,7 +396,10 @@ impl Field {
         match self {
             Self::Outcome => (
                 "how stick-slip ends at the critical velocity".into(),
-                Some("lost: it does not survive switching on; persists: it survives at v_max"),
+                Some(
+                    "lost: above it does not survive switching on, or there is none to switch on in; persists: it survives at \
+                     v_max; undecided: it was not found, but it is not known everywhere",
+                ),
             ),
             _ => (self.long_name(), self.comment()),
         }

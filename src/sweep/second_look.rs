@@ -198,6 +198,7 @@ fn critical_velocity(
         stick_time: f64::NAN,
         slip_time: f64::NAN,
         n_min: f64::NAN,
+        sustained: end != End::Never,
         decided: true,
     };
     let integrator = Integrator::Collocation;

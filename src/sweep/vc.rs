@@ -72,7 +72,8 @@ pub struct Search {
 pub struct Found {
     /// v_c and what there is at it, in units of the setting.
     pub critical: Critical,
-    /// Where stick-slip survives: v0 from and to, increasing, in units of the setting.
+    /// Where stick-slip survives, up to the largest v0 at which it is looked for: v0 from and to, increasing, in units of the
+    /// setting. The last one may end at v_c, where N ≤ 0 occurs, or with the range.
     pub windows: Vec<[f64; 2]>,
 }
 
@@ -122,7 +123,7 @@ pub fn find(setting: &Setting, protocol: Protocol) -> Result<Found, ModelError> 
 #[must_use]
 pub fn find_in(problem: &Problem, units: &CaseUnits, protocol: Protocol) -> Found {
     match protocol {
-        Protocol::Follow => followed(&in_units(&critical_velocity(problem), units)),
+        Protocol::Follow => followed(&critical_velocity(problem), problem, units),
         Protocol::SwitchOn(phase) => {
             let accuracy = Accuracy::of(SWITCH_ON_ACCURACY);
             let scan = Scan::default();
@@ -142,27 +143,34 @@ pub fn find_in_line(
     stopped: impl Fn() -> bool,
 ) -> Vec<Option<Found>> {
     let found = line::critical_velocities(problems, stopped).into_iter();
-    found
-        .map(|critical| critical.map(|critical| followed(&in_units(&critical, units))))
+    let told = problems.iter().zip(found);
+    told.map(|(problem, critical)| critical.map(|found| followed(&found, problem, units)))
         .collect()
 }
 
-/// By the protocol `follow` there is one window, from rest to v_c.
-fn followed(critical: &Critical) -> Found {
-    let windows = match critical.end {
-        End::Never | End::LiftOff | End::Persists => Vec::new(),
-        _ => vec![[0.0, critical.vc]],
+/// By the protocol `follow` there is one window, from rest to where stick-slip ends, or none.
+fn followed(found: &Critical, problem: &Problem, units: &CaseUnits) -> Found {
+    let critical = in_units(found, units);
+    let top = match critical.end {
+        End::LiftOff => critical.v_liftoff,
+        End::Persists => Protocol::Follow.v_max() * problem.law.mu_s() * units.velocity,
+        _ => critical.vc,
     };
     Found {
-        critical: *critical,
-        windows,
+        critical,
+        windows: match critical.sustained {
+            true => vec![[0.0, top]],
+            false => Vec::new(),
+        },
     }
 }
 
-/// v_c is the topmost edge of the windows; there is none where the topmost window ends at `v_max` only.
+/// v_c is the topmost edge of the windows; there is none where the topmost window ends at `v_max` only, or not all v0 were
+/// tried.
 fn switched_on(found: Windows, v_max: f64, velocity: f64) -> Found {
     let top = found.top();
     let (vc, end) = match top {
+        _ if !found.complete => (f64::NAN, End::Never),
         None if found.v_liftoff.is_some() => (f64::NAN, End::LiftOff),
         None if !found.decided => (f64::NAN, End::Never),
         None => (0.0, End::Never),
@@ -179,6 +187,7 @@ fn switched_on(found: Windows, v_max: f64, velocity: f64) -> Found {
             stick_time: f64::NAN,
             slip_time: f64::NAN,
             n_min: f64::NAN,
+            sustained: top.is_some(),
             decided: found.decided,
         },
         windows: found.survives.iter().map(|w| w.map(edge)).collect(),
@@ -314,7 +323,7 @@ impl Class {
                 let accuracy = Accuracy::of(SWITCH_ON_ACCURACY);
                 let steps = Scan::default().steps;
                 match Trials::new(problem, phase, accuracy, steps).at(speed) {
-                    Survival::Survives => Self::Bistable,
+                    Survival::Survives | Survival::Irregular => Self::Bistable,
                     Survival::Ends | Survival::NoStickSlip => Self::Stable,
                     Survival::LiftOff => Self::LiftOff,
                     Survival::Undecided => Self::Undecided,
@@ -328,6 +337,7 @@ impl Class {
         match critical.end {
             _ if !critical.decided => Self::Undecided,
             End::LiftOff if v0 >= critical.v_liftoff => Self::LiftOff,
+            End::LiftOff if !critical.sustained => Self::Stable,
             End::LiftOff => Self::Bistable,
             End::Persists if v0 > v_max => Self::Undecided,
             End::Persists => Self::Bistable,
@@ -380,6 +390,7 @@ fn change(mut below: f64, mut above: f64, holds: impl Fn(f64) -> bool) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::model::FrictionLaw;
 
     fn critical(end: End, vc: f64, v_liftoff: f64) -> Critical {
         Critical {
@@ -390,6 +401,7 @@ mod tests {
             stick_time: f64::NAN,
             slip_time: f64::NAN,
             n_min: f64::NAN,
+            sustained: end != End::Never,
             decided: true,
         }
     }
@@ -418,6 +430,50 @@ mod tests {
         }
     }
 
+    /// Where a block lifts off that did not stick at lower velocities, nothing is beside sliding below.
+    #[test]
+    fn lift_off_without_stick_slip_below() {
+        let mut lifted = critical(End::LiftOff, f64::NAN, 0.2);
+        lifted.sustained = false;
+        for (v0, class) in [(0.1, Class::Stable), (0.2, Class::LiftOff)] {
+            assert_eq!(Class::beside_sliding(v0, &lifted, 100.0), class);
+        }
+    }
+
+    /// By the protocol `follow` a window goes from rest to whatever ends stick-slip: v_c, lift-off, or the range.
+    #[test]
+    fn whatever_ends_a_window_it_counts() {
+        let problem = Problem {
+            law: FrictionLaw::coulomb(0.5, 2.0).unwrap(),
+            velocity_unit: 1.0,
+            alpha_v: 0.0,
+            alpha_n: 0.0,
+            tau: 1.0,
+        };
+        let units = CaseUnits {
+            time: 1.0,
+            length: 3.0,
+            velocity: 3.0,
+            force: 1.0,
+        };
+        let windows = |found: &Critical| followed(found, &problem, &units).windows;
+        let none = f64::NAN;
+        for (end, vc, v_liftoff, top) in [
+            (End::Grazing, 0.3, none, 0.9),
+            (End::LiftOff, none, 0.2, 0.6),
+            // v_max is 100 μ_S.
+            (End::Persists, none, none, 600.0),
+        ] {
+            let found = windows(&critical(end, vc, v_liftoff));
+            assert_eq!(found.len(), 1, "{end:?}");
+            assert!(found[0][0] == 0.0 && (found[0][1] / top - 1.0).abs() < 1e-14);
+        }
+        assert!(windows(&critical(End::Never, 0.0, none)).is_empty());
+        let mut lifted = critical(End::LiftOff, none, 0.2);
+        lifted.sustained = false;
+        assert!(windows(&lifted).is_empty());
+    }
+
     /// The topmost window tells, and one that is open at the end of the range has no edge.
     #[test]
     fn windows_tell_the_critical_velocity() {
@@ -425,6 +481,7 @@ mod tests {
             survives,
             v_liftoff,
             decided: true,
+            complete: true,
         };
         let two = vec![[0.001, 0.2], [0.3, 0.4]];
         let found = switched_on(windows(two, Some(0.25)), 10.0, 2.0);
@@ -432,6 +489,14 @@ mod tests {
         assert_eq!(found.windows, [[0.002, 0.4], [0.6, 0.8]]);
         let found = switched_on(windows(vec![[0.1, 10.0]], None), 10.0, 1.0);
         assert!(found.critical.vc.is_nan() && found.critical.end == End::Persists);
+        assert_eq!(found.windows.len(), 1);
+        let cut = Windows {
+            decided: false,
+            complete: false,
+            ..windows(vec![[0.1, 0.2]], None)
+        };
+        let found = switched_on(cut, 10.0, 1.0);
+        assert!(found.critical.vc.is_nan() && !found.critical.decided);
         let found = switched_on(windows(vec![], None), 10.0, 1.0);
         assert!(found.critical.vc == 0.0 && found.critical.end == End::Never);
         let found = switched_on(windows(vec![], Some(0.1)), 10.0, 1.0);

@@ -3,7 +3,7 @@
 use std::ops::Range;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use super::field::{Field, number_of_end};
+use super::field::{Field, number_of_outcome};
 use super::parameter::{Parameter, Setting};
 use super::pieces::mixed;
 use super::spec::SweepSpec;
@@ -76,7 +76,7 @@ impl Cell<'_> {
 
     fn number(&self, field: Field) -> Option<u8> {
         match field {
-            Field::Outcome => Some(number_of_end(self.found.critical.end)),
+            Field::Outcome => Some(number_of_outcome(&self.found.critical)),
             Field::Method => Some(self.found.critical.method as u8),
             Field::Class => self.class.map(|class| class as u8),
             // More than that do not fit between the velocities that are tried.

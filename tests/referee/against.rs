@@ -237,7 +237,7 @@ pub fn fate_of_trial(setting: &Setting, phase: f64) -> Option<Fate> {
     let accuracy = motion::Accuracy::of(1e-9);
     let mut trials = Trials::new(&problem, Phase::After(phase), accuracy, MOST_STEPS as u64);
     match trials.at(setting.v0) {
-        Survival::Survives => Some(Fate::Survives),
+        Survival::Survives | Survival::Irregular => Some(Fate::Survives),
         Survival::Ends => Some(Fate::Ends),
         Survival::LiftOff => Some(Fate::LiftsOff),
         Survival::NoStickSlip => Some(Fate::NoCycle),

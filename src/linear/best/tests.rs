@@ -190,7 +190,7 @@ fn the_triple_root_of_load_control_is_that_of_a_scalar_equation() {
 }
 
 /// The letter: "stable regions at larger τ relax more slowly". In numbers, at b = −0.05 and velocity control, relaxation times
-/// 3.033, 8.875, 16.269, 25.592; lobes of positive and of negative load gain each keep this order, and so do all together.
+/// 3.033, 8.875, 16.269, 25.592 (double pairs, D = D′ = 0 by mpmath); lobes of positive and of negative load gain each keep this order, and so do all together.
 #[test]
 fn lobes_relax_more_slowly_at_larger_delays() {
     for search in searches() {
