@@ -10,7 +10,7 @@ use slipmap::critical::{
     Critical, End, GRAZE_PRECISION, Method, Problem, by_simulation, critical_velocity,
 };
 use slipmap::model::FrictionLaw;
-use slipmap::slip::motion::{Accuracy, Event, Motion};
+use slipmap::slip::motion::Accuracy;
 
 #[path = "common/chance_problem.rs"]
 mod chance_problem;
