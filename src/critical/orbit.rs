@@ -111,8 +111,8 @@ impl Road for Orbit {
     }
 }
 
-/// Where v0 starts, in order, in units of μ_S N0/√(κM), as [`super::follow`] does.
-const STARTS: [f64; 5] = [1e-2, 1e-1, 1e-3, 1e-4, 1e-6];
+/// Where v0 starts, in order, in units of μ_S N0/√(κM): as [`super::follow`] does after lift-off, whose smallest v0 is asked for.
+const STARTS: [f64; 4] = [1e-2, 1e-3, 1e-4, 1e-6];
 
 impl Orbit {
     /// Of a block that is released from a memoryless stick at `v0`, which has one slip in a period.
@@ -122,14 +122,10 @@ impl Orbit {
         Self::of(motion, 1)
     }
 
-    /// The orbit from the first start at which the block sticks again, with its first place; none where it does so at none of them.
+    /// The orbit from the first start at which the block does not lift off, with its first place; none where it does not stick again
+    /// there, or lifts off at all of them.
     pub fn sustained(problem: &Problem, accuracy: Accuracy) -> Option<(Self, Place)> {
-        let mut lifted = f64::INFINITY;
         for start in STARTS {
-            // What is asked for after lift-off is the smallest v0 of it.
-            if start > lifted {
-                continue;
-            }
             let v0 = start * problem.law.mu_s();
             let mut road = Self::released(problem, v0, accuracy);
             match road.trial(v0, None, f64::INFINITY) {
@@ -138,8 +134,9 @@ impl Orbit {
                     let place = Place::first(v0, period, gauges, f64::INFINITY);
                     return Some((road, place));
                 }
-                Ran::LiftOff => lifted = start,
-                Ran::Pass | Ran::Other | Ran::Over => {}
+                Ran::LiftOff => {}
+                // A larger start comes next, which may be another stick-slip: simulation tells.
+                Ran::Pass | Ran::Other | Ran::Over => return None,
             }
         }
         None

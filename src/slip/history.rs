@@ -32,6 +32,9 @@ pub(super) const SMOOTH: u32 = u32::MAX;
 /// The part of a polynomial's radius within which it stands in for its neighbours.
 const SHARE: f64 = 0.75;
 
+/// How far it may be from them, in units of the tolerance.
+const NEIGHBOURS_APART: f64 = 4.0;
+
 /// A stretch of time in a past that is extrapolated, and what it corresponds to in the two pasts that it is told from.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Stretch {
@@ -52,6 +55,8 @@ pub(super) struct History {
     felt: u32,
     /// The part of its radius to which the last polynomial stands in for what is yet to come.
     ahead: f64,
+    /// How far a polynomial may be from its neighbour where it stands in for it, relative to the elongation or to 1.
+    apart: f64,
 }
 
 impl History {
@@ -83,8 +88,10 @@ impl History {
     }
 
     /// The last polynomial stands in for what is yet to come as far as its errors, times a `gain`, stay within the tolerance,
-    /// which at the end of its radius is its last term, of this `order`.
-    pub fn look_ahead(&mut self, gain: f64, order: usize) {
+    /// which at the end of its radius is its last term, of this `order`. It stands in for its neighbours as far as it is them, to some
+    /// times the `tolerance`: errors of its middle terms do not show in the last ones.
+    pub fn look_ahead(&mut self, gain: f64, order: usize, tolerance: f64) {
+        self.apart = NEIGHBOURS_APART * tolerance;
         self.ahead = SHARE.min(gain.powf(-1.0 / order as f64));
     }
 
@@ -102,7 +109,8 @@ impl History {
     pub fn copy_from(&mut self, other: &Self) {
         self.pieces.clear();
         self.pieces.extend(other.pieces.iter().cloned());
-        (self.at, self.felt, self.ahead) = (other.at, other.felt, other.ahead);
+        (self.at, self.felt) = (other.at, other.felt);
+        (self.ahead, self.apart) = (other.ahead, other.apart);
     }
 
     /// Becomes, over `span` until time 0, `last` and `share` of the way from `before` to it beyond it, both as of their ends.
@@ -116,7 +124,8 @@ impl History {
         span: f64,
         stretches: &[Stretch],
     ) {
-        (self.at, self.felt, self.ahead) = (0, last.felt, last.ahead);
+        (self.at, self.felt) = (0, last.felt);
+        (self.ahead, self.apart) = (last.ahead, last.apart);
         self.pieces.clear();
         let orders = |h: &Self| h.pieces.iter().map(|p| p.order).max().unwrap_or(0);
         let order = orders(last).max(orders(before));
@@ -233,6 +242,21 @@ impl History {
         reach
     }
 
+    /// Whether the polynomial of a piece is that of the others, here and at `until`.
+    fn stands_in(&self, index: usize, until: f64) -> bool {
+        let at = |piece: &Piece, time: f64| value(&piece.a[..=piece.order], time - piece.from);
+        let agree = |one: &Piece, other: &Piece, time: f64| {
+            let (p, q) = (at(one, time), at(other, time));
+            let off = (p - q).abs();
+            // What is not a number ends the motion elsewhere, not here.
+            off.is_nan() || off <= self.apart * q.abs().max(1.0)
+        };
+        let (piece, here) = (&self.pieces[index], &self.pieces[self.at]);
+        let there = self.pieces.iter().skip(self.at).find(|p| p.to >= until);
+        (index == self.at || agree(piece, here, here.to))
+            && there.is_none_or(|there| agree(piece, there, until))
+    }
+
     /// What the last polynomial says at `time`, beyond its end.
     pub fn foreseen(&self, time: f64) -> f64 {
         self.pieces.back().map_or(f64::NAN, |last| {
@@ -271,7 +295,12 @@ impl History {
             return (best.0, Reach { until, kink });
         }
         // Nothing is known beyond a kink.
-        let until = best.1.min(end.max(self.pieces[self.at].to));
+        let own = self.pieces[self.at].to;
+        let mut until = best.1.min(end.max(own));
+        if until > own && !self.stands_in(best.0, until) {
+            best = (self.at, own);
+            until = own;
+        }
         let kink = if until == end { kink } else { SMOOTH };
         (best.0, Reach { until, kink })
     }

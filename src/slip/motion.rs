@@ -199,7 +199,7 @@ impl Motion {
         friction.restart(u.abs());
         history.restart(a, 0.0, felt(accuracy, order));
         let gain = parameters.alpha_v.abs().max(parameters.alpha_n.abs());
-        history.look_ahead(gain, order);
+        history.look_ahead(gain, order, tolerance);
         let zero = [0.0; MOST_ORDER + 1];
         let mut motion = Self {
             parameters,
@@ -271,7 +271,7 @@ impl Motion {
             .alpha_v
             .abs()
             .max(self.parameters.alpha_n.abs());
-        self.history.look_ahead(gain, self.order);
+        self.history.look_ahead(gain, self.order, self.tolerance);
     }
 
     /// Becomes a copy of `other`, a motion with the same law and accuracy, in memory that is there.
