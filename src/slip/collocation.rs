@@ -107,7 +107,6 @@ pub(super) fn solve(
     rates: impl Fn(f64, f64, f64) -> (f64, f64),
 ) -> Option<Solved> {
     let rule = &*RULE;
-    let start = [(u, a), rates(u, a, delayed[0])];
     let past: [f64; NODES] = rule.nodes.map(|node| value(delayed, node * length));
     let (mut at_u, mut at_a) = ([u; NODES], [a; NODES]);
     let (mut rate_u, mut rate_a) = ([0.0; NODES], [0.0; NODES]);
@@ -133,21 +132,19 @@ pub(super) fn solve(
         if iteration == MOST_ITERATIONS || !change.is_finite() {
             // Rounding may go on for ever.
             return (change <= 64.0 * AT_REST * scale)
-                .then(|| solved(rule, start, length, (&rate_u, &rate_a)));
+                .then(|| solved(rule, (u, a), length, (&rate_u, &rate_a)));
         }
     }
-    Some(solved(rule, start, length, (&rate_u, &rate_a)))
+    Some(solved(rule, (u, a), length, (&rate_u, &rate_a)))
 }
 
-/// From the state and its rates at the start, and the rates at the nodes. The rates at the start are put in: whether a block that
-/// was just released begins to move is seen from them.
 fn solved(
     rule: &Rule,
-    [(u, a), first]: [(f64, f64); 2],
+    (u, a): (f64, f64),
     length: f64,
     (rate_u, rate_a): (&[f64; NODES], &[f64; NODES]),
 ) -> Solved {
-    let series = |start: f64, first: f64, rates: &[f64; NODES]| {
+    let series = |start: f64, rates: &[f64; NODES]| {
         let mut c = [0.0; MOST_ORDER + 1];
         c[0] = start;
         let mut scale = 1.0;
@@ -155,7 +152,6 @@ fn solved(
             c[p + 1] = dot(row, rates) * PER_NEXT[p] * scale;
             scale /= length;
         }
-        c[1] = first;
         c
     };
     let tails = rule
@@ -163,8 +159,8 @@ fn solved(
         .iter()
         .flat_map(|row| [dot(row, rate_u), dot(row, rate_a)]);
     Solved {
-        u: series(u, first.0, rate_u),
-        a: series(a, first.1, rate_a),
+        u: series(u, rate_u),
+        a: series(a, rate_a),
         rest: length * tails.map(f64::abs).fold(0.0, f64::max),
     }
 }
@@ -182,11 +178,11 @@ mod tests {
             let (cos, sin) = (s.cos(), s.sin());
             let a = 0.3 + 0.1 * s + 0.2 * cos - 0.3 * sin;
             let u = -0.1 + 0.2 * sin + 0.3 * cos;
-            // The rate at the start is put in, and takes its rounding out of the balance of the others.
-            assert!((value(&solved.a, s) - a).abs() < 1e-12);
-            assert!((value(&solved.u, s) - u).abs() < 1e-12);
+            let off = [value(&solved.a, s) - a, value(&solved.u, s) - u];
+            // Powers of s lose some digits of what is known at the nodes.
+            assert!(off.iter().all(|off| off.abs() < 1e-11), "{off:?} at {s}");
         }
-        assert!(solved.rest < 1e-14, "{:e}", solved.rest);
+        assert!(solved.rest < 1e-13, "{:e}", solved.rest);
     }
 
     /// y′ = −y² from 1 is 1/(1 + s): what is left out falls with the length as its order says.
