@@ -179,8 +179,8 @@ mod tests {
             let a = 0.3 + 0.1 * s + 0.2 * cos - 0.3 * sin;
             let u = -0.1 + 0.2 * sin + 0.3 * cos;
             let off = [value(&solved.a, s) - a, value(&solved.u, s) - u];
-            // Powers of s lose some digits of what is known at the nodes.
-            assert!(off.iter().all(|off| off.abs() < 1e-11), "{off:?} at {s}");
+            // Powers of s lose five digits of what is known at the nodes.
+            assert!(off.iter().all(|off| off.abs() < 1e-10), "{off:?} at {s}");
         }
         assert!(solved.rest < 1e-13, "{:e}", solved.rest);
     }
