@@ -214,11 +214,11 @@ fn windows_end_where_brute_force_says() {
         assert!((told / edge - 1.0).abs() < 2e-6, "{row:?} {found:?}");
         seen += 1;
     }
-    assert!(seen >= 8, "{seen}");
+    assert!(seen >= 20, "{seen}");
 }
 
-/// Where stick-slip is irregular it is lost at one v0 or another by chance: the program of `switch_on_fate.csv` tells another
-/// fate with each step size between 0.129 and 0.132.
+/// Where stick-slip is irregular its edge is one by chance: it survives at 0.13008 and is lost at 0.1301 by the program of
+/// `switch_on_fate.csv`, but cycles do not come to repeat.
 #[test]
 fn edges_by_chance_are_not_decided() {
     let law = FrictionLaw::weakening(0.7105, 0.6113, 1.0).unwrap();
@@ -232,6 +232,8 @@ fn edges_by_chance_are_not_decided() {
     };
     let found = windows(&problem, Phase::After(0.0), &scan, Accuracy::of(1e-9));
     assert!(!found.decided, "{found:?}");
+    let top = found.top().unwrap();
+    assert!((top / 0.13009 - 1.0).abs() < 1e-3, "{found:?}");
 }
 
 /// A scan that is cut off tells no critical velocity.

@@ -6,6 +6,8 @@ use crate::slip::outcome::Observer;
 
 /// The part of the time waited within which the block has to be released for stick-slip to go on.
 const RECENT: f64 = 0.25;
+/// Released so often after long slips, it sticks again and again.
+const RETURNS: u32 = 3;
 /// Stretches of time in which minima of ẋ are compared, in that time.
 const STRETCHES: f64 = 8.0;
 /// So many stretches in a row in which the lowest minimum rises, a slip calms down.
@@ -19,6 +21,8 @@ pub(super) struct Sticking {
     until: f64,
     now: f64,
     released: f64,
+    /// How often it was released after it had slipped for long.
+    returns: u32,
     /// Whether sliding is linearly stable.
     slides: bool,
     /// The end of this stretch, the lowest minimum of ẋ in it and in the one before, and rises in a row.
@@ -36,6 +40,7 @@ impl Sticking {
             until: patience,
             now: 0.0,
             released: 0.0,
+            returns: 0,
             slides,
             stretch: patience,
             lowest: f64::INFINITY,
@@ -48,9 +53,9 @@ impl Sticking {
         self.now - self.released < RECENT * self.patience
     }
 
-    /// Whether it still sticks, for longer than it was waited for to do so periodically.
+    /// Whether it still sticks, for longer than it was waited for to do so periodically, or has come back to it again and again.
     pub fn goes_on(&self) -> bool {
-        self.now >= self.until && self.recently()
+        self.now >= self.until && self.recently() || self.returns >= RETURNS
     }
 
     /// Whether it slips forwards, and has come nearer to stable sliding for long. That far from any stick only the amplitude
@@ -79,6 +84,7 @@ impl Observer for Sticking {
             if !self.recently() {
                 // It had slipped for long: whether it goes on to stick is to be seen.
                 self.until = self.now + self.patience;
+                self.returns += 1;
             }
             self.released = self.now;
         }
