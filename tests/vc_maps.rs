@@ -224,6 +224,59 @@ fn classes_and_samples() {
     }
 }
 
+/// What maps of the protocol `follow` hold is what brute force tells: v0 raised in small steps by a program of its own, by two
+/// ramps (steps of 6 % with 12 stops at each, of 2 % with 40) that agree to 5e-7. By load control at α_N = 2, τ = 2 the block
+/// lifts off at the start, however slowly it is pulled.
+#[test]
+fn critical_velocities_are_those_of_brute_force() {
+    let _alone = alone();
+    let folder = tempfile::tempdir().unwrap();
+    let map = folder.path().join("map.h5");
+    let near = |found: f64, expected: f64| (found / expected - 1.0).abs() < 2e-5;
+    write(&plan(&sweeps()[0]), 2, &map);
+    let (vc, v_liftoff) = (values(&map, "vc"), values(&map, "v_liftoff"));
+    let (outcomes, windows) = (names(&map, Field::Outcome), bits(&map, "windows"));
+    let lost = [
+        (0, 0.102_963_2),
+        (1, 0.021_539_67),
+        (6, 0.685_284_6),
+        (7, 0.331_802_7),
+    ];
+    let lifted = [
+        (2, 0.059_997_19),
+        (8, 0.203_250_4),
+        (12, 0.745_191_9),
+        (13, 0.086_017_5),
+    ];
+    for (first, expected) in lost {
+        for cell in [first, first + 3] {
+            assert!(
+                near(vc[cell], expected) && v_liftoff[cell].is_nan(),
+                "{cell}"
+            );
+            assert_eq!((outcomes[cell], windows[cell]), ("grazing", 1), "{cell}");
+        }
+    }
+    for (first, expected) in lifted {
+        for cell in [first, first + 3] {
+            assert!(
+                near(v_liftoff[cell], expected) && vc[cell].is_nan(),
+                "{cell}"
+            );
+            assert_eq!((outcomes[cell], windows[cell]), ("lift-off", 1), "{cell}");
+        }
+    }
+    for cell in [14, 17] {
+        assert!(v_liftoff[cell] < 1e-5 && vc[cell].is_nan(), "{cell}");
+        assert_eq!((outcomes[cell], windows[cell]), ("lift-off", 0), "{cell}");
+    }
+    write(&plan(&sweeps()[1]), 2, &map);
+    let expected = [1.285_709_6, 1.534_720_8, 0.567_968_3, 0.417_365_3];
+    for (found, expected) in values(&map, "vc").into_iter().zip(expected) {
+        assert!(near(found, expected), "{found} {expected}");
+    }
+}
+
 /// μ0 and v_s can be given through the slope at rest: the same cells and counts.
 #[test]
 fn the_slope_at_rest_stands_for_v_s_or_mu0() {
