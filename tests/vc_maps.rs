@@ -225,7 +225,7 @@ fn classes_and_samples() {
 }
 
 /// What maps of the protocol `follow` hold is what brute force tells: v0 raised in small steps by a program of its own, by two
-/// ramps (steps of 6 % with 12 stops at each, of 2 % with 40) that agree to 5e-7. By load control at α_N = 2, τ = 2 the block
+/// ramps (steps of 6 % with 12 stops at each, of 2 % with 40) that agree to 2e-6. By load control at α_N = 2, τ = 2 the block
 /// lifts off at the start, however slowly it is pulled.
 #[test]
 fn critical_velocities_are_those_of_brute_force() {
