@@ -93,4 +93,46 @@ mod tests {
             assert!((found.roots[0].lambda.re - 0.15).abs() < 1e-14);
         }
     }
+
+    /// The gains that make `mu` a double root at a delay: D = D′ = 0 is linear in them.
+    fn with_double_root(b: f64, tau: f64, mu: f64) -> Groups {
+        let delayed = (-mu * tau).exp();
+        let difference = -(-mu * tau).exp_m1();
+        let feedback = (mu * (mu + b) + 1.0) / difference;
+        let a_v = (2.0 * mu + b - feedback * tau * delayed) / difference;
+        Groups::new(b, a_v, feedback - a_v * (b + mu))
+    }
+
+    /// Rounded gains leave two roots within 1e-6 of one another, or a pair as near.
+    #[test]
+    fn the_abscissa_is_known_at_double_real_roots() {
+        let mut tried = 0;
+        for i in 0..3000 {
+            let t = f64::from(i);
+            let b = 1.2 * (t * 0.73).sin();
+            let tau = 5.0 * (1.02 + (t * 1.37).sin());
+            let mu = -0.3 + 1.5 * (t * 2.11).sin();
+            let groups = with_double_root(b, tau, mu);
+            if groups.a_v.abs().max(groups.a_n.abs()) > 50.0 || mu.abs() < 1e-3 {
+                continue;
+            }
+            tried += 1;
+            let found = at(groups, tau, 4);
+            let (Some(first), None) = (found.roots.first(), found.missing) else {
+                panic!("{groups:?} {tau} {mu}: {found:?}");
+            };
+            let near = |r: &Root| (r.lambda - mu).norm() < 1e-5 * (1.0 + mu.abs());
+            let twice: u64 = found
+                .roots
+                .iter()
+                .filter(|r| near(r))
+                .map(Root::count)
+                .sum();
+            assert!(
+                first.lambda.re >= mu - 1e-5 && (twice >= 2 || found.roots.len() == 4),
+                "{groups:?} {tau} {mu}: {found:?}"
+            );
+        }
+        assert!(tried > 1000, "{tried}");
+    }
 }

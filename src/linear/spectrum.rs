@@ -156,8 +156,15 @@ impl RootFinder {
             return false;
         };
         let error = cluster.iter().map(|r| r.error).fold(0.0, f64::max);
-        let Some(together) = count_between(groups, tau, (last.lambda.re, first.lambda.re), error)
-        else {
+        let range = (last.lambda.re, first.lambda.re);
+        let Some((strip, counted)) = count_between(groups, tau, range, error) else {
+            return false;
+        };
+        let beside = self
+            .roots
+            .iter()
+            .filter(|r| !r.nearly_multiple() && strip.0 < r.lambda.re && r.lambda.re < strip.1);
+        let Some(together) = counted.checked_sub(beside.map(Root::count).sum()) else {
             return false;
         };
         if number(&self.roots) + together != count + number(&cluster) {
@@ -178,14 +185,21 @@ impl RootFinder {
     }
 }
 
-/// The number of roots with real part in a range and a little around it, as little as rounding (`error`) allows.
-fn count_between(groups: Groups, tau: f64, (from, to): (f64, f64), error: f64) -> Option<u64> {
+/// A strip of real parts that holds a range and a little around it, as little as rounding (`error`) allows, and the number
+/// of roots in it.
+fn count_between(
+    groups: Groups,
+    tau: f64,
+    (from, to): (f64, f64),
+    error: f64,
+) -> Option<((f64, f64), u64)> {
     let mut near = 16.0 * error;
     while near <= FARTHEST_COUNT {
-        let right = roots_right_of(groups, tau, to + near);
-        let left = roots_right_of(groups, tau, from - near);
+        let strip = (from - near, to + near);
+        let right = roots_right_of(groups, tau, strip.1);
+        let left = roots_right_of(groups, tau, strip.0);
         if let (Some(right), Some(left)) = (right, left) {
-            return left.checked_sub(right);
+            return Some((strip, left.checked_sub(right)?));
         }
         near *= 4.0;
     }

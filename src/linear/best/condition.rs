@@ -20,6 +20,8 @@ use crate::linear::sensitivity::Sensitivity;
 
 /// Steps of Newton's method towards a zero of D′ or D″.
 const MOST_STEPS: u32 = 30;
+/// A pair is off the real axis by more than this, relative.
+const OFF_AXIS: f64 = 1e-9;
 
 /// A root, or a point at which derivatives of D vanish, that is followed from place to place.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -44,7 +46,9 @@ impl Followed {
                 Some(Self::Root(root.lambda))
             }
             Self::DoublePair(start) => {
-                newton(start, |l| (at(l)[1], at(l)[2])).map(Self::DoublePair)
+                let found = newton(start, |l| (at(l)[1], at(l)[2]))?;
+                // On the real axis it is no pair.
+                (found.im.abs() > OFF_AXIS * found.norm()).then_some(Self::DoublePair(found))
             }
             Self::DoubleReal(start) => {
                 newton(start.into(), |l| (at(l)[1], at(l)[2])).map(|l| Self::DoubleReal(l.re))
@@ -200,6 +204,57 @@ fn by_parameters(search: &Search, Place { gain, tau }: Place, lambda: Complex64)
         slope_gain,
         slope_tau,
     }
+}
+
+/// The place next to `from` where D has a double real root, as it has at `from` with the root `mu`: the gain moved by
+/// `step`.0 and the delay as it comes out, or the delay moved by `step`.1 where the gain is to come out (`step`.0 is zero).
+/// None where the curve of such places does not reach that far.
+pub(super) fn along_double_roots(
+    search: &Search,
+    from: (Place, f64),
+    step: (f64, f64),
+) -> Option<Place> {
+    let (mut place, mut mu) = from;
+    let by_gain = step.0 != 0.0;
+    let slopes = |place, mu: f64| {
+        let by = by_parameters(search, place, mu.into());
+        let [free, held] = [(by.tau.re, by.slope_tau.re), (by.gain.re, by.slope_gain.re)];
+        if by_gain { (free, held) } else { (held, free) }
+    };
+    let move_free = |place: &mut Place, by: f64| {
+        *(if by_gain {
+            &mut place.tau
+        } else {
+            &mut place.gain
+        }) += by;
+    };
+    let second = |place, mu: f64| derivatives(search, place, mu.into())[2].re;
+    // Along the curve D and D′ keep vanishing.
+    let ((free, free_slope), (held, held_slope)) = slopes(place, mu);
+    let by = -(step.0 + step.1) * held / free;
+    mu -= (held_slope * (step.0 + step.1) + free_slope * by) / second(place, mu);
+    place.gain += step.0;
+    place.tau += step.1;
+    move_free(&mut place, by);
+    for _ in 0..MOST_STEPS {
+        let [value, first, second, _] = derivatives(search, place, mu.into()).map(|d| d.re);
+        let ((free, free_slope), _) = slopes(place, mu);
+        let determinant = first * free_slope - second * free;
+        let by_mu = (value * free_slope - first * free) / determinant;
+        let by = (first * first - second * value) / determinant;
+        if !(by_mu.is_finite() && by.is_finite()) {
+            return None;
+        }
+        mu -= by_mu;
+        move_free(&mut place, -by);
+        let value_of_free = if by_gain { place.tau } else { place.gain };
+        if by_mu.abs() <= 1e-13 * (1.0 + mu.abs())
+            && by.abs() <= 1e-13 * (1.0 + value_of_free.abs())
+        {
+            return Some(place);
+        }
+    }
+    None
 }
 
 /// ∂Re λ/∂gain and ∂Re λ/∂τ at a simple root.

@@ -31,6 +31,13 @@ impl Frame {
             tau: centre.tau + self.slope * gain + self.tau * radius * sin,
         }
     }
+
+    /// How far `place` is from `centre`: the radius at which [`Frame::around`] gives it.
+    pub fn apart(&self, centre: Place, place: Place) -> f64 {
+        let gain = place.gain - centre.gain;
+        let tau = place.tau - centre.tau - self.slope * gain;
+        (gain / self.gain).hypot(tau / self.tau)
+    }
 }
 
 /// Goes down from `start` by steps from `largest` to `smallest` times the frame's size; the place reached and the abscissa

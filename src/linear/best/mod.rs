@@ -18,6 +18,7 @@ mod search;
 
 pub use search::{Search, SearchedGain};
 
+use condition::along_double_roots;
 use descend::{Frame, descend, follow_valley};
 use polish::{polished, unpolished};
 use regions::{Stretches, stable_regions};
@@ -340,10 +341,27 @@ fn better_nearby(
         tau: found.tau,
     };
     let better = found.abscissa - found.margin - 1e-9 * (1.0 + found.abscissa.abs());
-    CHECK_RADII.into_iter().find_map(|radius| {
+    let around = |radius: f64| {
         (0..CHECK_DIRECTIONS)
             .map(|i| f64::from(i) * std::f64::consts::TAU / f64::from(CHECK_DIRECTIONS))
-            .map(|angle| search.clamp(frame.around(centre, radius, angle)))
+            .map(move |angle| search.clamp(frame.around(centre, radius, angle)))
+    };
+    // A valley of double real roots has walls that rise like a square root; no direction but its own is a way down.
+    let valley = |radius: f64| {
+        let (gain, tau) = (radius * frame.gain, radius * frame.tau);
+        [(gain, 0.0), (-gain, 0.0), (0.0, tau), (0.0, -tau)]
+            .into_iter()
+            .filter(|_| found.frequencies.contains(&0.0))
+            .filter_map(|step| along_double_roots(search, (centre, found.abscissa), step))
+            .filter(|&place| {
+                search.clamp(place) == place && frame.apart(centre, place) <= 4.0 * radius
+            })
+            .collect::<Vec<_>>()
+    };
+    CHECK_RADII.into_iter().find_map(|radius| {
+        valley(radius)
+            .into_iter()
+            .chain(around(radius))
             .find(|&place| evaluator.abscissa(search, place) < better)
     })
 }
