@@ -135,4 +135,39 @@ mod tests {
         }
         assert!(tried > 1000, "{tried}");
     }
+
+    /// Some have other roots of the same real part beside the double one.
+    #[test]
+    fn the_abscissa_is_known_where_a_pair_lies_above_a_double_real_root() {
+        let mut tried = 0;
+        for i in 0..400 {
+            let t = f64::from(i);
+            let b = 1.2 * (t * 0.73).sin();
+            let tau = 3.0 * (1.05 + (t * 1.37).sin());
+            // How far right of the double root the rightmost pair is.
+            let gap = |mu: f64| {
+                let roots = at(with_double_root(b, tau, mu), tau, 6).roots;
+                let pair = roots.iter().find(|r| r.lambda.im > 0.1);
+                pair.map_or(f64::NAN, |r| r.lambda.re - mu)
+            };
+            for j in 0..40 {
+                let (from, to) = (-2.0 + 0.05 * f64::from(j), -1.95 + 0.05 * f64::from(j));
+                if !(gap(from) * gap(to) < 0.0) {
+                    continue;
+                }
+                let mu = crate::linear::roots::bisect(from, to, gap);
+                let found = at(with_double_root(b, tau, mu), tau, 4);
+                if gap(mu).abs() > 1e-6 {
+                    // The pair became another one.
+                    continue;
+                }
+                tried += 1;
+                assert!(
+                    found.missing.is_none() && found.roots[0].lambda.re >= mu - 1e-5,
+                    "{b} {tau} {mu}: {found:?}"
+                );
+            }
+        }
+        assert!(tried > 100, "{tried}");
+    }
 }
