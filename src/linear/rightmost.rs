@@ -152,7 +152,8 @@ mod tests {
             };
             for j in 0..40 {
                 let (from, to) = (-2.0 + 0.05 * f64::from(j), -1.95 + 0.05 * f64::from(j));
-                if !(gap(from) * gap(to) < 0.0) {
+                let changes = gap(from) * gap(to) < 0.0;
+                if !changes {
                     continue;
                 }
                 let mu = crate::linear::roots::bisect(from, to, gap);

@@ -242,8 +242,8 @@ impl History {
         reach
     }
 
-    /// Whether the polynomial of a piece is that of the others, here and at `until`.
-    fn stands_in(&self, index: usize, until: f64) -> bool {
+    /// Whether the polynomial of a piece is that of the others at `from`, which is in the present one, and at `until`.
+    fn stands_in(&self, index: usize, from: f64, until: f64) -> bool {
         let at = |piece: &Piece, time: f64| value(&piece.a[..=piece.order], time - piece.from);
         let agree = |one: &Piece, other: &Piece, time: f64| {
             let (p, q) = (at(one, time), at(other, time));
@@ -253,7 +253,7 @@ impl History {
         };
         let (piece, here) = (&self.pieces[index], &self.pieces[self.at]);
         let there = self.pieces.iter().skip(self.at).find(|p| p.to >= until);
-        (index == self.at || agree(piece, here, here.to))
+        (index == self.at || agree(piece, here, from))
             && there.is_none_or(|there| agree(piece, there, until))
     }
 
@@ -289,15 +289,15 @@ impl History {
             }
             end = piece.to;
         }
-        if smooth_end && best.0 + 1 == self.pieces.len() {
-            let last = &self.pieces[best.0];
-            let until = last.to.max(last.from + self.ahead * last.radius);
-            return (best.0, Reach { until, kink });
-        }
-        // Nothing is known beyond a kink.
         let own = self.pieces[self.at].to;
-        let mut until = best.1.min(end.max(own));
-        if until > own && !self.stands_in(best.0, until) {
+        let mut until = if smooth_end && best.0 + 1 == self.pieces.len() {
+            let last = &self.pieces[best.0];
+            last.to.max(last.from + self.ahead * last.radius)
+        } else {
+            // Nothing is known beyond a kink.
+            best.1.min(end.max(own))
+        };
+        if until > own && !self.stands_in(best.0, time, until) {
             best = (self.at, own);
             until = own;
         }

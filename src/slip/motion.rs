@@ -18,7 +18,7 @@ use super::collocation::NODES;
 use super::friction_series::FrictionSeries;
 pub use super::history::Stretch;
 use super::history::{History, SMOOTH};
-use super::series::{Coefficients, MOST_ORDER, first_zero, value};
+use super::series::{Coefficients, MOST_ORDER, first_zero, spread, value};
 use super::step::{Control, Step};
 use super::table_series::Crossing;
 use crate::model::FrictionLaw;
@@ -131,6 +131,9 @@ const FORESEEN: f64 = 2.0;
 const SHORTER: f64 = 0.7;
 const MOST_SHORTER: u32 = 12;
 
+/// The part of the error of a step within which the elongation of a stuck block grows evenly.
+const EVEN: f64 = 0.1;
+
 /// Rounding of a force, relative.
 const ROUNDING: f64 = 64.0 * f64::EPSILON;
 
@@ -168,8 +171,9 @@ pub struct Motion {
     pub a: f64,
     /// Order of the lowest derivative of a that jumps now.
     kink: u32,
-    /// Since when the block has stuck while v0 was the same; +∞ while it does not.
-    stuck_since: f64,
+    /// Since when the block has stuck while its elongation has grown evenly, at the rate of [`Motion::even_rate`]; +∞ while it
+    /// does not.
+    even_since: f64,
     /// The last step's polynomials of u, a, n and the delayed elongation, and its length.
     step: Step,
 }
@@ -213,7 +217,7 @@ impl Motion {
             u,
             a,
             kink: 1,
-            stuck_since: f64::INFINITY,
+            even_since: f64::INFINITY,
             step: Step {
                 length: 0.0,
                 radius: 0.0,
@@ -226,7 +230,7 @@ impl Motion {
         };
         motion.mode = motion.mode_at(1.0);
         if motion.mode == Mode::Stick {
-            motion.stuck_since = 0.0;
+            motion.even_since = 0.0;
         }
         motion
     }
@@ -239,7 +243,7 @@ impl Motion {
         (self.t, self.u, self.a) = (0.0, 0.0, a);
         self.mode = Mode::Forwards;
         self.friction.restart(0.0);
-        self.stuck_since = f64::INFINITY;
+        self.even_since = f64::INFINITY;
         self.kink = 2;
     }
 
@@ -247,7 +251,7 @@ impl Motion {
     pub fn set_v0(&mut self, v0: f64) {
         self.parameters.v0 = v0;
         if self.mode == Mode::Stick {
-            self.stuck_since = self.t;
+            self.even_since = self.t;
         }
         self.kink = 1;
     }
@@ -256,7 +260,7 @@ impl Motion {
     pub fn set_delay(&mut self, tau: f64) {
         self.parameters.tau = tau;
         if self.mode == Mode::Stick {
-            self.stuck_since = self.t;
+            self.even_since = self.t;
         }
         self.kink = 1;
     }
@@ -281,7 +285,7 @@ impl Motion {
         self.friction.copy_place(&other.friction);
         self.mode = other.mode;
         (self.t, self.u, self.a) = (other.t, other.u, other.a);
-        (self.kink, self.stuck_since) = (other.kink, other.stuck_since);
+        (self.kink, self.even_since) = (other.kink, other.even_since);
         self.step.clone_from(&other.step);
     }
 
@@ -307,13 +311,13 @@ impl Motion {
         self.mode = Mode::Forwards;
         self.a = last.a + share * (last.a - before.a);
         (self.t, self.u) = (0.0, 0.0);
-        (self.kink, self.stuck_since) = (1, f64::INFINITY);
+        (self.kink, self.even_since) = (1, f64::INFINITY);
     }
 
     /// Makes the present t = 0, with control acting from `switch_on` on. The past stays what it is.
     pub(super) fn begin_here(&mut self, switch_on: f64) {
         self.history.shift(-self.t);
-        self.stuck_since -= self.t;
+        self.even_since -= self.t;
         self.t = 0.0;
         self.parameters.switch_on = switch_on;
         if switch_on <= 0.0 {
@@ -378,14 +382,21 @@ impl Motion {
         let until_switch = self.parameters.switch_on - self.t;
         if !controlled {
             limit = limit.min(until_switch);
+        } else if self.mode == Mode::Stick
+            && self.parameters.alpha_v != 0.0
+            && !self.sticks_evenly()
+        {
+            // What the last polynomial foresees is not held by anything while the block does not move.
+            limit = limit.min(self.parameters.tau);
         }
-        let mut free = match self.integrator {
-            Integrator::Taylor => {
+        let mut free = match (self.even_rate(), self.integrator) {
+            (Some(rate), _) if controlled && self.sticks_evenly() => self.stick_evenly(rate),
+            (_, Integrator::Taylor) => {
                 self.step.order = self.order_within(limit);
                 self.expand(controlled);
                 self.free_length()
             }
-            Integrator::Collocation => self.collocate(controlled, limit),
+            (_, Integrator::Collocation) => self.collocate(controlled, limit),
         };
         if self.step.n[0] <= 0.0 {
             self.step.length = 0.0;
@@ -416,6 +427,9 @@ impl Motion {
             event = None;
         }
         self.finish(length, radius);
+        if self.mode == Mode::Stick {
+            self.note_evenness();
+        }
         self.kink = SMOOTH;
         if let Some(crossing) = crossing {
             self.kink = crossing.kink;
@@ -445,12 +459,7 @@ impl Motion {
                 kink: SMOOTH,
             };
         }
-        if self.stuck_since + self.parameters.tau <= self.t && self.parameters.alpha_v == 0.0 {
-            // The elongation grows evenly until release, one delay ago as now.
-            let v0 = self.parameters.v0;
-            self.step.delayed.fill(0.0);
-            self.step.delayed[0] = self.a - v0 * self.parameters.tau;
-            self.step.delayed[1] = v0;
+        if self.sticks_evenly() {
             return DelayLimit {
                 length: self.longest_stick(),
                 kink: SMOOTH,
@@ -491,6 +500,49 @@ impl Motion {
             }
         }
         self.parameters.tau
+    }
+
+    /// The rate v at which the elongation of a stuck block grows evenly: v = v0 + α_v v τ. Other ways to grow die out where
+    /// α_v τ < 1; else they do not, and there is none.
+    fn even_rate(&self) -> Option<f64> {
+        let p = &self.parameters;
+        let share = p.alpha_v * p.tau;
+        (share < 1.0).then(|| p.v0 / (1.0 - share))
+    }
+
+    /// A stuck block's elongation has grown evenly for a delay, and so it goes on until release.
+    fn sticks_evenly(&self) -> bool {
+        self.even_since + self.parameters.tau <= self.t
+    }
+
+    /// Works out the coefficients of such a block, which hold without end.
+    fn stick_evenly(&mut self, rate: f64) -> f64 {
+        let Parameters { alpha_n, tau, .. } = self.parameters;
+        let step = &mut self.step;
+        for c in [&mut step.u, &mut step.a, &mut step.n, &mut step.delayed] {
+            c.fill(0.0);
+        }
+        step.order = 1;
+        (step.a[0], step.a[1]) = (self.a, rate);
+        (step.delayed[0], step.delayed[1]) = (self.a - rate * tau, rate);
+        step.n[0] = 1.0 + alpha_n * (step.a[0] - step.delayed[0]);
+        f64::INFINITY
+    }
+
+    /// Notes whether the elongation of a stuck block has grown evenly in the last step. What it may be off adds up to less than
+    /// the error of a step in a delay.
+    fn note_evenness(&mut self) {
+        let step = &self.step;
+        let even = self.even_rate().is_some_and(|rate| {
+            let share = (step.length / self.parameters.tau).min(1.0);
+            let allowed = (EVEN * self.tolerance * share).max(ROUNDING);
+            let a = &step.a[1..=step.order];
+            let off = ((a[0] - rate).abs() + spread(a, step.length)) * step.length;
+            off <= allowed * step.a[0].abs().max(self.parameters.law.mu_s())
+        });
+        if !even {
+            self.even_since = self.t;
+        }
     }
 
     /// More than the time until release of a block whose elongation has grown evenly for a delay.
@@ -689,7 +741,7 @@ impl Motion {
         match event {
             Event::Release => {
                 self.u = 0.0;
-                self.stuck_since = f64::INFINITY;
+                self.even_since = f64::INFINITY;
                 self.friction.restart(0.0);
                 self.mode = if self.a > 0.0 {
                     Mode::Forwards
@@ -704,7 +756,7 @@ impl Motion {
                 self.friction.restart(0.0);
                 self.mode = self.mode_at(n);
                 if self.mode == Mode::Stick {
-                    self.stuck_since = self.t;
+                    self.even_since = self.t;
                 }
                 if self.mode == Mode::Stick || self.mode == before {
                     Event::Stick
