@@ -335,7 +335,7 @@ const FINER: f64 = 1e-2;
 const SAME_END: f64 = 1e-5;
 
 /// The same, once more from there with a finer integration where the end is at a low v0, which it is not known at without; or where it is
-/// another one by it, if that leads to one.
+/// another one by it. An end that only the coarse one has is unclear.
 pub(super) fn climb_finely<R: Road + Clone>(
     road: &mut R,
     from: Place,
@@ -353,10 +353,12 @@ pub(super) fn climb_finely<R: Road + Clone>(
     let roughly = road.clone();
     road.refine(finer(FINER * (FAST / at.v0).powi(2).min(1.0)));
     if !ends_alike(road, &at) {
-        let (climbed, at) = climb_again(road, &at);
-        if !matches!(climbed, Climbed::Unclear) {
-            return (climbed, at);
+        let (again, finely) = climb_again(road, &at);
+        if !matches!(again, Climbed::Unclear) {
+            return (again, finely);
         }
+        *road = roughly;
+        return (again, at);
     }
     *road = roughly;
     (climbed, at)

@@ -73,8 +73,11 @@ pub(super) fn arrive(road: &mut Orbit, climbed: Climbed, at: &Place) -> Found {
 /// is away from stopping once more.
 pub(super) fn verify(problem: &Problem, road: &mut Orbit, end: Found) -> (Found, f64) {
     let beyond = match end {
+        Found::Graze(v0, period) if !holds_below(road, v0, &period) => {
+            return (Found::Unclear, 0.0);
+        }
         Found::Graze(v0, period) => beyond(problem, (v0, period.cycles()[0].slip), road),
-        Found::Vanish(v0, period) if attracts(road.motion().clone(), &period) => {
+        Found::Vanish(v0, period) if attracts(road.motion().clone(), &period, DISTURBED) => {
             without_stick(problem, v0, road)
         }
         Found::LiftOff(v0) if lifts(road, v0) => return (end, 1.0),
@@ -130,21 +133,37 @@ fn vanishes(road: &mut Orbit, v0: f64, at: &Place) -> Found {
     Found::Vanish(v0, period)
 }
 
+/// A graze ends stick-slip if its orbit attracts this far below it, relative: nearer than v_c is asked for it may not, since
+/// what the delayed slip does to the next one grows without bounds there. Disturbed by more it would be thrown over the graze.
+const BELOW_GRAZE: f64 = 1e-4;
+const DISTURBED_BELOW: f64 = 2e-5;
+/// Periods that are as good as at rest, and not asked to come nearer to one another.
+const AT_REST: f64 = 0.06;
+
+/// Whether stick-slip comes back to the orbit of a graze at `v0` just below it: one whose period has doubled goes on to a graze of its own.
+fn holds_below(road: &mut Orbit, v0: f64, period: &Period) -> bool {
+    match road.trial(v0 * (1.0 - BELOW_GRAZE), Some(period), AT_REST) {
+        Ran::Period(period, _) => attracts(road.tried().clone(), &period, DISTURBED_BELOW),
+        _ => false,
+    }
+}
+
 /// An orbit is disturbed by v0 being lower by this in one period, relative, and has so many to come back.
 const DISTURBED: f64 = 2e-4;
 const PERIODS_BACK: usize = 30;
 /// It has come back where so many in a row are nearer than this, relative to the first.
 const NEAR_IN_A_ROW: u32 = 4;
 const BACK: f64 = 0.05;
-/// Sticks do not come nearer to one another than this.
+/// Sticks do not come nearer to one another than this, nor than this share of the last ones: they are there still.
 const STICKS_NOISE: f64 = 1e-7;
+const STICKS_LEFT: f64 = 0.3;
 
 /// Whether stick-slip comes back to the orbit that a motion is on when it is disturbed: an unstable one, followed from close by, seems to
 /// be at rest as well.
-fn attracts(mut motion: Motion, period: &Period) -> bool {
+fn attracts(mut motion: Motion, period: &Period, disturbed: f64) -> bool {
     let v0 = motion.parameters().v0;
     let stick = period.cycles()[0].stick;
-    motion.set_v0(v0 * (1.0 - DISTURBED));
+    motion.set_v0(v0 * (1.0 - disturbed));
     let mut distances = (0..=PERIODS_BACK).map_while(|i| {
         let mut first = None;
         for _ in period.cycles() {
@@ -161,9 +180,10 @@ fn attracts(mut motion: Motion, period: &Period) -> bool {
     let Some(disturbed) = distances.next() else {
         return false;
     };
+    let noise = STICKS_NOISE.min(STICKS_LEFT * stick);
     let mut near = 0;
     for (period, back) in distances.enumerate() {
-        near = match back < (BACK * disturbed).max(STICKS_NOISE) {
+        near = match back < (BACK * disturbed).max(noise) {
             true => near + 1,
             false => 0,
         };
@@ -171,7 +191,7 @@ fn attracts(mut motion: Motion, period: &Period) -> bool {
             return true;
         }
         if period + 1 == PERIODS_BACK {
-            return back < (0.5 * disturbed).max(STICKS_NOISE);
+            return back < (0.5 * disturbed).max(noise);
         }
     }
     false
