@@ -266,7 +266,8 @@ fn the_roads_agree() {
 }
 
 /// Kinds of stick-slip that follow one another as v0 grows: what was there before the graze of the first one, or the
-/// doubling of its period, or where it begins to turn back, goes on as another one.
+/// doubling of its period, or where it begins to turn back, goes on as another one. Its end by two slow ramps in fixed steps
+/// (`tests/referee` is such a program), which agree on the digits given; so are those below.
 #[test]
 fn the_last_kind_of_stick_slip_counts() {
     let of = |slope: f64, alpha_v: f64, alpha_n: f64, tau: f64| {
@@ -275,14 +276,14 @@ fn the_last_kind_of_stick_slip_counts() {
     };
     for (problem, end, expected) in [
         // A graze at 0.6009, after which the block swings up to 0.53 v0 and then comes to stick again.
-        (of(-2.0, -0.5753, 0.0, 4.733), End::Grazing, 1.0013),
+        (of(-2.0, -0.5753, 0.0, 4.733), End::Grazing, 1.001322),
         // It turns back at its stops from 0.8735 on.
-        (of(-1.5842, 0.0, -3.0022, 0.0397), End::Fold, 3.0034),
-        (of(-0.8678, 0.0, -8.224, 0.03405), End::Grazing, 3.0030),
+        (of(-1.5842, 0.0, -3.0022, 0.0397), End::Fold, 3.003350),
+        (of(-0.8678, 0.0, -8.224, 0.03405), End::Grazing, 3.003046),
         // Irregular from 0.19 on, periodic again later.
-        (of(-1.3719, -0.5781, 0.0, 9.5), End::Grazing, 1.3726),
+        (of(-1.3719, -0.5781, 0.0, 9.5), End::Grazing, 1.372641),
         // Its period is doubled at last.
-        (of(-0.7522, -1.3936, 0.0, 0.5202), End::Grazing, 2.9237),
+        (of(-0.7522, -1.3936, 0.0, 0.5202), End::Grazing, 2.923537),
     ] {
         let found = critical_velocity(&problem);
         println!("{found:?}");
@@ -291,6 +292,24 @@ fn the_last_kind_of_stick_slip_counts() {
             (found.vc / expected - 1.0).abs() < 1e-4,
             "{problem:?} {found:?}"
         );
+    }
+}
+
+/// An orbit that has doubled its period, unstable, has a graze of its own above that of the doubled one; and sticks that only seem
+/// to be left by a coarse integration vanish later than those of a fine one.
+#[test]
+fn an_orbit_that_does_not_attract_is_not_followed_to_its_end() {
+    let stribeck =
+        FrictionLaw::stribeck(0.7669341039205579, 0.04073341361763523, 1.0689229373059184);
+    let weakening =
+        FrictionLaw::weakening(0.6476693553992492, 0.02161337816929156, 0.7225992620999885);
+    for (law, alpha_n, tau, vc) in [
+        (stribeck, -1.555856252194365, 0.42221809424097784, 0.1626753),
+        (weakening, 0.3206748481190808, 0.422289426655718, 5.712777),
+    ] {
+        let found = critical_velocity(&problem(law.unwrap(), 0.0, alpha_n, tau));
+        assert!(found.decided, "{found:?}");
+        assert!((found.vc / vc - 1.0).abs() < 2e-5, "{found:?} {vc}");
     }
 }
 
@@ -432,7 +451,7 @@ fn ends_that_open_below_a_branch_are_found() {
 #[test]
 fn an_end_soon_after_irregular_stick_slip_is_found() {
     let law = FrictionLaw::weakening(0.5, 0.296875, 1.0).unwrap();
-    for (tau, end) in [(155, 0.2816683), (156, 0.2746766), (157, 0.2681374)] {
+    for (tau, end) in [(155, 0.2816684), (156, 0.2746768), (157, 0.2681374)] {
         let tau = 1.0 + 4.0 * f64::from(tau) / 199.0;
         let alone = critical_velocity(&problem(law.clone(), -0.3745728643216081, 0.0, tau));
         assert!(
@@ -449,11 +468,8 @@ fn what_changes_along_a_line_is_looked_beyond() {
     let one = problem(law, -1.0 + 0.98 * 128.0 / 199.0, 0.0, 1.0);
     let problems = along(&one, (128..200).map(|i| 1.0 + 4.0 * f64::from(i) / 199.0));
     let found = critical_velocities(&problems, || false)[147 - 128].unwrap();
-    let simulated = simulated(&problems[147 - 128]);
-    assert!(
-        found.decided && found.ends_like(&simulated),
-        "{found:?} {simulated:?}"
-    );
+    let off = (found.vc / 0.2509637 - 1.0).abs();
+    assert!(found.decided && off < 1e-4, "{found:?}");
 }
 
 /// Stick-slip doubles its period just below its end, and the orbit is lost there.
@@ -461,8 +477,8 @@ fn what_changes_along_a_line_is_looked_beyond() {
 fn an_orbit_that_is_lost_just_below_its_end_is_not_thrown_off() {
     let law = FrictionLaw::weakening(0.5, 0.5 / (2.0 - 1.5 * 3.0 / 19.0), 1.0).unwrap();
     for (alpha_n, tau, end) in [
-        (-4.054271356783919, 0.9652926, 0.1508455),
-        (-2.631155778894472, 1.1888074, 0.2553216),
+        (-4.054271356783919, 0.9652926, 0.1508457),
+        (-2.631155778894472, 1.1888074, 0.2553220),
     ] {
         let alone = critical_velocity(&problem(law.clone(), 0.0, alpha_n, tau));
         assert!(
@@ -476,13 +492,9 @@ fn an_orbit_that_is_lost_just_below_its_end_is_not_thrown_off() {
 #[test]
 fn ends_are_checked_by_a_finer_integration() {
     let law = FrictionLaw::stribeck(0.4244, 0.304, 1.0).unwrap();
-    let problem = problem(law, -0.8625, 0.0, 0.233);
-    let (found, simulated) = (critical_velocity(&problem), simulated(&problem));
+    let found = critical_velocity(&problem(law, -0.8625, 0.0, 0.233));
     assert!(found.method == Method::GrazeOrbit && found.decided);
-    assert!(
-        (found.vc / simulated.vc - 1.0).abs() < 5e-5,
-        "{found:?} {simulated:?}"
-    );
+    assert!((found.vc / 6.287593 - 1.0).abs() < 5e-5, "{found:?}");
 }
 
 /// Simulation that tells another end by other steps of v0 or a finer integration decides nothing.
@@ -514,7 +526,8 @@ fn kinds_that_end_alike_are_told_apart() {
 }
 
 /// Without control Coulomb friction keeps stick-slip at any v0. Under weakening friction the swing of a slip grows: from
-/// some v0 on the block slips backwards where it stuck, sticks become shorter, and at a finite v0 none is left.
+/// some v0 on the block slips backwards where it stuck, sticks become shorter, and at a finite v0 none is left: that one by SciPy's
+/// DOP853 from event to event.
 #[test]
 fn uncontrolled_stick_slip() {
     let coulomb = problem(FrictionLaw::coulomb(0.6, 1.0).unwrap(), 0.0, 0.0, 1.0);
@@ -523,6 +536,8 @@ fn uncontrolled_stick_slip() {
     let weakening = letters(0.0, 0.0, 1.0);
     let [fast, slow] = [critical_velocity(&weakening), simulated(&weakening)];
     assert!(fast.decided && slow.decided, "{fast:?} {slow:?}");
-    assert!((fast.vc / slow.vc - 1.0).abs() < 1e-4, "{fast:?} {slow:?}");
+    for found in [fast, slow] {
+        assert!((found.vc / 4.14138767 - 1.0).abs() < 1e-4, "{found:?}");
+    }
     assert!(fast.stick_time < 1e-5 && fast.slip_time > 6.0, "{fast:?}");
 }

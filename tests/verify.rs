@@ -10,7 +10,7 @@ use std::str::FromStr;
 
 use map::edit;
 use program::{Folder, expect, out};
-use slipmap::linear::status::{MARGINAL, NOT_CONVERGED};
+use slipmap::linear::status::{DISAGREE, MARGINAL, NOT_CONVERGED};
 use slipmap::store::MapFile;
 use slipmap::store::map_check::{Effort, check};
 use slipmap::sweep::second_look::{Answer, Question, Stored, second_look};
@@ -23,6 +23,8 @@ const VC: &str = "fields = [\"n_unstable\", \"vc\", \"outcome\", \"v_liftoff\"]\
                   [fixed]\nv0 = 0.2\nnormal_load = 2\n[friction]\nlaw = \"weakening\"\nmu0 = 0.5\nv_s = 0.5\n";
 const OUTCOME: &str = "fields = [\"outcome\"]\n[axes]\ntau = [0.5, 1.5, 2.5]\n[fixed]\nv0 = 0.2\nalpha_n = -2\nx_dot0 = 0\n\
                        [friction]\nlaw = \"weakening\"\nmu0 = 0.5\nv_s = 0.5\n";
+const SWITCH_ON: &str = "protocol = \"switch-on\"\nfields = [\"vc\", \"outcome\"]\n[axes]\ntau = [0.4, 0.5]\nalpha_n = [-10]\n\
+                         [friction]\nlaw = \"weakening\"\nmu0 = 0.5\nv_s = 0.5\n";
 const LIMIT: &str = "protocol = \"limit\"\nfields = [\"vc_over_vtilde\"]\n[axes]\ngamma = { from = 0.1, to = 0.9, points = 10 }\n\
                      [fixed]\nmu_ratio = 0.5\n";
 
@@ -38,6 +40,10 @@ fn sound_maps_pass() {
             ],
         ),
         (OUTCOME, &["outcome, by collocation 3 agree, 0 differ"]),
+        (
+            SWITCH_ON,
+            &["vc of switch-on, by collocation below and above it 2 agree, 0 differ"],
+        ),
         (LIMIT, &[]),
     ] {
         let folder = Folder::with(&[("map.toml", text)]);
@@ -200,6 +206,7 @@ fn wrong_values_are_seen_by_second_methods() {
             Question::CriticalVelocity,
             NOT_CONVERGED,
         ),
+        (SWITCH_ON, Field::Vc, 0.02, Question::SwitchOn, DISAGREE),
         (
             OUTCOME,
             Field::Outcome,

@@ -4,6 +4,7 @@ use super::field::{Field, number_of_end};
 use super::parameter::Setting;
 use super::plan::Plan;
 use super::vc::{self, Protocol};
+use crate::critical::switch_on::{Phase, Survival};
 use crate::critical::{Critical, End, Method};
 use crate::linear::certificate::roots_right_of;
 use crate::linear::status::{DISAGREE, MARGINAL, NOT_CONVERGED, SATURATED};
@@ -31,15 +32,18 @@ pub enum Question {
     Outcome,
     /// The critical velocity, by simulation with collocation and steps of v0 of its own.
     CriticalVelocity,
+    /// That of switching on: what becomes of stick-slip just below and just above it, by collocation.
+    SwitchOn,
 }
 
 impl Question {
     /// All.
-    pub const ALL: [Self; 4] = [
+    pub const ALL: [Self; 5] = [
         Self::Count,
         Self::Abscissa,
         Self::Outcome,
         Self::CriticalVelocity,
+        Self::SwitchOn,
     ];
 
     /// In words: what is compared with what.
@@ -50,6 +54,7 @@ impl Question {
             Self::Abscissa => "abscissa, by the argument principle",
             Self::Outcome => "outcome, by collocation",
             Self::CriticalVelocity => "vc, by simulation with collocation",
+            Self::SwitchOn => "vc of switch-on, by collocation below and above it",
         }
     }
 }
@@ -90,15 +95,22 @@ pub fn second_look(
     if plan.spec.follows_motions() && holds(Field::Outcome) {
         answers.push((Question::Outcome, outcome(plan, &setting, stored)?));
     }
-    let follows = plan
-        .spec
-        .critical
-        .is_some_and(|search| search.protocol == Protocol::Follow);
-    if follows && holds(Field::Vc) && holds(Field::Outcome) {
-        answers.push((
-            Question::CriticalVelocity,
-            critical_velocity(&setting, stored, holds(Field::VLiftoff))?,
-        ));
+    if let Some(search) = plan.spec.critical
+        && holds(Field::Vc)
+        && holds(Field::Outcome)
+    {
+        let (question, answer) = match search.protocol.at(&setting) {
+            Protocol::Follow => {
+                let holds_liftoff = holds(Field::VLiftoff);
+                let answer = critical_velocity(&setting, stored, holds_liftoff)?;
+                (Question::CriticalVelocity, answer)
+            }
+            Protocol::SwitchOn(phase) => {
+                let answer = switched_on(&setting, stored, phase)?;
+                (Question::SwitchOn, answer)
+            }
+        };
+        answers.push((question, answer));
     }
     Ok(answers)
 }
@@ -137,9 +149,8 @@ fn abscissa(groups: Groups, (tau, unit): (f64, f64), stored: &Stored) -> Answer 
     }
 }
 
-/// The error allowed in a step of collocation at least, and how many times as many steps it takes.
+/// The error allowed in a step of collocation at least.
 const SECOND_TOLERANCE: f64 = 1e-11;
-const MORE_STEPS: u64 = 100;
 
 fn outcome(plan: &Plan, setting: &Setting, stored: &Stored) -> Result<Answer, ModelError> {
     let number = (stored.value)(Field::Outcome);
@@ -156,7 +167,7 @@ fn outcome(plan: &Plan, setting: &Setting, stored: &Stored) -> Result<Answer, Mo
             tolerance: case.accuracy.tolerance.max(SECOND_TOLERANCE),
             ..case.accuracy
         },
-        steps: case.steps.saturating_mul(MORE_STEPS),
+        steps: case.steps.saturating_mul(vc::MORE_STEPS),
         ..case
     };
     let followed = case.motion().and_then(|mut motion| {
@@ -205,4 +216,26 @@ fn critical_velocity(
     Ok(told(vc::simulation_agrees(
         &problem, &units, &found, integrator,
     )))
+}
+
+/// How far from an edge stick-slip is switched on, relative.
+const BESIDE: f64 = 1e-4;
+
+/// Whether stick-slip survives switching on just below the critical velocity and not just above it. The worst of many phases
+/// is left open: it would take as many motions.
+fn switched_on(setting: &Setting, stored: &Stored, phase: Phase) -> Result<Answer, ModelError> {
+    let vc = (stored.value)(Field::Vc);
+    let lost = f64::from(number_of_end(End::Lost));
+    let told_here = stored.status & (NOT_CONVERGED | DISAGREE) == 0;
+    if !told_here || matches!(phase, Phase::Worst(_)) || (stored.value)(Field::Outcome) != lost {
+        return Ok(Answer::Open);
+    }
+    let (problem, units) = vc::problem(setting)?;
+    let integrator = Integrator::Collocation;
+    let [below, above] = vc::survives_beside(&problem, &units, (vc, BESIDE), phase, integrator);
+    Ok(match (below, above) {
+        (Survival::Irregular | Survival::Undecided, _) => Answer::Open,
+        (_, Survival::Irregular | Survival::Undecided) => Answer::Open,
+        _ => told(below.survives() && !above.survives()),
+    })
 }

@@ -17,6 +17,9 @@ pub const PHASES: u32 = 32;
 /// Error allowed in a step where control is switched on.
 const SWITCH_ON_ACCURACY: f64 = 1e-9;
 
+/// How many times as many steps a motion may take by collocation.
+pub const MORE_STEPS: u64 = 100;
+
 /// Which question is asked.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Protocol {
@@ -36,6 +39,17 @@ impl Protocol {
         match self {
             Self::Follow => Self::NAMES[0],
             Self::SwitchOn(_) => Self::NAMES[1],
+        }
+    }
+
+    /// That of a setting, which may have a phase of its own.
+    #[must_use]
+    pub fn at(self, setting: &Setting) -> Self {
+        match (self, setting.get(Parameter::SwitchOnPhase)) {
+            (Self::SwitchOn(Phase::After(_)), phase) if !phase.is_nan() => {
+                Self::SwitchOn(Phase::After(phase))
+            }
+            (protocol, _) => protocol,
         }
     }
 
@@ -133,6 +147,27 @@ pub fn find_in(problem: &Problem, units: &CaseUnits, protocol: Protocol) -> Foun
             switched_on(windows, v_max, units.velocity)
         }
     }
+}
+
+/// What becomes of stick-slip that is switched on at `phase`, in units of the setting, at velocities beside `vc`: lower and higher by
+/// this share of it.
+#[must_use]
+pub fn survives_beside(
+    problem: &Problem,
+    units: &CaseUnits,
+    (vc, beside): (f64, f64),
+    phase: Phase,
+    integrator: Integrator,
+) -> [Survival; 2] {
+    let accuracy = Accuracy {
+        integrator,
+        ..Accuracy::of(SWITCH_ON_ACCURACY)
+    };
+    let phase = in_motion_units(phase, units);
+    let steps = MORE_STEPS * Scan::default().steps;
+    let mut trials = Trials::new(problem, phase, accuracy, steps);
+    let speed = vc / units.velocity;
+    [1.0 - beside, 1.0 + beside].map(|share| trials.at(share * speed))
 }
 
 /// The critical velocities of a block of a line by the protocol `follow`, see [`line::critical_velocities`].

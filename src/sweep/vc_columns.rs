@@ -11,7 +11,6 @@ use super::vc::{self, Class, Found, Protocol, Search};
 use super::worker::{FEW_FILL, TileBuffers};
 use crate::critical::Problem;
 use crate::critical::line::BLOCK;
-use crate::critical::switch_on::Phase;
 use crate::linear::MarginalTolerance;
 use crate::linear::status::{DISAGREE, NOT_CONVERGED, SAMPLED};
 use crate::model::ModelError;
@@ -176,12 +175,7 @@ impl VcColumns {
     /// The cell at `setting`, the `i`-th of its line and the `number`-th of the map.
     fn cell(&mut self, setting: &Setting, i: usize, number: u64) -> Result<Cell<'_>, ModelError> {
         let (problem, units) = vc::problem(setting)?;
-        let protocol = match (self.search.protocol, setting.get(Parameter::SwitchOnPhase)) {
-            (Protocol::SwitchOn(Phase::After(_)), phase) if !phase.is_nan() => {
-                Protocol::SwitchOn(Phase::After(phase))
-            }
-            (protocol, _) => protocol,
-        };
+        let protocol = self.search.protocol.at(setting);
         let v0 = setting.get(Parameter::V0);
         let (tolerance, classed, smooth) = (self.tolerance, self.classed, self.smooth);
         let sampled = is_sampled(number, self.search.verify);

@@ -1,0 +1,100 @@
+#!/usr/bin/env python3
+"""Runs two programs on sweeps and compares their maps, dataset by dataset, byte by byte.
+
+    compare_maps.py OLD NEW [SWEEP.toml …]
+
+OLD and NEW are slipmap programs; without sweeps all of sweeps/ are run. Needs h5py (scripts/requirements-readers.txt).
+Prints for every sweep which datasets differ, in how many values and by how much; the exit code is 1 where one does.
+"""
+
+import argparse
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
+import h5py
+import numpy as np
+
+SWEEPS = Path(__file__).resolve().parent.parent / "sweeps"
+
+
+def is_sweep(path: Path) -> bool:
+    """A case file has a motion's start and trace, and no axes."""
+    return "[axes]" in path.read_text(encoding="utf-8")
+
+
+def run(program: Path, sweep: Path, folder: Path) -> Path:
+    """The map of a sweep, in a folder of its own."""
+    folder.mkdir()
+    copy = folder / sweep.name
+    copy.write_bytes(sweep.read_bytes())
+    subprocess.run(
+        [program.resolve(), "run", copy.name],
+        cwd=folder, check=True, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL,
+    )
+    return next(folder.glob("*.h5"))
+
+
+def datasets(path: Path) -> dict[str, np.ndarray]:
+    """All datasets of a map by their names."""
+    found = {}
+    with h5py.File(path) as file:
+        file.visititems(
+            lambda name, node: found.update({name: node[()]}) if isinstance(node, h5py.Dataset) else None
+        )
+    return found
+
+
+def difference(old: np.ndarray, new: np.ndarray) -> str | None:
+    """What differs between two datasets, in words; None where nothing does."""
+    if old.shape != new.shape or old.dtype != new.dtype:
+        return f"{old.dtype} {old.shape} became {new.dtype} {new.shape}"
+    if old.tobytes() == new.tobytes():
+        return None
+    if old.dtype.kind not in "iuf":
+        return "other contents"
+    same = (old == new) | ((old != old) & (new != new))
+    text = f"{np.count_nonzero(~same)} of {same.size} differ"
+    if old.dtype.kind == "f":
+        with np.errstate(all="ignore"):
+            off = np.abs(new / old - 1.0)[~same]
+        off = off[np.isfinite(off)]
+        if off.size:
+            text += f", those with values by {np.median(off):.1e} in the median, {off.max():.1e} at most, relative"
+            text += f", {np.count_nonzero(off > 1e-4)} by more than 1e-4"
+    return text
+
+
+def compare(old: Path, new: Path) -> list[str]:
+    """What differs between two maps, a line for each dataset."""
+    before, after = datasets(old), datasets(new)
+    lines = [f"{name} is only in one" for name in sorted(before.keys() ^ after.keys())]
+    for name in sorted(before.keys() & after.keys()):
+        found = difference(before[name], after[name])
+        if found:
+            lines.append(f"{name}: {found}")
+    return lines
+
+
+def main() -> int:
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("old", type=Path)
+    parser.add_argument("new", type=Path)
+    parser.add_argument("sweeps", type=Path, nargs="*")
+    given = parser.parse_args()
+    sweeps = given.sweeps or [path for path in sorted(SWEEPS.glob("*.toml")) if is_sweep(path)]
+    changed = 0
+    for sweep in sweeps:
+        with tempfile.TemporaryDirectory() as folder:
+            maps = [run(p, sweep, Path(folder) / n) for p, n in ((given.old, "old"), (given.new, "new"))]
+            lines = compare(*maps)
+        changed += bool(lines)
+        print(f"{sweep.name}: {'same' if not lines else ''}", flush=True)
+        for line in lines:
+            print(f"  {line}", flush=True)
+    return 1 if changed else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
