@@ -20,7 +20,7 @@ use std::time::{Duration, Instant};
 use map::datasets;
 use program::{Folder, expect, out};
 use slipmap::store::assembly::Missing;
-use slipmap::store::map_maker::{Job, make, make_in_memory, make_shard, merge};
+use slipmap::store::map_maker::{Job, Merge, make, make_in_memory, make_shard, merge};
 use slipmap::store::map_writer::Provenance;
 use slipmap::store::tiles::shards;
 use slipmap::sweep::events::Silent;
@@ -216,15 +216,14 @@ fn threads_shards_and_order_make_no_difference() {
         .map(|(_, path)| path)
         .collect();
     assert_eq!(folders.len(), 7);
-    merge(
-        &plan,
-        &folders,
-        &map,
-        &provenance,
-        (Missing::Refuse, false),
-        &Silent,
-    )
-    .unwrap();
+    let asked = Merge {
+        folders: &folders,
+        map: &map,
+        missing: Missing::Refuse,
+        replace_complete: false,
+        remove_beside: Some(&map),
+    };
+    merge(&plan, &asked, &provenance, &Silent).unwrap();
     assert!(std::fs::read(&map).unwrap() == expected, "7 shards");
 }
 
@@ -456,15 +455,14 @@ fn damaged_tiles_are_noticed_and_computed_again() {
     }
     println!("{tried} files damaged, {noticed} noticed");
     assert_eq!(noticed, tried);
-    merge(
-        &plan,
-        &folders,
-        &map,
-        &provenance,
-        (Missing::Refuse, false),
-        &Silent,
-    )
-    .unwrap();
+    let asked = Merge {
+        folders: &folders,
+        map: &map,
+        missing: Missing::Refuse,
+        replace_complete: false,
+        remove_beside: Some(&map),
+    };
+    merge(&plan, &asked, &provenance, &Silent).unwrap();
     assert!(std::fs::read(&map).unwrap() == expected);
 }
 
@@ -854,4 +852,121 @@ fn shards_by_the_program() {
         let args = ["run", "night.toml", "--shard", bad];
         expect(&folder.run(&args), 2, "expected I/N with I from 1 to N");
     }
+}
+
+/// The state in which a kill leaves a merge that was removing its shards: the map is complete, some shards have gone.
+#[test]
+fn a_merge_that_was_killed_while_it_cleaned_up_is_complete() {
+    let _alone = alone();
+    let (folder, _) = uninterrupted();
+    let (map, tiles) = (
+        folder.path().join("night.h5"),
+        folder.path().join("night.h5.tiles"),
+    );
+    for shard in ["1/3", "2/3", "3/3"] {
+        let args = ["run", "night.toml", "--shard", shard];
+        expect(&folder.run(&args), 0, "is complete; when all are");
+    }
+    let kept = folder.path().join("kept");
+    std::fs::create_dir(&kept).unwrap();
+    for shard in ["2-of-3", "3-of-3"] {
+        copy(&tiles.join(shard), &kept.join(shard));
+    }
+    expect(&folder.run(&["merge", "night.h5"]), 0, "388 800 cells");
+    let complete = std::fs::read(&map).unwrap();
+    let killed = |marked: bool| {
+        std::fs::create_dir(&tiles).unwrap();
+        for shard in ["2-of-3", "3-of-3"] {
+            copy(&kept.join(shard), &tiles.join(shard));
+        }
+        if marked {
+            std::fs::write(tiles.join("merged"), "").unwrap();
+        }
+    };
+    for command in [
+        &["merge", "night.h5"][..],
+        &["run", "night.toml", "--shard", "1/3"],
+    ] {
+        killed(true);
+        expect(&folder.run(command), 0, "already complete");
+        assert!(!tiles.exists() && std::fs::read(&map).unwrap() == complete);
+    }
+    // Without the mark the shards are those of a map that is being computed again; the complete one stays all the same.
+    killed(false);
+    expect(
+        &folder.run(&["merge", "night.h5", "--partial"]),
+        2,
+        "is complete, and",
+    );
+    assert!(std::fs::read(&map).unwrap() == complete);
+    // The map has gone since: what is left of the shards counts, and the others are to be computed again.
+    std::fs::write(tiles.join("merged"), "").unwrap();
+    std::fs::remove_file(&map).unwrap();
+    expect(
+        &folder.run(&["merge", "night.h5"]),
+        1,
+        "run these shards again: 1/3",
+    );
+    let args = ["run", "night.toml", "--shard", "1/3"];
+    expect(&folder.run(&args), 0, "is complete; when all are");
+    expect(&folder.run(&["merge", "night.h5"]), 0, "388 800 cells");
+    assert_eq!(datasets(&map), datasets(&folder.path().join("whole.h5")));
+}
+
+/// What does not belong among tiles is neither followed nor read.
+#[cfg(unix)]
+#[test]
+fn links_and_pipes_in_the_place_of_tiles_are_refused() {
+    let _alone = alone();
+    let folder = Folder::with(&[("night.toml", NIGHT), ("precious.txt", "precious")]);
+    let shard = ["run", "night.toml", "--shard", "1/3"];
+    expect(&folder.run(&shard), 0, "is complete; when all are");
+    let tiles = folder.path().join("night.h5.tiles/1-of-3");
+    let precious = folder.path().join("precious.txt");
+    let file = tile_files(&folder.path().join("night.h5")).remove(0);
+    for (name, what) in [
+        ("tiles-0000009999.bin", "link"),
+        (".tiles-0000009999.bin.part", "link"),
+        ("tiles-0000009999.bin", "pipe"),
+        ("tiles-0000009999.bin", "/dev/zero"),
+    ] {
+        let place = tiles.join(name);
+        match what {
+            "link" => std::os::unix::fs::symlink(&precious, &place).unwrap(),
+            "pipe" => {
+                let made = std::process::Command::new("mkfifo").arg(&place).status();
+                assert!(made.unwrap().success());
+            }
+            device => std::os::unix::fs::symlink(device, &place).unwrap(),
+        }
+        let refused = "stands where the tiles go and is not by slipmap";
+        expect(&folder.run(&shard), 2, refused);
+        std::fs::remove_file(&place).unwrap();
+        assert_eq!(std::fs::read_to_string(&precious).unwrap(), "precious");
+    }
+    let manifest = tiles.join("manifest.json");
+    std::fs::remove_file(&manifest).unwrap();
+    std::os::unix::fs::symlink("/dev/zero", &manifest).unwrap();
+    expect(&folder.run(&shard), 2, "is not by slipmap");
+    expect(&folder.run(&["status", "night.h5"]), 2, "is not by slipmap");
+    assert!(file.exists());
+}
+
+/// A whole run and shards of one map do not work side by side; a hang-up stops a run in order, unless it was ignored.
+#[cfg(unix)]
+#[test]
+fn a_hang_up_stops_a_run_unless_it_is_ignored() {
+    let _alone = alone();
+    let folder = Folder::with(&[("large.toml", LARGE)]);
+    let map = folder.path().join("large.h5");
+    let child = start(&folder, &["run", "large.toml", "--save-every", "0.1"]);
+    wait_for("tile file", || !tile_files(&map).is_empty());
+    send("-HUP", &child);
+    let ended = child.wait_with_output().unwrap();
+    expect(&ended, 129, "interrupted: large.h5 is not complete");
+    expect(
+        &folder.run(&["run", "large.toml", "--shard", "1/2"]),
+        2,
+        "holds what a run of the whole map has computed",
+    );
 }

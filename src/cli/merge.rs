@@ -5,9 +5,10 @@ use std::path::{Path, PathBuf};
 use slipmap::report::log::{Both, Log};
 use slipmap::report::numbers::{bytes, grouped};
 use slipmap::report::progress::Progress;
+use slipmap::store::StoreError;
 use slipmap::store::assembly::{Assembled, Missing};
+use slipmap::store::map_maker::{self, Merge};
 use slipmap::store::tiles::shards;
-use slipmap::store::{MapFile, StoreError, map_maker};
 use slipmap::sweep::{Plan, Shard};
 
 use super::failure::Failure;
@@ -35,6 +36,7 @@ pub struct Args {
 
 pub fn main(args: &Args) -> Result<(), Failure> {
     let target = args.output.as_ref().unwrap_or(&args.map);
+    shards::settle(&args.map, map_maker::is_complete(target))?;
     let folders = folders(args)?;
     if folders.is_empty() {
         return nothing_to_merge(args, target);
@@ -56,18 +58,15 @@ pub fn main(args: &Args) -> Result<(), Failure> {
     };
     // What was computed elsewhere belongs to whoever brought it.
     let keep = args.partial || !args.folders.is_empty();
-    let merged = map_maker::merge(
-        &plan,
-        &folders,
-        target,
-        &provenance,
-        (missing, keep),
-        &observer,
-    );
+    let asked = Merge {
+        folders: &folders,
+        map: target,
+        missing,
+        replace_complete: args.fresh,
+        remove_beside: (!keep).then_some(&*args.map),
+    };
+    let merged = map_maker::merge(&plan, &asked, &provenance, &observer);
     let assembled = merged.map_err(|error| failure(error, &args.map))?;
-    if assembled.pieces_missing == 0 && !keep {
-        shards::remove_root(&args.map)?;
-    }
     tell(target, &plan, &assembled)?;
     run::show(target, false);
     Ok(())
@@ -90,7 +89,7 @@ fn folders(args: &Args) -> Result<Vec<PathBuf>, Failure> {
 
 /// An error, unless the shards are gone because their map is complete: a merge that is run again has nothing to do.
 fn nothing_to_merge(args: &Args, target: &Path) -> Result<(), Failure> {
-    if !args.fresh && MapFile::open(target).is_ok_and(|map| !map.is_partial()) {
+    if !args.fresh && map_maker::is_complete(target) {
         return say::result(format_args!("{} is already complete", target.display()));
     }
     Err(Failure::bad_input_with_help(
@@ -117,9 +116,14 @@ fn tell(target: &Path, plan: &Plan, assembled: &Assembled) -> Result<(), Failure
 }
 
 fn failure(error: StoreError, map: &Path) -> Failure {
-    let StoreError::Incomplete { .. } = error else {
-        return error.into();
-    };
+    match error {
+        StoreError::Incomplete { .. } => {}
+        StoreError::WouldLose { .. } => {
+            let help = "--fresh replaces it all the same; -o writes elsewhere";
+            return Failure::bad_input_with_help(error.to_string(), help);
+        }
+        _ => return error.into(),
+    }
     let mut unfinished = Vec::new();
     if let Ok(Some(survey)) = slipmap::store::tiles::Survey::of(map) {
         let short = survey.shards.iter().filter(|s| s.pieces_done < s.pieces);

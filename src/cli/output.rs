@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 use std::time::SystemTime;
 
-use slipmap::report::numbers::grouped;
+use slipmap::report::numbers::{grouped, representable};
 use slipmap::store::assembly::Assembled;
 use slipmap::store::map_writer::Provenance;
 
@@ -21,7 +21,8 @@ pub fn output_path(given: Option<&Path>, input: &Path, kind: &str) -> Result<Pat
             PathBuf::from(name)
         }
     };
-    if path.file_name().is_none() {
+    let is_folder = path.as_os_str().as_encoded_bytes().ends_with(b"/");
+    if is_folder || path.file_name().is_none() {
         return Err(Failure::bad_input(format!(
             "--output {} does not name a file",
             path.display()
@@ -42,7 +43,7 @@ pub fn output_path(given: Option<&Path>, input: &Path, kind: &str) -> Result<Pat
 
 /// This program, now, running `command` on `input`.
 pub fn provenance(command: &str, input: &Path) -> Provenance {
-    let now = humantime::format_rfc3339_seconds(SystemTime::now());
+    let now = humantime::format_rfc3339_seconds(representable(SystemTime::now()));
     Provenance {
         program_version: env!("CARGO_PKG_VERSION").into(),
         git_revision: env!("SLIPMAP_GIT_REVISION").into(),

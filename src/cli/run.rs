@@ -81,6 +81,7 @@ pub fn default_threads() -> usize {
 pub fn main(args: &Args) -> Result<(), Failure> {
     let plan = read_plan(&args.sweep)?;
     let path = output_path(args.output.as_deref(), &args.sweep, "map")?;
+    shards::settle(&path, map_maker::is_complete(&path))?;
     if let Some(remark) = already_there(&path, &plan, args.fresh)? {
         drop(shards::remove_root(&path));
         if !plot::beside(&path).exists() {
@@ -116,6 +117,16 @@ pub fn main(args: &Args) -> Result<(), Failure> {
     }
 }
 
+/// Whether this process was started with a signal ignored.
+fn is_ignored(signal: libc::c_int) -> bool {
+    let mut action = std::mem::MaybeUninit::<libc::sigaction>::uninit();
+    // SAFETY: with no new action sigaction only writes the present one, where it succeeds.
+    unsafe {
+        libc::sigaction(signal, std::ptr::null(), action.as_mut_ptr()) == 0
+            && action.assume_init().sa_sigaction == libc::SIG_IGN
+    }
+}
+
 type Watched<'a> = (&'a Both<'a>, &'a Signals);
 
 fn run_shard(
@@ -125,6 +136,7 @@ fn run_shard(
     (observers, signals): Watched,
     fresh: bool,
 ) -> Result<(), Failure> {
+    refuse_whole(job.map)?;
     let made = map_maker::make_shard(plan, job, shard, observers, &signals.stop);
     made.map_err(|error| failure(error, (job.map, fresh), (observers, signals)))?;
     let (number, of) = shard.numbers();
@@ -171,6 +183,21 @@ fn refuse_shards(map: &Path) -> Result<(), Failure> {
             shards::root(map).display()
         ),
         "`slipmap merge` puts them together; --fresh drops them and starts over",
+    ))
+}
+
+/// A run of the whole map is not begun a second time in shards.
+fn refuse_whole(map: &Path) -> Result<(), Failure> {
+    let others = shards::present(map)?;
+    if !others.iter().any(|(shard, _)| shard.is_whole()) {
+        return Ok(());
+    }
+    Err(Failure::bad_input_with_help(
+        format!(
+            "{} holds what a run of the whole map has computed",
+            shards::root(map).display()
+        ),
+        "the same command without --shard goes on with it; `--fresh` without --shard drops it; -o writes elsewhere",
     ))
 }
 
@@ -289,7 +316,7 @@ fn failure(
     }
 }
 
-/// SIGINT and SIGTERM as flags: the first one stops the sweep in order, a second one at once.
+/// SIGINT, SIGTERM and SIGHUP as flags: the first one stops the sweep in order, a second one at once.
 struct Signals {
     stop: Arc<AtomicBool>,
     code: Arc<AtomicUsize>,
@@ -297,7 +324,7 @@ struct Signals {
 
 impl Signals {
     fn catch() -> Result<Self, Failure> {
-        use signal_hook::consts::{SIGINT, SIGTERM};
+        use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM};
         use signal_hook::flag;
         let (stop, code) = (
             Arc::new(AtomicBool::new(false)),
@@ -307,7 +334,11 @@ impl Signals {
             let message = format!("cannot catch signals: {error}");
             Failure::failed(message)
         };
-        for (signal, exit_code) in [(SIGINT, 130), (SIGTERM, 143)] {
+        for (signal, exit_code) in [(SIGINT, 130), (SIGTERM, 143), (SIGHUP, 129)] {
+            // `nohup` has it ignored, and so it stays.
+            if signal == SIGHUP && is_ignored(signal) {
+                continue;
+            }
             flag::register_conditional_shutdown(signal, exit_code, Arc::clone(&stop))
                 .and_then(|_| flag::register_usize(signal, Arc::clone(&code), exit_code as usize))
                 .and_then(|_| flag::register(signal, Arc::clone(&stop)))

@@ -38,13 +38,13 @@ pub fn main(args: &Args) -> Result<(), Failure> {
     };
     let program = (env!("CARGO_PKG_VERSION"), env!("SLIPMAP_GIT_REVISION"));
     let report = check(&map, program, effort)?;
-    if args.json {
-        say::result(to_json(&report))?;
-    } else {
-        print(&report)?;
-    }
+    let told = match args.json {
+        true => say::result(to_json(&report)),
+        false => print(&report),
+    };
+    // Whether anybody reads on does not change what was found.
     match report.faults.len() {
-        0 => Ok(()),
+        0 => told,
         1 => Err(Failure::failed(format!("{}: 1 fault", args.map.display()))),
         n => Err(Failure::failed(format!(
             "{}: {n} faults",

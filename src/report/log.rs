@@ -8,6 +8,7 @@ use std::time::{Duration, Instant, SystemTime};
 
 use serde::{Deserialize, Serialize};
 
+use super::numbers::representable;
 use super::progress::Progress;
 use crate::sweep::{Event, Observer, Shard};
 
@@ -137,7 +138,7 @@ impl Log {
 
     fn put(&self, entry: Entry) {
         let line = Line {
-            time: humantime::format_rfc3339_millis(SystemTime::now()).to_string(),
+            time: humantime::format_rfc3339_millis(representable(SystemTime::now())).to_string(),
             entry,
         };
         let mut file = self.file.borrow_mut();

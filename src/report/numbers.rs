@@ -1,5 +1,17 @@
 //! Numbers as people read them.
 
+use std::time::{Duration, SystemTime, UNIX_EPOCH};
+
+/// The largest time that has four digits for the year, in seconds since 1970.
+const LAST_SECOND: u64 = 253_402_300_799;
+
+/// A time that can be written as text: one from 1970 to the end of 9999, whatever the clock says.
+#[must_use]
+pub fn representable(time: SystemTime) -> SystemTime {
+    let last = UNIX_EPOCH + Duration::from_secs(LAST_SECOND);
+    time.clamp(UNIX_EPOCH, last)
+}
+
 /// A count with thin groups of three: 8 658 009.
 #[must_use]
 pub fn grouped(n: u64) -> String {

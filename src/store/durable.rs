@@ -1,18 +1,18 @@
 //! Files that outlast a loss of power: written whole and synced, then given their final name.
 
 use std::fs::{self, File};
-use std::io::BufWriter;
+use std::io::{BufWriter, ErrorKind};
 use std::path::Path;
 
 use super::error::StoreError;
 
-/// Writes a new file and makes it durable.
+/// Writes a new file and makes it durable. What stands at `path`, a link that was planted there for instance, is not written to.
 pub(super) fn write_synced(
     path: &Path,
     write: impl FnOnce(&mut BufWriter<File>) -> std::io::Result<()>,
 ) -> Result<(), StoreError> {
     let written = || -> std::io::Result<()> {
-        let mut out = BufWriter::with_capacity(1 << 16, File::create(path)?);
+        let mut out = BufWriter::with_capacity(1 << 16, File::create_new(path)?);
         write(&mut out)?;
         let file = out
             .into_inner()
@@ -20,10 +20,35 @@ pub(super) fn write_synced(
         file.sync_all()
     };
     written().map_err(|error| {
-        // What is half written is of no use, and on a full disk in the way.
-        let _ = fs::remove_file(path);
+        if error.kind() != ErrorKind::AlreadyExists {
+            // What is half written is of no use, and on a full disk in the way.
+            let _ = fs::remove_file(path);
+        }
         StoreError::io("write", path)(error)
     })
+}
+
+/// All bytes of a regular file. A pipe or a device in its place is not opened: reading it might never end.
+pub(super) fn read_regular(path: &Path, most: u64) -> Result<Vec<u8>, NotRead> {
+    let found = fs::metadata(path).map_err(NotRead::Refused)?;
+    if !found.is_file() {
+        return Err(NotRead::Foreign);
+    }
+    if found.len() > most {
+        return Err(NotRead::Large(found.len()));
+    }
+    fs::read(path).map_err(NotRead::Refused)
+}
+
+/// Why a file was not read.
+#[derive(Debug)]
+pub(super) enum NotRead {
+    /// The system refused.
+    Refused(std::io::Error),
+    /// It is no regular file.
+    Foreign,
+    /// It has so many bytes.
+    Large(u64),
 }
 
 /// Makes a file or a folder durable.

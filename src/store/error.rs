@@ -90,6 +90,22 @@ pub enum StoreError {
         /// Which one.
         piece: Piece,
     },
+    /// A map that was just written does not hold what was written.
+    #[error("{} was not written as it should have been: {why}", path.display())]
+    Unsound {
+        /// The map's final name.
+        path: PathBuf,
+        /// What is wrong.
+        why: String,
+    },
+    /// A map with missing cells would take the place of a complete one.
+    #[error("{} is complete, and {pieces} pieces of what would replace it are missing", path.display())]
+    WouldLose {
+        /// The map.
+        path: PathBuf,
+        /// How many.
+        pieces: u64,
+    },
     /// It was asked to stop.
     #[error("interrupted")]
     Stopped,

@@ -2,6 +2,7 @@
 
 use std::fs::File;
 use std::io::{Read, Seek, SeekFrom};
+use std::path::Path;
 
 use hdf5::Dataset;
 use hdf5_sys::h5::HADDR_UNDEF;
@@ -75,6 +76,18 @@ pub fn check(map: &MapFile, program: (&str, &str), effort: Effort) -> Result<Rep
         compute_tiles(map, &plan, program, effort.tiles, &mut report)?;
     }
     Ok(report)
+}
+
+/// Whether a file is the sound map of `plan`, whose cells need not all be there; else what is wrong first.
+pub(super) fn as_written(path: &Path, plan: &Plan) -> Result<(), String> {
+    let map = MapFile::open(path).map_err(|error| error.to_string())?;
+    let mut report = Report::default();
+    check_schema(&map, plan, &mut report);
+    check_checksums(&map, plan, &mut report);
+    match report.faults.into_iter().next() {
+        None => Ok(()),
+        Some(fault) => Err(fault),
+    }
 }
 
 fn planned(map: &MapFile, report: &mut Report) -> Option<Plan> {

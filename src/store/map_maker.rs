@@ -7,6 +7,7 @@ use std::time::Duration;
 
 use super::assembly::{Assembled, Missing, assemble};
 use super::error::StoreError;
+use super::map_file::MapFile;
 use super::map_writer::Provenance;
 use super::output::Output;
 use super::source::InMemory;
@@ -102,28 +103,65 @@ pub fn make_shard(
     compute(plan, job, shard, &mut folder, (observer, stop))
 }
 
-/// Puts a map together from the folders of its shards. They are removed only where `keep` is not set and the map is complete.
+/// What is merged.
+#[derive(Debug, Clone, Copy)]
+pub struct Merge<'a> {
+    /// The folders of shards.
+    pub folders: &'a [PathBuf],
+    /// The map to write.
+    pub map: &'a Path,
+    /// What to do where pieces are missing.
+    pub missing: Missing,
+    /// A complete map is replaced by one that lacks pieces.
+    pub replace_complete: bool,
+    /// The map beside which the folders are, where they are to be removed once a complete one is written.
+    pub remove_beside: Option<&'a Path>,
+}
+
+/// Puts a map together from the folders of its shards.
 ///
 /// # Errors
 /// When a piece is missing and has to be there, folders do not belong together, or the system refuses.
 pub fn merge(
     plan: &Plan,
-    folders: &[PathBuf],
-    map: &Path,
+    asked: &Merge,
     provenance: &Provenance,
-    (missing, keep): (Missing, bool),
     observer: &dyn Observer,
 ) -> Result<Assembled, StoreError> {
+    let &Merge {
+        folders,
+        map,
+        missing,
+        ..
+    } = asked;
     let output = Output::claim(map)?;
     let expected = Manifest::of(plan, Shard::WHOLE, provenance);
     let (mut source, damaged) = Shards::claim(folders, &expected, Pieces::of(plan))?;
     tell(&damaged, observer);
+    let lacking = source.missing(Pieces::of(plan).total());
+    if lacking > 0 && missing == Missing::Leave && !asked.replace_complete && is_complete(map) {
+        return Err(StoreError::WouldLose {
+            path: map.to_owned(),
+            pieces: lacking,
+        });
+    }
     let how = (missing, &AtomicBool::new(false));
     let assembled = assemble(plan, output, provenance, &mut source, how)?;
-    if assembled.pieces_missing == 0 && !keep {
+    if let Some(beside) = asked
+        .remove_beside
+        .filter(|_| assembled.pieces_missing == 0)
+    {
+        shards::mark_merged(beside)?;
         source.remove()?;
+        shards::remove_root(beside)?;
     }
     Ok(assembled)
+}
+
+/// Whether a map that lacks nothing is at `path`.
+#[must_use]
+pub fn is_complete(path: &Path) -> bool {
+    MapFile::open(path).is_ok_and(|map| !map.is_partial())
 }
 
 /// Computes a map without leaving anything beside it: for small ones.

@@ -15,6 +15,7 @@ use super::codec::DEFLATE_LEVEL;
 use super::contents_hash::contents_hash;
 use super::curve_rows::{CurveRows, outer_values};
 use super::error::StoreError;
+use super::map_check::as_written;
 use super::netcdf::{DimensionId, Dimensions, named};
 use super::output::Output;
 use super::schema::{self, STATUS, root};
@@ -137,7 +138,7 @@ impl<'p> MapWriter<'p> {
             .map_err(StoreError::hdf5("write", self.output.path()))
     }
 
-    /// Closes the file, makes it durable and gives it its final name.
+    /// Closes the file, reads it back to see that it holds what was written, makes it durable and gives it its final name.
     ///
     /// # Errors
     /// When the system or the library refuses; nothing then stands under the final name that was not there before.
@@ -168,11 +169,13 @@ impl<'p> MapWriter<'p> {
         self.file
             .close()
             .map_err(StoreError::hdf5("close", &path))?;
+        as_written(self.output.part(), self.plan)
+            .map_err(|why| StoreError::Unsound { path, why })?;
         self.output.commit()
     }
 }
 
-/// A new file, with all orders kept.
+/// A new file, with all orders kept. Nothing may stand at `path`.
 pub(super) fn create_file(path: &Path) -> hdf5::Result<File> {
     hdf5::FileBuilder::new()
         .with_fcpl(|fcpl| {
@@ -180,7 +183,7 @@ pub(super) fn create_file(path: &Path) -> hdf5::Result<File> {
                 .attr_creation_order(AttrCreationOrder::Indexed)
                 .link_creation_order(LinkCreationOrder::Indexed)
         })
-        .create(path)
+        .create_excl(path)
 }
 
 type Contents = (Vec<Dataset>, Option<BoundaryWriter>, Option<BestWriter>);

@@ -68,11 +68,15 @@ impl Output {
         &self.part
     }
 
-    /// Makes the written file durable and gives it its final name, replacing what stood there.
+    /// Makes the written file durable and gives it its final name, and the permissions of what stood there, which it replaces.
     ///
     /// # Errors
     /// When the system cannot sync or rename; the temporary file is then removed.
     pub fn commit(self) -> Result<(), StoreError> {
+        if let Ok(replaced) = self.path.metadata() {
+            let mode = replaced.permissions();
+            fs::set_permissions(&self.part, mode).map_err(StoreError::io("write", &self.path))?;
+        }
         sync(&self.part)?;
         rename_synced(&self.part, &self.path)
     }

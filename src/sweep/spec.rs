@@ -138,7 +138,7 @@ impl std::str::FromStr for SweepSpec {
         for entry in entries(document.get_ref(), "") {
             draft.limit.note_key(&entry);
             match entry.key {
-                "title" => draft.title = entry.string()?.to_owned(),
+                "title" => draft.title = entry.line()?.to_owned(),
                 "protocol" if entry.string()? == Protocol::Limit.name() => {
                     draft.protocol = Some(Protocol::Limit);
                 }

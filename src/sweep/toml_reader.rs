@@ -7,6 +7,9 @@ use toml::de::{DeTable, DeValue};
 
 use crate::model::Shown;
 
+/// The most characters of a text for people.
+const LONGEST_LINE: usize = 200;
+
 /// Why a text was refused, and where.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[error("{message}")]
@@ -181,6 +184,17 @@ impl<'t> Entry<'t> {
             DeValue::String(value) => Ok(value),
             _ => Err(self.expected("a string")),
         }
+    }
+
+    /// A string that stands on one line, of no more characters than pictures have room for.
+    pub fn line(&self) -> Result<&'t str, SpecError> {
+        let text = self.string()?;
+        if text.chars().count() > LONGEST_LINE || text.chars().any(char::is_control) {
+            return Err(self.error(format!(
+                "expected one line of at most {LONGEST_LINE} characters, without control characters"
+            )));
+        }
+        Ok(text)
     }
 }
 

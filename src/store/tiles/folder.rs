@@ -252,7 +252,8 @@ fn refuse_foreign(folder: &Path) -> Result<(), StoreError> {
     let all = fs::read_dir(folder).map_err(StoreError::io("read", folder))?;
     for entry in all {
         let entry = entry.map_err(StoreError::io("read", folder))?;
-        if !entry.file_name().to_str().is_some_and(is_ours) {
+        let is_file = entry.file_type().is_ok_and(|kind| kind.is_file());
+        if !is_file || !entry.file_name().to_str().is_some_and(is_ours) {
             return Err(StoreError::Foreign { path: entry.path() });
         }
     }

@@ -1,10 +1,10 @@
 //! What a folder of tiles belongs to, as JSON; and where that differs from what is asked for.
 
-use std::fs;
 use std::path::Path;
 
 use serde::{Deserialize, Serialize};
 
+use super::super::durable::{NotRead, read_regular};
 use super::super::error::StoreError;
 use super::super::map_writer::Provenance;
 use super::super::schema;
@@ -94,13 +94,13 @@ impl Manifest {
             path: path.to_owned(),
             why,
         };
-        let size = fs::metadata(path)
-            .map_err(StoreError::io("read", path))?
-            .len();
-        if size > MOST_BYTES {
-            return Err(damaged(format!("it has {size} bytes")));
-        }
-        let bytes = fs::read(path).map_err(StoreError::io("read", path))?;
+        let bytes = read_regular(path, MOST_BYTES).map_err(|why| match why {
+            NotRead::Refused(error) => StoreError::io("read", path)(error),
+            NotRead::Foreign => StoreError::Foreign {
+                path: path.to_owned(),
+            },
+            NotRead::Large(size) => damaged(format!("it has {size} bytes")),
+        })?;
         let text = String::from_utf8(bytes).map_err(|error| damaged(error.to_string()))?;
         Self::parse(&text).map_err(damaged)
     }

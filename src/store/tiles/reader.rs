@@ -1,9 +1,10 @@
 //! The tile files of one folder, checked and read; nothing is changed.
 
-use std::fs::{self, File};
+use std::fs::File;
 use std::io::{ErrorKind, Read, Seek, SeekFrom};
 use std::path::{Path, PathBuf};
 
+use super::super::durable::{NotRead, read_regular};
 use super::super::error::StoreError;
 use super::super::source::Source;
 use super::folder::{is_tile_file, listed};
@@ -49,16 +50,17 @@ impl Checked {
                 fault: Some(fault),
             }))
         };
-        let bytes = match fs::metadata(path).map(|m| m.len()) {
-            Ok(length) if length > MOST_BYTES => return useless(format!("it has {length} bytes")),
-            Ok(_) => fs::read(path),
-            Err(error) => Err(error),
-        };
-        let bytes = match bytes {
+        let bytes = match read_regular(path, MOST_BYTES) {
             Ok(bytes) => bytes,
+            Err(NotRead::Large(length)) => return useless(format!("it has {length} bytes")),
+            Err(NotRead::Foreign) => {
+                return Err(StoreError::Foreign {
+                    path: path.to_owned(),
+                });
+            }
             // Gone since the folder was listed: its run has just put the map together.
-            Err(error) if error.kind() == ErrorKind::NotFound => return Ok(None),
-            Err(error) => return Err(StoreError::io("read", path)(error)),
+            Err(NotRead::Refused(error)) if error.kind() == ErrorKind::NotFound => return Ok(None),
+            Err(NotRead::Refused(error)) => return Err(StoreError::io("read", path)(error)),
         };
         let entries = match format::index(&bytes, layout) {
             Ok(entries) => entries,

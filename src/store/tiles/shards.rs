@@ -1,8 +1,10 @@
 //! The folders of all shards of a map.
 
+use std::collections::BTreeSet;
 use std::fs;
 use std::path::{Path, PathBuf};
 
+use super::super::durable::{sync, write_synced};
 use super::super::error::StoreError;
 use super::super::source::Source;
 use super::folder::{self, TileFolder};
@@ -24,6 +26,42 @@ pub fn root(map: &Path) -> PathBuf {
 pub fn folder_of(map: &Path, shard: Shard) -> PathBuf {
     let (number, of) = shard.numbers();
     root(map).join(format!("{number}-of-{of}"))
+}
+
+/// In the folder of shards: the map of all of them is complete, and they are being removed.
+const MERGED: &str = "merged";
+
+fn marker(map: &Path) -> PathBuf {
+    root(map).join(MERGED)
+}
+
+/// Says that the map of the shards of `map` is complete, before the first of them is removed.
+///
+/// # Errors
+/// When the system refuses.
+pub fn mark_merged(map: &Path) -> Result<(), StoreError> {
+    let path = marker(map);
+    if path.exists() {
+        return Ok(());
+    }
+    write_synced(&path, |_| Ok(()))?;
+    sync(&root(map))
+}
+
+/// Goes on with a removal of shards that was stopped midway. Where `is_complete` is false, the map of these shards has gone since: those that are
+/// left then count as any.
+///
+/// # Errors
+/// As [`clear`].
+pub fn settle(map: &Path, is_complete: bool) -> Result<(), StoreError> {
+    let path = marker(map);
+    if !path.exists() {
+        return Ok(());
+    }
+    if is_complete {
+        return clear(map);
+    }
+    fs::remove_file(&path).map_err(StoreError::io("remove", &path))
 }
 
 fn shard_of(name: &str) -> Option<Shard> {
@@ -125,7 +163,8 @@ pub fn make_root(map: &Path) -> Result<(), StoreError> {
     if !root.symlink_metadata().is_ok_and(|m| m.is_dir()) {
         return foreign(root);
     }
-    match folder::listed(&root, |name| shard_of(name).is_none())?.pop() {
+    let foreign_name = |name: &str| name != MERGED && shard_of(name).is_none();
+    match folder::listed(&root, foreign_name)?.pop() {
         Some(path) => foreign(path),
         None => Ok(()),
     }
@@ -144,6 +183,10 @@ pub fn remove_root(map: &Path) -> Result<(), StoreError> {
         if folder::is_bare(&path) {
             folder::clear(&path)?;
         }
+    }
+    let marker = marker(map);
+    if marker.exists() && all(map)?.is_empty() {
+        fs::remove_file(&marker).map_err(StoreError::io("remove", &marker))?;
     }
     fs::remove_dir(&root).map_err(StoreError::io("remove", &root))
 }
@@ -173,6 +216,13 @@ impl Shards {
             all.extend(damaged);
         }
         Ok((Self { folders }, all))
+    }
+
+    /// How many of `total` pieces are in none of them.
+    #[must_use]
+    pub fn missing(&self, total: u64) -> u64 {
+        let done: BTreeSet<Piece> = self.folders.iter().flat_map(TileFolder::done).collect();
+        total.saturating_sub(done.len() as u64)
     }
 
     /// Removes them.
