@@ -334,7 +334,7 @@ const FAST: f64 = 1.0;
 const FINER: f64 = 1e-2;
 const SAME_END: f64 = 1e-5;
 
-/// The same, once more from there with a finer integration where the end is at a low v0, which it is not known at without; or where it is
+/// Raises v0 as [`climb`] does, and once more from there with a finer integration where the end is at a low v0, which it is not known at without; or where it is
 /// another one by it. An end that only the coarse one has is unclear.
 pub(super) fn climb_finely<R: Road + Clone>(
     road: &mut R,

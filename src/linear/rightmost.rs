@@ -128,8 +128,10 @@ mod tests {
                 .filter(|r| near(r))
                 .map(Root::count)
                 .sum();
+            // Where it is cut off, four others lie right of it.
+            let cut_off = found.roots.len() == 4 && found.roots[3].lambda.re > mu - 1e-5;
             assert!(
-                first.lambda.re >= mu - 1e-5 && (twice >= 2 || found.roots.len() == 4),
+                first.lambda.re >= mu - 1e-5 && (twice >= 2 || cut_off),
                 "{groups:?} {tau} {mu}: {found:?}"
             );
         }

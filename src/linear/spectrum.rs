@@ -114,6 +114,10 @@ impl RootFinder {
                 }
             }
         }
+        self.sort();
+    }
+
+    fn sort(&mut self) {
         self.roots.sort_by(|p, q| {
             let by_real = q.lambda.re.total_cmp(&p.lambda.re);
             by_real.then(p.lambda.im.total_cmp(&q.lambda.im))
@@ -181,6 +185,7 @@ impl RootFinder {
             let error = root.error.max(extent);
             self.roots.insert(place + i, Root { error, ..root });
         }
+        self.sort();
         true
     }
 }

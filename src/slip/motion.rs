@@ -84,8 +84,6 @@ pub struct Accuracy {
     pub integrator: Integrator,
     /// Error allowed in a step, relative to the size of the motion; 1e-15 to 1e-3.
     pub tolerance: f64,
-    /// Whether steps end on kinks of the delayed elongation.
-    pub step_on_kinks: bool,
 }
 
 impl Accuracy {
@@ -104,7 +102,6 @@ impl Default for Accuracy {
         Self {
             integrator: Integrator::Taylor,
             tolerance: 1e-12,
-            step_on_kinks: true,
         }
     }
 }
@@ -143,14 +140,6 @@ fn order(integrator: Integrator, tolerance: f64) -> usize {
         return NODES;
     }
     ((2.0 - 0.5 * tolerance.ln()).ceil() as usize).clamp(LEAST_ORDER, MOST_ORDER)
-}
-
-/// The order of jumps that are not felt.
-fn felt(accuracy: Accuracy, order: usize) -> u32 {
-    match accuracy.step_on_kinks {
-        true => order as u32,
-        false => 0,
-    }
 }
 
 /// A moving block.
@@ -201,7 +190,7 @@ impl Motion {
         let order = order(accuracy.integrator, tolerance);
         let mut friction = FrictionSeries::new(&parameters.law, parameters.velocity_unit);
         friction.restart(u.abs());
-        history.restart(a, 0.0, felt(accuracy, order));
+        history.restart(a, 0.0, order as u32);
         let gain = parameters.alpha_v.abs().max(parameters.alpha_n.abs());
         history.look_ahead(gain, order, tolerance);
         let zero = [0.0; MOST_ORDER + 1];
@@ -269,7 +258,7 @@ impl Motion {
     pub fn refine(&mut self, accuracy: Accuracy) {
         self.tolerance = accuracy.tolerance.clamp(1e-15, 1e-3);
         self.order = order(self.integrator, self.tolerance);
-        self.history.feel(felt(accuracy, self.order));
+        self.history.feel(self.order as u32);
         let gain = self
             .parameters
             .alpha_v
@@ -515,7 +504,7 @@ impl Motion {
         self.even_since + self.parameters.tau <= self.t
     }
 
-    /// Works out the coefficients of such a block, which hold without end.
+    /// Works out the coefficients of a block that sticks evenly, which hold without end.
     fn stick_evenly(&mut self, rate: f64) -> f64 {
         let Parameters { alpha_n, tau, .. } = self.parameters;
         let step = &mut self.step;
@@ -530,12 +519,13 @@ impl Motion {
     }
 
     /// Notes whether the elongation of a stuck block has grown evenly in the last step. What it may be off adds up to less than
-    /// the error of a step in a delay.
+    /// the error of a step in a delay, and the nearer α_v τ is to 1, the slower it dies out and the less it may be.
     fn note_evenness(&mut self) {
         let step = &self.step;
         let even = self.even_rate().is_some_and(|rate| {
             let share = (step.length / self.parameters.tau).min(1.0);
-            let allowed = (EVEN * self.tolerance * share).max(ROUNDING);
+            let dies_out = (self.parameters.v0 / rate).min(1.0);
+            let allowed = (EVEN * self.tolerance * share * dies_out).max(ROUNDING);
             let a = &step.a[1..=step.order];
             let off = ((a[0] - rate).abs() + spread(a, step.length)) * step.length;
             off <= allowed * step.a[0].abs().max(self.parameters.law.mu_s())

@@ -176,8 +176,12 @@ impl<'p> MapWriter<'p> {
 }
 
 /// A new file, with all orders kept. Nothing may stand at `path`.
+///
+/// Without a sieve buffer every write of values is one of the system's, whose errors are told at once: what a buffer holds when its dataset
+/// is closed is lost without a word where the system refuses it.
 pub(super) fn create_file(path: &Path) -> hdf5::Result<File> {
     hdf5::FileBuilder::new()
+        .with_fapl(|fapl| fapl.sieve_buf_size(0))
         .with_fcpl(|fcpl| {
             fcpl.obj_track_times(false)
                 .attr_creation_order(AttrCreationOrder::Indexed)

@@ -228,6 +228,8 @@ impl Columns<'_> {
             .create(name)?;
         if !values.is_empty() {
             dataset.write_raw(values)?;
+            // What is still in the cache when the dataset is closed is lost without a word where the system refuses it.
+            self.group.file()?.flush()?;
         }
         put_numbers(&dataset, "_FillValue", &[fill])?;
         if !self.coordinates.is_empty() {

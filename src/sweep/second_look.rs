@@ -32,7 +32,7 @@ pub enum Question {
     Outcome,
     /// The critical velocity, by simulation with collocation and steps of v0 of its own.
     CriticalVelocity,
-    /// That of switching on: what becomes of stick-slip just below and just above it, by collocation.
+    /// The critical velocity by switching on: what becomes of stick-slip just below and just above it, by collocation.
     SwitchOn,
 }
 
@@ -165,7 +165,6 @@ fn outcome(plan: &Plan, setting: &Setting, stored: &Stored) -> Result<Answer, Mo
         accuracy: Accuracy {
             integrator: Integrator::Collocation,
             tolerance: case.accuracy.tolerance.max(SECOND_TOLERANCE),
-            ..case.accuracy
         },
         steps: case.steps.saturating_mul(vc::MORE_STEPS),
         ..case

@@ -105,13 +105,13 @@ impl Trace {
         };
         let mut recorder = Recorder::new(case, spec.sampling)?;
         recorder.record(until)?;
-        // The same motion: what the trace adds is what comes after the outcome was known.
-        let later = recorder.events.into_iter();
-        let later = later.filter(|e| e.t > summary.decided);
-        listed.events.extend(later);
+        // One motion twice, to rounding: a step that goes on to the end of what is asked for ends elsewhere. Events of samples first.
+        let mut events = recorder.events;
+        let both = events.len();
+        events.extend(listed.events.into_iter().skip(both));
         Ok(Self {
             samples: recorder.samples,
-            events: listed.events,
+            events,
             summary,
         })
     }

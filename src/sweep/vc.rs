@@ -42,7 +42,7 @@ impl Protocol {
         }
     }
 
-    /// That of a setting, which may have a phase of its own.
+    /// The protocol for a setting, which may have a phase of its own.
     #[must_use]
     pub fn at(self, setting: &Setting) -> Self {
         match (self, setting.get(Parameter::SwitchOnPhase)) {

@@ -1,0 +1,39 @@
+#!/usr/bin/env bash
+# What the test command asks some times, asked as often as wanted:
+#
+#   scripts/soak.sh [HOURS]
+#
+# Every fault of every command (tests/faults.rs), then in turn, with new seeds, until the time is over (1 hour by default):
+# kills of runs, damaged tiles and maps, boxes of best settings, motions and critical velocities against the referee.
+# Stops at the first thing that fails, with its output.
+set -euo pipefail
+
+# shellcheck source=scripts/setup.sh
+. "$(dirname "${BASH_SOURCE[0]}")/setup.sh"
+cd "$SLIPMAP_ROOT"
+
+hours=${1:-1}
+case $hours in
+'' | *[!0-9]*) die "HOURS is a whole number" ;;
+esac
+until=$((SECONDS + 3600 * hours))
+
+# tests NAME…: those tests, with their output where one fails.
+tests() {
+    # shellcheck disable=SC2086
+    cargo test --release --locked $SLIPMAP_CARGO_FEATURES "$@"
+}
+
+say "every fault"
+SLIPMAP_FAULTS=all tests --test faults
+round=0
+while [ $SECONDS -lt $until ]; do
+    round=$((round + 1))
+    export SLIPMAP_SEED=$((RANDOM * 32768 + RANDOM))
+    say "round $round, seed $SLIPMAP_SEED"
+    SLIPMAP_KILLS=200 SLIPMAP_DAMAGES=1000 tests --test overnight
+    SLIPMAP_DAMAGED=2000 tests --test damaged
+    SLIPMAP_CASES=2000 tests --test referee -- --test-threads=1 by_chance
+    SLIPMAP_CASES=100 tests --lib boxes_by_chance
+done
+say "$round rounds"
