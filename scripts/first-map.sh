@@ -9,10 +9,10 @@ set -euo pipefail
 manifest=$SLIPMAP_ROOT/Cargo.toml
 # The features are words of their own, or nothing at all.
 # shellcheck disable=SC2086
-slipmap() { cargo run --quiet --release --manifest-path "$manifest" $SLIPMAP_CARGO_FEATURES -- "$@"; }
+slipmap() { cargo run --quiet --release --locked --manifest-path "$manifest" $SLIPMAP_CARGO_FEATURES -- "$@"; }
 
 # shellcheck disable=SC2086
-cargo build --release --manifest-path "$manifest" $SLIPMAP_CARGO_FEATURES
+cargo build --release --locked --manifest-path "$manifest" $SLIPMAP_CARGO_FEATURES
 
 for name in fig2a fig2b; do
     slipmap run "$SLIPMAP_ROOT/sweeps/$name.toml"

@@ -20,5 +20,5 @@ case $SLIPMAP_CASES$SLIPMAP_SEED in
 esac
 say "seed $SLIPMAP_SEED"
 # shellcheck disable=SC2086
-cargo test --release $SLIPMAP_CARGO_FEATURES --test referee -- \
+cargo test --release --locked $SLIPMAP_CARGO_FEATURES --test referee -- \
     --nocapture --test-threads=1 by_chance || exit 1

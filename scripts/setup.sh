@@ -12,6 +12,9 @@ set -euo pipefail
 SLIPMAP_ROOT=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 # Older ones do not know all of the language and the manifest used here.
 CARGO_NEEDED=1.89
+# With this one the tests passed; others may lint otherwise.
+RUST_TESTED=1.95.0
+CARGO_DENY=0.18.9
 CMAKE_NEEDED=3.26
 
 say() { printf '%s\n' "$*" >&2; }

@@ -55,7 +55,7 @@ install_python_packages() {
     rm -rf "$venv"
     mkdir -p target
     "$(python_with_venv)" -m venv "$venv" || die "cannot make a Python environment in target/readers-venv"
-    "$SLIPMAP_PYTHON" -m pip install --quiet --disable-pip-version-check -r "$requirements" >&2 ||
+    "$SLIPMAP_PYTHON" -m pip install --quiet --disable-pip-version-check --require-hashes -r "$requirements" >&2 ||
         die "the packages of $requirements cannot be installed: see above which; the tests read maps with them"
     cp "$requirements" "$stamp"
 }
@@ -102,6 +102,26 @@ install_slurm() {
     have_slurm || warnings+=("tests/slurm/run.sh is not run: Slurm or munge is missing and cannot be installed")
 }
 
+# cargo-deny, built once into target/tools.
+install_cargo_deny() {
+    have cargo-deny && return
+    export PATH="$SLIPMAP_ROOT/target/tools/bin:$PATH"
+    have cargo-deny && return
+    say "building cargo-deny into target/tools"
+    cargo install --quiet --locked --root "$SLIPMAP_ROOT/target/tools" "cargo-deny@$CARGO_DENY" >&2 ||
+        warnings+=("licences and sources of dependencies are not checked, cargo-deny cannot be built")
+}
+
+# Advisories need the network, which may not be there; all else is in the manifests.
+check_licences() {
+    have cargo-deny || return 0
+    step cargo deny --locked check bans licenses sources
+    if ! cargo deny --locked check advisories; then
+        cargo deny --locked --offline check advisories >/dev/null 2>&1 ||
+            warnings+=("advisories on dependencies are not checked, or there are some: see above")
+    fi
+}
+
 # step COMMAND…: runs it and says so.
 step() {
     say ""
@@ -113,6 +133,10 @@ install_readers
 install_python_packages
 install_languages
 install_slurm
+install_cargo_deny
+rust_is_tested=$(version_of rustc)
+[ "$rust_is_tested" = "$RUST_TESTED" ] ||
+    say "the Rust here is ${rust_is_tested:-unknown}; what is committed passed with $RUST_TESTED"
 
 features=(--features external-readers)
 # shellcheck disable=SC2206
@@ -121,18 +145,20 @@ features+=($SLIPMAP_CARGO_FEATURES)
 if cargo fmt --version >/dev/null 2>&1; then
     step cargo fmt --check
 else
-    say "warning: formatting is not checked, rustfmt is not installed (rustup component add rustfmt)"
+    warnings+=("formatting is not checked, rustfmt is not installed (rustup component add rustfmt)")
 fi
 if cargo clippy --version >/dev/null 2>&1; then
-    step cargo clippy --all-targets "${features[@]}" -- -D warnings
+    step cargo clippy --locked --all-targets "${features[@]}" -- -D warnings
 else
-    say "warning: lints are not checked, clippy is not installed (rustup component add clippy)"
+    warnings+=("lints are not checked, clippy is not installed (rustup component add clippy)")
 fi
-RUSTDOCFLAGS="-D warnings" step cargo doc --no-deps "${features[@]}"
-step cargo test --release "${features[@]}" -- ${left_out[@]+"${left_out[@]}"}
+RUSTDOCFLAGS="-D warnings" step cargo doc --locked --no-deps "${features[@]}"
+check_licences
+step cargo test --release --locked "${features[@]}" -- ${left_out[@]+"${left_out[@]}"}
 if have_slurm; then
     step tests/slurm/run.sh
 fi
 for warning in ${warnings[@]+"${warnings[@]}"}; do
     say "warning: $warning"
 done
+say "all that was tried passed; left out: ${#warnings[@]}"

@@ -90,6 +90,7 @@ fn folders(args: &Args) -> Result<Vec<PathBuf>, Failure> {
 /// An error, unless the shards are gone because their map is complete: a merge that is run again has nothing to do.
 fn nothing_to_merge(args: &Args, target: &Path) -> Result<(), Failure> {
     if !args.fresh && map_maker::is_complete(target) {
+        drop(shards::remove_root(&args.map));
         return say::result(format_args!("{} is already complete", target.display()));
     }
     Err(Failure::bad_input_with_help(

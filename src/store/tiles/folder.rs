@@ -57,10 +57,11 @@ impl TileFolder {
         make(path)?;
         refuse_foreign(path)?;
         let lock = lock(path)?;
-        check_manifest(path, manifest)?;
+        // What a run left that died: new files take these names.
         for part in listed(path, is_part)? {
             remove(&part)?;
         }
+        check_manifest(path, manifest)?;
         let (reader, damaged) = TileReader::of(path, manifest.layout(), pieces)?;
         let mut folder = Self {
             reader,
