@@ -4,7 +4,7 @@
 #   scripts/soak.sh [HOURS]
 #
 # Every fault of every command (tests/faults.rs), then in turn, with new seeds, until the time is over (1 hour by default):
-# kills of runs, damaged tiles and maps, boxes of best settings, motions and critical velocities against the referee.
+# kills of runs, damaged tiles and maps, motions and critical velocities against the referee.
 # Stops at the first thing that fails, with its output.
 set -euo pipefail
 
@@ -34,6 +34,5 @@ while [ $SECONDS -lt $until ]; do
     SLIPMAP_KILLS=200 SLIPMAP_DAMAGES=1000 tests --test overnight
     SLIPMAP_DAMAGED=2000 tests --test damaged
     SLIPMAP_CASES=2000 tests --test referee -- --test-threads=1 by_chance
-    SLIPMAP_CASES=100 tests --lib boxes_by_chance
 done
 say "$round rounds"

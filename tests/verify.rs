@@ -141,6 +141,57 @@ fn changed_maps_do_not() {
         delays.write_raw(&longer).unwrap();
     });
     expect(&curve, 1, "a curve");
+    let unlinked = edited(&|file| {
+        let abscissa = file.dataset("abscissa").unwrap();
+        abscissa.delete_attr("DIMENSION_LIST").unwrap();
+    });
+    expect(&unlinked, 1, "abscissa has lost its dimensions");
+    for (name, says) in [
+        ("/", "the checksum of what is no cell is missing"),
+        ("status", "1 datasets have no checksum"),
+    ] {
+        let bare = edited(&|file| match name {
+            "/" => file.delete_attr("contents_sha256").unwrap(),
+            _ => file
+                .dataset(name)
+                .unwrap()
+                .delete_attr("chunks_sha256")
+                .unwrap(),
+        });
+        expect(&bare, 1, says);
+    }
+    // Bytes that readers are told not to inflate.
+    let filters = edited(&|file| {
+        let dataset = file.dataset("abscissa").unwrap();
+        let chunk = dataset.chunk_info(0).unwrap();
+        let stored = &original[chunk.addr as usize..(chunk.addr + chunk.size) as usize];
+        // The library looks at the mask of a chunk of another length only.
+        let bytes = [stored, &[0]].concat();
+        let written = hdf5::sync::sync(|| {
+            // SAFETY: the dataset is open, the offset has an entry for each of its dimensions, and the slice lives.
+            unsafe {
+                hdf5_sys::h5d::H5Dwrite_chunk(
+                    dataset.id(),
+                    hdf5_sys::h5p::H5P_DEFAULT,
+                    1,
+                    chunk.offset.as_ptr(),
+                    bytes.len(),
+                    bytes.as_ptr().cast(),
+                )
+            }
+        });
+        assert!(written >= 0);
+    });
+    expect(&filters, 1, "abscissa: chunks cannot be read");
+    // Whoever reads the report may be gone: what was found stays found.
+    let mut child = folder
+        .command(&["verify", "changed.h5"])
+        .stdout(std::process::Stdio::piped())
+        .stderr(std::process::Stdio::piped())
+        .spawn()
+        .unwrap();
+    drop(child.stdout.take());
+    expect(&child.wait_with_output().unwrap(), 1, "changed.h5: 1 fault");
     for (bad, code) in [("map.toml", 2), ("none.h5", 2)] {
         expect(&folder.run(&["verify", bad]), code, bad);
     }

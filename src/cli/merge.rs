@@ -44,10 +44,7 @@ pub fn main(args: &Args) -> Result<(), Failure> {
     let (_, plan) = shards::plan(&folders[0])?;
     if let Some(remark) = run::already_there(target, &plan, args.fresh)? {
         drop(shards::remove_root(target));
-        return say::result(format_args!(
-            "{} is already complete{remark}",
-            target.display()
-        ));
+        return run::nothing_to_do(target, &remark, false);
     }
     let provenance = provenance("merge", &args.map);
     let (progress, log) = (Progress::new(false), Log::beside(target, Shard::WHOLE));
@@ -91,7 +88,7 @@ fn folders(args: &Args) -> Result<Vec<PathBuf>, Failure> {
 fn nothing_to_merge(args: &Args, target: &Path) -> Result<(), Failure> {
     if !args.fresh && map_maker::is_complete(target) {
         drop(shards::remove_root(&args.map));
-        return say::result(format_args!("{} is already complete", target.display()));
+        return run::nothing_to_do(target, "", false);
     }
     Err(Failure::bad_input_with_help(
         format!(

@@ -84,13 +84,7 @@ pub fn main(args: &Args) -> Result<(), Failure> {
     shards::settle(&path, map_maker::is_complete(&path))?;
     if let Some(remark) = already_there(&path, &plan, args.fresh)? {
         drop(shards::remove_root(&path));
-        if !plot::beside(&path).exists() {
-            show(&path, args.quiet);
-        }
-        return say::result(format_args!(
-            "{} is already complete{remark}",
-            path.display()
-        ));
+        return nothing_to_do(&path, &remark, args.quiet);
     }
     match args.shard.filter(|_| args.fresh) {
         Some(shard) => shards::clear_shard(&path, shard)?,
@@ -198,6 +192,17 @@ fn refuse_whole(map: &Path) -> Result<(), Failure> {
             shards::root(map).display()
         ),
         "the same command without --shard goes on with it; `--fresh` without --shard drops it; -o writes elsewhere",
+    ))
+}
+
+/// Says that a map is complete, and draws it where an earlier command did not come to that.
+pub fn nothing_to_do(path: &Path, remark: &str, quiet: bool) -> Result<(), Failure> {
+    if !plot::beside(path).exists() {
+        show(path, quiet);
+    }
+    say::result(format_args!(
+        "{} is already complete{remark}",
+        path.display()
     ))
 }
 
