@@ -756,3 +756,33 @@ fn a_measured_friction_law_goes_through_every_command() {
     let misplaced = ["--mu-prime", "1", "--table", "curve.csv"];
     expect(&wrong(&misplaced), 2, "with --friction table only");
 }
+
+/// Names that HDF5 cannot open and folders are refused at once; texts of a map are shown, not obeyed.
+#[cfg(unix)]
+#[test]
+fn odd_names_and_texts_are_answered() {
+    use std::os::unix::ffi::OsStrExt;
+    let folder = Folder::with(&[("small.toml", SMALL)]);
+    let odd = std::ffi::OsStr::from_bytes(b"\xff.h5");
+    let refused = folder
+        .command(&["run", "small.toml", "-o"])
+        .arg(odd)
+        .output();
+    expect(&refused.unwrap(), 2, "is not UTF-8");
+    let args = ["run", "small.toml", "-o", "newdir/"];
+    expect(&folder.run(&args), 2, "does not name a file");
+    assert_eq!(folder.files(), ["small.toml"]);
+    expect(&folder.run(&["run", "small.toml"]), 0, "5 002 cells");
+    let path = folder.path().join("small.h5");
+    map::edit(&path, |file| {
+        file.delete_attr("title").unwrap();
+        let text = "\u{1b}]0;owned\u{7}\u{1b}[2J\nsecond".parse::<hdf5::types::VarLenUnicode>();
+        let title = file
+            .new_attr::<hdf5::types::VarLenUnicode>()
+            .create("title");
+        title.unwrap().write_scalar(&text.unwrap()).unwrap();
+    });
+    let shown = folder.run(&["info", "small.h5"]);
+    expect(&shown, 0, "\\u{1b}]0;owned");
+    assert!(!out(&shown).contains(['\u{1b}', '\u{7}']));
+}

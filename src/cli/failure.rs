@@ -89,7 +89,7 @@ impl Failure {
 
 impl From<StoreError> for Failure {
     fn from(error: StoreError) -> Self {
-        let mut diagnostic = MietteDiagnostic::new(error.to_string());
+        let mut diagnostic = MietteDiagnostic::new(say::visible(&error.to_string()));
         let other_tiles = matches!(
             error,
             StoreError::OtherTiles { .. } | StoreError::Manifest { .. }

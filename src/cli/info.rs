@@ -1,6 +1,6 @@
 //! `slipmap info`: what a map holds.
 
-use std::io::Write;
+use std::io::{IsTerminal, Write};
 use std::path::PathBuf;
 
 use slipmap::linear::curves::StableSide;
@@ -12,6 +12,7 @@ use slipmap::sweep::Field;
 
 use super::failure::Failure;
 use super::open::open;
+use super::say::visible;
 
 #[derive(Debug, clap::Args)]
 pub struct Args {
@@ -27,7 +28,12 @@ pub fn main(args: &Args) -> Result<(), Failure> {
     let map = open(&args.map)?;
     let mut out = std::io::stdout().lock();
     if args.sweep {
-        write!(out, "{}", map.root_text(root::SWEEP).unwrap_or_default())?;
+        let sweep = map.root_text(root::SWEEP).unwrap_or_default();
+        // Elsewhere than on a terminal it is the file, byte by byte.
+        match out.is_terminal() {
+            true => write!(out, "{}", visible(&sweep))?,
+            false => write!(out, "{sweep}")?,
+        }
         return Ok(());
     }
     let mut row = |name: &str, text: String| writeln!(out, "{name:<12} {text}");
@@ -41,7 +47,7 @@ pub fn main(args: &Args) -> Result<(), Failure> {
         ("friction", root::FRICTION_LAW),
     ] {
         if let Some(text) = map.root_text(attribute).filter(|t| !t.is_empty()) {
-            row(name, text)?;
+            row(name, visible(&text).replace('\n', "\\n"))?;
         }
     }
     for axis in map.axes() {

@@ -28,6 +28,12 @@ pub fn output_path(given: Option<&Path>, input: &Path, kind: &str) -> Result<Pat
             path.display()
         )));
     }
+    if path.to_str().is_none() {
+        return Err(Failure::bad_input(format!(
+            "--output {} is not UTF-8, and HDF5 does not open files of such names",
+            path.display()
+        )));
+    }
     let extension = path.extension().map(|e| e.to_string_lossy().to_lowercase());
     if let Some(picture @ ("png" | "svg")) = extension.as_deref() {
         return Err(Failure::bad_input_with_help(

@@ -19,6 +19,12 @@ pub(super) fn to_read(
     if !metadata.is_file() {
         return Err(refuse(path, "it is no regular file"));
     }
+    if path.to_str().is_none() {
+        return Err(refuse(
+            path,
+            "its name is not UTF-8, and HDF5 does not open it",
+        ));
+    }
     std::fs::File::open(path).map_err(StoreError::io("open", path))?;
     File::open(path).map_err(|_| {
         // The library locks what it writes.
