@@ -9,7 +9,7 @@ use slipmap::critical::switch_on::{Phase, Scan, Survival, Trials, windows};
 use slipmap::critical::{
     Critical, End, GRAZE_PRECISION, Method, Problem, by_simulation, critical_velocity,
 };
-use slipmap::model::FrictionLaw;
+use slipmap::model::{FrictionLaw, Table};
 use slipmap::slip::motion::Accuracy;
 
 #[path = "common/chance_problem.rs"]
@@ -293,6 +293,35 @@ fn the_last_kind_of_stick_slip_counts() {
             "{problem:?} {found:?}"
         );
     }
+}
+
+/// One slip grazes below the velocity from which v0 is raised at first, where the block does not stick again; from the next one on
+/// stick-slip is sustained, and ends where two slow ramps say.
+#[test]
+fn an_end_below_the_start_is_none() {
+    let speeds = [
+        0.011456539572006418,
+        0.07872653008174442,
+        0.12679126295035642,
+        0.19977148249540305,
+        0.24000899239066903,
+        0.263979012159274,
+    ];
+    let mu_k = [
+        0.701756289838264,
+        0.7196939262376849,
+        0.5990736733602243,
+        0.5902006812582168,
+        0.6290045979260035,
+        0.3947940229056309,
+    ];
+    let table = Table::new(speeds.to_vec(), mu_k.to_vec()).unwrap();
+    let law = FrictionLaw::table(table, 0.7135913112347158).unwrap();
+    let found = critical_velocity(&problem(law, 0.0, -1.9617462012372802, 0.2748415706617039));
+    assert!(
+        found.decided && (found.vc / 0.53645956 - 1.0).abs() < 1e-4,
+        "{found:?}"
+    );
 }
 
 /// An orbit that has doubled its period, unstable, has a graze of its own above that of the doubled one; and sticks that only seem

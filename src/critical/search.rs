@@ -25,7 +25,10 @@ pub(super) fn from_scratch(problem: &Problem) -> (Critical, Option<Track>) {
     let accuracy = Accuracy::of(GRAZE_TOLERANCE);
     let one_slip = by_one_slip(problem, accuracy);
     if let Some(critical) = one_slip.and_then(|found| of_found(&found, Method::GrazeSlip)) {
-        return (critical, None);
+        return match ends_below_the_start(problem, &critical) && starts_above(problem, accuracy) {
+            true => (simulated(problem), None),
+            false => (critical, None),
+        };
     }
     let Some((road, place)) = Orbit::sustained(problem, accuracy) else {
         return (simulated(problem), None);
@@ -47,6 +50,21 @@ pub(super) fn from_scratch(problem: &Problem) -> (Critical, Option<Track>) {
         track.decided = critical.decided;
     }
     (critical, track)
+}
+
+/// Whether stick-slip of one slip ends below the velocity from which v0 is raised at first.
+fn ends_below_the_start(problem: &Problem, critical: &Critical) -> bool {
+    critical.vc < follow::STARTS[0] * problem.law.mu_s()
+}
+
+/// Whether there is stick-slip at the velocity that comes next then.
+fn starts_above(problem: &Problem, accuracy: Accuracy) -> bool {
+    let v0 = follow::STARTS[1] * problem.law.mu_s();
+    let mut motion = follow::start_sticking(problem, v0, accuracy);
+    matches!(
+        kind(problem, &mut motion),
+        Beyond::Persists(_) | Beyond::Irregular
+    )
 }
 
 /// Relative steps of v0 through irregular stick-slip: where it leads should not depend on them.
