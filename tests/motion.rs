@@ -45,7 +45,7 @@ fn events(p: &Parameters, accuracy: Accuracy, horizon: f64) -> Vec<(Event, f64, 
     events_from(p, accuracy, (1.01 * p.v0, p.law.mu_k(p.v0)), horizon)
 }
 
-/// The same from another ẋ and a.
+/// Events with their times and elongations until `horizon`, from a given ẋ and a.
 fn events_from(
     p: &Parameters,
     accuracy: Accuracy,

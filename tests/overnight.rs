@@ -116,6 +116,18 @@ fn cells_done(folder: &Folder, map: &str) -> u64 {
     status(folder, map)["cells_done"].as_u64().unwrap()
 }
 
+/// Puts the folders of all shards together.
+fn merge_all(plan: &Plan, folders: &[PathBuf], map: &Path, provenance: &Provenance) {
+    let asked = Merge {
+        folders,
+        map,
+        missing: Missing::Refuse,
+        replace_complete: false,
+        remove_beside: Some(map),
+    };
+    merge(plan, &asked, provenance, &Silent).unwrap();
+}
+
 fn uninterrupted() -> (Folder, Arc<Plan>) {
     let folder = Folder::with(&[("night.toml", NIGHT)]);
     let plan = Arc::new(Plan::new(NIGHT.parse().unwrap()).unwrap());
@@ -216,14 +228,7 @@ fn threads_shards_and_order_make_no_difference() {
         .map(|(_, path)| path)
         .collect();
     assert_eq!(folders.len(), 7);
-    let asked = Merge {
-        folders: &folders,
-        map: &map,
-        missing: Missing::Refuse,
-        replace_complete: false,
-        remove_beside: Some(&map),
-    };
-    merge(&plan, &asked, &provenance, &Silent).unwrap();
+    merge_all(&plan, &folders, &map, &provenance);
     assert!(std::fs::read(&map).unwrap() == expected, "7 shards");
 }
 
@@ -455,14 +460,7 @@ fn damaged_tiles_are_noticed_and_computed_again() {
     }
     println!("{tried} files damaged, {noticed} noticed");
     assert_eq!(noticed, tried);
-    let asked = Merge {
-        folders: &folders,
-        map: &map,
-        missing: Missing::Refuse,
-        replace_complete: false,
-        remove_beside: Some(&map),
-    };
-    merge(&plan, &asked, &provenance, &Silent).unwrap();
+    merge_all(&plan, &folders, &map, &provenance);
     assert!(std::fs::read(&map).unwrap() == expected);
 }
 

@@ -36,7 +36,7 @@ pub struct Args {
 
 pub fn main(args: &Args) -> Result<(), Failure> {
     let target = args.output.as_ref().unwrap_or(&args.map);
-    shards::settle(&args.map, map_maker::is_complete(target))?;
+    shards::settle(&args.map, || map_maker::is_complete(target))?;
     let folders = folders(args)?;
     if folders.is_empty() {
         return nothing_to_merge(args, target);

@@ -81,7 +81,7 @@ pub fn default_threads() -> usize {
 pub fn main(args: &Args) -> Result<(), Failure> {
     let plan = read_plan(&args.sweep)?;
     let path = output_path(args.output.as_deref(), &args.sweep, "map")?;
-    shards::settle(&path, map_maker::is_complete(&path))?;
+    shards::settle(&path, || map_maker::is_complete(&path))?;
     if let Some(remark) = already_there(&path, &plan, args.fresh)? {
         drop(shards::remove_root(&path));
         return nothing_to_do(&path, &remark, args.quiet);
@@ -111,16 +111,6 @@ pub fn main(args: &Args) -> Result<(), Failure> {
     }
 }
 
-/// Whether this process was started with a signal ignored.
-fn is_ignored(signal: libc::c_int) -> bool {
-    let mut action = std::mem::MaybeUninit::<libc::sigaction>::uninit();
-    // SAFETY: with no new action sigaction only writes the present one, where it succeeds.
-    unsafe {
-        libc::sigaction(signal, std::ptr::null(), action.as_mut_ptr()) == 0
-            && action.assume_init().sa_sigaction == libc::SIG_IGN
-    }
-}
-
 type Watched<'a> = (&'a Both<'a>, &'a Signals);
 
 fn run_shard(
@@ -130,7 +120,7 @@ fn run_shard(
     (observers, signals): Watched,
     fresh: bool,
 ) -> Result<(), Failure> {
-    refuse_whole(job.map)?;
+    refuse_other_way(job.map, shard)?;
     let made = map_maker::make_shard(plan, job, shard, observers, &signals.stop);
     made.map_err(|error| failure(error, (job.map, fresh), (observers, signals)))?;
     let (number, of) = shard.numbers();
@@ -147,7 +137,7 @@ fn run_whole(
     args: &Args,
 ) -> Result<(), Failure> {
     let (fresh, quiet) = (args.fresh, args.quiet);
-    refuse_shards(job.map)?;
+    refuse_other_way(job.map, Shard::WHOLE)?;
     let made = map_maker::make(plan, job, observers, &signals.stop);
     let assembled = made.map_err(|error| failure(error, (job.map, fresh), (observers, signals)))?;
     let (elapsed, cells) = (observers.0.elapsed(), observers.0.computed());
@@ -165,34 +155,27 @@ fn run_whole(
     told
 }
 
-/// Shards that are there are not computed a second time.
-fn refuse_shards(map: &Path) -> Result<(), Failure> {
+/// A map is computed whole or in shards: what the other way has computed is not begun a second time.
+fn refuse_other_way(map: &Path, asked: Shard) -> Result<(), Failure> {
     let others = shards::present(map)?;
-    let Some((shard, _)) = others.iter().find(|(shard, _)| !shard.is_whole()) else {
+    let is_other = |shard: &Shard| shard.is_whole() != asked.is_whole();
+    let Some((shard, _)) = others.iter().find(|(shard, _)| is_other(shard)) else {
         return Ok(());
     };
-    Err(Failure::bad_input_with_help(
-        format!(
-            "{} holds shards of this map ({shard})",
-            shards::root(map).display()
+    let (what, help) = match asked.is_whole() {
+        true => (
+            format!("shards of this map ({shard})"),
+            "`slipmap merge` puts them together; --fresh drops them and starts over",
         ),
-        "`slipmap merge` puts them together; --fresh drops them and starts over",
-    ))
-}
-
-/// A run of the whole map is not begun a second time in shards.
-fn refuse_whole(map: &Path) -> Result<(), Failure> {
-    let others = shards::present(map)?;
-    if !others.iter().any(|(shard, _)| shard.is_whole()) {
-        return Ok(());
-    }
-    Err(Failure::bad_input_with_help(
-        format!(
-            "{} holds what a run of the whole map has computed",
-            shards::root(map).display()
+        false => (
+            "what a run of the whole map has computed".to_owned(),
+            "the same command without --shard goes on with it; `--fresh` without --shard drops it; \
+             -o writes elsewhere",
         ),
-        "the same command without --shard goes on with it; `--fresh` without --shard drops it; -o writes elsewhere",
-    ))
+    };
+    let root = shards::root(map);
+    let message = format!("{} holds {what}", root.display());
+    Err(Failure::bad_input_with_help(message, help))
 }
 
 /// Says that a map is complete, and draws it where an earlier command did not come to that.
@@ -318,6 +301,16 @@ fn failure(
         error @ (RunError::Threads { .. } | RunError::ThreadLost) => {
             Failure::failed(error.to_string())
         }
+    }
+}
+
+/// Whether this process was started with a signal ignored.
+fn is_ignored(signal: libc::c_int) -> bool {
+    let mut action = std::mem::MaybeUninit::<libc::sigaction>::uninit();
+    // SAFETY: with no new action sigaction only writes the present one, where it succeeds.
+    unsafe {
+        libc::sigaction(signal, std::ptr::null(), action.as_mut_ptr()) == 0
+            && action.assume_init().sa_sigaction == libc::SIG_IGN
     }
 }
 

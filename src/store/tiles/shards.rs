@@ -48,17 +48,17 @@ pub fn mark_merged(map: &Path) -> Result<(), StoreError> {
     sync(&root(map))
 }
 
-/// Goes on with a removal of shards that was stopped midway. Where `is_complete` is false, the map of these shards has gone since: those that are
-/// left then count as any.
+/// Goes on with a removal of shards that was stopped midway. Where their map is not complete, it
+/// has gone since, and the shards that are left count as any.
 ///
 /// # Errors
 /// As [`clear`].
-pub fn settle(map: &Path, is_complete: bool) -> Result<(), StoreError> {
+pub fn settle(map: &Path, is_complete: impl FnOnce() -> bool) -> Result<(), StoreError> {
     let path = marker(map);
     if !path.exists() {
         return Ok(());
     }
-    if is_complete {
+    if is_complete() {
         return clear(map);
     }
     fs::remove_file(&path).map_err(StoreError::io("remove", &path))
