@@ -3,7 +3,7 @@
 #
 #   scripts/soak.sh [HOURS]
 #
-# Every fault of every command (tests/faults.rs), then in turn, with new seeds, until the time is over (1 hour by default):
+# Every fault of every command (tests/faults.rs) and the memory of each (tests/memory.rs), then in turn, with new seeds, until the time is over (1 hour by default):
 # kills of runs, damaged tiles and maps, motions and critical velocities against the referee.
 # Stops at the first thing that fails, with its output.
 set -euo pipefail
@@ -26,6 +26,8 @@ tests() {
 
 say "every fault"
 SLIPMAP_FAULTS=all tests --test faults
+say "memory of every command"
+SLIPMAP_MEMORY=all tests --test memory -- --nocapture
 round=0
 while [ $SECONDS -lt $until ]; do
     round=$((round + 1))

@@ -381,7 +381,7 @@ fn odd_maps_are_refused() {
         sound.put("info", &sound.map);
         let path = sound.folder.path().join("map.h5");
         map::edit(&path, edit).unwrap();
-        let found = MapFile::open(&path).and_then(|map| map.curves().map(drop));
+        let found = MapFile::open(&path).and_then(|map| map.for_each_curve(drop));
         let error = found.expect_err(says).to_string();
         assert!(error.contains(says), "{error}");
     }

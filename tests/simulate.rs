@@ -130,7 +130,7 @@ fn mistakes_in_case_files_are_shown_in_place() {
         ),
         (
             &format!("{PLAIN}[trace]\ninterval = 1e-9\n"),
-            "more than 5000000 samples",
+            "more than 2000000 samples",
         ),
         ("[axes]\ntau = [1]\n", "unknown key `axes`"),
     ] {

@@ -78,24 +78,20 @@ pub fn main(args: &Args) -> Result<(), Failure> {
             row("status", format!("{name:<14} {} cells", grouped(count)))?;
         }
     }
-    let curves = map.curves()?;
     if map.boundary_plane().is_some() {
-        let (crossing, decaying): (Vec<_>, Vec<_>) =
-            curves.iter().partition(|c| c.degree_of_stability == 0.0);
-        let bounding = crossing
-            .iter()
-            .filter(|c| c.piece.stable_side != StableSide::Neither)
-            .count();
-        row(
-            "boundaries",
-            format!(
-                "{} crossing curves, {bounding} of them bound a stable region",
-                crossing.len()
-            ),
-        )?;
-        if !decaying.is_empty() {
-            let curves = format!("{} curves of degrees of stability", decaying.len());
-            row("", curves)?;
+        let (mut crossing, mut bounding, mut decaying) = (0, 0, 0);
+        map.for_each_curve(|curve| match curve.degree_of_stability {
+            0.0 => {
+                crossing += 1;
+                bounding += u64::from(curve.piece.stable_side != StableSide::Neither);
+            }
+            _ => decaying += 1,
+        })?;
+        let of_crossing =
+            format!("{crossing} crossing curves, {bounding} of them bound a stable region");
+        row("boundaries", of_crossing)?;
+        if decaying > 0 {
+            row("", format!("{decaying} curves of degrees of stability"))?;
         }
     }
     let best = map.best()?;

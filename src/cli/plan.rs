@@ -6,22 +6,19 @@ use std::time::{Duration, Instant};
 
 use slipmap::report::numbers::{bytes, grouped, seconds};
 use slipmap::store::tiles::RecordEncoder;
-use slipmap::sweep::Piece;
-use slipmap::sweep::Plan;
-use slipmap::sweep::best::{best_of_plane, best_planes};
-use slipmap::sweep::boundaries::{planes, trace_plane};
+use slipmap::sweep::best::{best_of_plane, best_plane};
+use slipmap::sweep::boundaries::{plane, trace_plane};
 use slipmap::sweep::engine::{Computed, Encode, Worker};
 use slipmap::sweep::pieces::spread;
+use slipmap::sweep::{Memory, Piece, Plan};
 
 use super::failure::Failure;
-use super::run::{default_threads, parse_threads};
+use super::run::{MEMORY, default_threads, parse_memory, parse_threads, threads_within};
 use super::sweep_file::read_plan;
 
 /// A sample ends after so long, once it has this many pieces; or after the longest time, whatever it has.
 const SAMPLE: Duration = Duration::from_millis(500);
 const ENOUGH: usize = 12;
-/// What a run takes besides its tiles, the picture included.
-const BASE_MEMORY: u64 = 80 << 20;
 const LONGEST_SAMPLE: Duration = Duration::from_secs(6);
 
 #[derive(Debug, clap::Args)]
@@ -32,11 +29,15 @@ pub struct Args {
     /// Threads to plan for [default: as many as the machine offers]
     #[arg(long, value_name = "N", value_parser = parse_threads)]
     threads: Option<usize>,
+    /// The most memory to plan for, such as 500MB or 2GiB: fewer threads compute where so many would take more
+    #[arg(long, value_name = "SIZE", default_value = MEMORY, value_parser = parse_memory)]
+    memory: u64,
 }
 
 pub fn main(args: &Args) -> Result<(), Failure> {
     let plan = read_plan(&args.sweep)?;
-    let threads = args.threads.unwrap_or_else(default_threads);
+    let asked = args.threads.unwrap_or_else(default_threads);
+    let threads = threads_within(&plan, args.memory, asked)?;
     let costs = Costs::of(&plan)?;
     let mut out = std::io::stdout().lock();
     for axis in &plan.spec.axes {
@@ -73,8 +74,8 @@ pub fn main(args: &Args) -> Result<(), Failure> {
         bytes(size),
         bytes(stored as u64),
     )?;
-    let in_memory = cells * plan.bytes_per_cell() * 4 * threads as u64;
-    writeln!(out, "memory      about {}", bytes(in_memory + BASE_MEMORY))?;
+    let memory = bytes(Memory::of(&plan).on(threads));
+    writeln!(out, "memory      up to {memory} on {threads} threads")?;
     let (total, spread) = costs.seconds();
     let threads_told = threads as f64;
     writeln!(
@@ -159,16 +160,14 @@ impl Costs {
             stored.push(record.payload.len() as f64);
             Ok(start.elapsed().as_secs_f64())
         })?;
-        let curve_planes = planes(plan);
-        let curves = Sample::take(curve_planes.len(), |number| {
+        let curves = Sample::take(plan.boundary_planes() as usize, |number| {
             let start = Instant::now();
-            std::hint::black_box(trace_plane(plan, &curve_planes[number])?);
+            std::hint::black_box(trace_plane(plan, &plane(plan, number as u64))?);
             Ok(start.elapsed().as_secs_f64())
         })?;
-        let of_best = best_planes(plan);
-        let best = Sample::take(of_best.len(), |number| {
+        let best = Sample::take(plan.best_planes() as usize, |number| {
             let start = Instant::now();
-            std::hint::black_box(best_of_plane(plan, &of_best[number]));
+            std::hint::black_box(best_of_plane(plan, &best_plane(plan, number as u64)));
             Ok(start.elapsed().as_secs_f64())
         })?;
         let bytes = Sample {

@@ -6,6 +6,7 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::time::Duration;
 
+use bytesize::ByteSize;
 use slipmap::report::log::{Both, Log};
 use slipmap::report::numbers::{bytes, grouped, prefixed, seconds};
 use slipmap::report::picture::{self, PictureError, PictureOptions};
@@ -15,7 +16,7 @@ use slipmap::store::map_maker::{self, Job};
 use slipmap::store::schema::root;
 use slipmap::store::tiles::shards;
 use slipmap::store::{MapFile, StoreError};
-use slipmap::sweep::{Plan, RunError, Shard};
+use slipmap::sweep::{Memory, Plan, RunError, Shard};
 
 use super::failure::Failure;
 use super::output::{self, output_path, provenance};
@@ -43,6 +44,9 @@ pub struct Args {
     /// Compute only every N-th piece, from the I-th on; `slipmap merge` puts the shards together
     #[arg(long, value_name = "I/N")]
     shard: Option<Shard>,
+    /// The most memory to take, such as 500MB or 2GiB: fewer threads compute where so many would take more
+    #[arg(long, value_name = "SIZE", default_value = MEMORY, value_parser = parse_memory)]
+    memory: u64,
     /// Start over, replacing a map that is already there and dropping what an earlier run, or this shard, computed
     #[arg(long)]
     fresh: bool,
@@ -60,6 +64,31 @@ pub fn parse_threads(text: &str) -> Result<usize, String> {
         .ok()
         .filter(|n| (1..=MOST_THREADS).contains(n))
         .ok_or_else(|| format!("expected a whole number from 1 to {MOST_THREADS}"))
+}
+
+/// The memory of a run where none is given.
+pub const MEMORY: &str = "500MB";
+
+/// The bytes of a `--memory` flag.
+pub fn parse_memory(text: &str) -> Result<u64, String> {
+    text.parse::<ByteSize>()
+        .map(|size| size.as_u64())
+        .map_err(|_| "expected a size such as 500MB or 2GiB".to_owned())
+}
+
+/// As many of the threads that are `asked` for as stay within `memory` bytes.
+pub fn threads_within(plan: &Plan, memory: u64, asked: usize) -> Result<usize, Failure> {
+    let needs = Memory::of(plan);
+    let threads = needs.threads_within(memory, asked).ok_or_else(|| {
+        let (least, given) = (bytes(needs.on(1)), bytes(memory));
+        Failure::bad_input_with_help(
+            format!(
+                "one thread takes up to {least} of memory in this sweep, --memory allows {given}"
+            ),
+            "a larger --memory, or a sweep of shorter delays or fewer cells",
+        )
+    })?;
+    Ok(threads)
 }
 
 /// Seconds of a `--save-every` flag.
@@ -91,6 +120,14 @@ pub fn main(args: &Args) -> Result<(), Failure> {
         None if args.fresh => shards::clear(&path)?,
         None => {}
     }
+    let asked = args.threads.unwrap_or_else(default_threads);
+    let threads = threads_within(&plan, args.memory, asked)?;
+    if threads < asked && !args.quiet {
+        let (memory, one) = (bytes(args.memory), bytes(Memory::of(&plan).per_thread));
+        say::remark(format_args!(
+            "{threads} of {asked} threads: each may take {one}, and --memory allows {memory}"
+        ));
+    }
     let signals = Signals::catch()?;
     let progress = Progress::new(args.quiet);
     let log = Log::beside(&path, args.shard.unwrap_or(Shard::WHOLE));
@@ -98,11 +135,7 @@ pub fn main(args: &Args) -> Result<(), Failure> {
     let provenance = provenance("run", &args.sweep);
     let job = Job {
         save_every: args.save_every,
-        ..Job::new(
-            &path,
-            args.threads.unwrap_or_else(default_threads),
-            &provenance,
-        )
+        ..Job::new(&path, threads, &provenance)
     };
     let plan = Arc::new(plan);
     match args.shard.filter(|shard| !shard.is_whole()) {

@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 use serde::Serialize;
 use slipmap::report::numbers::grouped;
 use slipmap::report::picture;
+use slipmap::slip::motion::MOST_KEPT;
 use slipmap::slip::outcome::{Outcome, Summary};
 use slipmap::store::{Output, StoreError, trace_file};
 use slipmap::sweep::trace::{TraceError, TraceEvent};
@@ -187,6 +188,10 @@ fn failure(error: TraceError) -> Failure {
             error.to_string(),
             "[trace] until = … ends it earlier, interval = … makes it coarser",
         ),
+        TraceError::OutgrowsPast => Failure::bad_input_with_help(
+            error.to_string(),
+            "a larger tolerance takes fewer steps, [trace] until = … ends it earlier",
+        ),
     }
 }
 
@@ -243,6 +248,10 @@ fn verdict(summary: &Summary, spec: &CaseSpec) -> String {
         Outcome::Undecided if summary.steps >= spec.case.steps => {
             format!("undecided after {} steps", grouped(summary.steps))
         }
+        Outcome::Undecided if summary.decided < spec.case.horizon => format!(
+            "undecided at t = {}: two delays take more than {MOST_KEPT} steps, the most that are kept",
+            digits(summary.decided)
+        ),
         Outcome::Undecided => format!("undecided at the horizon, t = {}", spec.case.horizon),
         Outcome::NoCycle => "there is no uncontrolled stick-slip to start from".into(),
     }

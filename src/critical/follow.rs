@@ -264,6 +264,7 @@ fn hold(problem: &Problem, motion: &mut Motion, v0: f64, how: &Holding) -> Susta
     let recent = cycles || motion.t - stops.last < 0.25 * (motion.t - start);
     let fate = match summary.outcome {
         Outcome::StickSlip => Fate::Periodic,
+        Outcome::Undecided if motion.outgrows_its_past() => Fate::Lost(Outcome::Undecided),
         Outcome::Undecided if stops.count > 2 && recent => Fate::Irregular,
         Outcome::Undecided if stops.far() => Fate::Lost(Outcome::Diverged),
         Outcome::Undecided if stops.slips_on() => Fate::Slips,

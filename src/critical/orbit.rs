@@ -53,10 +53,9 @@ impl At {
             return false;
         }
         let motions = (&mut last.motion, &mut before.motion);
-        self.motion
-            .extrapolate(motions, share, (v0, tau), stretches);
         self.v0 = v0;
-        true
+        self.motion
+            .extrapolate(motions, share, (v0, tau), stretches)
     }
 }
 

@@ -203,6 +203,7 @@ impl<'p> Trials<'p> {
             Outcome::LiftOff => Survival::LiftOff,
             Outcome::NoCycle => Survival::NoStickSlip,
             Outcome::Sliding | Outcome::Oscillation | Outcome::Diverged => Survival::Ends,
+            Outcome::Undecided if self.motion.outgrows_its_past() => Survival::Undecided,
             Outcome::Undecided if sticking.goes_on() => Survival::Irregular,
             Outcome::Undecided if sticking.calms_down() => Survival::Ends,
             Outcome::Undecided => Survival::Undecided,

@@ -55,7 +55,7 @@ pub enum CaseError {
     /// It has no uncontrolled cycle to start from.
     #[error("{}", match .0 {
         NoCycle::NoStickSlip => "switch_on_phase needs stick-slip without control, and there is none at this v0",
-        NoCycle::LongDelay => "switch_on_phase: tau is longer than 10000 cycles of stick-slip",
+        NoCycle::LongDelay => "switch_on_phase: tau is longer than 10000 cycles of stick-slip, or than the past that is kept",
     })]
     NoCycle(NoCycle),
 }

@@ -52,7 +52,7 @@ impl UncontrolledCycle {
 pub enum NoCycle {
     /// Released once, the uncontrolled block does not stick again, or has not done so after 1000 periods of free oscillation.
     NoStickSlip,
-    /// One delay has more than 10⁴ cycles.
+    /// One delay has more than 10⁴ cycles, or two have more steps than are kept.
     LongDelay,
 }
 
@@ -106,7 +106,11 @@ pub fn restart_after_release(
     }
     let mut followed = 0.0;
     while followed < before {
-        follow_cycle(motion).ok_or(NoCycle::NoStickSlip)?;
+        let cycle = follow_cycle(motion);
+        if motion.outgrows_its_past() {
+            return Err(NoCycle::LongDelay);
+        }
+        cycle.ok_or(NoCycle::NoStickSlip)?;
         followed += 1.0;
     }
     motion.begin_here(phase);
@@ -145,7 +149,7 @@ fn follow_cycle(motion: &mut Motion) -> Option<UncontrolledCycle> {
             Mode::Backwards if motion.mode() == Mode::Forwards => return None,
             Mode::Backwards => {}
         }
-        if motion.t >= horizon {
+        if motion.t >= horizon || motion.outgrows_its_past() {
             return None;
         }
     }

@@ -45,6 +45,11 @@ pub struct Stretch {
 /// Pasts correspond to one another to this, compared with all of their span.
 const SLIVER: f64 = 1e-7;
 
+/// The most steps that a past is kept of, two delays: 14 MB. A search for a critical velocity has up to ten pasts.
+pub const MOST_KEPT: usize = 1 << 16;
+/// What a step takes in it.
+pub const BYTES_OF_A_STEP: usize = size_of::<Piece>();
+
 /// The elongation over a window of time that moves along, of bounded length.
 #[derive(Debug, Clone, Default)]
 pub(super) struct History {
@@ -113,7 +118,8 @@ impl History {
         (self.ahead, self.apart) = (other.ahead, other.apart);
     }
 
-    /// Becomes, over `span` until time 0, `last` and `share` of the way from `before` to it beyond it, both as of their ends.
+    /// Becomes, over `span` until time 0, `last` and `share` of the way from `before` to it beyond it, both as of their ends;
+    /// false where that has no room.
     ///
     /// What is alike in the two pasts stands at the same place of stretches of time that follow one another, back and back
     /// again through `stretches`, the last one first.
@@ -123,7 +129,7 @@ impl History {
         share: f64,
         span: f64,
         stretches: &[Stretch],
-    ) {
+    ) -> bool {
         (self.at, self.felt) = (0, last.felt);
         (self.ahead, self.apart) = (last.ahead, last.apart);
         self.pieces.clear();
@@ -170,18 +176,21 @@ impl History {
                     *a = one + share * (one - other);
                     powers = [0, 1].map(|i| powers[i] * rates[i]);
                 }
-                self.pieces.push_back(Piece {
+                let piece = Piece {
                     from,
                     to,
                     radius: to - from,
                     order,
                     a,
                     kink,
-                });
+                };
+                if !self.add(piece) {
+                    return false;
+                }
                 (from, kink) = (to, next[sooner]);
             }
             if back == 0 {
-                return;
+                return true;
             }
             back -= 1;
             end = std::array::from_fn(|i| end[i] + stretch(back)[i]);
@@ -197,18 +206,33 @@ impl History {
     }
 
     /// Adds the step from the end of the last one to `to`; its polynomial holds there, and for `radius` from its start, both ways.
-    pub fn push(&mut self, to: f64, radius: f64, a: &[f64], kink: u32) {
+    /// False where there is no room for it.
+    #[must_use]
+    pub fn push(&mut self, to: f64, radius: f64, a: &[f64], kink: u32) -> bool {
         let from = self.pieces.back().map_or(to, |p| p.to);
         let mut coefficients = [0.0; MOST_ORDER + 1];
         coefficients[..a.len()].copy_from_slice(a);
-        self.pieces.push_back(Piece {
+        self.add(Piece {
             from,
             to,
             radius,
             order: a.len() - 1,
             a: coefficients,
             kink,
-        });
+        })
+    }
+
+    /// Whether no step has room any more.
+    pub fn is_full(&self) -> bool {
+        self.pieces.len() >= MOST_KEPT
+    }
+
+    fn add(&mut self, piece: Piece) -> bool {
+        let room = !self.is_full();
+        if room {
+            self.pieces.push_back(piece);
+        }
+        room
     }
 
     /// Forgets what ended before `time`.
@@ -314,9 +338,9 @@ mod tests {
     fn boundaries_are_kept_where_they_are_felt() {
         let mut history = History::default();
         history.restart(2.0, 0.0, 10);
-        history.push(1.0, 4.0, &[2.0, 1.0], 1);
-        history.push(2.0, 1.0, &[3.0, 1.0], SMOOTH);
-        history.push(2.5, 0.5, &[4.0, -1.0], 2);
+        assert!(history.push(1.0, 4.0, &[2.0, 1.0], 1));
+        assert!(history.push(2.0, 1.0, &[3.0, 1.0], SMOOTH));
+        assert!(history.push(2.5, 0.5, &[4.0, -1.0], 2));
         let mut a = [0.0; MOST_ORDER + 1];
         assert_eq!(
             history.read(-1.0, 3, &mut a),
@@ -349,8 +373,8 @@ mod tests {
         let past = |slip: f64, stick: f64, start: f64| {
             let mut history = History::default();
             history.restart(start, start, 10);
-            history.push(start + slip, slip, &[start, 0.5], 2);
-            history.push(start + slip + stick, stick, &[start + 0.5 * slip, 2.0], 2);
+            assert!(history.push(start + slip, slip, &[start, 0.5], 2));
+            assert!(history.push(start + slip + stick, stick, &[start + 0.5 * slip, 2.0], 2));
             history
         };
         let (mut before, mut last) = (past(1.0, 2.0, 5.0), past(1.2, 1.5, 7.0));
@@ -387,8 +411,8 @@ mod tests {
     fn boundaries_nearer_than_the_present_is_rounded_are_passed() {
         let mut history = History::default();
         history.restart(2.0, 0.0, 10);
-        history.push(0.3, 0.3, &[2.0, 1.0], 1);
-        history.push(1000.0, 1000.0, &[3.0], 2);
+        assert!(history.push(0.3, 0.3, &[2.0, 1.0], 1));
+        assert!(history.push(1000.0, 1000.0, &[3.0], 2));
         let mut a = [0.0; MOST_ORDER + 1];
         let reach = history.read(0.3 - 1e-14, SMOOTH, &mut a);
         assert!(1000.0 + (reach.until - 0.3) > 1000.0, "{reach:?}");

@@ -16,7 +16,7 @@ mod collocated;
 
 use super::collocation::NODES;
 use super::friction_series::FrictionSeries;
-pub use super::history::Stretch;
+pub use super::history::{BYTES_OF_A_STEP, MOST_KEPT, Stretch};
 use super::history::{History, SMOOTH};
 use super::series::{Coefficients, MOST_ORDER, first_zero, spread, value};
 use super::step::{Control, Step};
@@ -283,24 +283,27 @@ impl Motion {
     /// are released. Stretches of time that correspond to one another, the last one first, are slips and sticks; they are
     /// gone through again and again.
     ///
-    /// `tau` is less than twice the delays of both, whose past is known for so long.
+    /// `tau` is less than twice the delays of both, whose past is known for so long. False where the past has no room; the
+    /// motion then means nothing.
     pub fn extrapolate(
         &mut self,
         (last, before): (&mut Self, &mut Self),
         share: f64,
         (v0, tau): (f64, f64),
         stretches: &[Stretch],
-    ) {
+    ) -> bool {
         self.parameters.clone_from(&last.parameters);
         (self.parameters.v0, self.parameters.tau) = (v0, tau);
         let pasts = (&mut last.history, &mut before.history);
-        self.history
+        let has_room = self
+            .history
             .extrapolate(pasts, share, 1.01 * tau, stretches);
         self.friction.restart(0.0);
         self.mode = Mode::Forwards;
         self.a = last.a + share * (last.a - before.a);
         (self.t, self.u) = (0.0, 0.0);
         (self.kink, self.even_since) = (1, f64::INFINITY);
+        has_room
     }
 
     /// Makes the present t = 0, with control acting from `switch_on` on. The past stays what it is.
@@ -312,6 +315,12 @@ impl Motion {
         if switch_on <= 0.0 {
             self.kink = 1;
         }
+    }
+
+    /// Two delays take more steps than are kept: the motion ends here undecided, and its state is no number.
+    #[must_use]
+    pub fn outgrows_its_past(&self) -> bool {
+        self.u.is_nan() && self.history.is_full()
     }
 
     /// The parameters.
@@ -720,7 +729,9 @@ impl Motion {
             // Nothing holds a polynomial by its values outside of its step.
             Integrator::Collocation => 0.0,
         };
-        self.history.push(self.t, around, a, self.kink);
+        if !self.history.push(self.t, around, a, self.kink) {
+            (self.u, self.a) = (f64::NAN, f64::NAN);
+        }
         self.step.length = length;
         self.step.radius = radius;
     }

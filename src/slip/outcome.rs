@@ -283,6 +283,10 @@ impl Watch {
             self.n_min = step.smallest_load(self.n_min);
             self.peak = step.largest_elongation(self.peak);
         }
+        if motion.outgrows_its_past() {
+            self.outcome = Some(Outcome::Undecided);
+            return;
+        }
         if !finite || (size > BEYOND * self.scale && event != Some(Event::LiftOff)) {
             self.outcome = Some(Outcome::Diverged);
             return;
@@ -550,6 +554,34 @@ mod tests {
         let mut motion = Motion::new(p, Accuracy::default(), 0.0, 0.0);
         let s = follow(&mut motion, &limits, &mut ());
         assert_eq!(s.outcome, Outcome::StickSlip, "{s:?}");
+    }
+
+    /// Two delays of more steps than are kept: the motion is not followed with a past that is not its own.
+    #[test]
+    fn what_outgrows_its_past_is_undecided() {
+        let p = Parameters {
+            law: FrictionLaw::coulomb(0.5, 1.0).unwrap(),
+            switch_on: 0.0,
+            ..letter(1.0, -0.001, 0.0, 1e7)
+        };
+        let limits = Limits {
+            horizon: 1e9,
+            steps: 10_000_000,
+            stable_abscissa: None,
+            repeated: REPEATED,
+            cycles: usize::MAX,
+        };
+        // The delayed elongation is what it was before: cycles repeat, and are not waited for here.
+        let mut motion = Motion::new(p, Accuracy::default(), 0.0, 0.0);
+        let mut steps = 0;
+        while !motion.outgrows_its_past() {
+            motion.advance(limits.horizon);
+            steps += 1;
+        }
+        assert!((60_000..70_000).contains(&steps), "{steps}");
+        let s = follow(&mut motion, &limits, &mut ());
+        assert_eq!(s.outcome, Outcome::Undecided, "{s:?}");
+        assert_eq!(s.steps, 1);
     }
 
     #[test]

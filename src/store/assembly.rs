@@ -8,8 +8,7 @@ use super::map_writer::{MapWriter, Provenance};
 use super::output::Output;
 use super::source::Source;
 use super::tiles::record::Content;
-use crate::sweep::best::best_planes;
-use crate::sweep::boundaries::planes;
+use crate::sweep::boundaries::plane;
 use crate::sweep::pieces::{Piece, Pieces};
 use crate::sweep::plan::Plan;
 
@@ -53,7 +52,6 @@ pub fn assemble(
 ) -> Result<Assembled, StoreError> {
     let mut writer = MapWriter::create(plan, output, provenance)?;
     let mut assembled = Assembled::default();
-    let (curve_planes, best_planes) = (planes(plan), best_planes(plan));
     let pieces = Pieces::of(plan);
     for piece in (0..pieces.total()).map(|place| pieces.at(place)) {
         if stop.load(Ordering::Relaxed) {
@@ -73,7 +71,7 @@ pub fn assemble(
                 assembled.curves += rows.curves() as u64;
                 assembled.corners += rows.corners() as u64;
                 assembled.planes_left_out += u64::from(rows.left_out);
-                writer.put_curves(&curve_planes[number as usize], &rows)?;
+                writer.put_curves(&plane(plan, number), &rows)?;
             }
             (Piece::Best(_), Content::Best(row)) => writer.put_best(&row),
             (Piece::Tile(number), Content::Tile(chunks)) => {
@@ -85,7 +83,7 @@ pub fn assemble(
             _ => return Err(damaged()),
         }
     }
-    assembled.best_planes = best_planes.len() as u64;
+    assembled.best_planes = plan.best_planes();
     if assembled.pieces_missing > 0 {
         if missing == Missing::Refuse {
             return Err(StoreError::Incomplete {

@@ -157,7 +157,7 @@ fn check_schema(map: &MapFile, plan: &Plan, report: &mut Report) {
             Err(error) => faults.push(error.to_string()),
         }
     }
-    if let Err(error) = map.curves() {
+    if let Err(error) = map.for_each_curve(drop) {
         faults.push(error.to_string());
     }
 }

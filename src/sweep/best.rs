@@ -1,7 +1,7 @@
 //! Settings of fastest decay in physical units, for a point of parameter space and for the planes of a sweep.
 
 use super::axis::Axis;
-use super::boundaries::planes_spanned;
+use super::boundaries::plane_spanned;
 use super::parameter::{Parameter, Setting};
 use super::plan::Plan;
 use crate::linear::best::{self, Optimum, Search, SearchedGain};
@@ -182,10 +182,10 @@ pub fn gain_plane(axes: &[Axis]) -> Option<(usize, usize)> {
     Some((gain, tau))
 }
 
-/// The planes of a plan whose best settings are looked for, in order, as indices along every axis. Empty where none are.
+/// Where the plane of number `number` whose best settings are looked for lies, as indices along every axis.
 #[must_use]
-pub fn best_planes(plan: &Plan) -> Vec<Vec<usize>> {
-    planes_spanned(plan, plan.best_plane())
+pub fn best_plane(plan: &Plan, number: u64) -> Vec<usize> {
+    plane_spanned(plan, plan.best_plane(), number)
 }
 
 /// The best settings of the plane of a plan that lies at `index`; none where a parameter is outside the model's range.

@@ -3,7 +3,6 @@
 
 use super::parameter::{Parameter, Setting};
 use super::plan::Plan;
-use super::tile::for_each_index;
 use crate::linear::Crossings;
 use crate::linear::curves::{PlaneCurves, TooManyCurves, Window, scan_breakpoints, trace};
 use crate::linear::decay;
@@ -32,25 +31,25 @@ pub struct DegreeCurves {
     pub curves: Result<PlaneCurves, TooManyCurves>,
 }
 
-/// The planes of a plan in order, as indices along every axis. Empty where none are traced.
+/// Where the plane of curves of number `number` lies, as indices along every axis; 0 along its own two.
 #[must_use]
-pub fn planes(plan: &Plan) -> Vec<Vec<usize>> {
-    planes_spanned(plan, plan.boundary_plane)
+pub fn plane(plan: &Plan, number: u64) -> Vec<usize> {
+    plane_spanned(plan, plan.boundary_plane, number)
 }
 
-/// Every setting of the axes outside a plane, as indices along every axis; none without a plane.
-pub(super) fn planes_spanned(plan: &Plan, plane: Option<(usize, usize)>) -> Vec<Vec<usize>> {
-    let Some((p, tau)) = plane else {
-        return Vec::new();
-    };
-    let mut extent = plan.shape().to_vec();
-    (extent[p], extent[tau]) = (1, 1);
-    let mut planes = Vec::new();
-    for_each_index(&extent, None, |index| planes.push(index.to_vec()));
-    planes
+/// The setting of that number of the axes outside a plane, the last one fastest, as indices along every axis.
+pub(super) fn plane_spanned(plan: &Plan, plane: Option<(usize, usize)>, number: u64) -> Vec<usize> {
+    let (p, tau) = plane.unwrap_or((usize::MAX, usize::MAX));
+    let mut index = vec![0; plan.shape().len()];
+    let mut rest = number as usize;
+    for axis in (0..index.len()).rev().filter(|&a| a != p && a != tau) {
+        index[axis] = rest % plan.shape()[axis];
+        rest /= plan.shape()[axis];
+    }
+    index
 }
 
-/// Traces the curves of one of [`planes`].
+/// Traces the curves of the [`plane`] at `index`.
 ///
 /// # Errors
 /// When a parameter is outside the model's range.
@@ -213,8 +212,8 @@ mod tests {
             (vec![0.4, 1.1], vec![0.6, 0.9], 1.2),
         ] {
             let plan = sweep(&speeds, &mu_k, alpha_n);
-            let plane = trace_plane(&plan, &planes(&plan)[0]).unwrap();
-            let curves = plane.curves[0].curves.as_ref().unwrap();
+            let traced = trace_plane(&plan, &plane(&plan, 0)).unwrap();
+            let curves = traced.curves[0].curves.as_ref().unwrap();
             let columns = plan.spec.axes[0].values.iter().enumerate();
             for (i, &v0) in columns.filter(|(i, _)| (1..60).contains(i)) {
                 // Where the curves are in this column.

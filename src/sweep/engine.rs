@@ -7,8 +7,8 @@ use std::time::{Duration, Instant};
 
 use rayon::{ThreadPool, ThreadPoolBuilder};
 
-use super::best::{BestSettings, best_of_plane, best_planes};
-use super::boundaries::{BoundaryPlane, planes, trace_plane};
+use super::best::{BestSettings, best_of_plane, best_plane};
+use super::boundaries::{BoundaryPlane, plane, trace_plane};
 use super::events::{Event, Observer};
 use super::pieces::{Piece, Todo};
 use super::plan::Plan;
@@ -171,29 +171,18 @@ fn start<S: Sink>(
         })?;
     let (sender, receiver) = sync_channel(PIECES_WAITING * threads);
     let todo = Arc::new(todo);
-    let at = Arc::new(Planes {
-        curves: planes(plan),
-        best: best_planes(plan),
-    });
     for _ in 0..threads {
-        let (plan, todo, at) = (Arc::clone(plan), Arc::clone(&todo), Arc::clone(&at));
+        let (plan, todo) = (Arc::clone(plan), Arc::clone(&todo));
         let (stop, sender, encoder) = (Arc::clone(stop), sender.clone(), sink.encoder());
-        pool.spawn(move || work(&plan, &todo, &at, encoder, &sender, &stop));
+        pool.spawn(move || work(&plan, &todo, encoder, &sender, &stop));
     }
     Ok(receiver)
-}
-
-/// Where the planes of curves and of best settings lie.
-struct Planes {
-    curves: Vec<Vec<usize>>,
-    best: Vec<Vec<usize>>,
 }
 
 /// One thread's work, until nothing is left, a stop is asked for, or nobody listens any more.
 fn work<C: Encode>(
     plan: &Plan,
     todo: &Todo,
-    at: &Planes,
     mut encoder: C,
     sender: &SyncSender<Sent<C::Encoded>>,
     stop: &AtomicBool,
@@ -202,10 +191,10 @@ fn work<C: Encode>(
     while !stop.load(Ordering::Relaxed) {
         let Some(piece) = todo.next() else { break };
         let encoded = match piece {
-            Piece::Curves(n) => trace_plane(plan, &at.curves[n as usize])
+            Piece::Curves(n) => trace_plane(plan, &plane(plan, n))
                 .map(|plane| encoder.encode(piece, Computed::Curves(&plane))),
             Piece::Best(n) => {
-                let found = best_of_plane(plan, &at.best[n as usize]);
+                let found = best_of_plane(plan, &best_plane(plan, n));
                 Ok(encoder.encode(piece, Computed::Best(found.as_ref())))
             }
             Piece::Tile(n) => {

@@ -1,5 +1,7 @@
 //! The plan of a sweep: its cells, cut into tiles.
 
+use std::borrow::Cow;
+
 use sha2::{Digest, Sha256};
 
 use super::axis::plane_of_curves;
@@ -30,8 +32,8 @@ const BLOCK_OF_VC: usize = crate::critical::line::BLOCK;
 const _: () = assert!(BLOCK_OF_DELAYS.is_multiple_of(BLOCK_OF_VC));
 /// More cells than this are refused.
 pub const MOST_CELLS: u64 = 10_000_000_000_000;
-/// More tiles than this are refused: even their list would fill a machine's memory.
-const MOST_TILES: usize = 100_000_000;
+/// More tiles than this are refused: the list of what is done, and of where it is, takes a quarter of a gigabyte.
+const MOST_TILES: usize = 1 << 21;
 /// More planes of curves and best settings than this are refused.
 const MOST_PLANES: u64 = 1_000_000;
 /// Planes up to which crossing curves are traced without being asked for.
@@ -205,32 +207,35 @@ impl Plan {
     }
 
     /// Everything on which the cells depend, by name, with numbers where there are any; equal plans have equal cells.
-    fn facts(&self) -> Vec<(&str, Vec<f64>)> {
+    fn facts(&self) -> Vec<(&str, Cow<'_, [f64]>)> {
         let spec = &self.spec;
         let fixed = &spec.fixed;
-        let mut facts = vec![(fixed.law().map_or("no law", LawKind::name), Vec::new())];
+        let none = || Cow::Borrowed(&[][..]);
+        let one = |value: f64| Cow::Owned(vec![value]);
+        let mut facts = vec![(fixed.law().map_or("no law", LawKind::name), none())];
         if let Some(LawKind::Table(table)) = fixed.law() {
-            facts.push((Column::Speeds.name(), table.speeds().to_vec()));
-            facts.push((Column::MuK.name(), table.mu_k().to_vec()));
+            facts.push((Column::Speeds.name(), table.speeds().into()));
+            facts.push((Column::MuK.name(), table.mu_k().into()));
         }
-        facts.push(("axes", vec![spec.axes.len() as f64]));
+        facts.push(("axes", one(spec.axes.len() as f64)));
         for axis in &spec.axes {
-            facts.push((axis.parameter.name(), axis.values.clone()));
+            facts.push((axis.parameter.name(), axis.values.as_slice().into()));
         }
         for parameter in Parameter::ALL.into_iter().filter(|&p| spec.uses(p)) {
             if !spec.axes.iter().any(|a| a.parameter == parameter) {
-                facts.push((parameter.name(), vec![fixed.get(parameter)]));
+                facts.push((parameter.name(), one(fixed.get(parameter))));
             }
         }
-        facts.extend(spec.fields.iter().map(|f| (f.name(), Vec::new())));
-        facts.push(("marginal", vec![spec.tolerance.0]));
-        facts.push(("boundaries", vec![f64::from(self.boundary_plane.is_some())]));
+        facts.extend(spec.fields.iter().map(|f| (f.name(), none())));
+        facts.push(("marginal", one(spec.tolerance.0)));
+        facts.push(("boundaries", one(f64::from(self.boundary_plane.is_some()))));
         // Absent where there are none: maps of earlier versions stay equal.
         if !spec.degrees_of_stability.is_empty() {
-            facts.push(("degree_of_stability", spec.degrees_of_stability.clone()));
+            let degrees = spec.degrees_of_stability.as_slice();
+            facts.push(("degree_of_stability", degrees.into()));
         }
         if spec.best {
-            facts.push(("best", Vec::new()));
+            facts.push(("best", none()));
         }
         if let Some(search) = spec.critical {
             let protocol = search.protocol;
@@ -238,13 +243,13 @@ impl Plan {
                 Protocol::SwitchOn(Phase::Worst(phases)) => f64::from(phases),
                 _ => 0.0,
             };
-            facts.push((protocol.name(), vec![phases, search.verify]));
+            facts.push((protocol.name(), vec![phases, search.verify].into()));
         }
         if spec.follows_motions() {
             let how = &spec.simulation;
             let horizon = how.horizon.unwrap_or(0.0);
             let numbers = vec![horizon, how.tolerance, how.steps as f64];
-            facts.push(("simulation", numbers));
+            facts.push(("simulation", numbers.into()));
         }
         facts
     }

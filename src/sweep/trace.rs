@@ -2,11 +2,11 @@
 
 use super::case_file::{CaseSpec, Sampling};
 use crate::slip::case::{Case, CaseError, CaseUnits};
-use crate::slip::motion::{Event, Mode, Motion};
+use crate::slip::motion::{Event, MOST_KEPT, Mode, Motion};
 use crate::slip::outcome::{Observer, Outcome, Summary};
 
 /// More samples than this make no trace: some 300 MB.
-const MOST_SAMPLES: usize = 5_000_000;
+const MOST_SAMPLES: usize = 2_000_000;
 
 /// Modes by their numbers in a trace, with their names.
 pub const MODES: [(Mode, &str); 3] = [
@@ -31,8 +31,11 @@ pub enum TraceError {
     #[error(transparent)]
     Case(#[from] CaseError),
     /// It would be too long.
-    #[error("the trace would have more than {MOST_SAMPLES} samples")]
+    #[error("the trace would have more than {MOST_SAMPLES} samples or events")]
     TooLong,
+    /// The delay is too long for its steps.
+    #[error("two delays take more than {MOST_KEPT} steps, the most that are kept")]
+    OutgrowsPast,
 }
 
 /// The state at one time, in the case's units.
@@ -98,6 +101,9 @@ impl Trace {
             events: Vec::new(),
         };
         let summary = case.run(&mut listed)?;
+        if listed.enough() {
+            return Err(TraceError::TooLong);
+        }
         let ended = matches!(summary.outcome, Outcome::LiftOff | Outcome::Diverged);
         let until = match spec.until {
             Some(until) if !(ended && until > summary.decided) => until,
@@ -148,6 +154,10 @@ impl Observer for Events {
     fn step(&mut self, motion: &Motion, event: Option<Event>) {
         let there = event.map(|kind| physical(motion, kind, self.units));
         self.events.extend(there);
+    }
+
+    fn enough(&self) -> bool {
+        self.events.len() > MOST_SAMPLES
     }
 }
 
@@ -206,6 +216,9 @@ impl Recorder {
                 marked,
             };
             let event = self.motion.advance(end);
+            if self.motion.outgrows_its_past() {
+                return Err(TraceError::OutgrowsPast);
+            }
             let step = self.motion.last_step();
             self.x += step.displacement(step.length);
             self.sample_step(begun);

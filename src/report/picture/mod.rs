@@ -211,7 +211,10 @@ fn compose(map: &MapFile, options: &PictureOptions, most: usize) -> Result<Scene
         return Ok(scene);
     };
     let in_plane = view.is_boundary_plane(map);
-    let curves = if in_plane { map.curves()? } else { Vec::new() };
+    let curves = match in_plane {
+        true => map.curves_where(|outer| view.shows(map, outer))?,
+        false => Vec::new(),
+    };
     let fits = view.along.is_some() && view.of <= MOST_PANELS && view.outer_axes(map) == 1;
     let by_default =
         fits && options.field.is_none() && says_more(map).is_none() && !curves.is_empty();

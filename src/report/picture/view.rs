@@ -103,6 +103,12 @@ impl View {
             .collect()
     }
 
+    /// Whether a panel shows the plane at these values of the axes outside of it.
+    pub fn shows(&self, map: &MapFile, outer: &[f64]) -> bool {
+        let mut panels = self.panels.iter();
+        panels.any(|panel| self.outer_values(map, panel) == outer)
+    }
+
     /// What tells a panel from the others, "μ′ = −0.3"; none for a single panel.
     pub fn heading(&self, map: &MapFile, panel: &[usize]) -> Option<Rich> {
         let axis = self.along?;

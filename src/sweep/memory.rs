@@ -1,0 +1,146 @@
+//! How much memory a run takes, before it begins: bounds from the plan alone, to which `--memory` fits the threads.
+
+use super::parameter::{Parameter, Setting};
+use super::pieces::Pieces;
+use super::plan::Plan;
+use crate::slip::motion::{BYTES_OF_A_STEP, MOST_KEPT};
+
+/// The program, the HDF5 library, the tiles that wait to be saved, a picture.
+const BASE: u64 = 90 << 20;
+/// A piece in the lists of what is done and where it is.
+const PER_PIECE: u64 = 128;
+/// A plane of best settings until the map is written.
+const PER_BEST: u64 = 64;
+/// The values of an axis: in the plan, in the map that is read back, and on the way.
+const COPIES_OF_AXES: u64 = 4;
+/// Stack and scratch of a thread.
+const PER_THREAD: u64 = 2 << 20;
+/// A tile in a thread: as numbers, as it is compressed, and those that wait for the disk.
+const COPIES_OF_TILES: u64 = 4;
+/// A plane with as many curves as are traced, with its copies on the way to the disk.
+const PLANE_OF_CURVES: u64 = 24 << 20;
+/// Pasts of motions that a thread has at once, where outcomes are looked for, and where critical velocities are.
+const PASTS_OF_OUTCOMES: u64 = 1;
+const PASTS_OF_CRITICAL: u64 = 10;
+/// Steps in a unit of time √(M/κ), more than are ever seen on average; and those of a short delay.
+const STEPS_PER_TIME: f64 = 16.0;
+const STEPS_AT_LEAST: f64 = 4096.0;
+
+/// What a run takes, in bytes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Memory {
+    /// However many threads compute.
+    pub shared: u64,
+    /// Each thread besides.
+    pub per_thread: u64,
+}
+
+impl Memory {
+    /// Of a run of `plan`.
+    #[must_use]
+    pub fn of(plan: &Plan) -> Self {
+        let pieces = Pieces::of(plan);
+        let axes: u64 = plan.shape().iter().map(|&n| n as u64).sum();
+        let shared = BASE
+            + PER_PIECE * pieces.total()
+            + PER_BEST * pieces.best
+            + COPIES_OF_AXES * axes * size_of::<f64>() as u64;
+        let tile = plan.tiles.tile_cells() as u64 * plan.bytes_per_cell();
+        let degrees = 1 + plan.spec.degrees_of_stability.len() as u64;
+        let curves = match pieces.curves {
+            0 => 0,
+            _ => PLANE_OF_CURVES * degrees,
+        };
+        let per_thread = PER_THREAD + COPIES_OF_TILES * tile + curves + pasts(plan);
+        Self { shared, per_thread }
+    }
+
+    /// On so many threads.
+    #[must_use]
+    pub fn on(&self, threads: usize) -> u64 {
+        self.shared + self.per_thread * threads as u64
+    }
+
+    /// The most threads, up to `asked`, that stay within `limit` bytes; none where one does not.
+    #[must_use]
+    pub fn threads_within(&self, limit: u64, asked: usize) -> Option<usize> {
+        let fitting = limit.checked_sub(self.shared)? / self.per_thread;
+        let threads = usize::try_from(fitting).unwrap_or(usize::MAX).min(asked);
+        (threads > 0).then_some(threads)
+    }
+}
+
+/// What motions are remembered of, in one thread.
+fn pasts(plan: &Plan) -> u64 {
+    let count = match (plan.spec.critical.is_some(), plan.spec.follows_motions()) {
+        (true, _) => PASTS_OF_CRITICAL,
+        (false, true) => PASTS_OF_OUTCOMES,
+        (false, false) => return 0,
+    };
+    // Two delays are kept. What the memory of a deque may be larger than what is in it.
+    let steps = 2.0 * longest_delay(plan) * STEPS_PER_TIME + STEPS_AT_LEAST;
+    let steps = (steps.min(MOST_KEPT as f64) as u64).next_power_of_two();
+    count * steps * BYTES_OF_A_STEP as u64
+}
+
+/// The longest delay of a sweep, τ √(κ/M).
+fn longest_delay(plan: &Plan) -> f64 {
+    let (mut longest, mut others) = (plan.spec.fixed.clone(), plan.spec.fixed.clone());
+    for axis in &plan.spec.axes {
+        let (from, to) = axis.range();
+        // The unit of time is the shorter the smaller the mass and the larger the stiffness.
+        let (at, other) = match axis.parameter {
+            Parameter::Mass => (from, to),
+            _ => (to, from),
+        };
+        longest.set(axis.parameter, at);
+        others.set(axis.parameter, other);
+    }
+    let delay = |setting: &Setting| {
+        let unit = setting.oscillator().map_or(1.0, |o| o.time_unit());
+        setting.get(Parameter::Tau) / unit
+    };
+    delay(&longest).max(delay(&others))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::sweep::SweepSpec;
+
+    fn memory(field: &str, fixed: &str, tau: f64) -> Memory {
+        let text = format!(
+            "fields = [\"{field}\"]\n[axes]\nalpha_v = [-0.1, -0.2]\ntau = [1.0, {tau:?}]\n\
+             mass = [0.01, 1.0]\n[friction]\nlaw = \"coulomb\"\nmu0 = 0.5\n[fixed]\n{fixed}\n"
+        );
+        Memory::of(&Plan::new(text.parse::<SweepSpec>().unwrap()).unwrap())
+    }
+
+    #[test]
+    fn threads_are_fitted_to_the_limit() {
+        let m = Memory {
+            shared: 100,
+            per_thread: 30,
+        };
+        assert_eq!(m.threads_within(129, 4), None);
+        assert_eq!(m.threads_within(99, 4), None);
+        assert_eq!(m.threads_within(130, 4), Some(1));
+        assert_eq!(m.threads_within(1000, 4), Some(4));
+        assert!(m.on(m.threads_within(200, 9).unwrap()) <= 200);
+    }
+
+    /// Longer delays, a smaller mass, and more pasts take more; never more than what a motion may keep.
+    #[test]
+    fn pasts_grow_with_the_delay_up_to_what_is_kept() {
+        let past = (MOST_KEPT * BYTES_OF_A_STEP) as u64;
+        let (short, long) = (
+            memory("outcome", "v0 = 0.3", 2.0),
+            memory("outcome", "v0 = 0.3", 1e9),
+        );
+        assert!(short.per_thread < long.per_thread);
+        assert!(long.per_thread - PER_THREAD >= past);
+        let critical = memory("vc", "", 1e9);
+        assert!(critical.per_thread >= PASTS_OF_CRITICAL * past);
+        assert!(critical.on(2) < 500 << 20, "{critical:?}");
+    }
+}
