@@ -3,8 +3,9 @@
 #
 #   scripts/soak.sh [HOURS]
 #
-# Every fault of every command (tests/faults.rs) and the memory of each (tests/memory.rs), then in turn, with new seeds, until the time is over (1 hour by default):
-# kills of runs, damaged tiles and maps, motions and critical velocities against the referee.
+# Every fault of every command (tests/faults.rs) and the memory of each (tests/memory.rs), then in turn, with new seeds, until the
+# time is over (1 hour by default): kills of runs, damaged tiles and maps, flipped bits, motions and critical velocities against
+# the referee.
 # Stops at the first thing that fails, with its output.
 set -euo pipefail
 
@@ -35,6 +36,7 @@ while [ $SECONDS -lt $until ]; do
     say "round $round, seed $SLIPMAP_SEED"
     SLIPMAP_KILLS=200 SLIPMAP_DAMAGES=1000 tests --test overnight
     SLIPMAP_DAMAGED=2000 tests --test damaged
+    SLIPMAP_FLIPS=2500 SLIPMAP_TILE_FLIPS=1000 tests --test flips
     SLIPMAP_CASES=2000 tests --test referee -- --test-threads=1 by_chance
 done
 say "$round rounds"

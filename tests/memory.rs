@@ -3,14 +3,19 @@
 //! `SLIPMAP_MEMORY=all` asks for every command over the shipped sweeps, a map of 10⁹ cells and 4,000 planes of curves as well.
 #![cfg(target_os = "linux")]
 
+#[path = "common/limited.rs"]
+mod limited;
 #[path = "common/program.rs"]
 mod program;
 
-use std::os::unix::process::ExitStatusExt;
-use std::process::{Command, ExitStatus, Stdio};
+use std::process::{Command, Stdio};
+use std::time::Duration;
 
+use limited::End;
 use program::{Folder, expect};
 
+/// The longest that a command takes, the map of 10⁹ cells included.
+const PATIENCE: Duration = Duration::from_secs(3600);
 /// What a run takes where nothing else is asked for, in 10⁶ bytes.
 const PROMISED: u64 = 500;
 
@@ -43,22 +48,9 @@ const LONG_DELAYS: &str = "fields = [\"vc\"]\n[axes]\nalpha_v = [0.00165272, 0.0
 fn peak(mut command: Command) -> u64 {
     command.stdout(Stdio::null()).stdin(Stdio::null());
     let child = command.spawn().unwrap();
-    let (mut status, mut usage) = (0, std::mem::MaybeUninit::<libc::rusage>::zeroed());
-    // SAFETY: the child is ours and nobody else waits for it; both places outlive the call.
-    let usage = unsafe {
-        let waited = libc::wait4(
-            child.id() as libc::pid_t,
-            &mut status,
-            0,
-            usage.as_mut_ptr(),
-        );
-        assert_eq!(waited, child.id() as libc::pid_t);
-        usage.assume_init()
-    };
-    let status = ExitStatus::from_raw(status);
-    assert!(status.success(), "{command:?}: {status}");
-    // In units of 1024 bytes.
-    usage.ru_maxrss as u64 * 1024 / 1_000_000
+    let (end, bytes) = limited::wait(child.id() as libc::pid_t, PATIENCE);
+    assert_eq!(end, End::Code(0), "{command:?}");
+    bytes / 1_000_000
 }
 
 fn write(folder: &Folder, name: &str, text: &str) {

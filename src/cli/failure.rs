@@ -7,7 +7,7 @@ use slipmap::model::{ModelError, Shown};
 use slipmap::store::StoreError;
 use slipmap::sweep::SpecError;
 
-use super::say;
+use super::say::{self, visible, visible_line};
 
 /// Why a command did not do what it was asked for.
 pub enum Failure {
@@ -29,22 +29,22 @@ pub enum Failure {
 impl Failure {
     /// What could not be done, in words.
     pub fn failed(message: impl Into<String>) -> Self {
-        Self::Failed(Report::new(MietteDiagnostic::new(message)))
+        Self::Failed(Report::new(shown(message)))
     }
 
     /// The same with advice.
     pub fn failed_with_help(message: impl Into<String>, help: impl Into<String>) -> Self {
-        Self::Failed(Report::new(MietteDiagnostic::new(message).with_help(help)))
+        Self::Failed(Report::new(shown(message).with_help(visible(&help.into()))))
     }
 
     /// Bad input, in words.
     pub fn bad_input(message: impl Into<String>) -> Self {
-        Self::BadInput(Report::new(MietteDiagnostic::new(message)))
+        Self::BadInput(Report::new(shown(message)))
     }
 
     /// Bad input with advice.
     pub fn bad_input_with_help(message: impl Into<String>, help: impl Into<String>) -> Self {
-        Self::BadInput(Report::new(MietteDiagnostic::new(message).with_help(help)))
+        Self::BadInput(Report::new(shown(message).with_help(visible(&help.into()))))
     }
 
     /// A flag with a value that its parameter does not take.
@@ -57,18 +57,23 @@ impl Failure {
     }
 
     /// Bad input at a place of a file.
-    pub fn in_file(error: SpecError, name: &str, text: String) -> Self {
-        let mut diagnostic = MietteDiagnostic::new(error.message);
+    pub fn in_file(error: SpecError, name: &str, text: &str) -> Self {
+        let name = visible_line(name);
+        let mut diagnostic = shown(error.message);
         if let Some(help) = error.help {
-            diagnostic = diagnostic.with_help(help);
+            diagnostic = diagnostic.with_help(visible(&help));
         }
         let Some(span) = error.span else {
-            let message = format!("{name}: {}", diagnostic.message);
-            diagnostic.message = message;
+            diagnostic.message = format!("{name}: {}", diagnostic.message);
             return Self::BadInput(Report::new(diagnostic));
         };
+        // Ends of lines are not what is odd in a text from Windows.
+        let shown = |text: &str| visible(&text.replace("\r\n", "\n"));
+        let place = |at: usize| text.get(..at).map_or(0, |before| shown(before).len());
+        let span = place(span.start)..place(span.end);
         let diagnostic = diagnostic.with_label(LabeledSpan::at(span, "here"));
-        Self::BadInput(Report::new(diagnostic).with_source_code(NamedSource::new(name, text)))
+        let source = NamedSource::new(name, shown(text));
+        Self::BadInput(Report::new(diagnostic).with_source_code(source))
     }
 
     /// Prints the failure to standard error and gives the exit code.
@@ -82,14 +87,19 @@ impl Failure {
             Self::Failed(report) => (report, 1),
             Self::BadInput(report) => (report, 2),
         };
-        say::remark(format_args!("{report:?}"));
+        say::coloured(format_args!("{report:?}"));
         ExitCode::from(code)
     }
 }
 
+/// A message, which may quote a file.
+fn shown(message: impl Into<String>) -> MietteDiagnostic {
+    MietteDiagnostic::new(visible(&message.into()))
+}
+
 impl From<StoreError> for Failure {
     fn from(error: StoreError) -> Self {
-        let mut diagnostic = MietteDiagnostic::new(say::visible(&error.to_string()));
+        let mut diagnostic = shown(error.to_string());
         let other_tiles = matches!(
             error,
             StoreError::OtherTiles { .. } | StoreError::Manifest { .. }

@@ -12,7 +12,7 @@ use slipmap::sweep::Field;
 
 use super::failure::Failure;
 use super::open::open;
-use super::say::visible;
+use super::say::{visible, visible_line};
 
 #[derive(Debug, clap::Args)]
 pub struct Args {
@@ -36,7 +36,7 @@ pub fn main(args: &Args) -> Result<(), Failure> {
         }
         return Ok(());
     }
-    let mut row = |name: &str, text: String| writeln!(out, "{name:<12} {text}");
+    let mut row = |name: &str, text: String| writeln!(out, "{name:<12} {}", visible_line(&text));
     for (name, attribute) in [
         ("title", root::TITLE),
         ("made by", root::SOURCE),
@@ -47,7 +47,7 @@ pub fn main(args: &Args) -> Result<(), Failure> {
         ("friction", root::FRICTION_LAW),
     ] {
         if let Some(text) = map.root_text(attribute).filter(|t| !t.is_empty()) {
-            row(name, visible(&text).replace('\n', "\\n"))?;
+            row(name, text)?;
         }
     }
     for axis in map.axes() {

@@ -60,9 +60,25 @@ enum Command {
     Info(info::Args),
 }
 
+/// Help, or what is wrong with the arguments, of which some may be names that hold control characters.
+fn say_usage(error: &clap::Error) -> ExitCode {
+    let odd = |arg: std::ffi::OsString| {
+        let arg = arg.to_string_lossy().into_owned();
+        say::visible_line(&arg) != arg
+    };
+    if !std::env::args_os().any(odd) {
+        error.exit();
+    }
+    say::remark(error.render());
+    ExitCode::from(error.exit_code() as u8)
+}
+
 /// Runs the command line of this process.
 pub fn main() -> ExitCode {
-    let command = Cli::parse().command;
+    let command = match Cli::try_parse() {
+        Ok(cli) => cli.command,
+        Err(error) => return say_usage(&error),
+    };
     // Caught and not looked at: a limit on file sizes then fails the write instead of ending the process. Where it cannot be
     // caught, such a limit ends the process, no more.
     let _ = signal_hook::flag::register(signal_hook::consts::SIGXFSZ, Arc::default());

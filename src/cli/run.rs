@@ -249,7 +249,7 @@ pub fn show(path: &Path, quiet: bool) {
     }
     let no_colour = std::env::var_os("NO_COLOR").is_some_and(|value| !value.is_empty());
     match preview(&map, PREVIEW_WIDTH, !no_colour) {
-        Ok(Some(text)) => say::remark(text.trim_end_matches('\n')),
+        Ok(Some(text)) => say::coloured(text.trim_end_matches('\n')),
         Ok(None) => {}
         Err(error) => say::remark(format_args!("warning: no preview: {error}")),
     }

@@ -3,27 +3,33 @@
 use std::fmt::Display;
 use std::io::Write;
 
-use super::failure::Failure;
+use serde::Serialize;
+pub use slipmap::report::visible::{visible, visible_line};
 
-/// A text from a file with its control characters, but for ends of lines, spelled out: none of them reaches the terminal.
-pub fn visible(text: &str) -> String {
-    let mut shown = String::with_capacity(text.len());
-    for c in text.chars() {
-        match c {
-            '\n' => shown.push(c),
-            c if c.is_control() => shown.extend(c.escape_default()),
-            c => shown.push(c),
-        }
-    }
-    shown
-}
+use super::failure::Failure;
 
 /// A line on standard output: a result. Fails where it cannot be written, a full disk for instance.
 pub fn result(line: impl Display) -> Result<(), Failure> {
-    Ok(writeln!(std::io::stdout(), "{line}")?)
+    Ok(writeln!(
+        std::io::stdout(),
+        "{}",
+        visible(&line.to_string())
+    )?)
+}
+
+/// One JSON object on standard output.
+pub fn json(value: &impl Serialize) -> Result<(), Failure> {
+    let text = serde_json::to_string(value).map_err(std::io::Error::from)?;
+    let text = slipmap::report::visible::visible_json(&text);
+    Ok(writeln!(std::io::stdout(), "{text}")?)
 }
 
 /// A line on standard error: a remark.
 pub fn remark(line: impl Display) {
-    let _ = writeln!(std::io::stderr(), "{line}");
+    coloured(visible(&line.to_string()));
+}
+
+/// The same of a text that holds no other control characters than slipmap's own.
+pub fn coloured(text: impl Display) {
+    let _ = writeln!(std::io::stderr(), "{text}");
 }

@@ -99,16 +99,13 @@ pub fn main(args: &Args) -> Result<(), Failure> {
     let trace = Trace::of(&spec).map_err(failure)?;
     let output = Output::claim(&path)?;
     trace_file::write(&spec, &trace, output, &provenance("simulate", &args.case))?;
-    let mut out = std::io::stdout().lock();
     if args.json {
-        let text = serde_json::to_string(&MotionOut::new(&trace, &path));
-        writeln!(out, "{}", text.map_err(std::io::Error::from)?)?;
+        say::json(&MotionOut::new(&trace, &path))?;
     } else {
-        print(&mut out, &spec, &trace)?;
+        print(&mut std::io::stdout().lock(), &spec, &trace)?;
         let samples = grouped(trace.samples.len() as u64);
-        writeln!(out, "{}: {samples} samples", path.display())?;
+        say::result(format_args!("{}: {samples} samples", path.display()))?;
     }
-    drop(out);
     let drawn = draw(args, &spec, &trace, &path)?;
     match drawn.filter(|_| !args.json) {
         Some(picture) => say::result(picture.display()),

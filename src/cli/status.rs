@@ -1,7 +1,7 @@
 //! `slipmap status`: how far a map is, from another terminal.
 
 use std::fs::File;
-use std::io::{BufRead, BufReader, Write};
+use std::io::{BufRead, BufReader, Read, Write};
 use std::path::{Path, PathBuf};
 use std::time::SystemTime;
 
@@ -14,7 +14,10 @@ use slipmap::store::tiles::survey::ShardSurvey;
 use slipmap::store::{MapFile, StatusCounts};
 
 use super::failure::Failure;
-use super::say;
+use super::say::{self, visible_line};
+
+/// A run tells its rate from so many bytes of its log at most.
+const MOST_OF_LOG: u64 = 64 << 20;
 
 #[derive(Debug, clap::Args)]
 pub struct Args {
@@ -32,7 +35,7 @@ pub fn main(args: &Args) -> Result<(), Failure> {
         None => of_map(&args.map)?,
     };
     if args.json {
-        return say::result(status.json());
+        return say::json(&status.json());
     }
     status.print(&args.map)
 }
@@ -102,7 +105,12 @@ fn rate(map: &Path, found: &ShardSurvey) -> Option<f64> {
     if !found.running {
         return None;
     }
-    let log = File::open(log::path(map, found.shard)).ok()?;
+    let path = log::path(map, found.shard);
+    // What is no file may wait for ever, and a file of another kind may be one long line.
+    if !path.metadata().ok()?.is_file() {
+        return None;
+    }
+    let log = File::open(path).ok()?.take(MOST_OF_LOG);
     let lines = BufReader::new(log).lines().map_while(Result::ok);
     let lines = lines.filter_map(|line| serde_json::from_str::<Line>(&line).ok());
     let started = lines.filter_map(|line| match line.entry {
@@ -161,7 +169,8 @@ impl Status {
 
     fn print(&self, map: &Path) -> Result<(), Failure> {
         let mut out = std::io::stdout().lock();
-        let mut row = |name: &str, text: String| writeln!(out, "{name:<12} {text}");
+        let mut row =
+            |name: &str, text: String| writeln!(out, "{name:<12} {}", visible_line(&text));
         let state = match (self.complete, self.running()) {
             (true, _) if self.shards.is_empty() => "complete",
             (true, true) => "complete, and being computed again",

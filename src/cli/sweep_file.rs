@@ -44,5 +44,5 @@ fn read<T>(
     }
     let bytes = std::fs::read(path).map_err(|e| refuse(e.to_string()))?;
     let text = String::from_utf8(bytes).map_err(|_| refuse("it is not UTF-8 text".into()))?;
-    parse(&text).map_err(|error| Failure::in_file(error, &name, text))
+    parse(&text).map_err(|error| Failure::in_file(error, &name, &text))
 }

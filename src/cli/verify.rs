@@ -9,7 +9,7 @@ use slipmap::store::MapFile;
 use slipmap::store::map_check::{Effort, Report, check};
 
 use super::failure::Failure;
-use super::say;
+use super::say::{self, visible_line};
 
 /// More cells or tiles than this are not computed again.
 const MOST: u64 = 100_000_000;
@@ -39,7 +39,7 @@ pub fn main(args: &Args) -> Result<(), Failure> {
     let program = (env!("CARGO_PKG_VERSION"), env!("SLIPMAP_GIT_REVISION"));
     let report = check(&map, program, effort)?;
     let told = match args.json {
-        true => say::result(to_json(&report)),
+        true => say::json(&to_json(&report)),
         false => print(&report),
     };
     // Whether anybody reads on does not change what was found.
@@ -70,7 +70,7 @@ fn to_json(report: &Report) -> Value {
 
 fn print(report: &Report) -> Result<(), Failure> {
     let mut out = std::io::stdout().lock();
-    let mut row = |name: &str, text: String| writeln!(out, "{name:<12} {text}");
+    let mut row = |name: &str, text: String| writeln!(out, "{name:<12} {}", visible_line(&text));
     let checksums = report.checksums;
     row("checksums", format!("{checksums} fit"))?;
     if report.cells > 0 {

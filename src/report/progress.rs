@@ -7,6 +7,7 @@ use std::time::{Duration, Instant};
 use indicatif::{ProgressBar, ProgressState, ProgressStyle};
 
 use super::numbers::{grouped, prefixed, seconds};
+use super::visible::visible_line;
 use crate::sweep::{Event, Observer};
 
 /// Time between two plain lines.
@@ -63,6 +64,7 @@ impl Progress {
     }
 
     fn line(&self, text: &str) {
+        let text = visible_line(text);
         if self.quiet {
         } else if self.bar.is_hidden() {
             let _ = writeln!(std::io::stderr(), "{text}");

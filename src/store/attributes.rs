@@ -2,12 +2,16 @@
 
 use std::ffi::CString;
 
-use hdf5::{H5Type, Location};
-use hdf5_sys::h5a::{H5Aclose, H5Acreate2, H5Awrite};
+use hdf5::{Attribute, H5Type, Location};
+use hdf5_sys::h5a::{H5Aclose, H5Acreate2, H5Aread, H5Awrite};
 use hdf5_sys::h5i::hid_t;
 use hdf5_sys::h5p::H5P_DEFAULT;
 use hdf5_sys::h5s::{H5S_class_t, H5Sclose, H5Screate};
-use hdf5_sys::h5t::{H5T_class_t, H5T_cset_t, H5Tclose, H5Tcreate, H5Tset_cset};
+use hdf5_sys::h5t::{
+    H5T_class_t, H5T_cset_t, H5Tclose, H5Tcreate, H5Tget_class, H5Tis_variable_str, H5Tset_cset,
+};
+
+use super::values::{Number, is_of};
 
 /// Writes a text attribute as a null-terminated string of fixed length.
 ///
@@ -63,45 +67,53 @@ pub(super) fn put_flags(at: &Location, long_name: &str, names: &[&str]) -> hdf5:
     put_text(at, "flag_meanings", &names.join(" "))
 }
 
-/// More bytes than this are no text of slipmap's.
-const MOST_TEXT: usize = 64 << 20;
+/// More bytes than this are in no attribute of slipmap's.
+const MOST_BYTES: usize = 64 << 20;
 
-/// Reads a text attribute of fixed or variable length.
+/// Reads a text attribute. slipmap's have a fixed length; of others the library believes the length that the file claims.
 pub(super) fn text(at: &Location, name: &str) -> hdf5::Result<String> {
-    use hdf5::types::{TypeDescriptor, VarLenUnicode};
     let attribute = at.attr(name)?;
-    let kind = attribute.dtype()?.to_descriptor()?;
+    let kind = attribute.dtype()?;
+    // SAFETY: the type is open.
+    let class = hdf5::sync::sync(|| unsafe { H5Tget_class(kind.id()) });
+    let of_any_length = hdf5::sync::sync(|| unsafe { H5Tis_variable_str(kind.id()) });
+    if class != H5T_class_t::H5T_STRING || of_any_length != 0 {
+        return Err("a text attribute holds text of a fixed length".into());
+    }
     if attribute.size() != 1 {
         return Err("a text attribute holds one string".into());
     }
-    match kind {
-        TypeDescriptor::FixedAscii(_) | TypeDescriptor::FixedUnicode(_) => fixed_text(&attribute),
-        TypeDescriptor::VarLenAscii | TypeDescriptor::VarLenUnicode => {
-            let text = attribute.read_raw::<VarLenUnicode>()?;
-            // The binding takes the pointer for a string, and the bytes for UTF-8; neither is known of a file.
-            match text.first().filter(|text| !text.as_ptr().is_null()) {
-                Some(text) => utf8(text.as_bytes()),
-                None => Err("a text attribute holds no string".into()),
-            }
-        }
-        _ => Err("a text attribute holds text".into()),
-    }
-}
-
-/// Reads a string of fixed length; the binding's own fixed strings have theirs in the type.
-fn fixed_text(attribute: &hdf5::Attribute) -> hdf5::Result<String> {
-    let kind = attribute.dtype()?;
-    if kind.size() > MOST_TEXT {
+    if kind.size() > MOST_BYTES {
         return Err(format!("a text attribute of {} bytes", kind.size()).into());
     }
     let mut bytes = vec![0_u8; kind.size()];
     let read = hdf5::sync::sync(|| {
         // SAFETY: the buffer holds one element of the attribute's own type.
-        unsafe { hdf5_sys::h5a::H5Aread(attribute.id(), kind.id(), bytes.as_mut_ptr().cast()) }
+        unsafe { H5Aread(attribute.id(), kind.id(), bytes.as_mut_ptr().cast()) }
     });
     failure(&[], read)?;
     let end = bytes.iter().position(|&b| b == 0).unwrap_or(bytes.len());
     utf8(&bytes[..end])
+}
+
+/// Reads an attribute of one number; none where there is no such attribute.
+pub(super) fn one_number<T: Number>(at: &Location, name: &str) -> Option<T> {
+    let attribute = at.attr(name).ok()?;
+    match numbers(&attribute).ok()?[..] {
+        [number] => Some(number),
+        _ => None,
+    }
+}
+
+/// Reads an attribute of numbers of that very type.
+pub(super) fn numbers<T: Number>(attribute: &Attribute) -> hdf5::Result<Vec<T>> {
+    if !is_of::<T>(&attribute.dtype()) {
+        return Err("an attribute of another type".into());
+    }
+    if attribute.size() > MOST_BYTES / size_of::<T>() {
+        return Err(format!("an attribute of {} values", attribute.size()).into());
+    }
+    attribute.read_raw()
 }
 
 fn utf8(bytes: &[u8]) -> hdf5::Result<String> {

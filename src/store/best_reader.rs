@@ -1,10 +1,12 @@
 //! Reads the best settings of a map.
 
-use hdf5::{Group, H5Type};
+use hdf5::Group;
 
 use super::error::StoreError;
 use super::map_file::MapFile;
+use super::open;
 use super::schema::{BEST, best as names};
+use super::values::{Number, whole};
 use crate::linear::best::Kind;
 use crate::sweep::Parameter;
 
@@ -53,7 +55,6 @@ impl MapFile {
         let planes = outer.iter().map(|values| values.len()).product();
         let read = || -> hdf5::Result<Vec<MapBest>> {
             let group = Columns {
-                map: self,
                 group: self.group(BEST)?,
                 planes,
             };
@@ -83,15 +84,14 @@ impl MapFile {
 }
 
 /// The group, with one value per plane in each variable.
-struct Columns<'m> {
-    map: &'m MapFile,
+struct Columns {
     group: Group,
     planes: usize,
 }
 
-impl Columns<'_> {
-    fn read<T: H5Type + Copy + Default>(&self, name: &str) -> hdf5::Result<Vec<T>> {
-        let values = self.map.whole::<T>(&self.group.dataset(name)?)?;
+impl Columns {
+    fn read<T: Number>(&self, name: &str) -> hdf5::Result<Vec<T>> {
+        let values = whole::<T>(&open::dataset(&self.group, name)?)?;
         if values.len() == self.planes {
             Ok(values)
         } else {

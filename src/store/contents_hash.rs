@@ -2,13 +2,13 @@
 
 use std::collections::BTreeMap;
 
-use hdf5::types::{FloatSize, IntSize, TypeDescriptor};
 use hdf5::{Dataset, File, Group, Location};
 use sha2::{Digest, Sha256};
 
-use super::attributes::text;
-use super::map_file::whole;
-use super::schema::{CHUNKS_SHA256, CONTENTS_SHA256, root};
+use super::attributes::{numbers, text};
+use super::open;
+use super::schema::{BEST, BOUNDARIES, CHUNKS_SHA256, CONTENTS_SHA256, root};
+use super::values::{for_each_part, is_of};
 use crate::sweep::plan::in_hexadecimal;
 
 /// Attributes that are no part of it: references to places in the file, the checksums, and when the map was made.
@@ -24,41 +24,77 @@ const LEFT_OUT: [&str; 5] = [
 /// `cells` shape and values.
 ///
 /// # Errors
-/// When something cannot be read.
+/// When something cannot be read, or is something that no map holds: other groups than slipmap's, groups in these, links.
 pub(super) fn contents_hash(file: &File, cells: &[&str]) -> hdf5::Result<String> {
     let mut parts = BTreeMap::new();
-    parts.insert("/".to_owned(), attributes(file)?);
-    collect(file, file, cells, &mut parts)?;
+    let root = file.group("/")?;
+    collect(&root, "", cells, &mut parts)?;
+    for name in [BOUNDARIES, BEST] {
+        if file.link_exists(name) {
+            let group = open::group(file, name)?;
+            collect(&group, &format!("/{name}"), cells, &mut parts)?;
+        }
+    }
     let mut hash = Sha256::new();
     for (name, part) in parts {
         hash.update((name.len() as u64).to_le_bytes());
         hash.update(name);
-        hash.update((part.len() as u64).to_le_bytes());
-        hash.update(part);
+        part.add_to(&mut hash)?;
     }
     Ok(in_hexadecimal(&hash.finalize()))
 }
 
-fn collect(
-    file: &File,
-    group: &Group,
-    cells: &[&str],
-    parts: &mut BTreeMap<String, Vec<u8>>,
-) -> hdf5::Result<()> {
-    for dataset in group.datasets()? {
-        let mut part = attributes(&dataset)?;
-        let name = dataset.name();
-        if !cells.contains(&name.trim_start_matches('/')) {
-            for length in dataset.shape() {
-                part.extend((length as u64).to_le_bytes());
-            }
-            part.extend(values(file, &dataset)?);
+/// Attributes and shape as bytes, and the dataset whose values come behind.
+struct Part {
+    head: Vec<u8>,
+    values: Option<Dataset>,
+}
+
+impl Part {
+    fn of(dataset: Dataset, is_cells: bool) -> hdf5::Result<Self> {
+        let mut head = attributes(&dataset)?;
+        if is_cells {
+            return Ok(Self { head, values: None });
         }
-        parts.insert(name, part);
+        for length in dataset.shape() {
+            head.extend((length as u64).to_le_bytes());
+        }
+        // Scales without coordinates have a length and nothing else.
+        let values = (dataset.storage_size() > 0).then_some(dataset);
+        Ok(Self { head, values })
     }
-    for inner in group.groups()? {
-        parts.insert(inner.name(), attributes(&inner)?);
-        collect(file, &inner, cells, parts)?;
+
+    fn add_to(&self, hash: &mut Sha256) -> hdf5::Result<()> {
+        let bytes = match &self.values {
+            Some(dataset) => dataset.size().saturating_mul(dataset.dtype()?.size()),
+            None => 0,
+        };
+        hash.update((self.head.len().saturating_add(bytes) as u64).to_le_bytes());
+        hash.update(&self.head);
+        match &self.values {
+            Some(dataset) => add_values(dataset, hash),
+            None => Ok(()),
+        }
+    }
+}
+
+fn collect(
+    group: &Group,
+    path: &str,
+    cells: &[&str],
+    parts: &mut BTreeMap<String, Part>,
+) -> hdf5::Result<()> {
+    let name = if path.is_empty() { "/" } else { path };
+    let head = attributes(group)?;
+    parts.insert(name.to_owned(), Part { head, values: None });
+    for name in open::names(group)? {
+        if path.is_empty() && [BOUNDARIES, BEST].contains(&&*name) {
+            continue;
+        }
+        let dataset = open::dataset(group, &name);
+        let dataset = dataset.map_err(|why| format!("no map holds {name}: {why}"))?;
+        let is_cells = path.is_empty() && cells.contains(&&*name);
+        parts.insert(format!("{path}/{name}"), Part::of(dataset, is_cells)?);
     }
     Ok(())
 }
@@ -76,7 +112,7 @@ fn attributes(of: &Location) -> hdf5::Result<Vec<u8>> {
         bytes.push(0);
         match text(of, name) {
             Ok(text) => bytes.extend(text.as_bytes()),
-            Err(_) => bytes.extend(numbers(of, name)?),
+            Err(_) => bytes.extend(attribute_bytes(of, name)?),
         }
         bytes.push(0);
     }
@@ -84,48 +120,43 @@ fn attributes(of: &Location) -> hdf5::Result<Vec<u8>> {
 }
 
 macro_rules! by_type {
-    ($descriptor:expr, $read:ident) => {
-        match $descriptor {
-            TypeDescriptor::Float(FloatSize::U8) => $read!(f64),
-            TypeDescriptor::Float(FloatSize::U4) => $read!(f32),
-            TypeDescriptor::Unsigned(IntSize::U1) => $read!(u8),
-            TypeDescriptor::Unsigned(IntSize::U2) => $read!(u16),
-            TypeDescriptor::Unsigned(IntSize::U4) => $read!(u32),
-            TypeDescriptor::Unsigned(IntSize::U8) => $read!(u64),
-            TypeDescriptor::Integer(IntSize::U1) => $read!(i8),
-            TypeDescriptor::Integer(IntSize::U4) => $read!(i32),
-            TypeDescriptor::Integer(IntSize::U8) => $read!(i64),
-            other => Err(format!("a type that no map has: {other}").into()),
+    ($kind:expr, $read:ident) => {{
+        let kind = $kind;
+        match () {
+            () if is_of::<f64>(&kind) => $read!(f64),
+            () if is_of::<f32>(&kind) => $read!(f32),
+            () if is_of::<u8>(&kind) => $read!(u8),
+            () if is_of::<u16>(&kind) => $read!(u16),
+            () if is_of::<u32>(&kind) => $read!(u32),
+            () if is_of::<u64>(&kind) => $read!(u64),
+            () if is_of::<i8>(&kind) => $read!(i8),
+            () if is_of::<i32>(&kind) => $read!(i32),
+            () if is_of::<i64>(&kind) => $read!(i64),
+            () => Err("a type that no map has".into()),
         }
-    };
+    }};
 }
 
-fn numbers(of: &Location, name: &str) -> hdf5::Result<Vec<u8>> {
-    /// More numbers than this are in no attribute.
-    const MOST: usize = 1 << 24;
+fn attribute_bytes(of: &Location, name: &str) -> hdf5::Result<Vec<u8>> {
     let attribute = of.attr(name)?;
-    if attribute.size() > MOST {
-        return Err(format!("{name} has {} values", attribute.size()).into());
-    }
     macro_rules! read {
         ($kind:ty) => {{
-            let values = attribute.read_raw::<$kind>()?;
+            let values = numbers::<$kind>(&attribute)?;
             Ok(values.iter().flat_map(|v| v.to_le_bytes()).collect())
         }};
     }
-    by_type!(attribute.dtype()?.to_descriptor()?, read)
+    by_type!(attribute.dtype(), read)
 }
 
-fn values(file: &File, dataset: &Dataset) -> hdf5::Result<Vec<u8>> {
-    // Scales without coordinates have a length and nothing else.
-    if dataset.storage_size() == 0 {
-        return Ok(Vec::new());
-    }
+fn add_values(dataset: &Dataset, hash: &mut Sha256) -> hdf5::Result<()> {
     macro_rules! read {
-        ($kind:ty) => {{
-            let values = whole::<$kind>(file, dataset)?;
-            Ok(values.iter().flat_map(|v| v.to_le_bytes()).collect())
-        }};
+        ($kind:ty) => {
+            for_each_part::<$kind>(dataset, |values| {
+                for value in values {
+                    hash.update(value.to_le_bytes());
+                }
+            })
+        };
     }
-    by_type!(dataset.dtype()?.to_descriptor()?, read)
+    by_type!(dataset.dtype(), read)
 }

@@ -2,12 +2,14 @@
 
 use std::ops::Range;
 
-use hdf5::{Dataset, H5Type};
+use hdf5::{Dataset, SliceOrIndex};
 
 use super::curve_rows::CurveRows;
 use super::error::StoreError;
 use super::map_file::MapFile;
+use super::open;
 use super::schema::{BOUNDARIES, DEGREE_OF_STABILITY};
+use super::values::{self, Number};
 use crate::linear::Direction;
 use crate::linear::curves::{CurvePiece, StableSide, Vertex};
 
@@ -92,7 +94,7 @@ impl CurveColumns {
     fn of(map: &MapFile, (p, tau): (usize, usize)) -> hdf5::Result<Self> {
         let group = map.group(BOUNDARIES)?;
         let column = |name: &str| -> hdf5::Result<Dataset> {
-            let dataset = group.dataset(name)?;
+            let dataset = open::dataset(&group, name)?;
             match dataset.ndim() {
                 1 => Ok(dataset),
                 n => Err(format!("{name} has {n} dimensions").into()),
@@ -178,8 +180,14 @@ impl CurveColumns {
 }
 
 /// Some values of a column.
-fn part<T: H5Type + Clone>(column: &Dataset, rows: Range<usize>) -> hdf5::Result<Vec<T>> {
-    Ok(column.read_slice_1d::<T, _>(rows)?.to_vec())
+fn part<T: Number>(column: &Dataset, rows: Range<usize>) -> hdf5::Result<Vec<T>> {
+    let slab = SliceOrIndex::SliceCount {
+        start: rows.start,
+        step: 1,
+        count: rows.len(),
+        block: 1,
+    };
+    values::read(column, &[slab])
 }
 
 /// The curves that rows describe, with the values of the axes outside their planes column by column; none where the columns do not

@@ -1,12 +1,8 @@
 //! Whether a map is as it was written, and what other methods say of it.
 
-use std::fs::File;
-use std::io::{Read, Seek, SeekFrom};
 use std::path::Path;
 
 use hdf5::Dataset;
-use hdf5_sys::h5::HADDR_UNDEF;
-use hdf5_sys::h5d::H5Dget_chunk_info_by_coord;
 use sha2::{Digest, Sha256};
 
 use super::attributes::text;
@@ -14,8 +10,10 @@ use super::error::StoreError;
 use super::map_file::MapFile;
 use super::sample::sample;
 use super::schema::{self, STATUS, root};
+use super::seal::{self, Seal};
 use super::tiles::RecordEncoder;
 use super::tiles::record::Content;
+use super::values::Chunks;
 use crate::linear::status::{DISAGREE, FLAGS};
 use crate::sweep::engine::{Computed, Encode, STATUS_FILL, Worker};
 use crate::sweep::pieces::{Piece, spread};
@@ -174,12 +172,26 @@ fn names(map: &MapFile) -> impl Iterator<Item = &'static str> {
     map.fields().iter().map(|f| f.name()).chain([STATUS])
 }
 
+fn check_seal(map: &MapFile, report: &mut Report) {
+    match seal::check(map.path()) {
+        Ok(Seal::Whole) => report.checksums += 1,
+        Ok(Seal::Broken) => {
+            let fault = "the checksum of all bytes does not fit: bytes have changed";
+            report.faults.push(fault.to_owned());
+        }
+        Ok(Seal::Missing) if map.format_version() < schema::SEALED_SINCE => {}
+        Ok(Seal::Missing) => {
+            let fault =
+                "the checksum of all bytes is missing: another program has written to the map";
+            report.faults.push(fault.to_owned());
+        }
+        Err(error) => report.faults.push(format!("cannot be read: {error}")),
+    }
+}
+
 fn check_checksums(map: &MapFile, plan: &Plan, report: &mut Report) {
+    check_seal(map, report);
     let mut without = 0;
-    let mut file = match File::open(map.path()) {
-        Ok(file) => file,
-        Err(error) => return report.faults.push(format!("cannot be read: {error}")),
-    };
     for name in names(map) {
         let Ok(dataset) = map.dataset(name) else {
             continue;
@@ -194,12 +206,14 @@ fn check_checksums(map: &MapFile, plan: &Plan, report: &mut Report) {
             without += 1;
             continue;
         };
-        match hash_of_chunks(&mut file, &dataset, plan) {
-            Some(found) if found == expected => report.checksums += 1,
-            Some(_) => report.faults.push(format!(
+        match hash_of_chunks(&dataset, plan) {
+            Ok(found) if found == expected => report.checksums += 1,
+            Ok(_) => report.faults.push(format!(
                 "{name}: its checksum does not fit: bytes have changed"
             )),
-            None => report.faults.push(format!("{name}: chunks cannot be read")),
+            Err(error) => report
+                .faults
+                .push(format!("{name}: chunks cannot be read: {error}")),
         }
     }
     match (map.root_text(schema::CONTENTS_SHA256), map.contents_hash()) {
@@ -229,52 +243,16 @@ fn check_checksums(map: &MapFile, plan: &Plan, report: &mut Report) {
     }
 }
 
-fn hash_of_chunks(file: &mut File, dataset: &Dataset, plan: &Plan) -> Option<String> {
+fn hash_of_chunks(dataset: &Dataset, plan: &Plan) -> hdf5::Result<String> {
+    let chunks = Chunks::of(dataset)?.ok_or("it is not stored in chunks")?;
     let mut hash = Sha256::new();
     for number in 0..plan.tiles.len() {
-        let offset = plan.tiles.tile(number).offset;
         // A chunk that is not there has not been computed.
-        if let Some(chunk) = stored_chunk(file, dataset, &offset)? {
+        if let Some(chunk) = chunks.stored(&plan.tiles.tile(number).offset)? {
             hash.update(&chunk);
         }
     }
-    Some(in_hexadecimal(&hash.finalize()))
-}
-
-/// The bytes of the chunk whose first cell is at `offset`, as they stand in the file; `Some(None)` where there is no chunk, none
-/// where it cannot be read.
-fn stored_chunk(file: &mut File, dataset: &Dataset, offset: &[usize]) -> Option<Option<Vec<u8>>> {
-    let offset: Vec<u64> = offset.iter().map(|&o| o as u64).collect();
-    let (mut filters, mut address, mut size) = (0, 0, 0);
-    let asked = hdf5::sync::sync(|| {
-        // SAFETY: the dataset is open and chunked, `offset` has one entry per dimension of it, and the three results are live.
-        unsafe {
-            H5Dget_chunk_info_by_coord(
-                dataset.id(),
-                offset.as_ptr(),
-                &raw mut filters,
-                &raw mut address,
-                &raw mut size,
-            )
-        }
-    });
-    if asked < 0 {
-        return None;
-    }
-    if size == 0 || address == HADDR_UNDEF {
-        return Some(None);
-    }
-    // Readers skip the filters of this mask, and take compressed bytes for cells. slipmap skips none.
-    if filters != 0 {
-        return None;
-    }
-    // A damaged size is no reason to ask for all memory.
-    let end = file.metadata().ok()?.len();
-    let within = address.checked_add(size).is_some_and(|last| last <= end);
-    let mut chunk = vec![0; usize::try_from(size).ok().filter(|_| within)?];
-    file.seek(SeekFrom::Start(address)).ok()?;
-    file.read_exact(&mut chunk).ok()?;
-    Some(Some(chunk))
+    Ok(in_hexadecimal(&hash.finalize()))
 }
 
 fn check_statuses(map: &MapFile, report: &mut Report) -> Result<(), StoreError> {
@@ -376,7 +354,6 @@ fn compute_tiles(
         report.remarks.push(remark.to_owned());
         return Ok(());
     }
-    let mut file = File::open(map.path()).map_err(StoreError::io("open", map.path()))?;
     let mut worker = Worker::new(plan);
     let mut encoder = RecordEncoder::default();
     for sample in 0..tiles.min(plan.tiles.len() as u64) {
@@ -391,10 +368,12 @@ fn compute_tiles(
         let mut equal = true;
         let held = plan.spec.fields.iter().map(|f| f.name()).chain([STATUS]);
         for (name, chunk) in held.zip(chunks) {
-            match stored_chunk(&mut file, &map.dataset(name)?, &tile.offset) {
-                Some(Some(stored)) if stored == chunk => {}
+            let dataset = map.dataset(name)?;
+            let chunks = Chunks::of(&dataset).ok().flatten();
+            match chunks.map(|chunks| chunks.stored(&tile.offset)) {
+                Some(Ok(Some(stored))) if stored == chunk => {}
                 // Of a map that is not complete.
-                Some(None) if map.is_partial() => equal = false,
+                Some(Ok(None)) if map.is_partial() => equal = false,
                 _ => {
                     equal = false;
                     report

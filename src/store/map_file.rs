@@ -2,22 +2,20 @@
 
 use std::path::{Path, PathBuf};
 
-use hdf5::{Dataset, File, Group, H5Type, Hyperslab, SliceOrIndex};
+use hdf5::{Dataset, File, Group, SliceOrIndex};
 
-use super::attributes::text;
+use super::attributes::{one_number, text};
 use super::contents_hash::contents_hash;
 pub use super::curve_reader::MapCurve;
 use super::error::StoreError;
 use super::open;
 use super::schema::{self, BEST, BOUNDARIES, DEGREE_OF_STABILITY, PLANE, STATUS, root};
+use super::values::{Number, read, whole};
 use crate::sweep::axis::{Axis, MOST_POINTS};
 use crate::sweep::engine::{FEW_FILL, N_UNSTABLE_FILL, STATUS_FILL};
 use crate::sweep::field::Storage;
 use crate::sweep::plan::MOST_CELLS;
 use crate::sweep::{Field, Parameter};
-
-/// Deflate makes data smaller by this factor at most: 258 bytes in two bits.
-const MOST_DEFLATED: u64 = 1032;
 
 /// An axis of a map.
 #[derive(Debug, Clone, PartialEq)]
@@ -57,7 +55,7 @@ impl MapFile {
     /// When the file is missing, in use by a program that writes it, no HDF5 file, no map, of another format version, or damaged.
     pub fn open(path: &Path) -> Result<Self, StoreError> {
         let file = open::to_read(path, StoreError::not_a_map)?;
-        let version: i32 = first_number(&file, root::FORMAT_VERSION).ok_or_else(|| {
+        let version: i32 = one_number(&file, root::FORMAT_VERSION).ok_or_else(|| {
             StoreError::not_a_map(path, format!("it has no {}", root::FORMAT_VERSION))
         })?;
         let (oldest, newest) = (schema::OLDEST_FORMAT_VERSION, schema::FORMAT_VERSION);
@@ -88,10 +86,6 @@ impl MapFile {
         for name in names {
             let dataset = self.dataset(name)?;
             let found = dataset.shape();
-            if !has_fitting_chunks(&dataset) {
-                let why = format!("the chunks of {name} have another number of dimensions");
-                return Err(StoreError::not_a_map(&self.path, why));
-            }
             if found != shape {
                 let why = format!("{name} has the shape {found:?}, its axes have {shape:?}");
                 return Err(StoreError::not_a_map(&self.path, why));
@@ -159,6 +153,12 @@ impl MapFile {
         contents_hash(&self.file, &fields.chain([STATUS]).collect::<Vec<_>>())
     }
 
+    /// Version of the layout that it has.
+    #[must_use]
+    pub fn format_version(&self) -> i32 {
+        one_number(&self.file, root::FORMAT_VERSION).unwrap_or(schema::FORMAT_VERSION)
+    }
+
     /// Whether some cells are not computed yet.
     #[must_use]
     pub fn is_partial(&self) -> bool {
@@ -168,14 +168,13 @@ impl MapFile {
     /// Number of cells that are not computed yet.
     #[must_use]
     pub fn cells_missing(&self) -> u64 {
-        first_number(&self.file, root::CELLS_MISSING).unwrap_or(0)
+        one_number(&self.file, root::CELLS_MISSING).unwrap_or(0)
     }
 
     /// The unit of a field.
     #[must_use]
     pub fn field_unit(&self, field: Field) -> String {
-        self.file
-            .dataset(field.name())
+        open::dataset(&self.file, field.name())
             .and_then(|d| text(&d, "units"))
             .unwrap_or_else(|_| "1".into())
     }
@@ -188,9 +187,9 @@ impl MapFile {
             .into_iter()
             .filter(|p| !on_axis(p) && self.file.link_exists(p.name()))
             .filter_map(|p| {
-                let dataset = self.file.dataset(p.name()).ok();
-                let value = dataset.filter(has_fitting_chunks)?.read_scalar().ok()?;
-                Some((p, value))
+                let dataset = open::dataset(&self.file, p.name()).ok();
+                let values = whole::<f64>(&dataset?).ok()?;
+                Some((p, *values.first()?))
             })
             .collect()
     }
@@ -215,8 +214,7 @@ impl MapFile {
     }
 
     pub(super) fn dataset(&self, name: &str) -> Result<Dataset, StoreError> {
-        self.file
-            .dataset(name)
+        open::dataset(&self.file, name)
             .map_err(StoreError::hdf5(format!("read {name} of"), &self.path))
     }
 
@@ -300,23 +298,12 @@ impl MapFile {
         }
     }
 
-    pub(super) fn read<T: H5Type>(
+    pub(super) fn read<T: Number>(
         &self,
         dataset: &Dataset,
         slab: Vec<SliceOrIndex>,
     ) -> Result<Vec<T>, StoreError> {
-        let array = dataset
-            .read_slice::<T, _, ndarray::IxDyn>(Hyperslab::from(slab))
-            .map_err(StoreError::hdf5("read", &self.path))?;
-        Ok(array.into_raw_vec_and_offset().0)
-    }
-
-    /// All values of a dataset that is no dataset of cells.
-    pub(super) fn whole<T: H5Type + Copy + Default>(
-        &self,
-        dataset: &Dataset,
-    ) -> hdf5::Result<Vec<T>> {
-        whole(&self.file, dataset)
+        read(dataset, &slab).map_err(StoreError::hdf5("read", &self.path))
     }
 
     /// The axes of the planes in which the map holds crossing curves; none where it holds no curves.
@@ -327,7 +314,7 @@ impl MapFile {
 
     /// A group of the file.
     pub(super) fn group(&self, name: &str) -> hdf5::Result<Group> {
-        self.file.group(name)
+        open::group(&self.file, name)
     }
 
     /// The axes that a group names as spanning its planes.
@@ -343,9 +330,9 @@ impl MapFile {
     /// The unit of degrees of stability; "1" where the map holds none.
     #[must_use]
     pub fn degree_unit(&self) -> String {
-        let name = format!("{BOUNDARIES}/{DEGREE_OF_STABILITY}");
-        let dataset = self.file.dataset(&name);
-        dataset
+        let group = self.group(BOUNDARIES);
+        group
+            .and_then(|group| open::dataset(&group, DEGREE_OF_STABILITY))
             .and_then(|d| text(&d, "units"))
             .unwrap_or_else(|_| "1".into())
     }
@@ -353,38 +340,6 @@ impl MapFile {
 
 fn at(index: &[usize]) -> Vec<SliceOrIndex> {
     index.iter().map(|&i| SliceOrIndex::Index(i)).collect()
-}
-
-/// Whether a dataset's chunks, if it has any, have as many dimensions as itself. Else the library reads for ever.
-fn has_fitting_chunks(dataset: &Dataset) -> bool {
-    let chunk = dataset.chunk();
-    chunk.is_none_or(|chunk| chunk.len() == dataset.ndim())
-}
-
-/// All values of a dataset. What claims more of them than its bytes in the file can hold is refused before memory is asked for.
-pub(super) fn whole<T: H5Type + Copy + Default>(
-    file: &File,
-    dataset: &Dataset,
-) -> hdf5::Result<Vec<T>> {
-    if !has_fitting_chunks(dataset) {
-        return Err("its chunks have another number of dimensions".into());
-    }
-    let (lengths, element) = (dataset.shape(), dataset.dtype()?.size());
-    let mut factors = lengths.iter().copied();
-    let claimed = factors.try_fold(element, usize::checked_mul);
-    let stored = dataset.storage_size().min(file.size());
-    let most = stored.saturating_mul(MOST_DEFLATED);
-    if claimed.is_none_or(|bytes| bytes as u64 > most) {
-        return Err("it claims more values than its bytes can hold".into());
-    }
-    let length = lengths.iter().product();
-    let mut values = Vec::new();
-    values
-        .try_reserve_exact(length)
-        .map_err(|error| error.to_string())?;
-    values.resize(length, T::default());
-    dataset.as_reader().read_into_raw(&mut values)?;
-    Ok(values)
 }
 
 /// The axes, checked as those of a sweep are.
@@ -413,14 +368,14 @@ fn read_axis(file: &File, name: &str) -> Result<MapAxis, String> {
     let parameter =
         Parameter::from_name(name).ok_or_else(|| format!("it has an unknown axis {name}"))?;
     let read = || -> hdf5::Result<(Vec<f64>, String)> {
-        let dataset = file.dataset(name)?;
+        let dataset = open::dataset(file, name)?;
         match dataset.shape()[..] {
             [length] if length as u64 <= MOST_POINTS => {}
             _ => return Err("no axis has this shape".into()),
         }
-        Ok((whole(file, &dataset)?, text(&dataset, "units")?))
+        Ok((whole(&dataset)?, text(&dataset, "units")?))
     };
-    let (values, unit) = read().map_err(|_| format!("its axis {name} is damaged"))?;
+    let (values, unit) = read().map_err(|error| format!("its axis {name} is damaged: {error}"))?;
     let axis = Axis::new(parameter, values)
         .map_err(|error| format!("its axis {name} is damaged: {error}"))?;
     Ok(MapAxis {
@@ -428,11 +383,6 @@ fn read_axis(file: &File, name: &str) -> Result<MapAxis, String> {
         values: axis.values,
         unit,
     })
-}
-
-fn first_number<T: H5Type + Copy>(file: &File, name: &str) -> Option<T> {
-    let attribute = file.attr(name).ok().filter(|a| a.size() == 1)?;
-    attribute.read_raw::<T>().ok()?.first().copied()
 }
 
 /// Whole numbers as reals, NaN for `fill`.

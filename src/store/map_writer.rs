@@ -2,6 +2,7 @@
 
 use std::path::Path;
 
+use hdf5::plist::file_access::LibraryVersion;
 use hdf5::plist::file_create::{AttrCreationOrder, LinkCreationOrder};
 use hdf5::{Dataset, File, Group, H5Type};
 use hdf5_sys::h5d::H5Dwrite_chunk;
@@ -19,6 +20,7 @@ use super::map_check::as_written;
 use super::netcdf::{DimensionId, Dimensions, named};
 use super::output::Output;
 use super::schema::{self, STATUS, root};
+use super::seal;
 use crate::critical::switch_on::Phase;
 use crate::linear::status::FLAGS;
 use crate::sweep::engine::{FEW_FILL, N_UNSTABLE_FILL, STATUS_FILL};
@@ -169,6 +171,7 @@ impl<'p> MapWriter<'p> {
         self.file
             .close()
             .map_err(StoreError::hdf5("close", &path))?;
+        seal::put(self.output.part()).map_err(StoreError::io("write", &path))?;
         as_written(self.output.part(), self.plan)
             .map_err(|why| StoreError::Unsound { path, why })?;
         self.output.commit()
@@ -181,7 +184,11 @@ impl<'p> MapWriter<'p> {
 /// is closed is lost without a word where the system refuses it.
 pub(super) fn create_file(path: &Path) -> hdf5::Result<File> {
     hdf5::FileBuilder::new()
-        .with_fapl(|fapl| fapl.sieve_buf_size(0))
+        .with_fapl(|fapl| {
+            // Object headers and indexes of chunks have checksums from 1.10 on.
+            let version = LibraryVersion::V110;
+            fapl.sieve_buf_size(0).libver_bounds(version, version)
+        })
         .with_fcpl(|fcpl| {
             fcpl.obj_track_times(false)
                 .attr_creation_order(AttrCreationOrder::Indexed)

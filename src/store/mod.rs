@@ -32,9 +32,11 @@ mod open;
 pub mod output;
 mod sample;
 pub mod schema;
+mod seal;
 pub mod source;
 pub mod tiles;
 pub mod trace_file;
+mod values;
 
 pub use best_reader::MapBest;
 pub use error::StoreError;

@@ -1,7 +1,10 @@
 //! Names in a map or trace file that are not those of a parameter or field, and the version of its format.
 
-/// Version of the layout described here, which is written. 2: [`DEGREE_OF_STABILITY`] of every curve.
-pub const FORMAT_VERSION: i32 = 2;
+/// Version of the layout described here, which is written. 2: [`DEGREE_OF_STABILITY`] of every curve. 3: indexes with checksums, and
+/// a seal behind the file.
+pub const FORMAT_VERSION: i32 = 3;
+/// The first version with a seal.
+pub const SEALED_SINCE: i32 = 3;
 /// The oldest version that is still read; readers refuse older and newer ones.
 pub const OLDEST_FORMAT_VERSION: i32 = 1;
 

@@ -6,7 +6,7 @@ use hdf5::plist::group_create::LinkCreationOrder;
 use hdf5::types::OwnedDynValue;
 use hdf5::{Dataset, File, Group, H5Type};
 
-use super::attributes::{put_flags, put_numbers, put_text, text};
+use super::attributes::{one_number, put_flags, put_numbers, put_text, text};
 use super::codec::DEFLATE_LEVEL;
 use super::error::StoreError;
 use super::map_writer::{Provenance, create_file, put_friction, put_provenance, put_scalars};
@@ -113,18 +113,16 @@ pub fn write(
 pub fn case_of(path: &Path) -> Result<String, StoreError> {
     let file = open::to_read(path, StoreError::not_a_trace)?;
     let missing = |name: &str| StoreError::not_a_trace(path, format!("it has no {name}"));
-    let version = file.attr(trace::FORMAT_VERSION);
-    let version = version.and_then(|a| a.read_raw::<i32>());
-    match version.as_deref() {
-        Ok([schema::TRACE_FORMAT_VERSION]) => {
+    match one_number::<i32>(&file, trace::FORMAT_VERSION) {
+        Some(schema::TRACE_FORMAT_VERSION) => {
             text(&file, trace::CASE).map_err(|_| missing(trace::CASE))
         }
-        Ok([other, ..]) => {
+        Some(other) => {
             let readable = schema::TRACE_FORMAT_VERSION;
             let why = format!("its format version is {other}, this program reads {readable}");
             Err(StoreError::not_a_trace(path, why))
         }
-        _ => Err(missing(trace::FORMAT_VERSION)),
+        None => Err(missing(trace::FORMAT_VERSION)),
     }
 }
 

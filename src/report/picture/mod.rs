@@ -38,6 +38,7 @@ use std::io::Read;
 use std::ops::RangeInclusive;
 use std::path::Path;
 
+use crate::report::visible::visible_line;
 use crate::store::schema::root;
 use crate::store::{MapFile, Output, StoreError};
 use crate::sweep::limit_columns::LimitField;
@@ -145,8 +146,12 @@ fn save(scene: &Scene, format: &Format, path: &Path) -> Result<(), PictureError>
 /// True if `path` is free, or holds a PNG picture of slipmap's: nobody's work is lost by drawing there unasked.
 #[must_use]
 pub fn may_replace(path: &Path) -> bool {
+    // A pipe would be waited for.
+    if !path.metadata().is_ok_and(|m| m.is_file()) {
+        return path.symlink_metadata().is_err();
+    }
     let Ok(file) = fs::File::open(path) else {
-        return !path.exists();
+        return false;
     };
     let mut start = Vec::new();
     file.take(BYTES_TO_SIGNATURE)
@@ -154,6 +159,9 @@ pub fn may_replace(path: &Path) -> bool {
         .is_ok()
         && render::signed(&start)
 }
+
+/// Of longer titles no more is drawn.
+const LONGEST_TITLE: usize = 400;
 
 enum Format {
     Png,
@@ -277,7 +285,8 @@ fn untitled(field: Field) -> &'static str {
 /// The title of the map's sweep, or `otherwise`.
 fn title(map: &MapFile, otherwise: &str) -> String {
     let title = map.root_text(root::TITLE).filter(|t| !t.trim().is_empty());
-    title.unwrap_or_else(|| otherwise.to_owned())
+    let cut = |title: String| title.chars().take(LONGEST_TITLE).collect::<String>();
+    title.map_or_else(|| otherwise.to_owned(), |title| visible_line(&cut(title)))
 }
 
 #[cfg(test)]

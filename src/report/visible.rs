@@ -1,0 +1,61 @@
+//! Texts from files on their way to a terminal.
+
+/// A text with its control characters, but for tabs and ends of lines, spelled out, and so those that turn the direction of writing
+/// or end a line unseen: none of them reaches the terminal.
+#[must_use]
+pub fn visible(text: &str) -> String {
+    let mut shown = String::with_capacity(text.len());
+    for c in text.chars() {
+        match c {
+            '\n' | '\t' => shown.push(c),
+            c if c.is_control() || is_unseen(c) => shown.extend(c.escape_default()),
+            c => shown.push(c),
+        }
+    }
+    shown
+}
+
+/// The same on one line.
+#[must_use]
+pub fn visible_line(text: &str) -> String {
+    visible(text).replace('\n', "\\n")
+}
+
+/// JSON with such characters as its escapes: they stand in its strings alone, and all of them have one of four digits.
+#[must_use]
+pub fn visible_json(json: &str) -> String {
+    let mut shown = String::with_capacity(json.len());
+    for c in json.chars() {
+        match c.is_control() || is_unseen(c) {
+            true => shown += &format!("\\u{:04x}", u32::from(c)),
+            false => shown.push(c),
+        }
+    }
+    shown
+}
+
+/// Marks, embeddings, overrides and isolates of direction, separators of lines and paragraphs, the mark of byte order.
+fn is_unseen(c: char) -> bool {
+    matches!(
+        c,
+        '\u{61c}' | '\u{200b}'..='\u{200f}' | '\u{2028}'..='\u{202e}' | '\u{2060}'..='\u{206f}' | '\u{feff}'
+    )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn nothing_moves_the_cursor() {
+        let text = "a\u{1b}[2J\u{7}\u{9b}1m\r\u{7f}\u{202e}b\u{2066}µ\n\tc";
+        let shown = visible(text);
+        assert_eq!(
+            shown,
+            "a\\u{1b}[2J\\u{7}\\u{9b}1m\\r\\u{7f}\\u{202e}b\\u{2066}µ\n\tc"
+        );
+        assert_eq!(visible_line("a\nb"), "a\\nb");
+        let json = serde_json::to_string("\u{9b}\u{1b}\u{202e}").unwrap();
+        assert_eq!(visible_json(&json), "\"\\u009b\\u001b\\u202e\"");
+    }
+}

@@ -1,0 +1,398 @@
+//! Reads values of a dataset that [`super::open`] has let through.
+//!
+//! Chunks are inflated here: the library inflates whatever a chunk holds, a thousand times its bytes, before it compares that with
+//! the chunk's own size.
+
+use std::ops::Range;
+
+use hdf5::{Dataset, Datatype, H5Type, SliceOrIndex};
+use hdf5_sys::h5::HADDR_UNDEF;
+use hdf5_sys::h5d::{H5Dget_chunk_info_by_coord, H5Dread_chunk1};
+use hdf5_sys::h5i::hid_t;
+use hdf5_sys::h5p::H5P_DEFAULT;
+use zlib_rs::{InflateConfig, ReturnCode, decompress_slice};
+
+use super::open::{self, DEFLATE, SHUFFLE};
+use crate::sweep::axis::MOST_POINTS;
+
+unsafe extern "C" {
+    /// Not in the binding.
+    fn H5Dget_chunk_storage_size(dataset: hid_t, offset: *const u64, bytes: *mut u64) -> i32;
+}
+
+/// Numbers as they stand in maps: little-endian.
+pub(super) trait Number: H5Type + Copy + Default {
+    /// The number of these bytes, as many as it has.
+    fn of(bytes: &[u8]) -> Self;
+}
+
+macro_rules! number {
+    ($($kind:ty),*) => {$(
+        impl Number for $kind {
+            fn of(bytes: &[u8]) -> Self {
+                bytes.try_into().map_or(0 as $kind, <$kind>::from_le_bytes)
+            }
+        }
+    )*};
+}
+number!(u8, u16, u32, u64, i8, i32, i64, f32, f64);
+
+/// Whether a type of a file is that of `T`.
+pub(super) fn is_of<T: H5Type>(kind: &hdf5::Result<Datatype>) -> bool {
+    let Ok(kind) = kind else {
+        return false;
+    };
+    Datatype::from_type::<T>().is_ok_and(|asked| asked == *kind)
+}
+
+/// Those of the indices along an axis that are read.
+#[derive(Debug, Clone, Copy)]
+struct Picked {
+    start: usize,
+    step: usize,
+    count: usize,
+}
+
+impl Picked {
+    fn of(slab: &SliceOrIndex) -> Option<Self> {
+        let (start, step, count) = match *slab {
+            SliceOrIndex::Index(start) => (start, 1, 1),
+            SliceOrIndex::SliceTo {
+                start,
+                step,
+                end,
+                block: 1,
+            } => (start, step, end.saturating_sub(start).div_ceil(step.max(1))),
+            SliceOrIndex::SliceCount {
+                start,
+                step,
+                count,
+                block: 1,
+            } => (start, step, count),
+            _ => return None,
+        };
+        (step > 0).then_some(Self { start, step, count })
+    }
+
+    fn index(&self, number: usize) -> usize {
+        self.start + number * self.step
+    }
+
+    /// The chunks that hold some of them, by their first index, each with the numbers of those.
+    fn by_chunk(&self, chunk: usize) -> Vec<(usize, Range<usize>)> {
+        let mut parts: Vec<(usize, Range<usize>)> = Vec::new();
+        for number in 0..self.count {
+            let start = self.index(number) / chunk * chunk;
+            match parts.last_mut() {
+                Some((last, numbers)) if *last == start => numbers.end += 1,
+                _ => parts.push((start, number..number + 1)),
+            }
+        }
+        parts
+    }
+}
+
+/// A dataset in chunks, as it is stored.
+pub(super) struct Chunks<'d> {
+    dataset: &'d Dataset,
+    shape: Vec<usize>,
+    chunk: Vec<usize>,
+    element: usize,
+    filters: Vec<i32>,
+}
+
+impl<'d> Chunks<'d> {
+    /// None where the dataset is not stored in chunks.
+    pub fn of(dataset: &'d Dataset) -> hdf5::Result<Option<Self>> {
+        let Some(chunk) = dataset.chunk() else {
+            return Ok(None);
+        };
+        let shape = dataset.shape();
+        if chunk.len() != shape.len() || chunk.contains(&0) {
+            return Err("its chunks have another number of dimensions".into());
+        }
+        Ok(Some(Self {
+            dataset,
+            shape,
+            chunk,
+            element: dataset.dtype()?.size(),
+            filters: open::filters_of(dataset)?,
+        }))
+    }
+
+    /// Bytes of a whole chunk.
+    fn bytes(&self) -> usize {
+        self.chunk.iter().product::<usize>() * self.element
+    }
+
+    /// Bytes of the chunk at `offset` in the file; none where there is no chunk.
+    fn size(&self, offset: &[u64]) -> hdf5::Result<Option<u64>> {
+        let (dataset, mut size) = (self.dataset.id(), 0);
+        // SAFETY: the dataset is open and chunked, and `offset` has one entry per dimension of it.
+        let found = hdf5::sync::sync(|| unsafe {
+            H5Dget_chunk_storage_size(dataset, offset.as_ptr(), &raw mut size)
+        });
+        if found >= 0 {
+            return Ok(Some(size).filter(|&size| size > 0));
+        }
+        // It fails where there is no chunk, too. Looking through all chunks tells, and takes its time.
+        let (mut filters, mut address) = (0, 0);
+        // SAFETY: as above, and the results are live.
+        let looked = hdf5::sync::sync(|| unsafe {
+            H5Dget_chunk_info_by_coord(
+                dataset,
+                offset.as_ptr(),
+                &raw mut filters,
+                &raw mut address,
+                &raw mut size,
+            )
+        });
+        match looked >= 0 && (size == 0 || address == HADDR_UNDEF) {
+            true => Ok(None),
+            false => Err("a chunk cannot be found".into()),
+        }
+    }
+
+    /// The bytes of the chunk whose first value is at `offset`, as they stand in the file; none where there is no chunk.
+    ///
+    /// # Errors
+    /// Where they cannot be read, are more than a chunk can have, or readers are told to skip filters of this chunk.
+    pub fn stored(&self, offset: &[usize]) -> hdf5::Result<Option<Vec<u8>>> {
+        let offset: Vec<u64> = offset.iter().map(|&o| o as u64).collect();
+        let Some(size) = self.size(&offset)? else {
+            return Ok(None);
+        };
+        // Deflate makes nothing longer by more than a thousandth and some bytes.
+        let most = self.bytes() + self.bytes() / 8 + 1024;
+        let size = usize::try_from(size).ok().filter(|&size| size <= most);
+        let mut bytes = vec![0; size.ok_or("a chunk has more bytes than it can have")?];
+        let mut skipped = 0;
+        let read = hdf5::sync::sync(|| {
+            // SAFETY: as above, and the buffer has the size that the library has just told.
+            unsafe {
+                H5Dread_chunk1(
+                    self.dataset.id(),
+                    H5P_DEFAULT,
+                    offset.as_ptr(),
+                    &raw mut skipped,
+                    bytes.as_mut_ptr().cast(),
+                )
+            }
+        });
+        if read < 0 {
+            return Err("a chunk cannot be read".into());
+        }
+        if skipped != 0 {
+            return Err("filters of a chunk are to be skipped".into());
+        }
+        Ok(Some(bytes))
+    }
+
+    /// The values of that chunk as bytes, also those beyond the dataset's edges.
+    fn values(&self, offset: &[usize]) -> hdf5::Result<Option<Vec<u8>>> {
+        let Some(mut bytes) = self.stored(offset)? else {
+            return Ok(None);
+        };
+        let length = self.bytes();
+        if self.filters.contains(&DEFLATE) {
+            let mut out = vec![0; length];
+            match decompress_slice(&mut out, &bytes, InflateConfig::default()) {
+                (whole, ReturnCode::Ok) if whole.len() == length => {}
+                _ => return Err("a chunk does not inflate to its own size".into()),
+            }
+            bytes = out;
+        }
+        if bytes.len() != length {
+            return Err("a chunk has not its own size".into());
+        }
+        if self.filters.contains(&SHUFFLE) && self.element > 1 {
+            bytes = unshuffled(&bytes, self.element);
+        }
+        Ok(Some(bytes))
+    }
+
+    /// The values of a hyperslab, row by row; those of chunks that are not there have the fill value.
+    pub fn read<T: Number>(&self, slab: &[SliceOrIndex]) -> hdf5::Result<Vec<T>> {
+        let picked: Option<Vec<Picked>> = slab.iter().map(Picked::of).collect();
+        let picked = picked.filter(|picked| {
+            let inside = |(p, &end): (&Picked, &usize)| p.count == 0 || p.index(p.count - 1) < end;
+            picked.len() == self.shape.len() && picked.iter().zip(&self.shape).all(inside)
+        });
+        let picked = picked.ok_or("a part of a dataset that is not there")?;
+        let fill = self.dataset.create_plist()?.get_fill_value_as::<T>()?;
+        let mut out = filled(&picked, fill.unwrap_or_default())?;
+        let parts: Vec<_> = picked
+            .iter()
+            .zip(&self.chunk)
+            .map(|(p, &c)| p.by_chunk(c))
+            .collect();
+        let mut place = vec![0; parts.len()];
+        if parts.iter().any(Vec::is_empty) {
+            return Ok(out);
+        }
+        loop {
+            let here: Vec<_> = parts
+                .iter()
+                .zip(&place)
+                .map(|(part, &n)| &part[n])
+                .collect();
+            let offset: Vec<usize> = here.iter().map(|(start, _)| *start).collect();
+            if let Some(bytes) = self.values(&offset)? {
+                let numbers: Vec<_> = here.iter().map(|(_, numbers)| numbers.clone()).collect();
+                let picker = Picker {
+                    picked: &picked,
+                    chunk: &self.chunk,
+                    offset,
+                    numbers,
+                };
+                picker.along(0, (0, 0), &bytes, &mut out);
+            }
+            let Some(axis) = (0..parts.len()).rfind(|&axis| place[axis] + 1 < parts[axis].len())
+            else {
+                return Ok(out);
+            };
+            place[axis] += 1;
+            place[axis + 1..].fill(0);
+        }
+    }
+}
+
+/// As many values as are picked.
+fn filled<T: Number>(picked: &[Picked], fill: T) -> hdf5::Result<Vec<T>> {
+    let mut counts = picked.iter().map(|p| p.count);
+    let count = counts
+        .try_fold(1, usize::checked_mul)
+        .ok_or("too many values")?;
+    let mut out = Vec::new();
+    let room = out.try_reserve_exact(count);
+    room.map_err(|error| error.to_string())?;
+    out.resize(count, fill);
+    Ok(out)
+}
+
+/// From a chunk to the values that are picked.
+struct Picker<'a> {
+    picked: &'a [Picked],
+    chunk: &'a [usize],
+    offset: Vec<usize>,
+    numbers: Vec<Range<usize>>,
+}
+
+impl Picker<'_> {
+    /// The values from `axis` on, where `from` counts the values of the chunk and `to` those picked, before this axis.
+    fn along<T: Number>(
+        &self,
+        axis: usize,
+        (from, to): (usize, usize),
+        bytes: &[u8],
+        out: &mut [T],
+    ) {
+        let picked = &self.picked[axis];
+        for number in self.numbers[axis].clone() {
+            let inside = picked.index(number) - self.offset[axis];
+            let (from, to) = (from * self.chunk[axis] + inside, to * picked.count + number);
+            if axis + 1 < self.picked.len() {
+                self.along(axis + 1, (from, to), bytes, out);
+            } else {
+                out[to] = T::of(&bytes[from * size_of::<T>()..][..size_of::<T>()]);
+            }
+        }
+    }
+}
+
+/// The inverse of HDF5's shuffle.
+fn unshuffled(bytes: &[u8], size: usize) -> Vec<u8> {
+    let count = bytes.len() / size;
+    let mut out = vec![0; bytes.len()];
+    for (byte, plane) in bytes.chunks_exact(count).enumerate() {
+        for (value, &from) in out.chunks_exact_mut(size).zip(plane) {
+            value[byte] = from;
+        }
+    }
+    out
+}
+
+/// The values of a hyperslab of a dataset, row by row.
+///
+/// # Errors
+/// Where they are of another type than asked for, or are damaged.
+pub(super) fn read<T: Number>(dataset: &Dataset, slab: &[SliceOrIndex]) -> hdf5::Result<Vec<T>> {
+    if !is_of::<T>(&dataset.dtype()) {
+        return Err("its values are of another type".into());
+    }
+    let chunks = Chunks::of(dataset)?.ok_or("it is not stored in chunks")?;
+    chunks.read(slab)
+}
+
+/// Deflate makes data smaller by this factor at most: 258 bytes in two bits.
+const MOST_DEFLATED: u64 = 1032;
+/// Bytes of values that are read at once, those of the longest axis.
+const MOST_AT_ONCE: u64 = 8 * MOST_POINTS;
+
+/// The number of values of a dataset that is no dataset of cells: what claims more than its bytes in the file can hold is refused
+/// before memory is asked for, or time spent on it.
+fn count<T: Number>(dataset: &Dataset) -> hdf5::Result<usize> {
+    if !is_of::<T>(&dataset.dtype()) {
+        return Err("its values are of another type".into());
+    }
+    let mut lengths = dataset.shape().into_iter();
+    let claimed = lengths.try_fold(1, usize::checked_mul);
+    let stored = dataset.storage_size().min(dataset.file()?.size());
+    let most = stored.saturating_mul(MOST_DEFLATED) / size_of::<T>() as u64;
+    let claimed = claimed.filter(|&count| count as u64 <= most);
+    claimed.ok_or_else(|| "it claims more values than its bytes can hold".into())
+}
+
+/// All values of a dataset.
+///
+/// # Errors
+/// As for [`read`], and where they are more than are read at once.
+pub(super) fn whole<T: Number>(dataset: &Dataset) -> hdf5::Result<Vec<T>> {
+    let count = count::<T>(dataset)?;
+    if (count * size_of::<T>()) as u64 > MOST_AT_ONCE {
+        return Err("it has more values than are read at once".into());
+    }
+    if let Some(chunks) = Chunks::of(dataset)? {
+        let all = |count| SliceOrIndex::SliceCount {
+            start: 0,
+            step: 1,
+            count,
+            block: 1,
+        };
+        let slab: Vec<_> = dataset.shape().into_iter().map(all).collect();
+        return chunks.read(&slab);
+    }
+    let mut values = Vec::new();
+    let room = values.try_reserve_exact(count);
+    room.map_err(|error| error.to_string())?;
+    values.resize(count, T::default());
+    dataset.as_reader().read_into_raw(&mut values)?;
+    Ok(values)
+}
+
+/// The values of a dataset, those of a list in chunks some at a time.
+///
+/// # Errors
+/// As for [`whole`].
+pub(super) fn for_each_part<T: Number>(
+    dataset: &Dataset,
+    mut visit: impl FnMut(&[T]),
+) -> hdf5::Result<()> {
+    let (shape, chunk) = (dataset.shape(), dataset.chunk());
+    let ([length], Some([chunk])) = (&shape[..], chunk.as_deref()) else {
+        visit(&whole(dataset)?);
+        return Ok(());
+    };
+    count::<T>(dataset)?;
+    for start in (0..*length).step_by((*chunk).max(1)) {
+        let count = (length - start).min(*chunk);
+        let part = SliceOrIndex::SliceCount {
+            start,
+            step: 1,
+            count,
+            block: 1,
+        };
+        visit(&read::<T>(dataset, &[part])?);
+    }
+    Ok(())
+}

@@ -1,0 +1,610 @@
+//! Maps that somebody made to do harm, through every command that opens one: each ends soon, with a message, with little memory,
+//! and shows nothing of another file.
+
+#![cfg(unix)]
+
+#[path = "common/limited.rs"]
+mod limited;
+#[path = "common/map.rs"]
+mod map;
+#[path = "common/program.rs"]
+mod program;
+
+use std::fs;
+use std::os::unix::ffi::OsStrExt;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+use hdf5::types::FixedUnicode;
+use hdf5::{File, Group};
+use hdf5_sys::h5d::{H5Dclose, H5Dcreate2, H5Dwrite_chunk};
+use hdf5_sys::h5p::{H5P_CLS_DATASET_CREATE, H5P_DEFAULT, H5Pclose, H5Pcreate};
+use hdf5_sys::h5p::{H5Pset_chunk, H5Pset_deflate, H5Pset_external, H5Pset_filter, H5Pset_virtual};
+use hdf5_sys::h5s::{H5Sclose, H5Screate_simple};
+use limited::End;
+use program::{Folder, expect};
+
+/// The most memory that a command may take for any of these, bytes.
+const MOST_MEMORY: u64 = 500 << 20;
+
+const SWEEP: &str = "title = \"Hostile\"\nfields = [\"n_unstable\", \"abscissa\"]\nbest = true\n\
+    [axes]\nmu_prime = [-0.2, -0.1]\nalpha_v = { from = -1.2, to = 0.0, points = 7 }\n\
+    tau = { from = 0.5, to = 6.0, points = 9 }\n[fixed]\nalpha_n = 0.0\n";
+const CASE: &str = "horizon = 50.0\n[friction]\nlaw = \"coulomb\"\nmu0 = 0.4\n[fixed]\nv0 = 0.1\n[trace]\nuntil = 20.0\n";
+/// What is in the file that nobody is to see: eight bytes are a number, too.
+const SECRET: &[u8; 72] =
+    b"SECRETs@SECRETt@SECRETu@SECRETv@SECRETw@SECRETx@SECRETy@SECRETz@SECRET{@";
+
+/// The commands that open a map, with the exit codes that they may end with where it is refused.
+const COMMANDS: [(&[&str], &[i32]); 8] = [
+    (&["info", "map.h5"], &[1, 2]),
+    (&["plot", "map.h5", "-o", "drawn.png"], &[1, 2]),
+    (
+        &["verify", "map.h5", "--cells", "3", "--tiles", "1"],
+        &[1, 2],
+    ),
+    (&["verify", "map.h5", "--json"], &[1, 2]),
+    (&["status", "map.h5"], &[1, 2]),
+    (&["merge", "map.h5"], &[0, 1, 2]),
+    (
+        &["run", "sweep.toml", "-o", "map.h5", "--threads", "2", "-q"],
+        &[0, 1, 2],
+    ),
+    (&["simulate", "case.toml", "-o", "map.h5"], &[1, 2]),
+];
+
+/// How much of a map is still read.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Reach {
+    /// No command reads it.
+    Nothing,
+    /// What is wrong is where only some commands look.
+    Some,
+    /// It is a map with something beside it: `verify` alone refuses it.
+    AllButVerify,
+}
+
+type Edit = fn(&File, &Path) -> hdf5::Result<()>;
+
+/// What is done to a sound map, and what `verify` says then.
+const EDITS: [(&str, Edit, &str, Reach); 22] = [
+    (
+        "a group in itself",
+        |f, _| f.link_hard("/", "boundaries/again"),
+        "no map holds again",
+        Reach::AllButVerify,
+    ),
+    (
+        "the root in itself",
+        |f, _| f.link_hard("/", "again"),
+        "no map holds again",
+        Reach::AllButVerify,
+    ),
+    (
+        "nested groups",
+        nested,
+        "no map holds deep",
+        Reach::AllButVerify,
+    ),
+    (
+        "many groups",
+        many,
+        "more than 1000 members",
+        Reach::AllButVerify,
+    ),
+    (
+        "an axis elsewhere in the file",
+        |f, _| {
+            f.relink("tau", "real")?;
+            f.link_soft("/real", "tau")
+        },
+        "tau is a link",
+        Reach::Nothing,
+    ),
+    (
+        "an axis in another file",
+        |f, _| {
+            f.unlink("tau")?;
+            f.link_external("other.h5", "/tau", "tau")
+        },
+        "tau is a link",
+        Reach::Nothing,
+    ),
+    (
+        "an axis in a pipe",
+        |f, _| {
+            f.unlink("tau")?;
+            f.link_external("pipe", "/tau", "tau")
+        },
+        "tau is a link",
+        Reach::Nothing,
+    ),
+    (
+        "a field in another file",
+        |f, _| {
+            f.unlink("abscissa")?;
+            f.link_external("other.h5", "/abscissa", "abscissa")
+        },
+        "abscissa is a link",
+        Reach::Nothing,
+    ),
+    (
+        "a group in another file",
+        |f, _| {
+            f.unlink("best")?;
+            f.link_external("other.h5", "/best", "best")
+        },
+        "best",
+        Reach::Nothing,
+    ),
+    (
+        "curves in another file",
+        |f, _| {
+            f.unlink("boundaries/tau")?;
+            f.link_external("other.h5", "/boundaries/tau", "boundaries/tau")
+        },
+        "tau is a link",
+        Reach::Some,
+    ),
+    (
+        "an axis of the bytes of another file",
+        |f, _| outside(f, c"secret"),
+        "values in another file",
+        Reach::Nothing,
+    ),
+    (
+        "an axis of the bytes of a pipe",
+        |f, _| outside(f, c"pipe"),
+        "values in another file",
+        Reach::Nothing,
+    ),
+    (
+        "an axis of datasets in another file",
+        |f, _| elsewhere(f, c"other.h5"),
+        "values in other datasets",
+        Reach::Nothing,
+    ),
+    (
+        "an axis of datasets in a pipe",
+        |f, _| elsewhere(f, c"pipe"),
+        "values in other datasets",
+        Reach::Nothing,
+    ),
+    (
+        "an axis through a plugin",
+        plugged,
+        "filters that slipmap does not use",
+        Reach::Nothing,
+    ),
+    (
+        "an axis deflated twice",
+        deflated_twice,
+        "filters that slipmap does not use",
+        Reach::Nothing,
+    ),
+    (
+        "a chunk that does not end",
+        |f, _| endless(f, 1_000_000),
+        "does not inflate to its own size",
+        Reach::Nothing,
+    ),
+    (
+        "a chunk of more bytes than it can have",
+        |f, _| endless(f, 1000),
+        "more bytes than it can have",
+        Reach::Nothing,
+    ),
+    (
+        "a huge chunk",
+        huge_chunk,
+        "chunks of more bytes",
+        Reach::Nothing,
+    ),
+    (
+        "values of another type",
+        of_structures,
+        "another type",
+        Reach::Nothing,
+    ),
+    (
+        "a curve that claims much",
+        |f, _| claims(f, "boundaries/omega"),
+        "claims more values",
+        Reach::Some,
+    ),
+    (
+        "a best setting that claims much",
+        |f, _| claims(f, "best/abscissa"),
+        "claims more values",
+        Reach::Some,
+    ),
+];
+
+fn nested(file: &File, _: &Path) -> hdf5::Result<()> {
+    let mut group = file.create_group("deep")?;
+    for _ in 0..20_000 {
+        group = group.create_group("d")?;
+    }
+    Ok(())
+}
+
+fn many(file: &File, _: &Path) -> hdf5::Result<()> {
+    (0..1001).try_for_each(|i| file.create_group(&format!("g{i}")).map(drop))
+}
+
+/// Makes a dataset of reals in the place of the axis tau, as the properties say that `set` gives it.
+fn axis(file: &File, length: usize, set: impl FnOnce(i64) -> i32) -> hdf5::Result<()> {
+    file.unlink("tau")?;
+    let kind = hdf5::Datatype::from_type::<f64>()?;
+    let lengths = [length as u64];
+    let made = hdf5::sync::sync(|| {
+        // SAFETY: the file is open, the lengths live, and every identifier is closed.
+        unsafe {
+            let space = H5Screate_simple(1, lengths.as_ptr(), std::ptr::null());
+            let plist = H5Pcreate(*H5P_CLS_DATASET_CREATE);
+            assert!(set(plist) >= 0);
+            let name = c"tau".as_ptr();
+            let dataset = H5Dcreate2(
+                file.id(),
+                name,
+                kind.id(),
+                space,
+                H5P_DEFAULT,
+                plist,
+                H5P_DEFAULT,
+            );
+            let made = H5Dclose(dataset);
+            H5Pclose(plist);
+            H5Sclose(space);
+            made
+        }
+    });
+    assert!(made >= 0);
+    let units = file
+        .dataset("tau")?
+        .new_attr::<FixedUnicode<2>>()
+        .create("units")?;
+    units.write_scalar(&"1".parse::<FixedUnicode<2>>().unwrap())
+}
+
+fn outside(file: &File, from: &std::ffi::CStr) -> hdf5::Result<()> {
+    // SAFETY: the name ends in a null byte.
+    axis(file, 9, |plist| unsafe {
+        H5Pset_external(plist, from.as_ptr(), 0, 72)
+    })
+}
+
+fn elsewhere(file: &File, from: &std::ffi::CStr) -> hdf5::Result<()> {
+    // SAFETY: the names end in a null byte, and the space is closed.
+    axis(file, 9, |plist| unsafe {
+        let space = H5Screate_simple(1, [9].as_ptr(), std::ptr::null());
+        let set = H5Pset_virtual(plist, space, from.as_ptr(), c"/tau".as_ptr(), space);
+        H5Sclose(space);
+        set
+    })
+}
+
+/// Writes the only chunk of the axis.
+fn put_chunk(file: &File, bytes: &[u8]) -> hdf5::Result<()> {
+    let dataset = file.dataset("tau")?;
+    // SAFETY: the dataset has one dimension, and the slice lives.
+    let written = hdf5::sync::sync(|| unsafe {
+        H5Dwrite_chunk(
+            dataset.id(),
+            H5P_DEFAULT,
+            0,
+            [0].as_ptr(),
+            bytes.len(),
+            bytes.as_ptr().cast(),
+        )
+    });
+    assert!(written >= 0);
+    Ok(())
+}
+
+fn plugged(file: &File, _: &Path) -> hdf5::Result<()> {
+    // SAFETY: no values are given.
+    axis(file, 9, |plist| unsafe {
+        H5Pset_chunk(plist, 1, [9].as_ptr());
+        H5Pset_filter(plist, 32768 + 77, 1, 0, std::ptr::null())
+    })?;
+    put_chunk(file, &[0; 72])
+}
+
+fn deflated_twice(file: &File, _: &Path) -> hdf5::Result<()> {
+    // SAFETY: the list lives.
+    axis(file, 9, |plist| unsafe {
+        H5Pset_chunk(plist, 1, [9].as_ptr());
+        H5Pset_deflate(plist, 9);
+        H5Pset_filter(plist, 1, 1, 1, [9].as_ptr())
+    })
+}
+
+/// An axis of one chunk whose bytes would inflate to 630 MB.
+fn endless(file: &File, length: usize) -> hdf5::Result<()> {
+    // SAFETY: the list lives.
+    axis(file, length, |plist| unsafe {
+        H5Pset_chunk(plist, 1, [length as u64].as_ptr());
+        H5Pset_deflate(plist, 9)
+    })?;
+    put_chunk(file, &zeros(4_000_000))
+}
+
+/// A stream of deflate's fixed codes: a zero, then copies of it, 258 at a time, without an end.
+fn zeros(bytes: usize) -> Vec<u8> {
+    let mut stream = vec![0x78, 0x01];
+    let (mut bits, mut count) = (0_u32, 0);
+    // The last block, of fixed codes; the literal 0; then length 258 and distance 1 in 13 bits.
+    let head = [(0b011, 3), (0b0000_1100, 8)];
+    let copy = std::iter::repeat((0b0_0000_1010_0011, 13));
+    for (code, length) in head.into_iter().chain(copy) {
+        bits |= code << count;
+        count += length;
+        while count >= 8 {
+            stream.push(bits as u8);
+            bits >>= 8;
+            count -= 8;
+        }
+        if stream.len() >= bytes {
+            return stream;
+        }
+    }
+    stream
+}
+
+fn huge_chunk(file: &File, _: &Path) -> hdf5::Result<()> {
+    // SAFETY: the list lives.
+    axis(file, 20_000_000, |plist| unsafe {
+        H5Pset_chunk(plist, 1, [20_000_000].as_ptr());
+        H5Pset_deflate(plist, 9)
+    })?;
+    put_chunk(file, &zeros(4_000_000))
+}
+
+fn of_structures(file: &File, _: &Path) -> hdf5::Result<()> {
+    #[derive(Clone, Copy, hdf5::H5Type)]
+    #[repr(C)]
+    struct Pair {
+        a: f64,
+        b: [u8; 8],
+    }
+    file.unlink("tau")?;
+    let pairs = [Pair { a: 1.0, b: [0; 8] }; 9];
+    file.new_dataset_builder()
+        .with_data(&pairs)
+        .create("tau")
+        .map(drop)
+}
+
+/// A column of as many values as there are bytes for, a thousand times.
+fn claims(file: &File, name: &str) -> hdf5::Result<()> {
+    let (group, name) = name.split_once('/').unwrap();
+    let group: Group = file.group(group)?;
+    group.unlink(name)?;
+    let builder = group.new_dataset_builder().deflate(9).empty::<f64>();
+    builder
+        .chunk(1 << 20)
+        .shape(1 << 40)
+        .create(name)?
+        .write_slice(&[1.0], 0..1)
+}
+
+/// A folder with a sound map, and other files that it has no business with.
+struct Place {
+    folder: Folder,
+    map: Vec<u8>,
+}
+
+impl Place {
+    fn new() -> Self {
+        let folder = Folder::with(&[("sweep.toml", SWEEP), ("case.toml", CASE)]);
+        expect(
+            &folder.run(&["run", "sweep.toml", "-o", "map.h5", "-q"]),
+            0,
+            "map.h5",
+        );
+        let path = |name: &str| folder.path().join(name);
+        let map = fs::read(path("map.h5")).unwrap();
+        fs::write(path("secret"), SECRET).unwrap();
+        fs::copy(path("map.h5"), path("other.h5")).unwrap();
+        map::edit(&path("other.h5"), |file| {
+            let values: Vec<f64> = (0..9).map(|i| 7.25e77 + f64::from(i) * 1e77).collect();
+            file.dataset("tau").unwrap().write_raw(&values).unwrap();
+        });
+        let made = Command::new("mkfifo").arg(path("pipe")).status().unwrap();
+        assert!(made.success());
+        let place = Self { folder, map };
+        place.build_plugin();
+        place
+    }
+
+    fn path(&self, name: &str) -> PathBuf {
+        self.folder.path().join(name)
+    }
+
+    fn build_plugin(&self) {
+        fs::create_dir(self.path("plugins")).unwrap();
+        let library = self.path("plugins/libhostile.so");
+        let source = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/hostile/plugin.c");
+        let built = Command::new("cc")
+            .args(["-shared", "-fPIC", "-o"])
+            .arg(library)
+            .arg(source)
+            .status();
+        assert!(built.unwrap().success());
+    }
+
+    /// Runs a command and checks what holds of all of them.
+    fn run(&self, what: &str, args: &[&str]) -> (i32, String) {
+        let (mark, plugins) = (self.path("mark"), self.path("plugins"));
+        let variables = [
+            ("HOSTILE_MARK", mark.to_str().unwrap()),
+            ("HDF5_PLUGIN_PATH", plugins.to_str().unwrap()),
+        ];
+        let ended = limited::run(self.folder.path(), args, &variables);
+        let text = ended.text();
+        let End::Code(code) = ended.end else {
+            panic!("{what}, {args:?}: {:?}: {text}", ended.end);
+        };
+        assert!(!text.contains("panicked"), "{what}, {args:?}: {text}");
+        assert!(
+            code == 0 || !text.trim().is_empty(),
+            "{what}, {args:?}: it said nothing"
+        );
+        assert!(!mark.exists(), "{what}, {args:?}: the plugin was loaded");
+        for secret in ["SECRET", "7.25", "72500"] {
+            assert!(!text.contains(secret), "{what}, {args:?}: {text}");
+        }
+        // SECRETs@ as a number.
+        assert!(!text.contains("310."), "{what}, {args:?}: {text}");
+        assert!(
+            ended.peak < MOST_MEMORY,
+            "{what}, {args:?}: {} bytes",
+            ended.peak
+        );
+        assert!(is_harmless(&ended.said), "{what}, {args:?}: {text:?}");
+        (code, text)
+    }
+}
+
+/// Whether no byte moves a terminal's cursor or turns its direction.
+fn is_harmless(said: &[u8]) -> bool {
+    let text = String::from_utf8(said.to_vec()).unwrap();
+    text.chars()
+        .all(|c| (!c.is_control() || "\n\t".contains(c)) && !('\u{202a}'..='\u{202e}').contains(&c))
+}
+
+#[test]
+fn maps_that_lead_elsewhere_or_swell_are_refused() {
+    let place = Place::new();
+    for (what, edit, says, reach) in EDITS {
+        fs::write(place.path("map.h5"), &place.map).unwrap();
+        let path = place.path("map.h5");
+        map::edit(&path, |file| edit(file, place.folder.path())).unwrap();
+        let bytes = fs::read(&path).unwrap();
+        let mut said = String::new();
+        for (args, codes) in COMMANDS {
+            let (code, text) = place.run(what, args);
+            said += &text;
+            let verifies = args[0] == "verify";
+            let refused = match reach {
+                Reach::Nothing => true,
+                Reach::Some => verifies,
+                Reach::AllButVerify => verifies || args[0] == "simulate",
+            };
+            let allowed: &[i32] = if refused { codes } else { &[0, 1, 2] };
+            assert!(allowed.contains(&code), "{what}, {args:?}: {code}: {text}");
+            assert!(
+                fs::read(&path).unwrap() == bytes,
+                "{what}, {args:?} changed the map"
+            );
+        }
+        let words = said
+            .split_whitespace()
+            .collect::<Vec<_>>()
+            .join(" ")
+            .replace("│ ", "");
+        assert!(words.contains(says), "{what}: {words}");
+    }
+}
+
+/// A text that clears the screen, in every way, and turns what follows around.
+const LOUD: &str = "\u{1b}[2Jloud\u{9b}31m\u{7}\r\u{202e}\u{2066}end";
+
+#[test]
+fn control_characters_are_shown_as_such() {
+    let place = Place::new();
+    let path = place.path("map.h5");
+    for name in [
+        "title",
+        "history",
+        "source",
+        "plan_hash",
+        "friction_law",
+        "axes",
+        "protocol",
+        "git_revision",
+    ] {
+        fs::write(&path, &place.map).unwrap();
+        map::edit(&path, |file| put_loud(file, name)).unwrap();
+        for (args, _) in COMMANDS {
+            place.run(name, args);
+        }
+    }
+    fs::write(&path, &place.map).unwrap();
+    map::edit(&path, |file| file.create_group(LOUD).map(drop)).unwrap();
+    let (code, text) = place.run("a name", &["verify", "map.h5"]);
+    assert!(code == 1 && text.contains("\\u{1b}[2Jloud"), "{text}");
+    // Names of files, arguments, and what stands in files of text.
+    let loud = std::ffi::OsStr::from_bytes(LOUD.as_bytes());
+    fs::write(place.folder.path().join(loud), "no map").unwrap();
+    for args in [
+        &["info", LOUD][..],
+        &["plot", LOUD],
+        &["status", LOUD],
+        &["run", "sweep.toml", "-o", LOUD],
+        &["plan", LOUD],
+        &["info", "map.h5", LOUD],
+        &["merge", "map.h5", LOUD],
+    ] {
+        let (code, text) = place.run("an argument", args);
+        // clap drops some of them itself.
+        assert!(
+            code > 0 && text.contains("loud\\u{9b}31m"),
+            "{args:?}: {text}"
+        );
+    }
+    for sweep in [
+        format!("title = \"{LOUD}\"\n{SWEEP}"),
+        SWEEP.replace(
+            "[axes]",
+            &format!("[axes]\n\"{}\" = 1 # {LOUD}", "\\u001b[2J"),
+        ),
+        format!("# {LOUD}\nfields = [\"\\u001b[2J\\u202e\"]\n"),
+        format!("\u{1b}[2J = {LOUD}"),
+        SWEEP.replace("points = 7", &format!("points = \"{LOUD}\"")),
+    ] {
+        fs::write(place.path("loud.toml"), sweep).unwrap();
+        for command in ["run", "plan", "simulate"] {
+            let (code, _) = place.run("a sweep file", &[command, "loud.toml"]);
+            assert_eq!(code, 2);
+        }
+    }
+    fs::remove_file(&path).unwrap();
+    expect(
+        &place
+            .folder
+            .run(&["run", "sweep.toml", "-o", "map.h5", "--shard", "1/2", "-q"]),
+        0,
+        "",
+    );
+    let manifest = place.path("map.h5.tiles/1-of-2/manifest.json");
+    let text = fs::read_to_string(&manifest).unwrap();
+    for (from, to) in [
+        ("\"shard\": \"1/2\"", "\"shard\": \"\\u001b[2J\""),
+        ("\"plan_hash\": \"", "\"plan_hash\": \"\\u001b[2J"),
+        ("\"plan_hash\"", "\"\\u001b[2J\""),
+        (
+            "\"git_revision\": \"",
+            "\"git_revision\": \"\\u001b[2J\\u202e",
+        ),
+    ] {
+        fs::write(&manifest, text.replacen(from, to, 1)).unwrap();
+        for (args, _) in COMMANDS {
+            place.run("a manifest", args);
+        }
+        place.run(
+            "a manifest",
+            &["run", "sweep.toml", "-o", "map.h5", "--shard", "1/2"],
+        );
+        place.run("a manifest", &["status", "map.h5", "--json"]);
+    }
+}
+
+fn put_loud(file: &File, name: &str) -> hdf5::Result<()> {
+    if file.attr(name).is_ok() {
+        file.delete_attr(name)?;
+    }
+    let attribute = file.new_attr::<FixedUnicode<64>>().create(name)?;
+    attribute.write_scalar(&LOUD.parse::<FixedUnicode<64>>().unwrap())
+}
