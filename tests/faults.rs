@@ -5,17 +5,20 @@
 //! for every one of them; by default some of each command and kind are tried.
 #![cfg(target_os = "linux")]
 
+#[path = "common/interposer.rs"]
+mod interposer;
 #[path = "common/map.rs"]
 mod map;
 #[path = "common/program.rs"]
 mod program;
 
-use std::path::{Path, PathBuf};
-use std::process::{Command, Output};
-use std::sync::OnceLock;
+use std::path::Path;
+use std::process::{Command, Output, Stdio};
+use std::time::{Duration, Instant};
 
+use interposer::{copy, interposed};
 use map::datasets;
-use program::{Folder, err};
+use program::{Folder, err, expect};
 
 /// Curves, best settings and decay rates in a few tiles' files.
 const SWEEP: &str = "
@@ -30,35 +33,12 @@ const CASE: &str = "[friction]\nlaw = \"weakening\"\nmu0 = 0.5\nv_s = 0.5\n[fixe
                     [trace]\nuntil = 30\n";
 
 /// How a call ends.
-const KINDS: [&str; 4] = ["kill", "eio", "enospc", "eintr"];
-
-/// The interposed library, built once.
-fn library() -> &'static Path {
-    static BUILT: OnceLock<(tempfile::TempDir, PathBuf)> = OnceLock::new();
-    let (_, path) = BUILT.get_or_init(|| {
-        let folder = tempfile::tempdir().unwrap();
-        let path = folder.path().join("libfaults.so");
-        let source = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/faults/interpose.c");
-        // Rust links with a C compiler too, so there is one.
-        let built = Command::new("cc")
-            .args(["-shared", "-fPIC", "-O1", "-o"])
-            .arg(&path)
-            .args([source, "-ldl"])
-            .output()
-            .expect("a C compiler");
-        assert!(built.status.success(), "{}", err(&built));
-        (folder, path)
-    });
-    path
-}
+const KINDS: [&str; 5] = ["kill", "eio", "enospc", "eintr", "term"];
 
 /// Runs a command; the number of calls it made, where it came to its end, is in `count` beside the folder.
 fn faulty(folder: &Folder, args: &[&str], fault: Option<(u64, &str)>, count: &Path) -> Output {
-    let mut command = folder.command(args);
-    command
-        .env("LD_PRELOAD", library())
-        .env("FAULTS_FOLDER", folder.path().canonicalize().unwrap())
-        .env("FAULTS_COUNT", count);
+    let mut command = interposed(folder, args);
+    command.env("FAULTS_COUNT", count);
     if let Some((at, kind)) = fault {
         command
             .env("FAULTS_AT", at.to_string())
@@ -148,21 +128,6 @@ fn prepared(case: &Case) -> Folder {
     folder
 }
 
-/// A copy of a folder without subfolders' folders.
-fn copy(from: &Path, to: &Path) {
-    for entry in std::fs::read_dir(from).unwrap() {
-        let entry = entry.unwrap();
-        let place = to.join(entry.file_name());
-        match entry.file_type().unwrap().is_dir() {
-            true => {
-                std::fs::create_dir(&place).unwrap();
-                copy(&entry.path(), &place);
-            }
-            false => drop(std::fs::copy(entry.path(), place).unwrap()),
-        }
-    }
-}
-
 /// What a file says, whatever else it holds: the datasets of HDF5, or its bytes.
 #[derive(PartialEq)]
 enum Said {
@@ -182,8 +147,12 @@ fn all_are_asked_for() -> bool {
 }
 
 /// The calls of `total` at which a kind of fault is tried.
-fn points(total: u64) -> Vec<u64> {
-    let wanted = if all_are_asked_for() { total } else { 8 };
+fn points(total: u64, kind: &str) -> Vec<u64> {
+    let wanted = match kind {
+        _ if all_are_asked_for() => total,
+        "term" => 4,
+        _ => 8,
+    };
     let mut points: Vec<u64> = (0..wanted.min(total))
         .map(|i| 1 + i * total / wanted.min(total))
         .collect();
@@ -213,7 +182,7 @@ fn every_fault_leaves_the_old_or_the_new_file() {
         // Nothing is changed by looking at a map.
         assert_eq!(total == 0, case.args[0] == "verify", "{total}");
         for kind in KINDS {
-            for at in points(total).into_iter().filter(|at| *at > 0) {
+            for at in points(total, kind).into_iter().filter(|at| *at > 0) {
                 let folder = Folder::new();
                 copy(original.path(), folder.path());
                 check(case, &folder, (at, kind), &expected, &count);
@@ -232,12 +201,16 @@ fn check(case: &Case, folder: &Folder, fault: (u64, &str), expected: &Said, coun
     let told = err(&done);
     match fault.1 {
         "kill" => assert!(done.status.code().is_none(), "{what}: {told}"),
+        "term" => check_stopped(&done, folder, &what),
         _ => assert!(matches!(done.status.code(), Some(0 | 1)), "{what}: {told}"),
     }
     if fault.1 != "kill" && !done.status.success() {
         // What went wrong is said.
         assert!(
-            told.contains("cannot") || told.contains("warning") || told.contains("not"),
+            told.contains("interrupted")
+                || told.contains("cannot")
+                || told.contains("warning")
+                || told.contains("not"),
             "{what}: {told}"
         );
     }
@@ -256,4 +229,88 @@ fn check(case: &Case, folder: &Folder, fault: (u64, &str), expected: &Said, coun
         .filter(|name| name.contains("slipmap-part") || name.ends_with(".tiles"))
         .collect();
     assert!(left.is_empty(), "{what}: {left:?} is left");
+}
+
+/// A command that a signal came to ended in order: what it had begun to write is gone.
+fn check_stopped(done: &Output, folder: &Folder, what: &str) {
+    let code = done.status.code();
+    assert!(matches!(code, Some(0 | 143)), "{what}: {}", err(done));
+    let hidden = |name: &String| name.starts_with('.');
+    let left: Vec<String> = folder.files().into_iter().filter(hidden).collect();
+    assert!(left.is_empty(), "{what}: {left:?} is left");
+}
+
+/// A command whose every look into a file takes long gets a signal once `when` is so: it ends soon, with nothing half done.
+fn stopped_soon(
+    folder: &Folder,
+    args: &[&str],
+    (name, code): (&str, i32),
+    (slow_once, when): (&str, &dyn Fn() -> bool),
+) {
+    let mut child = interposed(folder, args)
+        .env("FAULTS_DELAY", "150")
+        .env("FAULTS_DELAY_ONCE", slow_once)
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap();
+    let begun = Instant::now();
+    while !when() {
+        assert!(child.try_wait().unwrap().is_none(), "{args:?} is over");
+        assert!(begun.elapsed() < Duration::from_secs(30), "{args:?}");
+        std::thread::sleep(Duration::from_millis(5));
+    }
+    // The work that is under way is slow, and has just begun.
+    std::thread::sleep(Duration::from_millis(100));
+    let kill = format!("kill -{name} {}", child.id());
+    let sent = Instant::now();
+    Command::new("sh").args(["-c", &kill]).status().unwrap();
+    let ended = child.wait_with_output().unwrap();
+    let took = sent.elapsed();
+    println!("{args:?}: {name}, ended after {took:?}");
+    assert!(took < Duration::from_secs(1), "{args:?}: {took:?}");
+    expect(&ended, code, "interrupted: ");
+    let hidden = |name: &String| name.starts_with('.');
+    let left: Vec<String> = folder.files().into_iter().filter(hidden).collect();
+    assert!(left.is_empty(), "{args:?}: {left:?} is left");
+}
+
+#[test]
+fn signals_end_merging_and_drawing_soon() {
+    let folder = Folder::with(&[("map.toml", SWEEP)]);
+    let [map, picture, tiles, part] = ["map.h5", "map.png", "map.h5.tiles", ".map.h5.slipmap-part"]
+        .map(|name| folder.path().join(name));
+    for shard in ["1/2", "2/2"] {
+        let done = folder.run(&["run", "map.toml", "--shard", shard]);
+        assert!(done.status.success(), "{}", err(&done));
+    }
+    let merge = ["merge", "map.h5"];
+    stopped_soon(
+        &folder,
+        &merge,
+        ("INT", 130),
+        ("map.toml", &|| part.exists()),
+    );
+    assert!(!map.exists() && tiles.join("1-of-2/manifest.json").exists());
+    let drawing = || map.exists() && !tiles.exists();
+    stopped_soon(&folder, &merge, ("HUP", 129), ("map.h5", &drawing));
+    assert!(map.exists() && !picture.exists());
+    // The same command draws what was not drawn.
+    let whole = datasets(&map);
+    expect(&folder.run(&merge), 0, "map.h5 is already complete");
+    assert!(picture.exists());
+    std::fs::remove_file(&map).unwrap();
+    let run = ["run", "map.toml", "-q"];
+    stopped_soon(&folder, &run, ("TERM", 143), ("map.h5", &drawing));
+    assert!(datasets(&map) == whole);
+    for (signal, name) in [(("INT", 130), "drawn.png"), (("TERM", 143), "drawn.svg")] {
+        let plot = ["plot", "map.h5", "-o", name];
+        stopped_soon(&folder, &plot, signal, ("map.h5", &|| true));
+        assert!(!folder.path().join(name).exists());
+        expect(&folder.run(&plot), 0, name);
+    }
+    // The picture beside the map is one of its predecessor.
+    let older = picture.metadata().unwrap().modified().unwrap();
+    expect(&folder.run(&run), 0, "map.h5 is already complete");
+    assert!(picture.metadata().unwrap().modified().unwrap() > older);
 }

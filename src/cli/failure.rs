@@ -17,7 +17,7 @@ pub enum Failure {
     BadInput(Report),
     /// Exit code 0: whoever read the output has read enough.
     ReaderGone,
-    /// Exit code 130 or 143: a signal.
+    /// Exit code 129, 130 or 143: a signal.
     Interrupted {
         /// What was left behind.
         message: String,
@@ -100,12 +100,18 @@ fn shown(message: impl Into<String>) -> MietteDiagnostic {
 impl From<StoreError> for Failure {
     fn from(error: StoreError) -> Self {
         let mut diagnostic = shown(error.to_string());
-        let other_tiles = matches!(
-            error,
-            StoreError::OtherTiles { .. } | StoreError::Manifest { .. }
-        );
-        if other_tiles {
-            let help = "--fresh starts over, dropping the tiles; -o writes elsewhere";
+        let help = match error {
+            StoreError::OtherTiles { .. } => {
+                Some("--fresh starts over, dropping the tiles; -o writes elsewhere")
+            }
+            StoreError::Manifest { .. } => Some(
+                "the `slipmap run` that began these tiles writes it anew and goes on; \
+                 --fresh starts over, dropping them; -o writes elsewhere",
+            ),
+            _ => None,
+        };
+        let other_tiles = help.is_some();
+        if let Some(help) = help {
             diagnostic = diagnostic.with_help(help);
         }
         let report = Report::new(diagnostic);

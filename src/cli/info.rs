@@ -13,6 +13,10 @@ use slipmap::sweep::Field;
 use super::failure::Failure;
 use super::open::open;
 use super::say::{visible, visible_line};
+use super::signals::Signals;
+
+/// What a signal leaves.
+const NOT_TOLD: &str = "not everything is told";
 
 #[derive(Debug, clap::Args)]
 pub struct Args {
@@ -25,7 +29,12 @@ pub struct Args {
 }
 
 pub fn main(args: &Args) -> Result<(), Failure> {
-    let map = open(&args.map)?;
+    let signals = Signals::catch()?;
+    let map = open(&args.map, &signals, NOT_TOLD)?;
+    signals.or_end(NOT_TOLD, || tell(&map, args))
+}
+
+fn tell(map: &MapFile, args: &Args) -> Result<(), Failure> {
     let mut out = std::io::stdout().lock();
     if args.sweep {
         let sweep = map.root_text(root::SWEEP).unwrap_or_default();
@@ -67,7 +76,7 @@ pub fn main(args: &Args) -> Result<(), Failure> {
     }
     for (name, size, on_disk) in map.sizes()? {
         let values = match Field::from_name(name) {
-            Some(field) => values(&map, field)?,
+            Some(field) => values(map, field)?,
             None => String::new(),
         };
         let sizes = format!("{}, {} on disk", bytes(size), bytes(on_disk));

@@ -13,6 +13,7 @@ use slipmap::sweep::{Plan, Shard};
 
 use super::failure::Failure;
 use super::output::{provenance, tell_assembled};
+use super::signals::Signals;
 use super::{run, say};
 
 #[derive(Debug, clap::Args)]
@@ -35,16 +36,17 @@ pub struct Args {
 }
 
 pub fn main(args: &Args) -> Result<(), Failure> {
+    let signals = Signals::catch()?;
     let target = args.output.as_ref().unwrap_or(&args.map);
     shards::settle(&args.map, || map_maker::is_complete(target))?;
     let folders = folders(args)?;
     if folders.is_empty() {
-        return nothing_to_merge(args, target);
+        return nothing_to_merge(args, target, &signals);
     }
-    let (_, plan) = shards::plan(&folders[0])?;
+    let (_, plan) = shards::plan(&folders)?;
     if let Some(remark) = run::already_there(target, &plan, args.fresh)? {
         drop(shards::remove_root(target));
-        return run::nothing_to_do(target, &remark, false);
+        return run::nothing_to_do(target, &remark, false, &signals);
     }
     let provenance = provenance("merge", &args.map);
     let (progress, log) = (Progress::new(false), Log::beside(target, Shard::WHOLE));
@@ -62,10 +64,10 @@ pub fn main(args: &Args) -> Result<(), Failure> {
         replace_complete: args.fresh,
         remove_beside: (!keep).then_some(&*args.map),
     };
-    let merged = map_maker::merge(&plan, &asked, &provenance, &observer);
-    let assembled = merged.map_err(|error| failure(error, &args.map))?;
+    let merged = map_maker::merge(&plan, &asked, &provenance, (&observer, &signals.stop));
+    let assembled = merged.map_err(|error| failure(error, &args.map, &signals))?;
     tell(target, &plan, &assembled)?;
-    run::show(target, false);
+    run::show(target, false, &signals);
     Ok(())
 }
 
@@ -85,10 +87,10 @@ fn folders(args: &Args) -> Result<Vec<PathBuf>, Failure> {
 }
 
 /// An error, unless the shards are gone because their map is complete: a merge that is run again has nothing to do.
-fn nothing_to_merge(args: &Args, target: &Path) -> Result<(), Failure> {
+fn nothing_to_merge(args: &Args, target: &Path, signals: &Signals) -> Result<(), Failure> {
     if !args.fresh && map_maker::is_complete(target) {
         drop(shards::remove_root(&args.map));
-        return run::nothing_to_do(target, "", false);
+        return run::nothing_to_do(target, "", false, signals);
     }
     Err(Failure::bad_input_with_help(
         format!(
@@ -113,9 +115,13 @@ fn tell(target: &Path, plan: &Plan, assembled: &Assembled) -> Result<(), Failure
     ))
 }
 
-fn failure(error: StoreError, map: &Path) -> Failure {
+fn failure(error: StoreError, map: &Path, signals: &Signals) -> Failure {
     match error {
         StoreError::Incomplete { .. } => {}
+        StoreError::Stopped => {
+            return signals
+                .interrupted("no map is written, the shards stay; the same command goes on");
+        }
         StoreError::WouldLose { .. } => {
             let help = "--fresh replaces it all the same; -o writes elsewhere";
             return Failure::bad_input_with_help(error.to_string(), help);

@@ -12,6 +12,7 @@ mod plot;
 mod point;
 mod run;
 mod say;
+mod signals;
 mod simulate;
 mod status;
 mod sweep_file;
@@ -27,7 +28,7 @@ use clap::{Parser, Subcommand};
 #[derive(Parser)]
 #[command(version, long_version = concat!(env!("CARGO_PKG_VERSION"), " (", env!("SLIPMAP_GIT_REVISION"), ")"))]
 #[command(
-    after_help = "Exit codes: 0 done, 1 failed, 2 bad input or usage, 130 or 143 interrupted."
+    after_help = "Exit codes: 0 done, 1 failed, 2 bad input or usage, 129, 130 or 143 interrupted."
 )]
 struct Cli {
     #[command(subcommand)]

@@ -1,6 +1,6 @@
 //! Opens a map for a command that looks at it: the map itself, or what is computed of it so far.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::sync::atomic::AtomicBool;
 
 use slipmap::report::numbers::grouped;
@@ -12,33 +12,43 @@ use slipmap::sweep::Pieces;
 use super::failure::Failure;
 use super::output::provenance;
 use super::say;
+use super::signals::Signals;
 
 /// The map at `path`. Where there is none yet, what its tiles hold, put together in a file of its own that is gone afterwards.
-pub fn open(path: &Path) -> Result<MapFile, Failure> {
-    let held = path.exists().then(|| MapFile::open(path)).transpose()?;
+///
+/// A signal ends it, with `message`.
+pub fn open(path: &Path, signals: &Signals, message: &str) -> Result<MapFile, Failure> {
+    let opened = || signals.or_end(message, || MapFile::open(path));
+    let held = path.exists().then(opened).transpose()?;
     let present = match held.as_ref().is_none_or(MapFile::is_partial) {
         true => shards::present(path).unwrap_or_default(),
         false => Vec::new(),
     };
-    let Some((_, first)) = present.first() else {
-        let map = held.map_or_else(|| MapFile::open(path), Ok)?;
+    if present.is_empty() {
+        let map = held.map_or_else(opened, Ok)?;
         if map.is_partial() {
             tell_partial(path, map.cells_missing(), map.cells());
         }
         return Ok(map);
-    };
-    let (_, plan) = shards::plan(first)?;
+    }
+    let folders: Vec<PathBuf> = present.into_iter().map(|(_, folder)| folder).collect();
+    let so_far = so_far(path, &folders, &signals.stop);
+    so_far.map_err(|failure| signals.or_stopped(failure, message))
+}
+
+/// What the folders of shards hold, as a map.
+fn so_far(path: &Path, folders: &[PathBuf], stop: &AtomicBool) -> Result<MapFile, Failure> {
+    let (manifest, plan) = shards::plan(folders)?;
     let mut source = Vec::new();
-    for (_, folder) in &present {
-        let layout = shards::manifest(folder)?.layout();
-        source.push(TileReader::of(folder, layout, Pieces::of(&plan))?.0);
+    for folder in folders {
+        source.push(TileReader::of(folder, manifest.layout(), Pieces::of(&plan), stop)?.0);
     }
     let file = path.with_file_name(format!(
         ".{}.slipmap-so-far",
         path.file_name().unwrap_or_default().display()
     ));
     let output = Output::claim(&file)?;
-    let how = (Missing::Leave, &AtomicBool::new(false));
+    let how = (Missing::Leave, stop);
     let assembled = assemble(&plan, output, &provenance("merge", path), &mut source, how)?;
     tell_partial(path, assembled.cells_missing, plan.cells());
     let map = MapFile::open(&file);

@@ -3,13 +3,17 @@
 use std::path::{Path, PathBuf};
 
 use clap::ValueEnum;
-use slipmap::report::picture::{self, PictureError, PictureKind, PictureOptions};
+use slipmap::report::picture::{self, Picture, PictureError, PictureKind, PictureOptions};
 use slipmap::sweep::field::known_fields;
 use slipmap::sweep::{Field, Parameter};
 
 use super::failure::Failure;
 use super::open::open;
 use super::say;
+use super::signals::Signals;
+
+/// What a signal leaves.
+const NOT_DRAWN: &str = "the picture is not drawn";
 
 #[derive(Debug, clap::Args)]
 pub struct Args {
@@ -59,7 +63,8 @@ fn parse_at(text: &str) -> Result<(Parameter, f64), String> {
 }
 
 pub fn main(args: &Args) -> Result<(), Failure> {
-    let map = open(&args.map)?;
+    let signals = Signals::catch()?;
+    let map = open(&args.map, &signals, NOT_DRAWN)?;
     let path = match &args.output {
         Some(path) => path.clone(),
         None => beside(&args.map),
@@ -73,7 +78,10 @@ pub fn main(args: &Args) -> Result<(), Failure> {
         at: args.at.clone(),
         ..PictureOptions::default()
     };
-    picture::draw(&map, &path, &options).map_err(|error| failure(error, args))?;
+    let drawn = signals.or_end(NOT_DRAWN, || picture::draw(&map, &path, &options));
+    drawn
+        .and_then(Picture::save)
+        .map_err(|error| failure(error, args))?;
     say::result(path.display())?;
     Ok(())
 }

@@ -3,18 +3,17 @@
 use std::io::IsTerminal;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::time::Duration;
 
 use bytesize::ByteSize;
 use slipmap::report::log::{Both, Log};
 use slipmap::report::numbers::{bytes, grouped, prefixed, seconds};
-use slipmap::report::picture::{self, PictureError, PictureOptions};
+use slipmap::report::picture::{self, Picture, PictureError, PictureOptions};
 use slipmap::report::preview::preview;
 use slipmap::report::progress::Progress;
 use slipmap::store::map_maker::{self, Job};
 use slipmap::store::schema::root;
-use slipmap::store::tiles::shards;
+use slipmap::store::tiles::{Manifest, shards};
 use slipmap::store::{MapFile, StoreError};
 use slipmap::sweep::{Memory, Plan, RunError, Shard};
 
@@ -22,6 +21,7 @@ use super::failure::Failure;
 use super::output::{self, output_path, provenance};
 use super::plot;
 use super::say;
+use super::signals::Signals;
 use super::sweep_file::read_plan;
 
 /// More threads than this are taken for a slip of the finger.
@@ -108,12 +108,13 @@ pub fn default_threads() -> usize {
 }
 
 pub fn main(args: &Args) -> Result<(), Failure> {
+    let signals = Signals::catch()?;
     let plan = read_plan(&args.sweep)?;
     let path = output_path(args.output.as_deref(), &args.sweep, "map")?;
     shards::settle(&path, || map_maker::is_complete(&path))?;
     if let Some(remark) = already_there(&path, &plan, args.fresh)? {
         drop(shards::remove_root(&path));
-        return nothing_to_do(&path, &remark, args.quiet);
+        return nothing_to_do(&path, &remark, args.quiet, &signals);
     }
     match args.shard.filter(|_| args.fresh) {
         Some(shard) => shards::clear_shard(&path, shard)?,
@@ -128,7 +129,6 @@ pub fn main(args: &Args) -> Result<(), Failure> {
             "{threads} of {asked} threads: each may take {one}, and --memory allows {memory}"
         ));
     }
-    let signals = Signals::catch()?;
     let progress = Progress::new(args.quiet);
     let log = Log::beside(&path, args.shard.unwrap_or(Shard::WHOLE));
     let observers = Both(&progress, &log);
@@ -184,7 +184,7 @@ fn run_whole(
         prefixed(cells as f64 / elapsed),
         bytes(std::fs::metadata(path).map_or(0, |m| m.len())),
     ));
-    show(path, quiet);
+    show(path, quiet, signals);
     told
 }
 
@@ -212,9 +212,14 @@ fn refuse_other_way(map: &Path, asked: Shard) -> Result<(), Failure> {
 }
 
 /// Says that a map is complete, and draws it where an earlier command did not come to that.
-pub fn nothing_to_do(path: &Path, remark: &str, quiet: bool) -> Result<(), Failure> {
-    if !plot::beside(path).exists() {
-        show(path, quiet);
+pub fn nothing_to_do(
+    path: &Path,
+    remark: &str,
+    quiet: bool,
+    signals: &Signals,
+) -> Result<(), Failure> {
+    if lacks_picture(path) {
+        show(path, quiet, signals);
     }
     say::result(format_args!(
         "{} is already complete{remark}",
@@ -222,15 +227,27 @@ pub fn nothing_to_do(path: &Path, remark: &str, quiet: bool) -> Result<(), Failu
     ))
 }
 
+/// Whether there is no picture beside a map, or one of what was there before.
+fn lacks_picture(map: &Path) -> bool {
+    let written = |path: &Path| path.metadata().and_then(|m| m.modified());
+    match (written(map), written(&plot::beside(map))) {
+        (Ok(map), Ok(picture)) => picture < map,
+        (_, picture) => picture.is_err(),
+    }
+}
+
 /// Draws a complete map beside it, and on the terminal. What fails here is a warning: the map is there.
-pub fn show(path: &Path, quiet: bool) {
-    let map = match MapFile::open(path) {
+pub fn show(path: &Path, quiet: bool, signals: &Signals) {
+    let complete = format!("{} is complete, the same command draws it", path.display());
+    let map = match signals.or_end(&complete, || MapFile::open(path)) {
         Ok(map) => map,
         Err(error) => return say::remark(format_args!("warning: no picture: {error}")),
     };
     let picture = plot::beside(path);
     let drawn = if picture::may_replace(&picture) {
-        picture::draw(&map, &picture, &PictureOptions::default())
+        let options = PictureOptions::default();
+        let drawn = signals.or_end(&complete, || picture::draw(&map, &picture, &options));
+        drawn.and_then(Picture::save)
     } else {
         let name = picture.display();
         say::remark(format_args!(
@@ -248,7 +265,7 @@ pub fn show(path: &Path, quiet: bool) {
         return;
     }
     let no_colour = std::env::var_os("NO_COLOR").is_some_and(|value| !value.is_empty());
-    match preview(&map, PREVIEW_WIDTH, !no_colour) {
+    match signals.or_end(&complete, || preview(&map, PREVIEW_WIDTH, !no_colour)) {
         Ok(Some(text)) => say::coloured(text.trim_end_matches('\n')),
         Ok(None) => {}
         Err(error) => say::remark(format_args!("warning: no preview: {error}")),
@@ -290,9 +307,8 @@ pub fn already_there(path: &Path, plan: &Plan, fresh: bool) -> Result<Option<Str
 
 /// Whether tiles of this plan stand beside the map.
 fn has_tiles_of(path: &Path, plan: &Plan) -> bool {
-    let present = shards::present(path).unwrap_or_default();
-    let manifest = present.first().map(|(_, folder)| shards::manifest(folder));
-    manifest.is_some_and(|m| m.is_ok_and(|m| m.plan_hash == plan.hash()))
+    let asked = Manifest::of(plan, Shard::WHOLE, &provenance("run", path));
+    shards::hold(path, &asked)
 }
 
 /// What `--fresh` would change in a complete map of the same cells.
@@ -322,10 +338,9 @@ fn failure(
         false => "what is computed is kept, the same command goes on from there",
     };
     match error {
-        RunError::Interrupted => Failure::Interrupted {
-            message: format!("interrupted: {} is not complete; {kept}", path.display()),
-            code: signals.code.load(Ordering::Relaxed) as u8,
-        },
+        RunError::Interrupted => {
+            signals.interrupted(format_args!("{} is not complete; {kept}", path.display()))
+        }
         RunError::Sink(error @ (StoreError::Io { .. } | StoreError::Hdf5 { .. })) => {
             Failure::failed_with_help(error.to_string(), kept)
         }
@@ -334,47 +349,5 @@ fn failure(
         error @ (RunError::Threads { .. } | RunError::ThreadLost) => {
             Failure::failed(error.to_string())
         }
-    }
-}
-
-/// Whether this process was started with a signal ignored.
-fn is_ignored(signal: libc::c_int) -> bool {
-    let mut action = std::mem::MaybeUninit::<libc::sigaction>::uninit();
-    // SAFETY: with no new action sigaction only writes the present one, where it succeeds.
-    unsafe {
-        libc::sigaction(signal, std::ptr::null(), action.as_mut_ptr()) == 0
-            && action.assume_init().sa_sigaction == libc::SIG_IGN
-    }
-}
-
-/// SIGINT, SIGTERM and SIGHUP as flags: the first one stops the sweep in order, a second one at once.
-struct Signals {
-    stop: Arc<AtomicBool>,
-    code: Arc<AtomicUsize>,
-}
-
-impl Signals {
-    fn catch() -> Result<Self, Failure> {
-        use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM};
-        use signal_hook::flag;
-        let (stop, code) = (
-            Arc::new(AtomicBool::new(false)),
-            Arc::new(AtomicUsize::new(130)),
-        );
-        let refused = |error| {
-            let message = format!("cannot catch signals: {error}");
-            Failure::failed(message)
-        };
-        for (signal, exit_code) in [(SIGINT, 130), (SIGTERM, 143), (SIGHUP, 129)] {
-            // `nohup` has it ignored, and so it stays.
-            if signal == SIGHUP && is_ignored(signal) {
-                continue;
-            }
-            flag::register_conditional_shutdown(signal, exit_code, Arc::clone(&stop))
-                .and_then(|_| flag::register_usize(signal, Arc::clone(&code), exit_code as usize))
-                .and_then(|_| flag::register(signal, Arc::clone(&stop)))
-                .map_err(refused)?;
-        }
-        Ok(Self { stop, code })
     }
 }

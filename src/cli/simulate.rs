@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use serde::Serialize;
 use slipmap::report::numbers::grouped;
-use slipmap::report::picture;
+use slipmap::report::picture::{self, Picture};
 use slipmap::slip::motion::MOST_KEPT;
 use slipmap::slip::outcome::{Outcome, Summary};
 use slipmap::store::{Output, StoreError, trace_file};
@@ -16,6 +16,7 @@ use super::failure::Failure;
 use super::output::{output_path, provenance};
 use super::plot;
 use super::say;
+use super::signals::Signals;
 use super::sweep_file::read_case;
 
 /// Events printed for people, the last ones; the JSON output and the trace have them all.
@@ -92,11 +93,13 @@ impl MotionOut {
 }
 
 pub fn main(args: &Args) -> Result<(), Failure> {
+    let signals = Signals::catch()?;
     let spec = read_case(&args.case)?;
     let path = output_path(args.output.as_deref(), &args.case, "trace")?;
     check_picture(args, &path)?;
     check_replaced(&path, &spec, args.fresh)?;
-    let trace = Trace::of(&spec).map_err(failure)?;
+    let trace = signals.or_end("there is no trace", || Trace::of(&spec));
+    let trace = trace.map_err(failure)?;
     let output = Output::claim(&path)?;
     trace_file::write(&spec, &trace, output, &provenance("simulate", &args.case))?;
     if args.json {
@@ -106,7 +109,7 @@ pub fn main(args: &Args) -> Result<(), Failure> {
         let samples = grouped(trace.samples.len() as u64);
         say::result(format_args!("{}: {samples} samples", path.display()))?;
     }
-    let drawn = draw(args, &spec, &trace, &path)?;
+    let drawn = draw(args, (&spec, &trace), &path, &signals)?;
     match drawn.filter(|_| !args.json) {
         Some(picture) => say::result(picture.display()),
         None => Ok(()),
@@ -153,12 +156,17 @@ fn check_replaced(path: &Path, spec: &CaseSpec, fresh: bool) -> Result<(), Failu
 /// Draws the picture. One that is not asked for by name does not replace what is not slipmap's; what fails then is a warning.
 fn draw(
     args: &Args,
-    spec: &CaseSpec,
-    trace: &Trace,
+    (spec, trace): (&CaseSpec, &Trace),
     path: &Path,
+    signals: &Signals,
 ) -> Result<Option<PathBuf>, Failure> {
+    let draw = |picture: &Path| {
+        let complete = format!("{} is complete, its picture is not drawn", path.display());
+        let drawn = signals.or_end(complete, || picture::draw_trace(spec, trace, picture));
+        drawn.and_then(Picture::save)
+    };
     if let Some(asked) = &args.picture {
-        picture::draw_trace(spec, trace, asked).map_err(|e| Failure::failed(e.to_string()))?;
+        draw(asked).map_err(|e| Failure::failed(e.to_string()))?;
         return Ok(Some(asked.clone()));
     }
     let beside = plot::beside(path);
@@ -169,7 +177,7 @@ fn draw(
         ));
         return Ok(None);
     }
-    match picture::draw_trace(spec, trace, &beside) {
+    match draw(&beside) {
         Ok(()) => Ok(Some(beside)),
         Err(error) => {
             say::remark(format_args!("warning: no picture: {error}"));

@@ -123,7 +123,7 @@ impl Observer for Progress {
     fn event(&self, event: &Event) {
         match event {
             Event::Damaged { file, why } => self.line(&format!(
-                "warning: {}: {why}; what it held is computed again",
+                "warning: {}: {why}; what of it is lost is made again",
                 file.display()
             )),
             Event::Started {

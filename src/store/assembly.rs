@@ -93,6 +93,6 @@ pub fn assemble(
         }
         writer.put_missing(assembled.cells_missing)?;
     }
-    writer.finish()?;
+    writer.finish(stop)?;
     Ok(assembled)
 }

@@ -1,6 +1,7 @@
 //! Whether a map is as it was written, and what other methods say of it.
 
 use std::path::Path;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 use hdf5::Dataset;
 use sha2::{Digest, Sha256};
@@ -60,7 +61,7 @@ pub fn check(map: &MapFile, program: (&str, &str), effort: Effort) -> Result<Rep
         return Ok(report);
     };
     check_schema(map, &plan, &mut report);
-    check_checksums(map, &plan, &mut report);
+    check_checksums(map, &plan, &mut report, &AtomicBool::new(false));
     if map.is_partial() {
         let missing = map.cells_missing();
         report
@@ -76,12 +77,13 @@ pub fn check(map: &MapFile, program: (&str, &str), effort: Effort) -> Result<Rep
     Ok(report)
 }
 
-/// Whether a file is the sound map of `plan`, whose cells need not all be there; else what is wrong first.
-pub(super) fn as_written(path: &Path, plan: &Plan) -> Result<(), String> {
+/// Whether a file is the sound map of `plan`, whose cells need not all be there; else what is wrong first. Once `stop` is set, no
+/// more is read, and the answer means nothing.
+pub(super) fn as_written(path: &Path, plan: &Plan, stop: &AtomicBool) -> Result<(), String> {
     let map = MapFile::open(path).map_err(|error| error.to_string())?;
     let mut report = Report::default();
     check_schema(&map, plan, &mut report);
-    check_checksums(&map, plan, &mut report);
+    check_checksums(&map, plan, &mut report, stop);
     match report.faults.into_iter().next() {
         None => Ok(()),
         Some(fault) => Err(fault),
@@ -189,7 +191,7 @@ fn check_seal(map: &MapFile, report: &mut Report) {
     }
 }
 
-fn check_checksums(map: &MapFile, plan: &Plan, report: &mut Report) {
+fn check_checksums(map: &MapFile, plan: &Plan, report: &mut Report, stop: &AtomicBool) {
     check_seal(map, report);
     let mut without = 0;
     for name in names(map) {
@@ -206,7 +208,7 @@ fn check_checksums(map: &MapFile, plan: &Plan, report: &mut Report) {
             without += 1;
             continue;
         };
-        match hash_of_chunks(&dataset, plan) {
+        match hash_of_chunks(&dataset, plan, stop) {
             Ok(found) if found == expected => report.checksums += 1,
             Ok(_) => report.faults.push(format!(
                 "{name}: its checksum does not fit: bytes have changed"
@@ -243,10 +245,13 @@ fn check_checksums(map: &MapFile, plan: &Plan, report: &mut Report) {
     }
 }
 
-fn hash_of_chunks(dataset: &Dataset, plan: &Plan) -> hdf5::Result<String> {
+fn hash_of_chunks(dataset: &Dataset, plan: &Plan, stop: &AtomicBool) -> hdf5::Result<String> {
     let chunks = Chunks::of(dataset)?.ok_or("it is not stored in chunks")?;
     let mut hash = Sha256::new();
     for number in 0..plan.tiles.len() {
+        if stop.load(Ordering::Relaxed) {
+            return Err("stopped".into());
+        }
         // A chunk that is not there has not been computed.
         if let Some(chunk) = chunks.stored(&plan.tiles.tile(number).offset)? {
             hash.update(&chunk);

@@ -62,7 +62,7 @@ pub fn make(
     stop: &Arc<AtomicBool>,
 ) -> Result<Assembled, RunError<StoreError>> {
     let mut output = Output::claim(job.map).map_err(RunError::Sink)?;
-    let mut folder = claimed(plan, job, Shard::WHOLE, observer).map_err(RunError::Sink)?;
+    let mut folder = claimed(plan, job, Shard::WHOLE, (observer, stop))?;
     let mut repairs = 0;
     loop {
         compute(plan, job, Shard::WHOLE, &mut folder, (observer, stop))?;
@@ -79,11 +79,10 @@ pub fn make(
                 if repairs < MOST_REPAIRS =>
             {
                 repairs += 1;
-                tell(&folder.scan().map_err(RunError::Sink)?, observer);
+                tell(&folder.scan(stop).map_err(ended)?, observer);
                 output = Output::claim(job.map).map_err(RunError::Sink)?;
             }
-            Err(StoreError::Stopped) => return Err(RunError::Interrupted),
-            Err(error) => return Err(RunError::Sink(error)),
+            Err(error) => return Err(ended(error)),
         }
     }
 }
@@ -99,7 +98,7 @@ pub fn make_shard(
     observer: &dyn Observer,
     stop: &Arc<AtomicBool>,
 ) -> Result<(), RunError<StoreError>> {
-    let mut folder = claimed(plan, job, shard, observer).map_err(RunError::Sink)?;
+    let mut folder = claimed(plan, job, shard, (observer, stop))?;
     compute(plan, job, shard, &mut folder, (observer, stop))
 }
 
@@ -121,12 +120,12 @@ pub struct Merge<'a> {
 /// Puts a map together from the folders of its shards.
 ///
 /// # Errors
-/// When a piece is missing and has to be there, folders do not belong together, or the system refuses.
+/// When it is to stop, a piece is missing and has to be there, folders do not belong together, or the system refuses.
 pub fn merge(
     plan: &Plan,
     asked: &Merge,
     provenance: &Provenance,
-    observer: &dyn Observer,
+    (observer, stop): (&dyn Observer, &AtomicBool),
 ) -> Result<Assembled, StoreError> {
     let &Merge {
         folders,
@@ -136,7 +135,7 @@ pub fn merge(
     } = asked;
     let output = Output::claim(map)?;
     let expected = Manifest::of(plan, Shard::WHOLE, provenance);
-    let (mut source, damaged) = Shards::claim(folders, &expected, Pieces::of(plan))?;
+    let (mut source, damaged) = Shards::claim(folders, &expected, Pieces::of(plan), stop)?;
     tell(&damaged, observer);
     let lacking = source.missing(Pieces::of(plan).total());
     if lacking > 0 && missing == Missing::Leave && !asked.replace_complete && is_complete(map) {
@@ -145,8 +144,7 @@ pub fn merge(
             pieces: lacking,
         });
     }
-    let how = (missing, &AtomicBool::new(false));
-    let assembled = assemble(plan, output, provenance, &mut source, how)?;
+    let assembled = assemble(plan, output, provenance, &mut source, (missing, stop))?;
     if let Some(beside) = asked
         .remove_beside
         .filter(|_| assembled.pieces_missing == 0)
@@ -186,12 +184,13 @@ fn claimed(
     plan: &Plan,
     job: &Job,
     shard: Shard,
-    observer: &dyn Observer,
-) -> Result<TileFolder, StoreError> {
+    (observer, stop): (&dyn Observer, &AtomicBool),
+) -> Result<TileFolder, RunError<StoreError>> {
     let manifest = Manifest::of(plan, shard, job.provenance);
-    shards::make_root(job.map)?;
+    shards::make_root(job.map).map_err(ended)?;
     let path = shards::folder_of(job.map, shard);
-    let (mut folder, damaged) = TileFolder::claim(&path, &manifest, Pieces::of(plan))?;
+    let claimed = TileFolder::claim(&path, &manifest, Pieces::of(plan), stop);
+    let (mut folder, damaged) = claimed.map_err(ended)?;
     folder.save_every(job.save_every);
     tell(&damaged, observer);
     Ok(folder)
@@ -208,6 +207,14 @@ fn compute(
     let done: Vec<Piece> = folder.done().collect();
     done.into_iter().for_each(|piece| todo.mark_done(piece));
     engine::run(plan, todo, job.threads, folder, observer, stop)
+}
+
+/// The end of a run by an error, or by a stop while files were read or written.
+fn ended(error: StoreError) -> RunError<StoreError> {
+    match error {
+        StoreError::Stopped => RunError::Interrupted,
+        error => RunError::Sink(error),
+    }
 }
 
 fn tell(damaged: &[Damaged], observer: &dyn Observer) {

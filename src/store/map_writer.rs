@@ -1,6 +1,7 @@
 //! Writes a map from its pieces.
 
 use std::path::Path;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 use hdf5::plist::file_access::LibraryVersion;
 use hdf5::plist::file_create::{AttrCreationOrder, LinkCreationOrder};
@@ -143,8 +144,8 @@ impl<'p> MapWriter<'p> {
     /// Closes the file, reads it back to see that it holds what was written, makes it durable and gives it its final name.
     ///
     /// # Errors
-    /// When the system or the library refuses; nothing then stands under the final name that was not there before.
-    pub fn finish(mut self) -> Result<(), StoreError> {
+    /// When it is to stop, or the system or the library refuses; nothing then stands under the final name that was not there before.
+    pub fn finish(mut self, stop: &AtomicBool) -> Result<(), StoreError> {
         let path = self.output.path().to_owned();
         let mut close = || -> hdf5::Result<()> {
             for variable in &self.cells {
@@ -172,8 +173,11 @@ impl<'p> MapWriter<'p> {
             .close()
             .map_err(StoreError::hdf5("close", &path))?;
         seal::put(self.output.part()).map_err(StoreError::io("write", &path))?;
-        as_written(self.output.part(), self.plan)
-            .map_err(|why| StoreError::Unsound { path, why })?;
+        let sound = as_written(self.output.part(), self.plan, stop);
+        if stop.load(Ordering::Relaxed) {
+            return Err(StoreError::Stopped);
+        }
+        sound.map_err(|why| StoreError::Unsound { path, why })?;
         self.output.commit()
     }
 }

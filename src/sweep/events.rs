@@ -5,7 +5,7 @@ use std::path::PathBuf;
 /// A step of a running sweep.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Event {
-    /// A file of finished tiles is not as it was written. What it held is computed again, as far as it is not sound.
+    /// A file beside finished tiles, or of them, is not as it was written. What of it is lost is made again.
     Damaged {
         /// The file.
         file: PathBuf,

@@ -36,7 +36,7 @@ mod view;
 use std::fs;
 use std::io::Read;
 use std::ops::RangeInclusive;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use crate::report::visible::visible_line;
 use crate::store::schema::root;
@@ -91,13 +91,48 @@ impl Default for PictureOptions {
     }
 }
 
-/// Draws a map to the file `path`, PNG or SVG by its extension. The file appears when it is complete; one that is there is
-/// replaced. The same map and options give the same bytes. Where only one axis has more than one value the picture is a line,
-/// whatever the kind.
+/// A picture that is drawn, and not yet in its file.
+#[derive(Debug)]
+#[must_use]
+pub struct Picture {
+    bytes: Vec<u8>,
+    path: PathBuf,
+}
+
+impl Picture {
+    fn of(scene: &Scene, format: &Format, path: &Path) -> Result<Self, PictureError> {
+        let bytes = match format {
+            Format::Png => render::png(scene),
+            Format::Svg => render::svg(scene),
+        }?;
+        Ok(Self {
+            bytes,
+            path: path.to_owned(),
+        })
+    }
+
+    /// Writes the file. It appears when it is complete; one that is there is replaced.
+    ///
+    /// # Errors
+    /// When the file cannot be written.
+    pub fn save(self) -> Result<(), PictureError> {
+        let Self { bytes, path } = self;
+        let output = Output::claim(&path)?;
+        fs::write(output.part(), bytes).map_err(|source| StoreError::Io {
+            action: "write",
+            path,
+            source,
+        })?;
+        Ok(output.commit()?)
+    }
+}
+
+/// Draws a map for the file `path`, PNG or SVG by its extension, and changes no file. The same map and options give the same bytes.
+/// Where only one axis has more than one value the picture is a line, whatever the kind.
 ///
 /// # Errors
-/// When the options do not fit the map, there is nothing to draw, the map cannot be read or the file not be written.
-pub fn draw(map: &MapFile, path: &Path, options: &PictureOptions) -> Result<(), PictureError> {
+/// When the options do not fit the map, there is nothing to draw, or the map cannot be read.
+pub fn draw(map: &MapFile, path: &Path, options: &PictureOptions) -> Result<Picture, PictureError> {
     let format = Format::of(path)?;
     if same_file(map.path(), path) {
         return Err(PictureError::OverMap {
@@ -108,39 +143,25 @@ pub fn draw(map: &MapFile, path: &Path, options: &PictureOptions) -> Result<(), 
         Format::Png => MOST_CELLS,
         Format::Svg => MOST_SVG_CELLS,
     };
-    save(&compose(map, options, most)?, &format, path)
+    Picture::of(&compose(map, options, most)?, &format, path)
 }
 
-/// Draws a trace to the file `path`, as [`draw`] does a map: velocities, elongation and the quantity that is controlled over
+/// Draws a trace for the file `path`, as [`draw`] does a map: velocities, elongation and the quantity that is controlled over
 /// time, and the velocity over the elongation.
 ///
 /// # Errors
-/// When the name of the file is no picture's, or it cannot be written.
-pub fn draw_trace(spec: &CaseSpec, trace: &Trace, path: &Path) -> Result<(), PictureError> {
+/// When the name of the file is no picture's.
+pub fn draw_trace(spec: &CaseSpec, trace: &Trace, path: &Path) -> Result<Picture, PictureError> {
     let format = Format::of(path)?;
     let mut scene = Scene::new(PictureOptions::default().size);
     trace::draw(spec, trace, &mut scene);
-    save(&scene, &format, path)
+    Picture::of(&scene, &format, path)
 }
 
 /// True for a file name that a picture can have.
 #[must_use]
 pub fn is_name(path: &Path) -> bool {
     Format::of(path).is_ok()
-}
-
-fn save(scene: &Scene, format: &Format, path: &Path) -> Result<(), PictureError> {
-    let bytes = match format {
-        Format::Png => render::png(scene),
-        Format::Svg => render::svg(scene),
-    }?;
-    let output = Output::claim(path)?;
-    fs::write(output.part(), bytes).map_err(|source| StoreError::Io {
-        action: "write",
-        path: path.to_owned(),
-        source,
-    })?;
-    Ok(output.commit()?)
 }
 
 /// True if `path` is free, or holds a PNG picture of slipmap's: nobody's work is lost by drawing there unasked.
@@ -292,7 +313,6 @@ fn title(map: &MapFile, otherwise: &str) -> String {
 #[cfg(test)]
 mod tests {
     use std::collections::HashSet;
-    use std::path::PathBuf;
     use std::sync::Arc;
 
     use super::*;
@@ -333,7 +353,7 @@ mod tests {
         }
 
         fn draw(&self, name: &str, options: &PictureOptions) -> Result<Vec<u8>, PictureError> {
-            draw(&self.map, &self.path(name), options)?;
+            draw(&self.map, &self.path(name), options)?.save()?;
             Ok(fs::read(self.path(name)).unwrap())
         }
     }

@@ -3,6 +3,7 @@
 use std::fs::{self, File};
 use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
+use std::sync::atomic::AtomicBool;
 use std::time::{Duration, Instant};
 
 use super::super::durable::{rename_synced, write_synced};
@@ -11,8 +12,8 @@ use super::super::lock;
 use super::super::source::Source;
 use super::format;
 use super::manifest::{self, Manifest};
-use super::reader::{Damaged, TileReader};
-use super::record::{Record, RecordEncoder};
+use super::reader::{self, Damaged, TileReader};
+use super::record::{Digest, Record, RecordEncoder};
 use crate::sweep::engine::Sink;
 use crate::sweep::pieces::{Piece, Pieces};
 
@@ -48,11 +49,12 @@ impl TileFolder {
     /// pieces are no longer in the folder afterwards; sound ones are kept. A lock left by a run that died does not block.
     ///
     /// # Errors
-    /// When another run works there, the folder or its manifest belong to something else, or the system refuses.
+    /// When it is to stop, another run works there, the folder or its manifest belong to something else, or the system refuses.
     pub fn claim(
         path: &Path,
         manifest: &Manifest,
         pieces: Pieces,
+        stop: &AtomicBool,
     ) -> Result<(Self, Vec<Damaged>), StoreError> {
         make(path)?;
         refuse_foreign(path)?;
@@ -61,8 +63,8 @@ impl TileFolder {
         for part in listed(path, is_part)? {
             remove(&part)?;
         }
-        check_manifest(path, manifest)?;
-        let (reader, damaged) = TileReader::of(path, manifest.layout(), pieces)?;
+        let broken = check_manifest(path, manifest)?;
+        let (reader, mut damaged) = TileReader::of(path, manifest.layout(), pieces, stop)?;
         let mut folder = Self {
             reader,
             pieces,
@@ -74,6 +76,7 @@ impl TileFolder {
             _lock: lock,
         };
         folder.mend(&damaged)?;
+        damaged.extend(broken);
         Ok((folder, damaged))
     }
 
@@ -85,10 +88,10 @@ impl TileFolder {
     /// Looks at every byte in the folder again.
     ///
     /// # Errors
-    /// When the system refuses.
-    pub fn scan(&mut self) -> Result<Vec<Damaged>, StoreError> {
+    /// When it is to stop, or the system refuses.
+    pub fn scan(&mut self, stop: &AtomicBool) -> Result<Vec<Damaged>, StoreError> {
         let (path, layout) = (self.reader.path().to_owned(), *self.reader.layout());
-        let (reader, damaged) = TileReader::of(&path, layout, self.pieces)?;
+        let (reader, damaged) = TileReader::of(&path, layout, self.pieces, stop)?;
         self.reader = reader;
         self.mend(&damaged)?;
         Ok(damaged)
@@ -186,16 +189,55 @@ pub(super) fn is_bare(folder: &Path) -> bool {
     !folder.join(manifest::NAME).exists() && !is_claimed(folder)
 }
 
-/// Writes the manifest where there is none; else compares.
-fn check_manifest(folder: &Path, asked: &Manifest) -> Result<(), StoreError> {
+/// Writes the manifest where there is none; else compares. One that is damaged is written anew, and told, unless a tile file says
+/// that the folder belongs to something else.
+fn check_manifest(folder: &Path, asked: &Manifest) -> Result<Option<Damaged>, StoreError> {
     let path = folder.join(manifest::NAME);
     if !path.exists() {
-        let part = folder.join(format!(".{}{PART}", manifest::NAME));
-        let json = asked.to_json();
-        write_synced(&part, |out| std::io::Write::write_all(out, json.as_bytes()))?;
-        return rename_synced(&part, &path);
+        return write_manifest(folder, asked).map(|()| None);
     }
-    Manifest::read(&path)?.refuse_unlike(asked, folder)
+    match Manifest::read(&path) {
+        Ok(found) => found.refuse_unlike(asked, folder).map(|()| None),
+        Err(StoreError::Manifest { path, why }) => {
+            if belongs(folder, &asked.layout())? == Belongs::Elsewhere {
+                return Err(StoreError::Manifest { path, why });
+            }
+            write_manifest(folder, asked)?;
+            Ok(Some(Damaged { file: path, why }))
+        }
+        Err(error) => Err(error),
+    }
+}
+
+fn write_manifest(folder: &Path, manifest: &Manifest) -> Result<(), StoreError> {
+    let part = folder.join(format!(".{}{PART}", manifest::NAME));
+    let text = manifest.sealed();
+    write_synced(&part, |out| std::io::Write::write_all(out, text.as_bytes()))?;
+    rename_synced(&part, &folder.join(manifest::NAME))
+}
+
+/// What the tile files of a folder say of themselves.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Belongs {
+    /// No file says anything.
+    Nowhere,
+    /// Some belong to what is asked for, none to something else.
+    Here,
+    /// A file is sound and of something else.
+    Elsewhere,
+}
+
+/// What the tile files of a folder belong to, where its manifest cannot be asked.
+pub(super) fn belongs(folder: &Path, layout: &Digest) -> Result<Belongs, StoreError> {
+    let mut found = Belongs::Nowhere;
+    for file in listed(folder, is_tile_file)? {
+        match reader::is_of(&file, layout)? {
+            Some(true) => found = Belongs::Here,
+            Some(false) => return Ok(Belongs::Elsewhere),
+            None => {}
+        }
+    }
+    Ok(found)
 }
 
 /// Number of a tile file's name.

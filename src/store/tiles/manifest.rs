@@ -1,4 +1,6 @@
-//! What a folder of tiles belongs to, as JSON; and where that differs from what is asked for.
+//! What a folder of tiles belongs to, as JSON under a checksum; and where that differs from what is asked for.
+//!
+//! The file is the object of [`Manifest`] with a first field more, `sha256`: that of the text without it.
 
 use std::path::Path;
 
@@ -9,7 +11,7 @@ use super::super::error::StoreError;
 use super::super::map_writer::Provenance;
 use super::super::schema;
 use super::record::{Digest, digest};
-use crate::sweep::plan::Plan;
+use crate::sweep::plan::{Plan, in_hexadecimal};
 use crate::sweep::{Shard, SpecError, SweepSpec};
 
 /// Name of the file.
@@ -20,6 +22,17 @@ pub const TILES_FORMAT_VERSION: u32 = 1;
 
 /// More bytes than this are no manifest.
 const MOST_BYTES: u64 = 64 << 20;
+
+/// How the text begins without the checksum.
+const OPENING: &str = "{\n";
+/// What stands before the checksum in its place.
+const SEAL: &str = "{\n  \"sha256\": \"";
+/// And what behind it.
+const SEALED: &str = "\",\n";
+
+fn checksum(text: &str) -> String {
+    in_hexadecimal(&digest(text.as_bytes()))
+}
 
 /// What the tiles of a folder belong to.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
@@ -62,10 +75,10 @@ impl Manifest {
         }
     }
 
-    /// The same of the shard that `other` is of.
-    pub(super) fn of_shard_of(&self, other: &Self) -> Self {
+    /// The same of another shard.
+    pub(super) fn of_shard(&self, shard: &str) -> Self {
         Self {
-            shard: other.shard.clone(),
+            shard: shard.to_owned(),
             ..self.clone()
         }
     }
@@ -81,7 +94,32 @@ impl Manifest {
         }
     }
 
-    /// Reads a manifest.
+    /// Reads a manifest from the text of its file.
+    ///
+    /// # Errors
+    /// When the checksum is not there or does not fit, or the text is no manifest, in words.
+    pub fn unseal(text: &str) -> Result<Self, String> {
+        let sealed = text
+            .strip_prefix(SEAL)
+            .and_then(|rest| rest.split_once(SEALED));
+        let (sum, rest) = sealed.ok_or("it has no checksum")?;
+        let body = format!("{OPENING}{rest}");
+        if checksum(&body) != sum {
+            return Err("its checksum does not fit".to_owned());
+        }
+        Self::parse(&body)
+    }
+
+    /// The text of its file.
+    #[must_use]
+    pub fn sealed(&self) -> String {
+        // Numbers and strings only: nothing here can be refused.
+        let body = serde_json::to_string_pretty(self).unwrap_or_default() + "\n";
+        let rest = body.strip_prefix(OPENING).unwrap_or_default();
+        format!("{SEAL}{}{SEALED}{rest}", checksum(&body))
+    }
+
+    /// Reads the object without the checksum.
     ///
     /// # Errors
     /// When the text is no manifest, in words that say where.
@@ -102,12 +140,7 @@ impl Manifest {
             NotRead::Large(size) => damaged(format!("it has {size} bytes")),
         })?;
         let text = String::from_utf8(bytes).map_err(|error| damaged(error.to_string()))?;
-        Self::parse(&text).map_err(damaged)
-    }
-
-    pub(super) fn to_json(&self) -> String {
-        // Numbers and strings only: nothing here can be refused.
-        serde_json::to_string_pretty(self).unwrap_or_default() + "\n"
+        Self::unseal(&text).map_err(damaged)
     }
 
     /// A hash of all that has to be equal for tiles to belong together: everything but the shard and the sweep's wording.
@@ -174,5 +207,29 @@ impl Manifest {
             ),
             None => "the manifest was changed".to_owned(),
         })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_flipped_bit_and_cut_of_a_manifest_is_seen() {
+        let plan = Plan::new("[axes]\nmu_prime = [-0.3]\ntau = [1.0]".parse().unwrap()).unwrap();
+        let manifest = Manifest::of(&plan, Shard::WHOLE, &Provenance::default());
+        let text = manifest.sealed();
+        assert_eq!(Manifest::unseal(&text), Ok(manifest));
+        for bit in 0..text.len() * 8 {
+            let mut bytes = text.clone().into_bytes();
+            bytes[bit / 8] ^= 1 << (bit % 8);
+            // What is no text is refused before.
+            if let Ok(text) = String::from_utf8(bytes) {
+                assert!(Manifest::unseal(&text).is_err(), "bit {bit}");
+            }
+        }
+        for length in 0..text.len() {
+            assert!(Manifest::unseal(&text[..length]).is_err(), "{length}");
+        }
     }
 }

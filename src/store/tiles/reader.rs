@@ -3,6 +3,7 @@
 use std::fs::File;
 use std::io::{ErrorKind, Read, Seek, SeekFrom};
 use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicBool, Ordering};
 
 use super::super::durable::{NotRead, read_regular};
 use super::super::error::StoreError;
@@ -81,6 +82,19 @@ impl Checked {
     }
 }
 
+/// Whether a tile file belongs to what has `layout`; none where it does not say.
+pub(super) fn is_of(path: &Path, layout: &Digest) -> Result<Option<bool>, StoreError> {
+    match read_regular(path, MOST_BYTES) {
+        Ok(bytes) => Ok(match format::index(&bytes, layout) {
+            Ok(_) => Some(true),
+            Err(Damage::OtherLayout) => Some(false),
+            Err(_) => None,
+        }),
+        Err(NotRead::Refused(error)) => Err(StoreError::io("read", path)(error)),
+        Err(NotRead::Foreign | NotRead::Large(_)) => Ok(None),
+    }
+}
+
 /// What the tile files of a folder hold.
 #[derive(Debug)]
 pub struct TileReader {
@@ -97,11 +111,12 @@ impl TileReader {
     /// Reads every byte in the folder `path`, and says which files are damaged. The sound pieces of these are there too.
     ///
     /// # Errors
-    /// When the system refuses.
+    /// When it is to stop, or the system refuses.
     pub fn of(
         path: &Path,
         layout: Digest,
         pieces: Pieces,
+        stop: &AtomicBool,
     ) -> Result<(Self, Vec<Damaged>), StoreError> {
         let mut reader = Self {
             path: path.to_owned(),
@@ -113,6 +128,9 @@ impl TileReader {
         };
         let mut damaged = Vec::new();
         for file in listed(path, is_tile_file)? {
+            if stop.load(Ordering::Relaxed) {
+                return Err(StoreError::Stopped);
+            }
             if let Some(why) = reader.take_in(&file)? {
                 damaged.push(Damaged { file, why });
             }

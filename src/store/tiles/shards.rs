@@ -2,12 +2,14 @@
 
 use std::collections::BTreeSet;
 use std::fs;
+use std::io::ErrorKind::NotFound;
 use std::path::{Path, PathBuf};
+use std::sync::atomic::AtomicBool;
 
 use super::super::durable::{sync, write_synced};
 use super::super::error::StoreError;
 use super::super::source::Source;
-use super::folder::{self, TileFolder};
+use super::folder::{self, Belongs, TileFolder};
 use super::manifest::{self, Manifest};
 use super::reader::Damaged;
 use crate::sweep::pieces::{Piece, Pieces, Shard};
@@ -95,18 +97,62 @@ fn all(map: &Path) -> Result<Vec<(Shard, PathBuf)>, StoreError> {
     Ok(shards)
 }
 
-/// The manifest of a shard's folder, and the plan that it is of.
+/// The first sound manifest of the folders of shards, and the plan that it is of.
 ///
 /// # Errors
-/// When there is no manifest, or it is damaged.
-pub fn plan(folder: &Path) -> Result<(Manifest, Plan), StoreError> {
+/// When there is none, or the first is damaged and so are all others.
+pub fn plan(folders: &[PathBuf]) -> Result<(Manifest, Plan), StoreError> {
+    let mut first = None;
+    for folder in folders {
+        match planned(folder) {
+            Err(error @ StoreError::Manifest { .. }) => drop(first.get_or_insert(error)),
+            found => return found,
+        }
+    }
+    Err(first.unwrap_or_else(|| StoreError::io("read", Path::new(manifest::NAME))(NotFound.into())))
+}
+
+fn planned(folder: &Path) -> Result<(Manifest, Plan), StoreError> {
     let manifest = manifest(folder)?;
     match manifest.read_plan() {
         Ok(plan) => Ok((manifest, plan)),
         Err(error) => Err(StoreError::Manifest {
-            path: folder.to_owned(),
+            path: folder.join(manifest::NAME),
             why: error.message,
         }),
+    }
+}
+
+/// Whether tiles of what is asked for, of any shard, stand beside `map`.
+#[must_use]
+pub fn hold(map: &Path, asked: &Manifest) -> bool {
+    let holds = |folder: &Path| match manifest(folder) {
+        Ok(found) => found.plan_hash == asked.plan_hash,
+        Err(_) => folder::belongs(folder, &asked.layout()).is_ok_and(|b| b == Belongs::Here),
+    };
+    present(map)
+        .unwrap_or_default()
+        .iter()
+        .any(|(_, folder)| holds(folder))
+}
+
+/// The manifest that a folder has to have if it belongs to `expected`, and whether its own is sound. Where it is not, the folder's
+/// name says which shard it is of.
+///
+/// # Errors
+/// When the system refuses, or nothing says which shard it is.
+pub(super) fn expected_in(
+    folder: &Path,
+    expected: &Manifest,
+) -> Result<(Manifest, bool), StoreError> {
+    match manifest(folder) {
+        Ok(found) => Ok((expected.of_shard(&found.shard), true)),
+        Err(StoreError::Manifest { path, why }) => {
+            let name = folder.file_name().and_then(|name| shard_of(name.to_str()?));
+            let shard = name.ok_or(StoreError::Manifest { path, why })?;
+            Ok((expected.of_shard(&shard.to_string()), false))
+        }
+        Err(error) => Err(error),
     }
 }
 
@@ -206,12 +252,13 @@ impl Shards {
         paths: &[PathBuf],
         expected: &Manifest,
         pieces: Pieces,
+        stop: &AtomicBool,
     ) -> Result<(Self, Vec<Damaged>), StoreError> {
         let mut all = Vec::new();
         let mut folders = Vec::new();
         for path in paths {
-            let expected = expected.of_shard_of(&manifest(path)?);
-            let (folder, damaged) = TileFolder::claim(path, &expected, pieces)?;
+            let (expected, _) = expected_in(path, expected)?;
+            let (folder, damaged) = TileFolder::claim(path, &expected, pieces, stop)?;
             folders.push(folder);
             all.extend(damaged);
         }

@@ -6,7 +6,7 @@ use super::super::codec::decode_bytes;
 use super::super::error::StoreError;
 use super::super::map_summary::StatusCounts;
 use super::folder::{is_tile_file, listed};
-use super::manifest::Manifest;
+use super::manifest::{self, Manifest};
 use super::reader::Checked;
 use super::record::Content;
 use super::shards;
@@ -63,10 +63,11 @@ impl Survey {
     /// When a manifest is damaged or missing, shards belong to different sweeps, or the system refuses.
     pub fn of(map: &Path) -> Result<Option<Self>, StoreError> {
         let present = shards::present(map)?;
-        let Some((_, first)) = present.first() else {
+        if present.is_empty() {
             return Ok(None);
-        };
-        let (manifest, plan) = shards::plan(first)?;
+        }
+        let folders: Vec<PathBuf> = present.iter().map(|(_, path)| path.clone()).collect();
+        let (manifest, plan) = shards::plan(&folders)?;
         let pieces = Pieces::of(&plan);
         let mut survey = Self {
             plan,
@@ -93,8 +94,11 @@ impl Survey {
         expected: &Manifest,
         seen: &mut Seen,
     ) -> Result<(), StoreError> {
-        let manifest = shards::manifest(path)?;
-        manifest.refuse_unlike(&expected.of_shard_of(&manifest), path)?;
+        let (expected, sound) = shards::expected_in(path, expected)?;
+        let broken = path.join(manifest::NAME);
+        if sound {
+            Manifest::read(&broken)?.refuse_unlike(&expected, path)?;
+        }
         let total = seen.pieces.total();
         let places = (0..total).filter(|&place| shard.holds(place));
         let cells = places
@@ -107,11 +111,11 @@ impl Survey {
             cells_done: 0,
             pieces: shard.count(total),
             pieces_done: 0,
-            damaged: Vec::new(),
+            damaged: (!sound).then_some(broken).into_iter().collect(),
         };
         seen.here = vec![false; total as usize];
         for file in listed(path, is_tile_file)? {
-            self.add_file(&file, &manifest, &mut found, seen)?;
+            self.add_file(&file, &expected, &mut found, seen)?;
         }
         self.shards.push(found);
         Ok(())

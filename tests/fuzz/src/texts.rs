@@ -49,6 +49,7 @@ pub fn manifest(data: &[u8]) {
     }
     let written = serde_json::to_string_pretty(&found).unwrap();
     assert_eq!(Manifest::parse(&written).as_ref(), Ok(&found));
+    assert_eq!(Manifest::unseal(&found.sealed()).as_ref(), Ok(&found));
     assert_eq!(found.difference(&found), None);
     let plan = match planned(&found.sweep) {
         Ok(plan) => plan,
