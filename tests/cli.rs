@@ -774,15 +774,33 @@ fn odd_names_and_texts_are_answered() {
     assert_eq!(folder.files(), ["small.toml"]);
     expect(&folder.run(&["run", "small.toml"]), 0, "5 002 cells");
     let path = folder.path().join("small.h5");
-    map::edit(&path, |file| {
-        file.delete_attr("title").unwrap();
-        let text = "\u{1b}]0;owned\u{7}\u{1b}[2J\nsecond".parse::<hdf5::types::VarLenUnicode>();
-        let title = file
-            .new_attr::<hdf5::types::VarLenUnicode>()
-            .create("title");
-        title.unwrap().write_scalar(&text.unwrap()).unwrap();
-    });
+    let entitle = |text: &str| {
+        map::edit(&path, |file| {
+            file.delete_attr("title").unwrap();
+            let text = text.parse::<hdf5::types::VarLenUnicode>();
+            let title = file
+                .new_attr::<hdf5::types::VarLenUnicode>()
+                .create("title");
+            title.unwrap().write_scalar(&text.unwrap()).unwrap();
+        });
+    };
+    entitle(&"long ".repeat(6400));
+    let begun = std::time::Instant::now();
+    expect(&folder.run(&["plot", "small.h5"]), 0, "small.png");
+    let took = begun.elapsed();
+    assert!(took < std::time::Duration::from_secs(8), "{took:?}");
+    entitle("\u{1b}]0;owned\u{7}\u{1b}[2J\nsecond");
     let shown = folder.run(&["info", "small.h5"]);
     expect(&shown, 0, "\\u{1b}]0;owned");
     assert!(!out(&shown).contains(['\u{1b}', '\u{7}']));
+    // A long comment goes into the map and its manifest; one that is too long is refused.
+    let comment = "# \"quoted\"\n".repeat(300_000);
+    std::fs::write(folder.path().join("long.toml"), format!("{SMALL}{comment}")).unwrap();
+    expect(&folder.run(&["run", "long.toml"]), 0, "5 002 cells");
+    let sweep = folder.run(&["info", "long.h5", "--sweep"]);
+    assert!(out(&sweep).ends_with(&comment));
+    let huge = std::fs::File::create(folder.path().join("huge.toml")).unwrap();
+    huge.set_len((16 << 20) + 1).unwrap();
+    let refused = folder.run(&["run", "huge.toml"]);
+    expect(&refused, 2, "a sweep file has 16.8 MB at most");
 }

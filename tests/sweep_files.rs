@@ -417,6 +417,11 @@ const BAD: &[(&str, &str, &str)] = &[
         "one word",
     ),
     (
+        "[axes]\ntau = [1]\n[units]\nforce = \"abcdefghijklmnopqrstu\"\n",
+        "\"abcdefghijklmnopqrstu\"",
+        "1 to 20 letters",
+    ),
+    (
         "[axes]\ntau = [1]\n[tolerance]\nmarginal = 0.5\n",
         "0.5",
         "outside its range",

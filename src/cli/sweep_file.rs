@@ -3,13 +3,14 @@
 use std::path::Path;
 
 use slipmap::model::Table;
+use slipmap::report::numbers::bytes;
 use slipmap::sweep::friction_table::table_of_columns;
 use slipmap::sweep::{CaseSpec, Plan, SpecError, SweepSpec};
 
 use super::failure::Failure;
 
-/// A file larger than this is none of these.
-const MOST_BYTES: u64 = 64 << 20;
+/// A file larger than this is none of these. The text goes into maps and, with up to twice as many bytes, into manifests.
+const MOST_BYTES: u64 = 16 << 20;
 
 /// The plan of the sweep file at `path`.
 pub fn read_plan(path: &Path) -> Result<Plan, Failure> {
@@ -40,9 +41,10 @@ fn read<T>(
         return Err(refuse("it is no file".into()));
     }
     if metadata.len() > MOST_BYTES {
-        return Err(refuse(format!("it is too large for a {kind} file")));
+        let most = bytes(MOST_BYTES);
+        return Err(refuse(format!("a {kind} file has {most} at most")));
     }
-    let bytes = std::fs::read(path).map_err(|e| refuse(e.to_string()))?;
-    let text = String::from_utf8(bytes).map_err(|_| refuse("it is not UTF-8 text".into()))?;
+    let read = std::fs::read(path).map_err(|e| refuse(e.to_string()))?;
+    let text = String::from_utf8(read).map_err(|_| refuse("it is not UTF-8 text".into()))?;
     parse(&text).map_err(|error| Failure::in_file(error, &name, &text))
 }

@@ -6,6 +6,9 @@ use super::friction_table::GivenTable;
 use super::parameter::{GivenError, LawKind, Parameter, Setting, Units};
 use super::toml_reader::{Entry, SpecError};
 
+/// The most letters of a unit.
+const LONGEST_UNIT: usize = 20;
+
 /// Parameters in the order of the file, each at most once.
 #[derive(Debug, Default)]
 pub(super) struct GivenParameters {
@@ -192,8 +195,11 @@ pub(super) fn read_units(units: &Entry) -> Result<Units, SpecError> {
             _ => return Err(entry.unknown(&["force", "length", "time"])),
         };
         let name = entry.string()?;
-        if name.is_empty() || !name.chars().all(|c| c.is_alphabetic() || c == '%') {
-            return Err(entry.error("a unit is one word of letters, like \"N\" or \"mm\""));
+        let is_short = (1..=LONGEST_UNIT).contains(&name.chars().count());
+        if !is_short || !name.chars().all(|c| c.is_alphabetic() || c == '%') {
+            return Err(entry.error(format!(
+                "a unit is one word of 1 to {LONGEST_UNIT} letters, like \"N\" or \"mm\""
+            )));
         }
         *slot = Some(name.to_owned());
     }

@@ -8,6 +8,9 @@ use crate::sweep::{Field, Parameter};
 const SUBSCRIPT_SIZE: f64 = 0.72;
 const SUBSCRIPT_DROP: f64 = 0.18;
 
+/// More characters than this are not drawn: a map may come from anywhere, and a picture has no room for them.
+const MOST_CHARACTERS: usize = 500;
+
 /// A line of text in which a letter may be a subscript.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct Rich(Vec<(String, bool)>);
@@ -25,7 +28,9 @@ impl Rich {
 
     /// The text followed by `text`.
     pub fn and(mut self, text: &str) -> Self {
-        let text: String = text.chars().filter(|c| !c.is_control()).collect();
+        let there: usize = self.0.iter().map(|(run, _)| run.chars().count()).sum();
+        let shown = text.chars().filter(|c| !c.is_control());
+        let text: String = shown.take(MOST_CHARACTERS.saturating_sub(there)).collect();
         match self.0.last_mut() {
             Some((last, false)) => last.push_str(&text),
             _ => self.0.push((text, false)),
@@ -246,6 +251,19 @@ mod tests {
         }
         assert_eq!(tick_number(-0.0, 1, None), "0.0");
         assert_eq!(tick_number(-2e-7, 0, Some(-7)), "−2 × 10⁻⁷");
+    }
+
+    #[test]
+    fn no_text_is_longer_than_can_be_drawn() {
+        let long = Rich::plain(&"long ".repeat(10_000))
+            .and("x")
+            .and_formula("v_c");
+        let runs = long.placed(20.0);
+        let characters: usize = runs.iter().map(|(.., run)| run.chars().count()).sum();
+        assert!(
+            (MOST_CHARACTERS..MOST_CHARACTERS + 3).contains(&characters),
+            "{characters}"
+        );
     }
 
     #[test]
