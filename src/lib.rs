@@ -38,12 +38,18 @@
 //! # Ok::<(), slipmap::model::ModelError>(())
 //! ```
 
+#[cfg_attr(not(test), warn(clippy::disallowed_methods))]
 pub mod critical;
+#[cfg_attr(not(test), warn(clippy::disallowed_methods))]
 pub mod linear;
+#[cfg_attr(not(test), warn(clippy::disallowed_methods))]
 pub mod model;
 pub mod report;
 #[cfg(test)]
 mod revision;
+#[cfg_attr(not(test), warn(clippy::disallowed_methods))]
 pub mod slip;
+#[cfg_attr(not(test), warn(clippy::disallowed_methods))]
 pub mod store;
+#[cfg_attr(not(test), warn(clippy::disallowed_methods))]
 pub mod sweep;

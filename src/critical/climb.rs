@@ -1,6 +1,7 @@
 //! Raising v0 towards where a number vanishes that is seen in every period of stick-slip: the depth of a stop, the load, or a
 //! stick.
 
+use crate::model::elementary::power;
 use crate::slip::motion::{Accuracy, Motion};
 
 use super::cycle::{DIP, GAUGES, LOAD, Period, STICK, TURN};
@@ -351,7 +352,7 @@ pub(super) fn climb_finely<R: Road + Clone>(
         return climb_again(road, &at);
     }
     let roughly = road.clone();
-    road.refine(finer(FINER * (FAST / at.v0).powi(2).min(1.0)));
+    road.refine(finer(FINER * power(FAST / at.v0, 2).min(1.0)));
     if !ends_alike(road, &at) {
         let (again, finely) = climb_again(road, &at);
         if !matches!(again, Climbed::Unclear) {

@@ -11,6 +11,7 @@
 //! for 0 < γ < 1. v_c = 0 from γ = 1 on, where a slip is damped so strongly that it never ends.
 
 use crate::model::ModelError;
+use crate::model::elementary::{cos, exp, expm1, sin};
 
 /// The limit at one γ and one μ_K/μ_S.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -35,7 +36,7 @@ pub fn strong(gamma: f64) -> f64 {
     if gamma >= 1.0 {
         return 0.0;
     }
-    (-1.0 - std::f64::consts::PI * gamma / omega(gamma)).exp() / gamma
+    exp(-1.0 - std::f64::consts::PI * gamma / omega(gamma)) / gamma
 }
 
 /// Ω = √(1−γ²).
@@ -64,7 +65,7 @@ impl CoulombLimit {
         let omega = omega(gamma);
         let before = phase_before_turn(gamma, omega);
         let t = (std::f64::consts::TAU - before) / omega;
-        let rho = before.sin() * (gamma * t).exp() / omega;
+        let rho = sin(before) * exp(gamma * t) / omega;
         Ok(Self {
             vc_over_vtilde: 1.0 / (rho + stretch),
             omega0_t: t,
@@ -78,11 +79,11 @@ impl CoulombLimit {
 fn phase_before_turn(gamma: f64, omega: f64) -> f64 {
     let ratio = gamma / omega;
     let equation = |s: f64| {
-        let half = (0.5 * s).sin();
+        let half = sin(0.5 * s);
         let decay = -ratio * (std::f64::consts::TAU - s);
         (
-            ratio * s.sin() - 2.0 * half * half - decay.exp_m1(),
-            ratio * s.cos() - s.sin() - ratio * decay.exp(),
+            ratio * sin(s) - 2.0 * half * half - expm1(decay),
+            ratio * cos(s) - sin(s) - ratio * exp(decay),
         )
     };
     // Positive at 0, negative at π: Newton's method within a bracket.

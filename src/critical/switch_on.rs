@@ -3,6 +3,7 @@
 
 use super::Problem;
 use super::sticking::Sticking;
+use crate::model::elementary::pow;
 use crate::slip::cycle::{NoCycle, UncontrolledCycle, restart_after_release};
 use crate::slip::motion::{Accuracy, Motion};
 use crate::slip::outcome::{Limits, Outcome, follow};
@@ -223,7 +224,7 @@ pub fn windows(problem: &Problem, phase: Phase, scan: &Scan, accuracy: Accuracy)
     let points = scan.points.max(2);
     let v0 = |i: u32| {
         let share = f64::from(i) / f64::from(points - 1);
-        unit * scan.v_min * (scan.v_max / scan.v_min).powf(share)
+        unit * scan.v_min * pow(scan.v_max / scan.v_min, share)
     };
     let mut walk = Walk::from((v0(0), trials.at(v0(0))));
     for i in 1..points {

@@ -4,6 +4,7 @@ use super::Problem;
 use super::climb::{Place, climb, jumps};
 use super::ends::{Found, arrive, verify};
 use super::orbit::{At, Orbit};
+use crate::model::elementary::{exp, ln};
 
 /// An orbit at its end, from which the next cell of a line starts.
 #[derive(Debug, Clone)]
@@ -267,13 +268,13 @@ impl Track {
             return self.clear > 0.0 && self.ends.last().is_some_and(near);
         }
         // Not for NaN.
-        let since = (tau / self.seen_at).ln().abs();
+        let since = ln(tau / self.seen_at).abs();
         self.clear > CLEAR && CAUTION * self.change * since < self.clear
     }
 
     /// Learns how clearly stick-slip ends at `tau`.
     fn see(&mut self, tau: f64, clear: f64) {
-        self.change = ((clear - self.clear) / (tau / self.seen_at).ln()).abs();
+        self.change = ((clear - self.clear) / ln(tau / self.seen_at)).abs();
         (self.clear, self.seen_at, self.unseen) = (clear, tau, 0);
     }
 
@@ -312,9 +313,9 @@ impl Track {
         let n = self.ends.len();
         let mut logs = [(0.0, 0.0); KNOWN_ENDS];
         for (log, end) in logs.iter_mut().zip(&self.ends) {
-            *log = (end.0.ln(), end.1.ln());
+            *log = (ln(end.0), ln(end.1));
         }
-        let (x, mut p) = (tau.ln(), logs.map(|log| log.1));
+        let (x, mut p) = (ln(tau), logs.map(|log| log.1));
         for k in 1..n {
             for i in 0..n - k {
                 let (low, high) = (logs[i].0, logs[i + k].0);
@@ -323,6 +324,6 @@ impl Track {
         }
         // Not far from the last one, whatever the polynomial does.
         let last = logs[n - 1].1;
-        p[0].clamp(last - FARTHEST_LOG, last + FARTHEST_LOG).exp()
+        exp(p[0].clamp(last - FARTHEST_LOG, last + FARTHEST_LOG))
     }
 }

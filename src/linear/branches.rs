@@ -12,6 +12,7 @@ use num_complex::Complex64;
 use super::characteristic::root_bound;
 use super::newton::divide;
 use crate::model::Groups;
+use crate::model::elementary::{arg, exp, ln};
 
 /// Newton steps on the logarithmic equation before a start is handed over.
 const STEPS: u32 = 4;
@@ -62,7 +63,7 @@ pub fn starting_values(groups: Groups, tau: f64, line: f64, starts: &mut Vec<Com
     let pair = Pair::new(groups);
     let radius = root_bound(groups, tau, line);
     let branches = (radius * tau / PI).ceil() + 2.0;
-    let kappa = (-line * tau).exp();
+    let kappa = exp(-line * tau);
     let place = |j: usize| PI * j as f64 / tau;
     // A root right of the line lies where feedback is the larger part on the line, as far as one can tell from there.
     let inside = |j: usize| {
@@ -93,11 +94,11 @@ pub fn starting_values(groups: Groups, tau: f64, line: f64, starts: &mut Vec<Com
 fn follow_branch(pair: &Pair, tau: f64, omega: f64) -> Option<Complex64> {
     let on_axis = Complex64::new(0.0, omega);
     let (p, _, q) = pair.at(on_axis);
-    let mut lambda = Complex64::new(0.5 * (q.norm_sqr() / p.norm_sqr()).ln() / tau, omega);
+    let mut lambda = Complex64::new(0.5 * ln(q.norm_sqr() / p.norm_sqr()) / tau, omega);
     for _ in 0..STEPS {
         let (p, slope, q) = pair.at(lambda);
         let log = -divide(p, q);
-        let log = Complex64::new(0.5 * log.norm_sqr().ln(), log.im.atan2(log.re));
+        let log = Complex64::new(0.5 * ln(log.norm_sqr()), arg(log));
         let mut mismatch = lambda * tau + log;
         mismatch.im -= TAU * (mismatch.im / TAU).round();
         let derivative = tau + divide(slope, p) - divide(Complex64::from(pair.q1), q);
@@ -145,7 +146,7 @@ pub(super) fn slow_starts(groups: Groups, tau: f64) -> impl Iterator<Item = Comp
 fn real_starts(pair: &Pair, tau: f64, line: f64, radius: f64, starts: &mut Vec<Complex64>) {
     let value = |s: f64| {
         let (p, _, q) = pair.at(Complex64::from(s));
-        p.re + q.re * (-s * tau).exp()
+        p.re + q.re * exp(-s * tau)
     };
     let place = |i: u32| line + (radius + 1e-9 - line) * f64::from(i) / f64::from(REAL_PARTS);
     let mut before = value(place(0));

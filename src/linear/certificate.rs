@@ -37,6 +37,7 @@ use std::f64::consts::TAU;
 
 use super::rounded::{ROUNDINGS, Rounded};
 use crate::model::Groups;
+use crate::model::elementary::{atan2, expm1};
 
 /// The number of roots with Re λ > `line`, or none where a root is too near to the line to tell.
 ///
@@ -109,7 +110,7 @@ impl Line {
         let Groups { b, a_v, a_n } = groups;
         // Without feedback the delay does not matter.
         let tau = if groups.uncontrolled() { 0.0 } else { tau };
-        let decay = (-line * tau).exp_m1();
+        let decay = expm1(-line * tau);
         let kappa = decay + 1.0;
         if !kappa.is_finite() {
             return None;
@@ -295,7 +296,7 @@ impl Line {
         // Over the sizes of P and Q, so that their product neither overflows nor is below 1.
         let sine = -(slope.value * per_q) * (omega.value * per_p);
         let cosine = (y.value * per_p) * (q0.value * per_q) - (p_im * per_p) * (q_im * per_q);
-        let phase = sine.atan2(cosine);
+        let phase = atan2(sine, cosine);
         let sine_error = (slope.error * per_q) * (omega.value * per_p)
             + (slope.value.abs() * per_q) * (omega.error * per_p);
         let cosine_error = (y.error + p.error * omega.value + p.value.abs() * omega.error) * per_p

@@ -3,6 +3,7 @@
 use num_complex::Complex64;
 
 use crate::model::Groups;
+use crate::model::elementary::{exp, expm1, sincos};
 
 /// D and what Newton's method and the implicit-function theorem need of it, at one λ.
 ///
@@ -69,8 +70,8 @@ impl Jet {
 /// 1 − e^z with full relative accuracy near z = 0.
 #[inline]
 fn one_minus_exp(z: Complex64) -> Complex64 {
-    let (sin, cos) = (0.5 * z.im).sin_cos();
-    let growth = z.re.exp_m1();
+    let (sin, cos) = sincos(0.5 * z.im);
+    let growth = expm1(z.re);
     // 1 − cos z.im, and from it e^x cos y − 1 = expm1(x) cos y − (1 − cos y).
     let versine = 2.0 * sin * sin;
     Complex64::new(
@@ -100,7 +101,7 @@ pub fn unstable_root_bound(groups: Groups) -> f64 {
 #[must_use]
 pub fn root_bound(groups: Groups, tau: f64, line: f64) -> f64 {
     let Groups { b, a_v, a_n } = groups;
-    let largest = 1.0 + (-line * tau).exp();
+    let largest = 1.0 + exp(-line * tau);
     let linear = b.abs() + largest * a_v.abs();
     let constant = 1.0 + largest * (b * a_v + a_n).abs();
     0.5 * (linear + (linear * linear + 4.0 * constant).sqrt())

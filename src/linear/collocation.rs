@@ -7,20 +7,21 @@
 //! d/dt (x, ẋ, u(θ₁), …, u(θ_N)) = (ẋ, −p₀x − p₁ẋ − u(θ_N), Σ_m D_jm u(θ_m))
 //! ```
 //!
-//! a matrix of N + 2 rows instead of the 2N + 2 of the general method. The only file that uses faer.
+//! a matrix of N + 2 rows instead of the 2N + 2 of the general method. The only file that uses nalgebra: without its products of
+//! large matrices, which pick code by the processor, its bits are the same everywhere.
 
 use std::f64::consts::PI;
 
-use faer::diag::Diag;
-use faer::dyn_stack::{MemBuffer, MemStack};
-use faer::linalg::evd::{ComputeEigenvectors, evd_real, evd_scratch};
-use faer::{Mat, Par};
+use nalgebra::{DMatrix, Schur};
 use num_complex::Complex64;
 
 use crate::model::Groups;
+use crate::model::elementary::{cbrt, cos};
 
 /// Most nodes N: beyond this an eigenvalue problem takes a good part of a second.
 pub const MOST_NODES: usize = 384;
+/// Most steps of the QR iteration for each row; it takes two or three.
+const MOST_ITERATIONS: usize = 30;
 
 /// How many nodes resolve every root λ with |λ| ≤ `radius`.
 ///
@@ -32,7 +33,7 @@ pub const MOST_NODES: usize = 384;
 #[must_use]
 pub fn nodes_for(tau: f64, radius: f64) -> Option<usize> {
     let half_angle = 0.5 * tau * radius;
-    let nodes = 1.15 * half_angle + 3.0 * half_angle.cbrt() + 6.0;
+    let nodes = 1.15 * half_angle + 3.0 * cbrt(half_angle) + 6.0;
     (nodes <= MOST_NODES as f64).then_some(nodes as usize)
 }
 
@@ -43,29 +44,11 @@ pub fn nodes_for(tau: f64, radius: f64) -> Option<usize> {
 pub fn eigenvalues(groups: Groups, tau: f64, nodes: usize) -> Option<Vec<Complex64>> {
     let size = nodes + 2;
     let matrix = generator(groups, tau, nodes);
-    let mut re = Diag::<f64>::zeros(size);
-    let mut im = Diag::<f64>::zeros(size);
-    let scratch = evd_scratch::<f64>(
-        size,
-        ComputeEigenvectors::No,
-        ComputeEigenvectors::No,
-        Par::Seq,
-        Default::default(),
-    );
-    let mut memory = MemBuffer::new(scratch);
-    evd_real(
-        matrix.as_ref(),
-        re.as_mut(),
-        im.as_mut(),
-        None,
-        None,
-        Par::Seq,
-        MemStack::new(&mut memory),
-        Default::default(),
-    )
-    .ok()?;
-    let mut values: Vec<Complex64> = (0..size)
-        .map(|i| Complex64::new(re[i], im[i]))
+    let triangular = Schur::try_new(matrix, f64::EPSILON, MOST_ITERATIONS * size)?;
+    let mut values: Vec<Complex64> = triangular
+        .complex_eigenvalues()
+        .iter()
+        .copied()
         .filter(|z| z.im >= 0.0 && z.re.is_finite() && z.im.is_finite())
         .collect();
     values.sort_by(|p, q| q.re.total_cmp(&p.re).then(p.im.total_cmp(&q.im)));
@@ -73,10 +56,10 @@ pub fn eigenvalues(groups: Groups, tau: f64, nodes: usize) -> Option<Vec<Complex
 }
 
 /// The matrix of the module.
-fn generator(groups: Groups, tau: f64, nodes: usize) -> Mat<f64> {
+fn generator(groups: Groups, tau: f64, nodes: usize) -> DMatrix<f64> {
     let Groups { b, a_v, a_n } = groups;
     let (q0, q1) = (a_n + a_v * b, a_v);
-    let mut matrix = Mat::<f64>::zeros(nodes + 2, nodes + 2);
+    let mut matrix = DMatrix::<f64>::zeros(nodes + 2, nodes + 2);
     matrix[(0, 1)] = 1.0;
     matrix[(1, 0)] = q0 - 1.0;
     matrix[(1, 1)] = a_v - b;
@@ -97,7 +80,7 @@ fn generator(groups: Groups, tau: f64, nodes: usize) -> Mat<f64> {
 
 /// Entry of the differentiation matrix on the Chebyshev points cos(πj/N) (Trefethen, Spectral Methods in MATLAB, ch. 6).
 fn differentiation(nodes: usize, row: usize, column: usize) -> f64 {
-    let point = |j: usize| (PI * j as f64 / nodes as f64).cos();
+    let point = |j: usize| cos(PI * j as f64 / nodes as f64);
     let weight = |j: usize| {
         let end = if j == 0 || j == nodes { 2.0 } else { 1.0 };
         if j.is_multiple_of(2) { end } else { -end }

@@ -11,6 +11,7 @@ use std::ops::RangeInclusive;
 use super::crossing::{Crossing, Crossings, Direction, discriminant, frequency_product};
 use super::roots::bisect;
 use crate::model::Groups;
+use crate::model::elementary::{power, sin};
 
 /// Nodes at which each arc is looked at for corners and for its way through the window.
 const NODES: usize = 192;
@@ -227,7 +228,7 @@ impl<'a, F: Fn(f64) -> Crossings> Stretch<'a, F> {
         } else if s >= 1.0 {
             self.p1
         } else {
-            self.p0 + (self.p1 - self.p0) * (0.5 * PI * s).sin().powi(2)
+            self.p0 + (self.p1 - self.p0) * power(sin(0.5 * PI * s), 2)
         }
     }
 

@@ -4,6 +4,7 @@ use num_complex::Complex64;
 
 use super::characteristic::Jet;
 use crate::model::Groups;
+use crate::model::elementary::{norm, sqrt};
 
 /// Steps after which a start is given up.
 const MOST_STEPS: u32 = 40;
@@ -27,7 +28,7 @@ impl Root {
     /// Some other root lies so near that rounding hardly tells them apart.
     #[must_use]
     pub fn nearly_multiple(&self) -> bool {
-        self.error > 1e-10 * (1.0 + self.lambda.norm())
+        self.error > 1e-10 * (1.0 + norm(self.lambda))
     }
 }
 
@@ -48,7 +49,7 @@ fn step_of(jet: &Jet) -> Complex64 {
     if bent.norm_sqr() < 0.25 * square.norm_sqr() {
         return halley_step(divide(jet.value, jet.first), divide(jet.second, jet.first));
     }
-    let root = (square - bent).sqrt();
+    let root = sqrt(square - bent);
     let denominators = [jet.first + root, jet.first - root];
     let [plus, minus] = denominators.map(|d| d.norm_sqr());
     2.0 * jet.value / denominators[usize::from(minus > plus)]
@@ -73,7 +74,7 @@ pub fn polish(groups: Groups, tau: f64, start: Complex64) -> Option<Root> {
     if root.lambda.im != 0.0 && root.lambda.im.abs() <= 4.0 * root.error {
         let real = iterate(groups, tau, Complex64::new(root.lambda.re, 0.0));
         return Some(
-            real.filter(|r| (r.lambda - root.lambda).norm() <= 16.0 * root.error)
+            real.filter(|r| norm(r.lambda - root.lambda) <= 16.0 * root.error)
                 .unwrap_or(root),
         );
     }
@@ -87,10 +88,10 @@ fn iterate(groups: Groups, tau: f64, start: Complex64) -> Option<Root> {
         let jet = Jet::at(groups, tau, lambda);
         let rounding = jet.rounding(groups, tau, lambda);
         let step = step_of(&jet);
-        let size = step.norm();
-        let settled = jet.value.norm() <= rounding || size <= f64::EPSILON * lambda.norm();
+        let size = norm(step);
+        let settled = norm(jet.value) <= rounding || size <= f64::EPSILON * norm(lambda);
         // At rounding level steps no longer shrink; the last good one is taken.
-        if settled && (size >= 0.25 * last_step || size <= f64::EPSILON * lambda.norm()) {
+        if settled && (size >= 0.25 * last_step || size <= f64::EPSILON * norm(lambda)) {
             return Some(finished(lambda, &jet, rounding));
         }
         if !size.is_finite() {
@@ -104,11 +105,11 @@ fn iterate(groups: Groups, tau: f64, start: Complex64) -> Option<Root> {
 
 /// `lambda` with its error: |D| ≤ `rounding` leaves room for |D′|δ + |D″|δ²/2 of that size.
 fn finished(lambda: Complex64, jet: &Jet, rounding: f64) -> Root {
-    let simple = rounding / jet.first.norm();
-    let double = (2.0 * rounding / jet.second.norm()).sqrt();
+    let simple = rounding / norm(jet.first);
+    let double = (2.0 * rounding / norm(jet.second)).sqrt();
     Root {
         lambda: Complex64::new(lambda.re, lambda.im.abs()),
-        error: simple.min(double) + f64::EPSILON * lambda.norm(),
+        error: simple.min(double) + f64::EPSILON * norm(lambda),
     }
 }
 

@@ -13,6 +13,7 @@ use super::characteristic::{Jet, root_bound, unstable_root_bound};
 use super::collocation::{MOST_NODES, eigenvalues, nodes_for};
 use super::newton::{Root, divide, polish};
 use crate::model::Groups;
+use crate::model::elementary::{norm, sqrt};
 
 /// Collocation with more nodes each time, at most so often.
 const COLLOCATIONS: u32 = 3;
@@ -134,8 +135,8 @@ impl RootFinder {
     ) -> Option<Root> {
         let root = polish(groups, tau, start)?;
         let known = self.roots.iter().any(|r| {
-            let apart = 8.0 * (r.error + root.error) + 1e-12 * (1.0 + root.lambda.norm());
-            (r.lambda - root.lambda).norm() <= apart
+            let apart = 8.0 * (r.error + root.error) + 1e-12 * (1.0 + norm(root.lambda));
+            norm(r.lambda - root.lambda) <= apart
         });
         if known || root.lambda.re <= line {
             return None;
@@ -174,7 +175,7 @@ impl RootFinder {
         if number(&self.roots) + together != count + number(&cluster) {
             return false;
         }
-        let extent = (first.lambda - last.lambda).norm();
+        let extent = norm(first.lambda - last.lambda);
         let place = self
             .roots
             .iter()
@@ -235,7 +236,7 @@ fn neighbours(groups: Groups, tau: f64, lambda: Complex64) -> impl Iterator<Item
     let third = tau * tau * jet.delayed * (3.0 * groups.a_v - tau * jet.feedback);
     // D′ + D″ s/2 + D‴ s²/6 = 0.
     let (half, sixth) = (0.5 * jet.second, third / 6.0);
-    let root = (half * half - 4.0 * sixth * jet.first).sqrt();
+    let root = sqrt(half * half - 4.0 * sixth * jet.first);
     [half + root, half - root]
         .into_iter()
         .map(move |d| lambda - 2.0 * divide(jet.first, d))

@@ -1,6 +1,7 @@
 //! Kinetic friction laws μ_K(v), each with value and slope.
 
 use super::{ModelError, Table};
+use crate::model::elementary::exp;
 
 /// A law of kinetic friction together with the static coefficient μ_S that goes with it.
 ///
@@ -154,7 +155,7 @@ impl FrictionLaw {
 const FLANK: f64 = 6.0;
 
 fn gaussian(s: f64) -> f64 {
-    (-s * s).exp()
+    exp(-s * s)
 }
 
 fn checked_coefficients(mu0: f64, mu_s: f64) -> Result<(f64, f64), ModelError> {

@@ -12,6 +12,7 @@
 //!
 //! Source: F.-J. Elmer, *Controlling friction* (1997), "the letter" throughout this crate.
 
+pub mod elementary;
 mod error;
 pub mod friction;
 mod groups;

@@ -12,6 +12,7 @@
 //!
 //! Source: C. W. Clenshaw and H. J. Norton, Comput. J. 6 (1963) 88.
 
+use crate::model::elementary::{cos, power};
 use std::f64::consts::PI;
 use std::sync::LazyLock;
 
@@ -43,11 +44,11 @@ impl Rule {
     fn new() -> Self {
         let m = NODES as f64;
         let angle = |i: usize| PI * (i as f64 + 0.5) / m;
-        let nodes = std::array::from_fn(|i| 0.5 * (1.0 + angle(i).cos()));
+        let nodes = std::array::from_fn(|i| 0.5 * (1.0 + cos(angle(i))));
         // Coefficient k of Chebyshev's polynomials, from the value at node i.
         let chebyshev = |k: usize, i: usize| {
             let whole = if k == 0 { 1.0 } else { 2.0 };
-            whole / m * (k as f64 * angle(i)).cos()
+            whole / m * cos(k as f64 * angle(i))
         };
         let shifted = shifted_chebyshev();
         let powers: Matrix = std::array::from_fn(|p| {
@@ -56,7 +57,7 @@ impl Rule {
         let integrals = std::array::from_fn(|to| {
             let node: f64 = nodes[to];
             std::array::from_fn(|i| {
-                let term = |p: usize| powers[p][i] * PER_NEXT[p] * node.powi(p as i32 + 1);
+                let term = |p: usize| powers[p][i] * PER_NEXT[p] * power(node, p as i32 + 1);
                 (0..NODES).map(term).sum()
             })
         });

@@ -3,6 +3,7 @@
 use super::series::{Coefficients, MOST_ORDER, PER_NEXT, product, spread};
 use super::table_series::TableSeries;
 use crate::model::FrictionLaw;
+use crate::model::elementary::{exp, ln, power};
 use crate::model::friction::Kind;
 
 /// Coefficients of the friction μ_K(|ẋ|) n along a motion, grown one by one as those of speed and load become known.
@@ -135,7 +136,7 @@ impl Series for Stribeck {
         self.scaled[k] = speed * self.per_v_s;
         let square = product(&self.scaled, &self.scaled, k);
         self.coefficients[k] = if k == 0 {
-            self.gaussian[0] = (-square).exp();
+            self.gaussian[0] = exp(-square);
             self.mu0 + self.fall * self.gaussian[0]
         } else {
             self.slope[k - 1] = k as f64 * square;
@@ -165,10 +166,10 @@ impl Stribeck {
         if centre * centre <= order || self.fall == 0.0 || !length.is_finite() {
             return length;
         }
-        let allowed = (error / self.fall).ln();
+        let allowed = ln(error / self.fall);
         let rest = |length: f64, disc: &f64| {
             let off = spread(speed, disc * length) * self.per_v_s;
-            largest_exponent(centre, off) - order * disc.ln() - (1.0 - 1.0 / disc).ln()
+            largest_exponent(centre, off) - order * ln(*disc) - ln(1.0 - 1.0 / disc)
         };
         let mut length = length;
         for _ in 0..MOST_TIMES {
@@ -184,7 +185,7 @@ impl Stribeck {
 /// The largest real part of −z² over a disc of radius `off` about `centre` ≥ 0.
 fn largest_exponent(centre: f64, off: f64) -> f64 {
     if 2.0 * off < centre {
-        -(centre - off).powi(2)
+        -power(centre - off, 2)
     } else {
         off * off - 0.5 * centre * centre
     }

@@ -22,6 +22,7 @@ use super::series::{Coefficients, MOST_ORDER, first_zero, spread, value};
 use super::step::{Control, Step};
 use super::table_series::Crossing;
 use crate::model::FrictionLaw;
+use crate::model::elementary::{ln, pow};
 
 /// What the block does.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -139,7 +140,7 @@ fn order(integrator: Integrator, tolerance: f64) -> usize {
     if integrator == Integrator::Collocation {
         return NODES;
     }
-    ((2.0 - 0.5 * tolerance.ln()).ceil() as usize).clamp(LEAST_ORDER, MOST_ORDER)
+    ((2.0 - 0.5 * ln(tolerance)).ceil() as usize).clamp(LEAST_ORDER, MOST_ORDER)
 }
 
 /// A moving block.
@@ -599,8 +600,8 @@ impl Motion {
             return self.order;
         }
         // The terms of a series of radius R fall as (s/R)^k, and last.radius was where that is the tolerance.
-        let digits = self.tolerance.ln();
-        let fall = (limit / last.radius).ln() + digits / last.order as f64;
+        let digits = ln(self.tolerance);
+        let fall = ln(limit / last.radius) + digits / last.order as f64;
         ((digits / fall).ceil() as usize + SPARE_TERMS).clamp(LEAST_ORDER, self.order)
     }
 
@@ -620,7 +621,7 @@ impl Motion {
         });
         let shorter = if asked[0].0 < asked[1].0 { 0 } else { 1 };
         let (_, room, k) = asked[shorter];
-        let length = room.powf(1.0 / k as f64);
+        let length = pow(room, 1.0 / k as f64);
         if self.mode == Mode::Stick {
             return length;
         }

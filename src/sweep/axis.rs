@@ -2,6 +2,7 @@
 
 use super::parameter::Parameter;
 use crate::model::Shown;
+use crate::model::elementary::pow;
 
 /// More points than this on one axis are refused.
 pub const MOST_POINTS: u64 = 10_000_000;
@@ -78,7 +79,7 @@ pub fn spaced(from: f64, to: f64, points: u64, spacing: Spacing) -> Result<Vec<f
             _ if i == 0 => from,
             _ if i == last => to,
             Spacing::Linear => from + (to - from) * part,
-            Spacing::Log => from * (to / from).powf(part),
+            Spacing::Log => from * pow(to / from, part),
         }
     };
     let values: Vec<f64> = (0..points).map(value).collect();

@@ -8,6 +8,7 @@ use crate::critical::{
 };
 use crate::linear::{Crossings, MarginalTolerance};
 use crate::model::ModelError;
+use crate::model::elementary::pow;
 use crate::slip::case::CaseUnits;
 use crate::slip::motion::{Accuracy, Integrator};
 
@@ -398,7 +399,7 @@ pub fn v_smooth((problem, units): (&Problem, &CaseUnits), vc: f64, v_max: f64) -
     if lowest.is_nan() || !stable(above) {
         return f64::NAN;
     }
-    let ratio = 10_f64.powf(-1.0 / COUNTS_PER_DECADE);
+    let ratio = pow(10.0, -1.0 / COUNTS_PER_DECADE);
     while above > lowest && above > SMALLEST_COUNTED * unit {
         let below = (above * ratio).max(lowest);
         if !stable(below) {

@@ -259,7 +259,7 @@ fn store_nothing(buffers: &mut TileBuffers, place: usize) {
 
 /// Whether a cell belongs to the sample of `share` of all cells: by its number alone.
 fn is_sampled(number: u64, share: f64) -> bool {
-    (mixed(number) >> 11) as f64 * 2_f64.powi(-53) < share
+    (mixed(number) >> 11) as f64 * (0.5 * f64::EPSILON) < share
 }
 
 #[cfg(test)]

@@ -91,6 +91,13 @@ fn columns<T: Clone>(
     stored.map(column).collect()
 }
 
+/// Leaves one zero and one NaN: of 0/0, of the larger of both zeros and the like processors choose the sign themselves.
+fn one_zero_and_one_nan(cells: &mut [f64]) {
+    for cell in cells {
+        *cell = if cell.is_nan() { f64::NAN } else { *cell + 0.0 };
+    }
+}
+
 /// The column of delay margins.
 fn delay_margins(columns: &mut [Column]) -> Option<&mut Vec<f64>> {
     let column = columns.iter_mut().find(|c| c.field == Field::DelayMargin);
@@ -239,6 +246,14 @@ impl<'p> Worker<'p> {
 
     /// As [`Worker::compute`], but no further motion is followed once `stop` is set. False if the tile is not complete.
     pub fn compute_until(&mut self, tile: &Tile, stop: &AtomicBool) -> bool {
+        let complete = self.fill_until(tile, stop);
+        for column in &mut self.buffers.columns {
+            one_zero_and_one_nan(&mut column.cells);
+        }
+        complete
+    }
+
+    fn fill_until(&mut self, tile: &Tile, stop: &AtomicBool) -> bool {
         if self.plan.spec.protocol == Some(Protocol::Limit) {
             self.buffers.clear();
             limit_columns::fill(self.plan, tile, &self.strides, &mut self.buffers);
@@ -428,5 +443,18 @@ fn map_strides(shape: &[usize]) -> Vec<u64> {
 fn scatter<T: Copy>(row: &[T], out: &mut [T], stride: usize) {
     for (value, place) in row.iter().zip(out.iter_mut().step_by(stride)) {
         *place = *value;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn zeros_and_nans_have_no_sign() {
+        let mut cells = [-0.0, 0.0, -f64::NAN, f64::NAN, -1.5, f64::NEG_INFINITY];
+        one_zero_and_one_nan(&mut cells);
+        let expected = [0.0, 0.0, f64::NAN, f64::NAN, -1.5, f64::NEG_INFINITY];
+        assert_eq!(cells.map(f64::to_bits), expected.map(f64::to_bits));
     }
 }

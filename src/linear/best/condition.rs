@@ -17,6 +17,7 @@ use super::search::{Place, Search, SearchedGain};
 use crate::linear::characteristic::Jet;
 use crate::linear::newton::polish;
 use crate::linear::sensitivity::Sensitivity;
+use crate::model::elementary::{norm, pow};
 
 /// Steps of Newton's method towards a zero of D′ or D″.
 const MOST_STEPS: u32 = 30;
@@ -48,7 +49,7 @@ impl Followed {
             Self::DoublePair(start) => {
                 let found = newton(start, |l| (at(l)[1], at(l)[2]))?;
                 // On the real axis it is no pair.
-                (found.im.abs() > OFF_AXIS * found.norm()).then_some(Self::DoublePair(found))
+                (found.im.abs() > OFF_AXIS * norm(found)).then_some(Self::DoublePair(found))
             }
             Self::DoubleReal(start) => {
                 newton(start.into(), |l| (at(l)[1], at(l)[2])).map(|l| Self::DoubleReal(l.re))
@@ -82,10 +83,10 @@ impl Followed {
         let groups = search.groups(place.gain);
         let jet = Jet::at(groups, place.tau, lambda);
         let m = self.multiplicity();
-        let derivative = derivatives(search, place, lambda)[m as usize].norm();
+        let derivative = norm(derivatives(search, place, lambda)[m as usize]);
         let factorial = f64::from((1..=m).product::<u32>());
         let rounding = jet.rounding(groups, place.tau, lambda);
-        (factorial * rounding / derivative).powf(1.0 / f64::from(m))
+        pow(factorial * rounding / derivative, 1.0 / f64::from(m))
     }
 }
 
@@ -277,13 +278,13 @@ fn newton(start: Complex64, at: impl Fn(Complex64) -> (Complex64, Complex64)) ->
             return None;
         }
         lambda -= step;
-        if step.norm() <= 4.0 * f64::EPSILON * lambda.norm() {
+        if norm(step) <= 4.0 * f64::EPSILON * norm(lambda) {
             return Some(lambda);
         }
     }
     // Rounding keeps the last steps from vanishing.
     let (value, slope) = at(lambda);
-    ((value / slope).norm() <= 1e-12 * lambda.norm()).then_some(lambda)
+    (norm(value / slope) <= 1e-12 * norm(lambda)).then_some(lambda)
 }
 
 #[cfg(test)]

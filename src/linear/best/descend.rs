@@ -1,6 +1,7 @@
 //! A local minimum of a function with kinks: direct search along ever new directions.
 
 use super::search::{Evaluator, Place, Search};
+use crate::model::elementary::{hypot, sincos};
 
 /// Directions tried at a time, evenly over the circle and turned by the golden angle from one try to the next: the
 /// directions tried become dense, so no valley between two kinks is too narrow in the end.
@@ -24,7 +25,7 @@ pub(super) struct Frame {
 impl Frame {
     /// The place at `radius` from `centre`, at `angle` in the frame.
     pub fn around(&self, centre: Place, radius: f64, angle: f64) -> Place {
-        let (sin, cos) = angle.sin_cos();
+        let (sin, cos) = sincos(angle);
         let gain = self.gain * radius * cos;
         Place {
             gain: centre.gain + gain,
@@ -36,7 +37,7 @@ impl Frame {
     pub fn apart(&self, centre: Place, place: Place) -> f64 {
         let gain = place.gain - centre.gain;
         let tau = place.tau - centre.tau - self.slope * gain;
-        (gain / self.gain).hypot(tau / self.tau)
+        hypot(gain / self.gain, tau / self.tau)
     }
 }
 

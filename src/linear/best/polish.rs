@@ -6,6 +6,7 @@ use super::search::{Evaluator, Place, Search};
 use super::{Kind, Optimum};
 use crate::linear::certificate::roots_right_of;
 use crate::linear::newton::Root;
+use crate::model::elementary::{hypot, power};
 
 /// Steps of Newton's method.
 const MOST_STEPS: u32 = 30;
@@ -73,7 +74,7 @@ fn decided(
     let groups = search.groups(place.gain);
     let least = blur + 1e-13 * (1.0 + abscissa.abs());
     (1..=DISTANCES)
-        .map(|i| least * 4.0_f64.powi(i))
+        .map(|i| least * power(4.0, i))
         .find(|d| roots_right_of(groups, place.tau, abscissa + side * d) == Some(expected))
 }
 
@@ -164,7 +165,7 @@ fn solve(
     for _ in 0..MOST_STEPS {
         let step = newton_step(&state, search, place, frame, edge)?;
         // In units of the frame.
-        let size = (step[0] / frame.gain).hypot(step[1] / frame.tau);
+        let size = hypot(step[0] / frame.gain, step[1] / frame.tau);
         let shortened = (0.5 / size).min(1.0);
         let next = Place {
             gain: place.gain - shortened * step[0],
@@ -173,8 +174,10 @@ fn solve(
         if !size.is_finite() || search.clamp(next) != next {
             return None;
         }
-        let away =
-            ((next.gain - start.gain) / frame.gain).hypot((next.tau - start.tau) / frame.tau);
+        let away = hypot(
+            (next.gain - start.gain) / frame.gain,
+            (next.tau - start.tau) / frame.tau,
+        );
         if away > FARTHEST {
             return None;
         }

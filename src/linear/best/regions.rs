@@ -6,6 +6,7 @@
 
 use super::search::{Place, Search};
 use crate::linear::Crossings;
+use crate::model::elementary::power;
 
 /// Gains sampled evenly over the box.
 const EVEN_LINES: usize = 192;
@@ -94,7 +95,7 @@ fn sampled_gains(search: &Search) -> Vec<f64> {
         .collect();
     for breakpoint in search.breakpoints() {
         for step in 1..=LINES_AT_BREAKPOINT {
-            let by = width * CLOSER.powi(step);
+            let by = width * power(CLOSER, step);
             gains.extend([breakpoint - by, breakpoint + by]);
         }
     }

@@ -2,6 +2,7 @@
 
 use super::plane::{DecayPlane, Family, norm, solve};
 use crate::linear::curves::Vertex;
+use crate::model::elementary::hypot;
 
 const MOST_ITERATIONS: u32 = 40;
 /// Frequency, over that of the oscillator, at which the curve of a pair starts that leaves a double real root.
@@ -150,6 +151,6 @@ impl DecayPlane<'_> {
 
     fn near(&self, v: Vertex, w: Vertex) -> bool {
         let scales = self.scales(v);
-        ((v.p - w.p) / scales[0]).hypot((v.tau - w.tau) / scales[1]) < 1e-2
+        hypot((v.p - w.p) / scales[0], (v.tau - w.tau) / scales[1]) < 1e-2
     }
 }

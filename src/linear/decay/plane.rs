@@ -6,6 +6,7 @@ use crate::linear::certificate::roots_right_of;
 use crate::linear::characteristic::Jet;
 use crate::linear::curves::{Vertex, Window};
 use crate::model::Groups;
+use crate::model::elementary::{self, exp, power};
 
 /// Iterations after which Newton's method is given up.
 const MOST_ITERATIONS: u32 = 24;
@@ -54,7 +55,7 @@ pub(super) struct Local {
 
 impl Local {
     pub fn vanishes(&self) -> bool {
-        self.value.norm() <= ROUNDINGS * self.rounding
+        elementary::norm(self.value) <= ROUNDINGS * self.rounding
     }
 
     /// The rows of Re D and Im D over (p, τ, ω).
@@ -194,11 +195,11 @@ impl DecayPlane<'_> {
     pub fn band(&self, p: f64, tau: f64) -> Option<(f64, f64)> {
         let (Groups { b, a_v, a_n }, unit) = self.groups(p);
         let line = -self.sigma * unit;
-        let kappa = (self.sigma * tau).exp();
+        let kappa = exp(self.sigma * tau);
         let q0 = a_n + a_v * (b + line);
         let c = line * line + b * line + 1.0 - q0;
         let damping = 2.0 * line + b - a_v;
-        let half = 0.5 * (damping * damping - (kappa * a_v).powi(2)) - c;
+        let half = 0.5 * (damping * damping - power(kappa * a_v, 2)) - c;
         let product = (c - kappa * q0) * (c + kappa * q0);
         let root = (half * half - product).sqrt();
         let upper = if half <= 0.0 {
@@ -217,7 +218,7 @@ impl DecayPlane<'_> {
     pub fn candidates(&self, p: f64, tau: f64) -> Vec<f64> {
         let band = self.band(p, tau).map(|(lower, upper)| [lower, upper]);
         let mut all: Vec<f64> = band.into_iter().flatten().chain([0.0]).collect();
-        let residual = |omega: &f64| self.jet(p, tau, *omega).0.value.norm();
+        let residual = |omega: &f64| elementary::norm(self.jet(p, tau, *omega).0.value);
         all.sort_by(|a, b| residual(a).total_cmp(&residual(b)));
         all.dedup();
         all

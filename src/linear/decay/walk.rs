@@ -3,6 +3,7 @@
 use super::corner::Turn;
 use super::plane::{DecayPlane, Family, dot, norm};
 use crate::linear::curves::{FLATNESS, Vertex};
+use crate::model::elementary::{acos, hypot};
 
 /// Longest step, in units of [`DecayPlane::scales`].
 const LONGEST: f64 = 1.0 / 64.0;
@@ -122,9 +123,11 @@ impl DecayPlane<'_> {
     fn step(&self, from: Place, sense: f64, mut h: f64) -> Option<(Place, f64)> {
         while h > SHORTEST {
             if let Some(next) = self.ahead(from, h, sense) {
-                let bend = dot(from.tangent, next.tangent).clamp(-1.0, 1.0).acos();
-                let chord = ((next.v.p - from.v.p) / self.window.p_width())
-                    .hypot((next.v.tau - from.v.tau) / self.window.tau_width());
+                let bend = acos(dot(from.tangent, next.tangent).clamp(-1.0, 1.0));
+                let chord = hypot(
+                    (next.v.p - from.v.p) / self.window.p_width(),
+                    (next.v.tau - from.v.tau) / self.window.tau_width(),
+                );
                 if bend < MOST_BEND && bend * chord / 8.0 < FLATNESS {
                     return Some((next, h));
                 }

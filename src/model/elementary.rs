@@ -1,0 +1,114 @@
+//! Elementary functions whose bits are the same on every processor.
+//!
+//! The methods of `f64` and `Complex64` call the C library, and that picks code by the processor it runs on: their last bits
+//! differ between machines, and a map would depend on where it was made. The crate libm is plain Rust and rounds alike
+//! everywhere. `clippy.toml` refuses those methods in everything from which numbers reach a map.
+//!
+//! Errors are below one unit in the last place of the result ([`power`]: one half for each of its products).
+
+use num_complex::Complex64;
+
+pub use libm::{acos, atan2, cbrt, cos, exp, expm1, hypot, log as ln, pow, sin, sincos};
+
+/// `base` to the power `exponent` by repeated squaring, always in the same order; a negative power is the inverse of the
+/// positive one.
+#[must_use]
+pub fn power(base: f64, exponent: i32) -> f64 {
+    let (mut square, mut left, mut product) = (base, exponent.unsigned_abs(), 1.0);
+    while left > 0 {
+        if left % 2 == 1 {
+            product *= square;
+        }
+        square *= square;
+        left /= 2;
+    }
+    if exponent < 0 { 1.0 / product } else { product }
+}
+
+/// |z|, without overflow on the way.
+#[inline]
+#[must_use]
+pub fn norm(z: Complex64) -> f64 {
+    hypot(z.re, z.im)
+}
+
+/// The argument of `z` in [−π, π].
+#[inline]
+#[must_use]
+pub fn arg(z: Complex64) -> f64 {
+    atan2(z.im, z.re)
+}
+
+/// √z with a real part of at least 0, for numbers whose size does not overflow.
+#[must_use]
+pub fn sqrt(z: Complex64) -> Complex64 {
+    // The larger part first, then the other from their product.
+    let large = (0.5 * (z.re.abs() + norm(z))).sqrt();
+    if large == 0.0 {
+        return z;
+    }
+    let small = 0.5 * z.im.abs() / large;
+    if z.re >= 0.0 {
+        Complex64::new(large, small.copysign(z.im))
+    } else {
+        Complex64::new(small, large.copysign(z.im))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Both err by less than a unit in the last place.
+    #[test]
+    fn results_are_those_of_the_c_library_but_for_rounding() {
+        type Function = fn(f64) -> f64;
+        let all: [(&str, [Function; 2], f64, f64); 10] = [
+            ("sin", [sin, f64::sin], -1e4, 1e4),
+            ("cos", [cos, f64::cos], -1e4, 1e4),
+            ("sincos", [|x| sincos(x).0, f64::sin], -4.0, 4.0),
+            ("exp", [exp, f64::exp], -700.0, 700.0),
+            ("expm1", [expm1, f64::exp_m1], -1.0, 1.0),
+            ("ln", [|x| ln(exp(x)), |x| exp(x).ln()], -700.0, 700.0),
+            ("acos", [acos, f64::acos], -1.0, 1.0),
+            ("cbrt", [cbrt, f64::cbrt], 0.0, 1e4),
+            ("pow", [|x| pow(x, -0.07), |x| x.powf(-0.07)], 1e-9, 1e3),
+            ("atan2", [|x| atan2(x, 0.7), |x| x.atan2(0.7)], -9.0, 9.0),
+        ];
+        for (name, [ours, theirs], from, to) in all {
+            for i in 0..20_000 {
+                let x = from + (to - from) * (f64::from(i) + 0.123) / 20_000.0;
+                let apart = (ours(x) - theirs(x)).abs() / (f64::EPSILON * theirs(x).abs());
+                assert!(apart <= 2.0, "{name}({x}): {apart} ε");
+            }
+        }
+    }
+
+    #[test]
+    fn powers_are_products() {
+        for base in [-1.7, 0.3, 2.0] {
+            let product = |n: usize| std::iter::repeat_n(base, n).product::<f64>();
+            for exponent in 0..12 {
+                let expected = product(exponent);
+                let found = power(base, exponent as i32);
+                assert!((found - expected).abs() <= 8.0 * f64::EPSILON * expected.abs());
+                assert_eq!(power(base, -(exponent as i32)), 1.0 / found);
+            }
+        }
+        assert_eq!(power(2.0, -53), 2.0 * f64::EPSILON / 4.0);
+    }
+
+    #[test]
+    fn square_roots_square_to_what_they_are_of() {
+        for re in [-3.0, -1e-9, -0.0, 0.0, 1e-20, 2.5] {
+            for im in [-7.0, -1e-12, -0.0, 0.0, 1e-9, 0.4] {
+                let z = Complex64::new(re, im);
+                let root = sqrt(z);
+                assert!(root.re >= 0.0, "{z} {root}");
+                let apart = root * root - z;
+                let error = 8.0 * f64::EPSILON * norm(z);
+                assert!(norm(apart) <= error, "{z} {root}");
+            }
+        }
+    }
+}
