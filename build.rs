@@ -7,7 +7,8 @@ mod revision;
 
 fn main() {
     // A path that is not there would make every build a new one.
-    for path in [".git/HEAD", ".git/refs", ".cargo_vcs_info.json", "src"] {
+    let versions = [".git/HEAD", ".git/refs", ".cargo_vcs_info.json"];
+    for path in versions.into_iter().chain(revision::SOURCE) {
         if Path::new(path).exists() {
             println!("cargo:rerun-if-changed={path}");
         }

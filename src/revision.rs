@@ -4,13 +4,21 @@ use std::hash::{DefaultHasher, Hash, Hasher};
 use std::path::Path;
 use std::process::Command;
 
-/// Git's revision where the repository is the folder's own, else that which a package carries, else one made of the source's bytes: two
-/// programs of different source never have the same one.
+/// How git ends the revision of a source that was changed since.
+const DIRTY: &str = "-dirty";
+/// What the program is made from.
+pub const SOURCE: [&str; 4] = ["Cargo.toml", "Cargo.lock", "build.rs", "src"];
+
+/// Git's revision where the repository is the folder's own, else that which a package carries, else one made of the source's bytes.
+/// Where the source is not that of the revision its bytes count too: two programs of different source never have the same one.
 pub fn of(folder: &Path) -> String {
     let own = folder.join(".git").exists().then(|| of_git(folder));
-    own.flatten()
-        .or_else(|| of_package(folder))
-        .unwrap_or_else(|| of_source(folder))
+    let known = own.flatten().or_else(|| of_package(folder));
+    match known {
+        Some(dirty) if dirty.ends_with(DIRTY) => format!("{dirty}-{}", of_source(folder)),
+        Some(revision) => revision,
+        None => format!("source-{}", of_source(folder)),
+    }
 }
 
 fn of_git(folder: &Path) -> Option<String> {
@@ -37,15 +45,15 @@ fn of_package(folder: &Path) -> Option<String> {
     let sha1 = after.split('"').nth(1)?;
     let known = sha1.len() >= 12 && sha1.bytes().all(|b| b.is_ascii_hexdigit());
     let dirty = text.contains("\"dirty\": true") || text.contains("\"dirty\":true");
-    known.then(|| format!("{}{}", &sha1[..12], if dirty { "-dirty" } else { "" }))
+    known.then(|| format!("{}{}", &sha1[..12], if dirty { DIRTY } else { "" }))
 }
 
 fn of_source(folder: &Path) -> String {
     let mut hash = DefaultHasher::new();
-    for part in ["Cargo.toml", "Cargo.lock", "src"] {
+    for part in SOURCE {
         hash_all(&folder.join(part), &mut hash);
     }
-    format!("source-{:016x}", hash.finish())
+    format!("{:016x}", hash.finish())
 }
 
 fn hash_all(path: &Path, hash: &mut DefaultHasher) {
@@ -102,7 +110,30 @@ mod tests {
         std::fs::write(inner.join("src/lib.rs"), "two").unwrap();
         assert_ne!(of(&inner), first);
         let own = of(outer.path());
-        assert!(own.ends_with("-dirty"), "{own}");
+        assert!(own.contains("-dirty-"), "{own}");
+    }
+
+    /// Two sources that were both changed since the same revision are not the same program; one that was not changed is.
+    #[test]
+    fn changed_sources_differ_by_what_was_changed() {
+        let files = [("src/lib.rs", "one"), ("Cargo.toml", ""), ("notes", "")];
+        let folder = written(&files);
+        git(folder.path(), &["init", "-q"]);
+        git(folder.path(), &["add", "."]);
+        git(folder.path(), &["commit", "-qm", "all"]);
+        let clean = of(folder.path());
+        assert!(!clean.contains(DIRTY), "{clean}");
+        let changed = |file: &str, text: &str| {
+            std::fs::write(folder.path().join(file), text).unwrap();
+            of(folder.path())
+        };
+        let two = changed("src/lib.rs", "two");
+        assert!(two.starts_with(&format!("{clean}{DIRTY}-")), "{two}");
+        let three = changed("src/lib.rs", "three");
+        assert_ne!(three, two);
+        assert_eq!(changed("src/lib.rs", "two"), two);
+        assert_eq!(changed("notes", "not of the program"), two);
+        assert_ne!(changed("Cargo.toml", "[features]"), two);
     }
 
     #[test]
@@ -112,7 +143,10 @@ mod tests {
         assert_eq!(of(package.path()), "0123456789ab");
         let dirty = info.replace("\" }", "\", \"dirty\": true }");
         let package = written(&[(".cargo_vcs_info.json", &dirty)]);
-        assert_eq!(of(package.path()), "0123456789ab-dirty");
+        let found = of(package.path());
+        assert!(found.starts_with("0123456789ab-dirty-"), "{found}");
+        std::fs::write(package.path().join("Cargo.lock"), "other").unwrap();
+        assert_ne!(of(package.path()), found);
         let damaged = written(&[(".cargo_vcs_info.json", "{\"git\": 3}"), ("src/lib.rs", "")]);
         assert!(of(damaged.path()).starts_with("source-"));
     }
