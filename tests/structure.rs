@@ -73,7 +73,7 @@ fn libraries_stay_in_their_rooms() {
         ("rayon", "src/sweep/engine.rs"),
         ("hdf5", "src/store"),
         ("wide", "src/linear/crossing.rs"),
-        ("nalgebra", "src/linear/collocation.rs"),
+        ("faer", "src/linear/collocation.rs"),
         ("libm", "src/model/elementary.rs"),
         ("indicatif", "src/report/progress.rs"),
         ("plotters", "src/report/picture"),

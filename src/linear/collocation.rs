@@ -7,12 +7,15 @@
 //! d/dt (x, ẋ, u(θ₁), …, u(θ_N)) = (ẋ, −p₀x − p₁ẋ − u(θ_N), Σ_m D_jm u(θ_m))
 //! ```
 //!
-//! a matrix of N + 2 rows instead of the 2N + 2 of the general method. The only file that uses nalgebra: without its products of
-//! large matrices, which pick code by the processor, its bits are the same everywhere.
+//! a matrix of N + 2 rows instead of the 2N + 2 of the general method. The only file that uses faer: without its feature `std`, with
+//! which it picks code by the processor.
 
 use std::f64::consts::PI;
 
-use nalgebra::{DMatrix, Schur};
+use faer::diag::Diag;
+use faer::dyn_stack::{MemBuffer, MemStack};
+use faer::linalg::evd::{ComputeEigenvectors, evd_real, evd_scratch};
+use faer::{Mat, Par};
 use num_complex::Complex64;
 
 use crate::model::Groups;
@@ -20,8 +23,6 @@ use crate::model::elementary::{cbrt, cos};
 
 /// Most nodes N: beyond this an eigenvalue problem takes a good part of a second.
 pub const MOST_NODES: usize = 384;
-/// Most steps of the QR iteration for each row; it takes two or three.
-const MOST_ITERATIONS: usize = 30;
 
 /// How many nodes resolve every root λ with |λ| ≤ `radius`.
 ///
@@ -44,11 +45,29 @@ pub fn nodes_for(tau: f64, radius: f64) -> Option<usize> {
 pub fn eigenvalues(groups: Groups, tau: f64, nodes: usize) -> Option<Vec<Complex64>> {
     let size = nodes + 2;
     let matrix = generator(groups, tau, nodes);
-    let triangular = Schur::try_new(matrix, f64::EPSILON, MOST_ITERATIONS * size)?;
-    let mut values: Vec<Complex64> = triangular
-        .complex_eigenvalues()
-        .iter()
-        .copied()
+    let mut re = Diag::<f64>::zeros(size);
+    let mut im = Diag::<f64>::zeros(size);
+    let scratch = evd_scratch::<f64>(
+        size,
+        ComputeEigenvectors::No,
+        ComputeEigenvectors::No,
+        Par::Seq,
+        Default::default(),
+    );
+    let mut memory = MemBuffer::new(scratch);
+    evd_real(
+        matrix.as_ref(),
+        re.as_mut(),
+        im.as_mut(),
+        None,
+        None,
+        Par::Seq,
+        MemStack::new(&mut memory),
+        Default::default(),
+    )
+    .ok()?;
+    let mut values: Vec<Complex64> = (0..size)
+        .map(|i| Complex64::new(re[i], im[i]))
         .filter(|z| z.im >= 0.0 && z.re.is_finite() && z.im.is_finite())
         .collect();
     values.sort_by(|p, q| q.re.total_cmp(&p.re).then(p.im.total_cmp(&q.im)));
@@ -56,10 +75,10 @@ pub fn eigenvalues(groups: Groups, tau: f64, nodes: usize) -> Option<Vec<Complex
 }
 
 /// The matrix of the module.
-fn generator(groups: Groups, tau: f64, nodes: usize) -> DMatrix<f64> {
+fn generator(groups: Groups, tau: f64, nodes: usize) -> Mat<f64> {
     let Groups { b, a_v, a_n } = groups;
     let (q0, q1) = (a_n + a_v * b, a_v);
-    let mut matrix = DMatrix::<f64>::zeros(nodes + 2, nodes + 2);
+    let mut matrix = Mat::<f64>::zeros(nodes + 2, nodes + 2);
     matrix[(0, 1)] = 1.0;
     matrix[(1, 0)] = q0 - 1.0;
     matrix[(1, 1)] = a_v - b;
