@@ -3,9 +3,9 @@
 #
 #   scripts/soak.sh [HOURS]
 #
-# Every fault of every command (tests/faults.rs) and the memory of each (tests/memory.rs), then in turn, with new seeds, until the
-# time is over (1 hour by default): kills of runs, damaged tiles and maps, flipped bits, motions and critical velocities against
-# the referee.
+# Every fault of every command (tests/faults.rs), every loss of power (tests/crash.rs) and the memory of each command
+# (tests/memory.rs), then in turn, with new seeds, until the time is over (1 hour by default): kills of runs, damaged tiles and
+# maps, flipped bits, losses of power, motions and critical velocities against the referee.
 # Stops at the first thing that fails, with its output.
 set -euo pipefail
 
@@ -27,6 +27,8 @@ tests() {
 
 say "every fault"
 SLIPMAP_FAULTS=all tests --test faults
+say "every loss of power"
+SLIPMAP_FAULTS=all tests --test crash
 say "memory of every command"
 SLIPMAP_MEMORY=all tests --test memory -- --nocapture
 round=0
@@ -37,6 +39,7 @@ while [ $SECONDS -lt $until ]; do
     SLIPMAP_KILLS=200 SLIPMAP_DAMAGES=1000 tests --test overnight
     SLIPMAP_DAMAGED=2000 tests --test damaged
     SLIPMAP_FLIPS=2500 SLIPMAP_TILE_FLIPS=1000 tests --test flips
+    tests --test crash
     SLIPMAP_CASES=2000 tests --test referee -- --test-threads=1 by_chance
 done
 say "$round rounds"

@@ -38,7 +38,9 @@ pub struct Args {
 pub fn main(args: &Args) -> Result<(), Failure> {
     let signals = Signals::catch()?;
     let target = args.output.as_ref().unwrap_or(&args.map);
-    shards::settle(&args.map, || map_maker::is_complete(target))?;
+    if shards::settle(&args.map, || map_maker::is_complete(target))? {
+        return run::nothing_to_do(target, "", false, &signals);
+    }
     let folders = folders(args)?;
     if folders.is_empty() {
         return nothing_to_merge(args, target, &signals);
@@ -86,11 +88,15 @@ fn folders(args: &Args) -> Result<Vec<PathBuf>, Failure> {
     Ok(present.into_iter().map(|(_, path)| path).collect())
 }
 
-/// An error, unless the shards are gone because their map is complete: a merge that is run again has nothing to do.
+/// An error, unless the shards are gone because their map is complete: a merge that is run again has nothing to do, with --fresh too.
 fn nothing_to_merge(args: &Args, target: &Path, signals: &Signals) -> Result<(), Failure> {
-    if !args.fresh && map_maker::is_complete(target) {
+    if map_maker::is_complete(target) {
         drop(shards::remove_root(&args.map));
-        return run::nothing_to_do(target, "", false, signals);
+        let remark = match args.fresh {
+            true => "; there are no shards that could replace it",
+            false => "",
+        };
+        return run::nothing_to_do(target, remark, false, signals);
     }
     Err(Failure::bad_input_with_help(
         format!(

@@ -60,6 +60,11 @@ pub(super) fn sync(path: &Path) -> Result<(), StoreError> {
 /// Gives a durable file its final name, durably, replacing what stood there.
 pub(super) fn rename_synced(part: &Path, path: &Path) -> Result<(), StoreError> {
     fs::rename(part, path).map_err(StoreError::io("rename to", path))?;
+    sync_name(path)
+}
+
+/// Makes the name of a file or a folder durable: without it, what is in a folder is lost however often that was synced.
+pub(super) fn sync_name(path: &Path) -> Result<(), StoreError> {
     match path.parent() {
         Some(folder) if !folder.as_os_str().is_empty() => sync(folder),
         _ => sync(Path::new(".")),

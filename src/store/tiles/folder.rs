@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use std::sync::atomic::AtomicBool;
 use std::time::{Duration, Instant};
 
-use super::super::durable::{rename_synced, write_synced};
+use super::super::durable::{rename_synced, sync_name, write_synced};
 use super::super::error::StoreError;
 use super::super::lock;
 use super::super::source::Source;
@@ -283,12 +283,14 @@ pub(super) fn listed(
     Ok(paths)
 }
 
-/// Makes a folder, if it is not there.
+/// Makes a folder durably, if it is not there.
 pub(super) fn make(folder: &Path) -> Result<(), StoreError> {
     match fs::create_dir(folder) {
-        Err(error) if error.kind() == ErrorKind::AlreadyExists => Ok(()),
-        made => made.map_err(StoreError::io("create", folder)),
+        // Whoever made it may have died before it was durable.
+        Err(error) if error.kind() == ErrorKind::AlreadyExists => {}
+        made => made.map_err(StoreError::io("create", folder))?,
     }
+    sync_name(folder)
 }
 
 fn refuse_foreign(folder: &Path) -> Result<(), StoreError> {

@@ -6,7 +6,7 @@ use std::io::ErrorKind::NotFound;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::AtomicBool;
 
-use super::super::durable::{sync, write_synced};
+use super::super::durable::{sync_name, write_synced};
 use super::super::error::StoreError;
 use super::super::source::Source;
 use super::folder::{self, Belongs, TileFolder};
@@ -47,23 +47,24 @@ pub fn mark_merged(map: &Path) -> Result<(), StoreError> {
         return Ok(());
     }
     write_synced(&path, |_| Ok(()))?;
-    sync(&root(map))
+    sync_name(&path)
 }
 
-/// Goes on with a removal of shards that was stopped midway. Where their map is not complete, it
+/// Goes on with a removal of shards that was stopped midway, and says whether there was one. Where their map is not complete, it
 /// has gone since, and the shards that are left count as any.
 ///
 /// # Errors
 /// As [`clear`].
-pub fn settle(map: &Path, is_complete: impl FnOnce() -> bool) -> Result<(), StoreError> {
+pub fn settle(map: &Path, is_complete: impl FnOnce() -> bool) -> Result<bool, StoreError> {
     let path = marker(map);
     if !path.exists() {
-        return Ok(());
+        return Ok(false);
     }
     if is_complete() {
-        return clear(map);
+        return clear(map).map(|()| true);
     }
-    fs::remove_file(&path).map_err(StoreError::io("remove", &path))
+    let removed = fs::remove_file(&path).map_err(StoreError::io("remove", &path));
+    removed.map(|()| false)
 }
 
 fn shard_of(name: &str) -> Option<Shard> {
