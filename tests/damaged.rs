@@ -357,6 +357,7 @@ fn chunks_of_other_dimensions_are_refused() {
     put_text(&file, "axes", "tau");
     let list = file.new_dataset::<f64>().shape(0..).chunk(64).deflate(1);
     let axis = list.create("tau").unwrap();
+    drop(list);
     axis.resize(9).unwrap();
     axis.write_raw(&[1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0, 9.0])
         .unwrap();

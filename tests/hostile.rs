@@ -17,10 +17,12 @@ use std::process::Command;
 
 use hdf5::types::FixedUnicode;
 use hdf5::{File, Group};
+use hdf5_sys::h5a::{H5Aclose, H5Acreate2, H5Awrite};
 use hdf5_sys::h5d::{H5Dclose, H5Dcreate2, H5Dwrite_chunk};
 use hdf5_sys::h5p::{H5P_CLS_DATASET_CREATE, H5P_DEFAULT, H5Pclose, H5Pcreate};
 use hdf5_sys::h5p::{H5Pset_chunk, H5Pset_deflate, H5Pset_external, H5Pset_filter, H5Pset_virtual};
-use hdf5_sys::h5s::{H5Sclose, H5Screate_simple};
+use hdf5_sys::h5s::{H5S_class_t, H5Sclose, H5Screate, H5Screate_simple};
+use hdf5_sys::h5t::{H5T_class_t, H5Tclose, H5Tcreate};
 use limited::End;
 use program::{Folder, expect};
 
@@ -599,6 +601,52 @@ fn control_characters_are_shown_as_such() {
         );
         place.run("a manifest", &["status", "map.h5", "--json"]);
     }
+}
+
+/// Texts of 60 MB: what is shown of them is short, and takes little memory.
+#[test]
+fn long_texts_are_cut() {
+    let place = Place::new();
+    for name in ["title", "axes", "sweep"] {
+        fs::write(place.path("map.h5"), &place.map).unwrap();
+        map::edit(&place.path("map.h5"), |file| put_long(file, name));
+        for (args, _) in COMMANDS {
+            let (_, text) = place.run(name, args);
+            assert!(
+                text.len() < 100_000,
+                "{name}, {args:?}: {} bytes",
+                text.len()
+            );
+        }
+    }
+}
+
+/// A text of fixed length, all of it characters that have to be spelled out.
+fn put_long(file: &File, name: &str) {
+    file.delete_attr(name).unwrap();
+    let text = vec![0x1b_u8; 60 << 20];
+    let name = std::ffi::CString::new(name).unwrap();
+    let written = hdf5::sync::sync(|| {
+        // SAFETY: the file is open, the text has the length of its type, and every identifier is closed.
+        unsafe {
+            let kind = H5Tcreate(H5T_class_t::H5T_STRING, text.len());
+            let space = H5Screate(H5S_class_t::H5S_SCALAR);
+            let attribute = H5Acreate2(
+                file.id(),
+                name.as_ptr(),
+                kind,
+                space,
+                H5P_DEFAULT,
+                H5P_DEFAULT,
+            );
+            let written = H5Awrite(attribute, kind, text.as_ptr().cast());
+            H5Aclose(attribute);
+            H5Sclose(space);
+            H5Tclose(kind);
+            written
+        }
+    });
+    assert!(written >= 0);
 }
 
 fn put_loud(file: &File, name: &str) -> hdf5::Result<()> {

@@ -7,7 +7,7 @@ use slipmap::model::{ModelError, Shown};
 use slipmap::store::StoreError;
 use slipmap::sweep::SpecError;
 
-use super::say::{self, visible, visible_line};
+use super::say::{self, shortened, visible, visible_line};
 
 /// Why a command did not do what it was asked for.
 pub enum Failure {
@@ -94,7 +94,7 @@ impl Failure {
 
 /// A message, which may quote a file.
 fn shown(message: impl Into<String>) -> MietteDiagnostic {
-    MietteDiagnostic::new(visible(&message.into()))
+    MietteDiagnostic::new(visible(&shortened(&message.into())))
 }
 
 impl From<StoreError> for Failure {

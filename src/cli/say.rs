@@ -4,7 +4,7 @@ use std::fmt::Display;
 use std::io::Write;
 
 use serde::Serialize;
-pub use slipmap::report::visible::{visible, visible_line};
+pub use slipmap::report::visible::{shortened, visible, visible_line};
 
 use super::failure::Failure;
 

@@ -15,10 +15,22 @@ pub fn visible(text: &str) -> String {
     shown
 }
 
-/// The same on one line.
+/// More characters of a text are in no message.
+const LONGEST: usize = 4000;
+
+/// The same on one line, of which no more is shown than anybody reads.
 #[must_use]
 pub fn visible_line(text: &str) -> String {
-    visible(text).replace('\n', "\\n")
+    visible(&shortened(text)).replace('\n', "\\n")
+}
+
+/// The beginning of a text that is too long for a message, or all of it.
+#[must_use]
+pub fn shortened(text: &str) -> std::borrow::Cow<'_, str> {
+    match text.char_indices().nth(LONGEST) {
+        Some((end, _)) => format!("{}…", &text[..end]).into(),
+        None => text.into(),
+    }
 }
 
 /// JSON with such characters as its escapes: they stand in its strings alone, and all of them have one of four digits.
@@ -55,6 +67,9 @@ mod tests {
             "a\\u{1b}[2J\\u{7}\\u{9b}1m\\r\\u{7f}\\u{202e}b\\u{2066}µ\n\tc"
         );
         assert_eq!(visible_line("a\nb"), "a\\nb");
+        assert_eq!(visible_line(&"µ".repeat(LONGEST)).chars().count(), LONGEST);
+        let shown = visible_line(&"µ".repeat(LONGEST + 1));
+        assert!(shown.ends_with("µ…") && shown.chars().count() == LONGEST + 1);
         let json = serde_json::to_string("\u{9b}\u{1b}\u{202e}").unwrap();
         assert_eq!(visible_json(&json), "\"\\u009b\\u001b\\u202e\"");
     }

@@ -169,7 +169,10 @@ impl BestWriter {
     ) -> hdf5::Result<Self> {
         let group = parent
             .create_group_builder()
-            .with_gcpl(|gcpl| gcpl.link_creation_order(LinkCreationOrder::Indexed))
+            .with_gcpl(|gcpl| {
+                gcpl.obj_track_times(false)
+                    .link_creation_order(LinkCreationOrder::Indexed)
+            })
             .create(BEST)?;
         let parameter = plan.spec.axes[gain].parameter;
         let title = "settings of fastest decay within the ranges of the gain and the delay";

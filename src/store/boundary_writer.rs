@@ -109,7 +109,10 @@ impl BoundaryWriter {
     ) -> hdf5::Result<Self> {
         let group = parent
             .create_group_builder()
-            .with_gcpl(|gcpl| gcpl.link_creation_order(LinkCreationOrder::Indexed))
+            .with_gcpl(|gcpl| {
+                gcpl.obj_track_times(false)
+                    .link_creation_order(LinkCreationOrder::Indexed)
+            })
             .create(BOUNDARIES)?;
         put_text(
             &group,

@@ -246,7 +246,10 @@ fn put_events(
 ) -> hdf5::Result<()> {
     let group = file
         .create_group_builder()
-        .with_gcpl(|gcpl| gcpl.link_creation_order(LinkCreationOrder::Indexed))
+        .with_gcpl(|gcpl| {
+            gcpl.obj_track_times(false)
+                .link_creation_order(LinkCreationOrder::Indexed)
+        })
         .create(trace::EVENT)?;
     put_text(
         &group,
