@@ -2,6 +2,7 @@
 
 use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::{Duration, Instant};
 
 use hdf5::Dataset;
 use sha2::{Digest, Sha256};
@@ -21,6 +22,9 @@ use crate::sweep::pieces::{Piece, spread};
 use crate::sweep::plan::{Plan, in_hexadecimal};
 use crate::sweep::second_look::{Answer, Question, Stored, second_look};
 use crate::sweep::{Field, SweepSpec};
+
+/// A child that is being started shares the library's lock on a file until it runs its own program: no longer than this.
+const FORKED: Duration = Duration::from_secs(2);
 
 /// What was found out about a map.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -80,13 +84,26 @@ pub fn check(map: &MapFile, program: (&str, &str), effort: Effort) -> Result<Rep
 /// Whether a file is the sound map of `plan`, whose cells need not all be there; else what is wrong first. Once `stop` is set, no
 /// more is read, and the answer means nothing.
 pub(super) fn as_written(path: &Path, plan: &Plan, stop: &AtomicBool) -> Result<(), String> {
-    let map = MapFile::open(path).map_err(|error| error.to_string())?;
+    let map = opened(path).map_err(|error| error.to_string())?;
     let mut report = Report::default();
     check_schema(&map, plan, &mut report);
     check_checksums(&map, plan, &mut report, stop);
     match report.faults.into_iter().next() {
         None => Ok(()),
         Some(fault) => Err(fault),
+    }
+}
+
+/// Opens a map that this process has just closed.
+fn opened(path: &Path) -> Result<MapFile, StoreError> {
+    let begun = Instant::now();
+    loop {
+        match MapFile::open(path) {
+            Err(StoreError::InUse { .. }) if begun.elapsed() < FORKED => {
+                std::thread::sleep(Duration::from_millis(5));
+            }
+            opened => return opened,
+        }
     }
 }
 
