@@ -1,13 +1,15 @@
 #!/usr/bin/env python3
 """Runs two programs on sweeps and compares their maps, dataset by dataset, byte by byte.
 
-    compare_maps.py OLD NEW [SWEEP.toml …]
+    compare_maps.py [--points N] OLD NEW [SWEEP.toml …]
 
-OLD and NEW are slipmap programs; without sweeps all of sweeps/ are run. Needs h5py (scripts/requirements-readers.txt).
+OLD and NEW are slipmap programs; without sweeps and cases all of sweeps/ are run, with --points at most so many points along
+each axis. Needs h5py (scripts/requirements-readers.txt).
 Prints for every sweep which datasets differ, in how many values and by how much; the exit code is 1 where one does.
 """
 
 import argparse
+import re
 import subprocess
 import sys
 import tempfile
@@ -24,15 +26,23 @@ def is_sweep(path: Path) -> bool:
     return "[axes]" in path.read_text(encoding="utf-8")
 
 
-def run(program: Path, sweep: Path, folder: Path) -> Path:
-    """The map of a sweep, in a folder of its own."""
+def shrunk(text: str, points: int | None) -> str:
+    """A sweep with at most so many points along each axis."""
+    if points is None:
+        return text
+    return re.sub(r"\bpoints = (\d+)", lambda found: f"points = {min(int(found[1]), points)}", text)
+
+
+def run(program: Path, sweep: Path, folder: Path, points: int | None) -> Path:
+    """The map of a sweep or the trace of a case, in a folder of its own."""
     folder.mkdir()
     copy = folder / sweep.name
-    copy.write_bytes(sweep.read_bytes())
-    subprocess.run(
-        [program.resolve(), "run", copy.name],
-        cwd=folder, check=True, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL,
-    )
+    copy.write_text(shrunk(sweep.read_text(encoding="utf-8"), points), encoding="utf-8")
+    verb = "run" if is_sweep(sweep) else "simulate"
+    command = [program.resolve(), verb, copy.name]
+    done = subprocess.run(command, cwd=folder, capture_output=True, text=True, check=False)
+    if done.returncode != 0:
+        sys.exit(f"{program} {verb} {sweep}: {done.stderr}")
     return next(folder.glob("*.h5"))
 
 
@@ -79,15 +89,16 @@ def compare(old: Path, new: Path) -> list[str]:
 
 def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--points", type=int)
     parser.add_argument("old", type=Path)
     parser.add_argument("new", type=Path)
     parser.add_argument("sweeps", type=Path, nargs="*")
     given = parser.parse_args()
-    sweeps = given.sweeps or [path for path in sorted(SWEEPS.glob("*.toml")) if is_sweep(path)]
+    sweeps = given.sweeps or sorted(SWEEPS.glob("*.toml"))
     changed = 0
     for sweep in sweeps:
         with tempfile.TemporaryDirectory() as folder:
-            maps = [run(p, sweep, Path(folder) / n) for p, n in ((given.old, "old"), (given.new, "new"))]
+            maps = [run(p, sweep, Path(folder) / n, given.points) for p, n in ((given.old, "old"), (given.new, "new"))]
             lines = compare(*maps)
         changed += bool(lines)
         print(f"{sweep.name}: {'same' if not lines else ''}", flush=True)

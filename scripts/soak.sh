@@ -3,9 +3,10 @@
 #
 #   scripts/soak.sh [HOURS]
 #
-# Every fault of every command (tests/faults.rs), every loss of power (tests/crash.rs) and the memory of each command
-# (tests/memory.rs), then in turn, with new seeds, until the time is over (1 hour by default): kills of runs, damaged tiles and
-# maps, flipped bits, losses of power, motions and critical velocities against the referee.
+# The shipped sweeps on unlike processors (scripts/unlike.sh), every fault of every command (tests/faults.rs), every loss of
+# power (tests/crash.rs) and the memory of each command (tests/memory.rs), then in turn, with new seeds, until the time is over
+# (1 hour by default): kills of runs, damaged tiles and maps, flipped bits, losses of power, motions and critical velocities
+# against the referee.
 # Stops at the first thing that fails, with its output.
 set -euo pipefail
 
@@ -25,6 +26,8 @@ tests() {
     cargo test --release --locked $SLIPMAP_CARGO_FEATURES "$@"
 }
 
+say "unlike processors"
+scripts/unlike.sh
 say "every fault"
 SLIPMAP_FAULTS=all tests --test faults
 say "every loss of power"

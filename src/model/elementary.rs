@@ -25,6 +25,48 @@ pub fn power(base: f64, exponent: i32) -> f64 {
     if exponent < 0 { 1.0 / product } else { product }
 }
 
+/// log₂ of `x` to 1e-8, for what needs no more digits: in a third of the time.
+#[inline]
+#[must_use]
+pub fn rough_log2(x: f64) -> f64 {
+    const SQRT_HALF: u64 = std::f64::consts::FRAC_1_SQRT_2.to_bits();
+    const ODD: [f64; 5] = [2.0, 2.0 / 3.0, 2.0 / 5.0, 2.0 / 7.0, 2.0 / 9.0];
+    if !(x.is_normal() && x > 0.0) {
+        return libm::log2(x);
+    }
+    // x = 2ⁿ m with m from √½ to √2, and ln m = 2 artanh s.
+    let n = (x.to_bits().wrapping_sub(SQRT_HALF) as i64) >> 52;
+    let m = f64::from_bits(x.to_bits().wrapping_sub((n as u64) << 52));
+    let s = (m - 1.0) / (m + 1.0);
+    let q = s * s;
+    let ln = s * ((ODD[0] + q * ODD[1]) + q * q * (ODD[2] + q * (ODD[3] + q * ODD[4])));
+    n as f64 + std::f64::consts::LOG2_E * ln
+}
+
+/// 2 to the power `y` to 2e-7 of itself, for what needs no more digits.
+#[inline]
+#[must_use]
+pub fn rough_exp2(y: f64) -> f64 {
+    // Added to it, a small number loses its fraction.
+    const ROUNDING: f64 = 1.5 / f64::EPSILON;
+    if y.is_nan() || y.abs() > 1000.0 {
+        return libm::exp2(y);
+    }
+    let whole = (y + ROUNDING) - ROUNDING;
+    let t = (y - whole) * std::f64::consts::LN_2;
+    let q = t * t;
+    let even = 1.0 + q * (0.5 + q * (1.0 / 24.0 + q * (1.0 / 720.0)));
+    let odd = 1.0 + q * (1.0 / 6.0 + q * (1.0 / 120.0));
+    f64::from_bits(((1023 + whole as i64) as u64) << 52) * (even + t * odd)
+}
+
+/// The root of `x` ≥ 0 of that `order` to 2e-7 of itself: enough for the length of a step.
+#[inline]
+#[must_use]
+pub fn rough_root(x: f64, order: usize) -> f64 {
+    rough_exp2(rough_log2(x) / order as f64)
+}
+
 /// |z|, without overflow on the way.
 #[inline]
 #[must_use]
@@ -82,6 +124,27 @@ mod tests {
                 assert!(apart <= 2.0, "{name}({x}): {apart} ε");
             }
         }
+    }
+
+    #[test]
+    fn rough_results_are_as_good_as_they_say() {
+        for i in -40_000_i32..40_000 {
+            let y = f64::from(i) * 0.0173;
+            let x = exp(y);
+            assert!(
+                (rough_log2(x) - y / std::f64::consts::LN_2).abs() < 1e-8,
+                "{x}"
+            );
+            let power = rough_exp2(y) / libm::exp2(y);
+            assert!((power - 1.0).abs() < 2e-7, "{y}");
+            let order = 4 + i.unsigned_abs() as usize % 30;
+            let root = rough_root(x, order) / pow(x, 1.0 / order as f64);
+            assert!((root - 1.0).abs() < 2e-7, "{x} {order}");
+        }
+        assert_eq!(rough_root(0.0, 7), 0.0);
+        assert_eq!(rough_root(f64::INFINITY, 7), f64::INFINITY);
+        assert!(rough_root(f64::NAN, 7).is_nan() && rough_root(-1.0, 7).is_nan());
+        assert!((rough_root(1e-310, 31) / pow(1e-310, 1.0 / 31.0) - 1.0).abs() < 2e-7);
     }
 
     #[test]

@@ -1,6 +1,6 @@
 //! The elongation over the last delay, as the polynomials of the steps that made it.
 
-use crate::model::elementary::pow;
+use crate::model::elementary::rough_root;
 use std::collections::VecDeque;
 
 use super::series::{Coefficients, MOST_ORDER, shift, shifted, value};
@@ -98,7 +98,7 @@ impl History {
     /// times the `tolerance`: errors of its middle terms do not show in the last ones.
     pub fn look_ahead(&mut self, gain: f64, order: usize, tolerance: f64) {
         self.apart = NEIGHBOURS_APART * tolerance;
-        self.ahead = SHARE.min(pow(gain, -1.0 / order as f64));
+        self.ahead = SHARE.min(1.0 / rough_root(gain, order));
     }
 
     /// The part of a radius to which it does so.

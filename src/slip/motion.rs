@@ -22,7 +22,7 @@ use super::series::{Coefficients, MOST_ORDER, first_zero, spread, value};
 use super::step::{Control, Step};
 use super::table_series::Crossing;
 use crate::model::FrictionLaw;
-use crate::model::elementary::{ln, pow};
+use crate::model::elementary::{ln, rough_log2, rough_root};
 
 /// What the block does.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -600,8 +600,8 @@ impl Motion {
             return self.order;
         }
         // The terms of a series of radius R fall as (s/R)^k, and last.radius was where that is the tolerance.
-        let digits = ln(self.tolerance);
-        let fall = ln(limit / last.radius) + digits / last.order as f64;
+        let digits = rough_log2(self.tolerance);
+        let fall = rough_log2(limit / last.radius) + digits / last.order as f64;
         ((digits / fall).ceil() as usize + SPARE_TERMS).clamp(LEAST_ORDER, self.order)
     }
 
@@ -612,16 +612,16 @@ impl Motion {
         let speed = u[0].abs().max(self.parameters.v0.abs()).max(SLOWEST);
         let stretch = a[0].abs().max(self.parameters.law.mu_s());
         // log₂ to 0.1: enough to tell which of the last two terms asks for the shorter step.
-        let rough_log2 = |x: f64| (x.to_bits() >> 42) as f64 / 1024.0 - 1023.0;
+        let roughest_log2 = |x: f64| (x.to_bits() >> 42) as f64 / 1024.0 - 1023.0;
         let asked = [step.order - 1, step.order].map(|k| {
             // What is not a number ends the motion elsewhere, not here.
             let ratio = (u[k].abs() / speed).max(a[k].abs() / stretch).max(0.0);
             let room = self.tolerance / ratio;
-            (rough_log2(room) / k as f64, room, k)
+            (roughest_log2(room) / k as f64, room, k)
         });
         let shorter = if asked[0].0 < asked[1].0 { 0 } else { 1 };
         let (_, room, k) = asked[shorter];
-        let length = pow(room, 1.0 / k as f64);
+        let length = rough_root(room, k);
         if self.mode == Mode::Stick {
             return length;
         }
