@@ -5,7 +5,7 @@
 use std::path::{Path, PathBuf};
 use std::sync::LazyLock;
 
-use hdf5::types::{FixedAscii, VarLenUnicode};
+use hdf5::types::{FixedAscii, FixedUnicode, VarLenUnicode};
 use hdf5::{Dataset, File, Group, H5Type, Location};
 use slipmap::report::preview::preview;
 use slipmap::store::MapFile;
@@ -249,23 +249,16 @@ fn put_text(at: &Location, name: &str, text: &str, c: &mut Choices) -> hdf5::Res
         15 => changed(" ", "\u{2003}"),
         n => changed("a", &char::from(n).to_string()),
     };
-    let text = VarLenUnicode::try_from_str(&other)?;
-    at.new_attr::<VarLenUnicode>()
-        .create(name)?
-        .write_scalar(&text)
+    let text: Text = other
+        .replace('\0', " ")
+        .parse()
+        .map_err(|e| hdf5::Error::from(format!("{e}")))?;
+    let attribute = at.new_attr::<Text>().create(name)?;
+    attribute.write_scalar(&text)
 }
 
-trait FromText: Sized {
-    fn try_from_str(text: &str) -> hdf5::Result<Self>;
-}
-
-impl FromText for VarLenUnicode {
-    fn try_from_str(text: &str) -> hdf5::Result<Self> {
-        text.replace('\0', " ")
-            .parse()
-            .map_err(|e| hdf5::Error::from(format!("{e}")))
-    }
-}
+/// Longer than any text here.
+type Text = FixedUnicode<1024>;
 
 fn put_fixed(at: &Location, name: &str, bytes: &[u8], count: usize) -> hdf5::Result<()> {
     // SAFETY: the bytes are only copied; that they are no ASCII is the point.
@@ -299,7 +292,11 @@ fn put(
         13 => vec![10_000_000],
         n => vec![usize::from(n)],
     };
-    match c.next() {
+    let kind = match c.next() {
+        0 => sound_kind(name),
+        kind => kind,
+    };
+    match kind {
         1 => put_as::<f32>(at, name, &shape, |x| x as f32, value, c),
         2 => put_as::<i8>(at, name, &shape, |x| x as i8, value, c),
         3 => put_as::<u8>(at, name, &shape, |x| x as u8, value, c),
@@ -322,6 +319,18 @@ fn put(
             c,
         ),
         _ => put_as::<f64>(at, name, &shape, |x| x, value, c),
+    }
+}
+
+/// The choice of the type that slipmap gives a dataset.
+fn sound_kind(name: &str) -> u8 {
+    match name {
+        "direction" | "stable_side" | "kind" | "certified" => 2,
+        "status" => 3,
+        "n_unstable" => 4,
+        "vertex_count" | "regions" => 5,
+        "branch" => 6,
+        _ => 0,
     }
 }
 
