@@ -128,14 +128,20 @@ impl<'d> Chunks<'d> {
     /// Bytes of the chunk at `offset` in the file; none where there is no chunk.
     fn size(&self, offset: &[u64]) -> hdf5::Result<Option<u64>> {
         let (dataset, mut size) = (self.dataset.id(), 0);
-        // SAFETY: the dataset is open and chunked, and `offset` has one entry per dimension of it.
-        let found = hdf5::sync::sync(|| unsafe {
-            H5Dget_chunk_storage_size(dataset, offset.as_ptr(), &raw mut size)
+        let found = hdf5::sync::sync(|| {
+            // SAFETY: the dataset is open and chunked, and `offset` has one entry per dimension of it.
+            let found =
+                unsafe { H5Dget_chunk_storage_size(dataset, offset.as_ptr(), &raw mut size) };
+            // It fails where there is no chunk, too, and then says so.
+            match found >= 0 {
+                true => Some(size),
+                false => is_not_allocated().then_some(0),
+            }
         });
-        if found >= 0 {
+        if let Some(size) = found {
             return Ok(Some(size).filter(|&size| size > 0));
         }
-        // It fails where there is no chunk, too. Looking through all chunks tells, and takes its time.
+        // Looking through all chunks tells it for certain, and takes its time.
         let (mut filters, mut address) = (0, 0);
         // SAFETY: as above, and the results are live.
         let looked = hdf5::sync::sync(|| unsafe {
@@ -255,6 +261,14 @@ impl<'d> Chunks<'d> {
             place[axis + 1..].fill(0);
         }
     }
+}
+
+/// Whether the library's last error is that there is no chunk.
+fn is_not_allocated() -> bool {
+    let stack = hdf5::Error::query().ok().and_then(|error| error.stack());
+    // The innermost frame is the cause.
+    let cause = stack.as_ref().and_then(|frames| frames.last());
+    cause.is_some_and(|frame| frame.desc().contains("not allocated"))
 }
 
 /// As many values as are picked.
