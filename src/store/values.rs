@@ -80,13 +80,14 @@ impl Picked {
 
     /// The chunks that hold some of them, by their first index, each with the numbers of those.
     fn by_chunk(&self, chunk: usize) -> Vec<(usize, Range<usize>)> {
-        let mut parts: Vec<(usize, Range<usize>)> = Vec::new();
-        for number in 0..self.count {
+        let mut parts = Vec::new();
+        let mut number = 0;
+        while number < self.count {
             let start = self.index(number) / chunk * chunk;
-            match parts.last_mut() {
-                Some((last, numbers)) if *last == start => numbers.end += 1,
-                _ => parts.push((start, number..number + 1)),
-            }
+            let behind = (start + chunk - self.start).div_ceil(self.step);
+            let end = behind.min(self.count);
+            parts.push((start, number..end));
+            number = end;
         }
         parts
     }
@@ -301,15 +302,21 @@ impl Picker<'_> {
         bytes: &[u8],
         out: &mut [T],
     ) {
-        let picked = &self.picked[axis];
-        for number in self.numbers[axis].clone() {
-            let inside = picked.index(number) - self.offset[axis];
-            let (from, to) = (from * self.chunk[axis] + inside, to * picked.count + number);
-            if axis + 1 < self.picked.len() {
-                self.along(axis + 1, (from, to), bytes, out);
-            } else {
-                out[to] = T::of(&bytes[from * size_of::<T>()..][..size_of::<T>()]);
+        let (picked, numbers) = (&self.picked[axis], self.numbers[axis].clone());
+        let inside = |number: usize| picked.index(number) - self.offset[axis];
+        let (from, to) = (from * self.chunk[axis], to * picked.count);
+        if axis + 1 < self.picked.len() {
+            for number in numbers {
+                let ahead = (from + inside(number), to + number);
+                self.along(axis + 1, ahead, bytes, out);
             }
+            return;
+        }
+        let size = size_of::<T>();
+        let row = bytes[(from + inside(numbers.start)) * size..].chunks_exact(size);
+        let places = out[to + numbers.start..to + numbers.end].iter_mut();
+        for (place, value) in places.zip(row.step_by(picked.step)) {
+            *place = T::of(value);
         }
     }
 }
@@ -409,4 +416,33 @@ pub(super) fn for_each_part<T: Number>(
         visit(&read::<T>(dataset, &[part])?);
     }
     Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Every index that is picked is in its own chunk, once and in order.
+    #[test]
+    fn picked_indices_are_cut_by_chunks() {
+        for start in 0..7 {
+            for step in 1..6 {
+                for count in 0..12 {
+                    for chunk in 1..8 {
+                        let picked = Picked { start, step, count };
+                        let mut next = 0;
+                        for (first, numbers) in picked.by_chunk(chunk) {
+                            assert_eq!((numbers.start, first % chunk), (next, 0));
+                            assert!(!numbers.is_empty());
+                            for number in numbers.clone() {
+                                assert_eq!(picked.index(number) / chunk * chunk, first);
+                            }
+                            next = numbers.end;
+                        }
+                        assert_eq!(next, count, "{picked:?} by {chunk}");
+                    }
+                }
+            }
+        }
+    }
 }
