@@ -774,14 +774,13 @@ fn odd_names_and_texts_are_answered() {
     assert_eq!(folder.files(), ["small.toml"]);
     expect(&folder.run(&["run", "small.toml"]), 0, "5 002 cells");
     let path = folder.path().join("small.h5");
+    type Title = hdf5::types::FixedUnicode<32_000>;
     let entitle = |text: &str| {
         map::edit(&path, |file| {
             file.delete_attr("title").unwrap();
-            let text = text.parse::<hdf5::types::VarLenUnicode>();
-            let title = file
-                .new_attr::<hdf5::types::VarLenUnicode>()
-                .create("title");
-            title.unwrap().write_scalar(&text.unwrap()).unwrap();
+            let title = file.new_attr::<Title>().create("title");
+            let text = text.parse::<Title>().unwrap();
+            title.unwrap().write_scalar(&text).unwrap();
         });
     };
     entitle(&"long ".repeat(6400));

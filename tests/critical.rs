@@ -533,11 +533,12 @@ fn ends_that_are_not_confirmed_are_not_decided() {
     let found = critical_velocity(&problem(fast, -0.7553344615011054, 0.0, 0.01));
     let told = (found.vc / 88.1329 - 1.0).abs() < 1e-4;
     assert!(!found.decided || told, "{found:?}");
-    // It lifts off in a transient, by some steps.
+    // It lifts off in a transient, by some steps: at 0.81278 by the ramp of another program, from v0 = 0.1 in steps of 1 to 10 %.
     let law = FrictionLaw::weakening(0.7659505970022644, 1.0087382393833446, 1.0).unwrap();
     let lifted = problem(law, 0.10212109734575425, -0.4470567829329153, 15.8);
     let found = critical_velocity(&lifted);
-    assert!(!found.decided, "{found:?}");
+    let told = (found.v_liftoff / 0.812782 - 1.0).abs() < 1e-4;
+    assert!(!found.decided || told, "{found:?}");
 }
 
 /// One cell ends with two slips in a period, its neighbours at nearly the same v0 with one: none is continued to the other.

@@ -69,7 +69,7 @@ enum Reach {
 type Edit = fn(&File, &Path) -> hdf5::Result<()>;
 
 /// What is done to a sound map, and what `verify` says then.
-const EDITS: [(&str, Edit, &str, Reach); 22] = [
+const EDITS: [(&str, Edit, &str, Reach); 24] = [
     (
         "a group in itself",
         |f, _| f.link_hard("/", "boundaries/again"),
@@ -80,6 +80,24 @@ const EDITS: [(&str, Edit, &str, Reach); 22] = [
         "the root in itself",
         |f, _| f.link_hard("/", "again"),
         "no map holds again",
+        Reach::AllButVerify,
+    ),
+    (
+        "values under many names",
+        |f, _| (0..300).try_for_each(|i| f.link_hard("tau", &format!("l{i}"))),
+        "stands under several names",
+        Reach::Nothing,
+    ),
+    (
+        "many attributes",
+        |f, _| {
+            let group = f.group("boundaries")?;
+            (0..100).try_for_each(|i| {
+                let text = format!("a{i}");
+                group.new_attr::<f64>().create(&*text).map(drop)
+            })
+        },
+        "attributes",
         Reach::AllButVerify,
     ),
     (
@@ -473,7 +491,7 @@ impl Place {
 fn is_harmless(said: &[u8]) -> bool {
     let text = String::from_utf8(said.to_vec()).unwrap();
     text.chars()
-        .all(|c| (!c.is_control() || "\n\t".contains(c)) && !('\u{202a}'..='\u{202e}').contains(&c))
+        .all(|c| (!c.is_control() || "\n\t".contains(c)) && !"\u{61c}\u{200e}\u{200f}\u{202a}\u{202b}\u{202c}\u{202d}\u{202e}\u{2066}\u{2067}\u{2068}\u{2069}".contains(c))
 }
 
 #[test]

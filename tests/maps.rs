@@ -3,12 +3,15 @@
 #[allow(dead_code, reason = "not every test binary uses all of it")]
 mod common;
 
+use std::path::Path;
+
 use slipmap::linear::Crossings;
+use slipmap::linear::certificate::roots_right_of;
 use slipmap::linear::curves::StableSide;
 use slipmap::linear::status::MARGINAL;
 use slipmap::store::MapFile;
 use slipmap::sweep::best::{best_of_plane, best_plane};
-use slipmap::sweep::{Parameter, Plan, engine};
+use slipmap::sweep::{Field, Parameter, Plan, engine};
 
 #[path = "common/map.rs"]
 mod map;
@@ -234,6 +237,28 @@ fn degrees_of_stability_bound_what_they_say() {
 }
 
 /// A map of the first format version holds no degrees of stability: its curves are crossings.
+/// A map that slipmap 0.1.0 wrote before maps had a seal: `title`, `n_unstable`, `delay_margin`, curves and best settings over
+/// mu_prime [-0.3, -0.1], alpha_v -1 to 0 (7 points), tau 0.5 to 8 (9 points).
+#[test]
+fn a_map_of_the_second_version_is_read() {
+    let path = Path::new("tests/reference/format_version_2.h5");
+    let map = MapFile::open(path).unwrap();
+    assert_eq!(map.cells(), 126);
+    let curves = map.curves_where(|_| true).unwrap();
+    assert!(!curves.is_empty() && map.best().unwrap().len() == 2);
+    let summary = map.summary(Field::DelayMargin).unwrap();
+    assert!(summary.range.is_some() && summary.missing == 0);
+    // Every count is that of the argument principle.
+    let plan = plan(&map.root_text("sweep").unwrap());
+    for (alpha, tau) in [(0, 0), (3, 4), (6, 8), (2, 7)] {
+        let index = [0, alpha, tau];
+        let (groups, unit) = plan.setting(&index).groups().unwrap();
+        let plane = map.plane(Field::NUnstable, &index, (1, 2), 100).unwrap();
+        let expected = roots_right_of(groups, plan.delay(&index) / unit, 0.0).unwrap();
+        assert_eq!(plane.cells[alpha * 9 + tau], f64::from(expected as u32));
+    }
+}
+
 #[test]
 fn maps_of_the_first_version_are_read() {
     let folder = tempfile::tempdir().unwrap();

@@ -129,8 +129,19 @@ fn memory_bounds_the_threads() {
     write(&folder, "long.toml", LONG_DELAYS);
     let refused = folder.run(&["run", "long.toml", "--memory", "100MB"]);
     expect(&refused, 2, "--memory allows 100 MB");
-    let planned = folder.run(&["plan", "long.toml", "--threads", "64", "--memory", "500MB"]);
-    expect(&planned, 0, "on 2 threads");
+    // As many pieces as threads, and a bound on what each may take.
+    write(&folder, "many.toml", &slopes(24));
+    let threads = |memory: &str| -> u64 {
+        let planned = folder.run(&["plan", "many.toml", "--threads", "25", "--memory", memory]);
+        expect(&planned, 0, "memory up to");
+        let text = program::out(&planned);
+        let told = text.split("time").nth(1).unwrap();
+        let words: Vec<&str> = told.split_whitespace().collect();
+        let place = words.iter().position(|w| w.starts_with("threads")).unwrap();
+        words[place - 1].parse().unwrap()
+    };
+    let (few, all) = (threads("200MB"), threads("2GB"));
+    assert!((1..=4).contains(&few) && all == 25, "{few} {all}");
     for bad in ["0x", "-1", "lots", ""] {
         let refused = folder.run(&["plan", "long.toml", &format!("--memory={bad}")]);
         expect(&refused, 2, "--memory");

@@ -942,6 +942,27 @@ fn a_merge_that_was_killed_while_it_cleaned_up_is_complete() {
         expect(&folder.run(command), 0, "already complete");
         assert!(!tiles.exists() && std::fs::read(&map).unwrap() == complete);
     }
+    // Where it cannot be told whether the map is complete, nothing goes and the mark stays.
+    killed(true);
+    let held = hdf5::File::open_rw(&map).unwrap();
+    for command in [
+        &["merge", "night.h5"][..],
+        &["run", "night.toml", "--shard", "1/3"],
+    ] {
+        expect(&folder.run(command), 1, "open for writing");
+        assert!(tiles.join("merged").exists() && tiles.join("2-of-3").exists());
+    }
+    held.close().unwrap();
+    std::fs::write(&map, &complete).unwrap();
+    // A mark is about the map of its own plan, not about any that is complete: the shards stay.
+    std::fs::write(tiles.join("merged"), "0".repeat(64)).unwrap();
+    expect(
+        &folder.run(&["merge", "night.h5"]),
+        1,
+        "run these shards again: 1/3",
+    );
+    assert!(tiles.join("2-of-3").exists() && std::fs::read(&map).unwrap() == complete);
+    std::fs::remove_dir_all(&tiles).unwrap();
     // Without the mark the shards are those of a map that is being computed again; the complete one stays all the same.
     killed(false);
     expect(
@@ -962,6 +983,32 @@ fn a_merge_that_was_killed_while_it_cleaned_up_is_complete() {
     expect(&folder.run(&args), 0, "is complete; when all are");
     expect(&folder.run(&["merge", "night.h5"]), 0, "388 800 cells");
     assert_eq!(datasets(&map), datasets(&folder.path().join("whole.h5")));
+}
+
+/// Folders of shards are folders, not links to some that would be emptied elsewhere.
+#[cfg(unix)]
+#[test]
+fn linked_folders_of_tiles_are_refused() {
+    use std::os::unix::fs::symlink;
+    let folder = Folder::with(&[("night.toml", NIGHT)]);
+    for shard in ["1/2", "2/2"] {
+        let args = ["run", "night.toml", "--shard", shard, "-q"];
+        expect(&folder.run(&args), 0, "is complete; when all are");
+    }
+    let tiles = folder.path().join("night.h5.tiles");
+    let (shard, away) = (tiles.join("1-of-2"), folder.path().join("away"));
+    for (what, place) in [("a shard", &shard), ("all of them", &tiles)] {
+        std::fs::rename(place, &away).unwrap();
+        symlink(&away, place).unwrap();
+        let held = |of: &Path| std::fs::read_dir(of).unwrap().count();
+        let before = held(&away);
+        expect(&folder.run(&["merge", "night.h5"]), 2, "is not by slipmap");
+        assert_eq!(held(&away), before, "{what}");
+        assert!(!folder.path().join("night.h5").exists());
+        std::fs::remove_file(place).unwrap();
+        std::fs::rename(&away, place).unwrap();
+    }
+    expect(&folder.run(&["merge", "night.h5"]), 0, "388 800 cells");
 }
 
 /// What does not belong among tiles is neither followed nor read.

@@ -38,7 +38,7 @@ pub struct Args {
 pub fn main(args: &Args) -> Result<(), Failure> {
     let signals = Signals::catch()?;
     let target = args.output.as_ref().unwrap_or(&args.map);
-    if shards::settle(&args.map, || map_maker::is_complete(target))? {
+    if shards::settle(&args.map, |hash| map_maker::is_complete(target, Some(hash)))? {
         return run::nothing_to_do(target, "", false, &signals);
     }
     let folders = folders(args)?;
@@ -90,7 +90,7 @@ fn folders(args: &Args) -> Result<Vec<PathBuf>, Failure> {
 
 /// An error, unless the shards are gone because their map is complete: a merge that is run again has nothing to do, with --fresh too.
 fn nothing_to_merge(args: &Args, target: &Path, signals: &Signals) -> Result<(), Failure> {
-    if map_maker::is_complete(target) {
+    if map_maker::is_complete(target, None)? {
         drop(shards::remove_root(&args.map));
         let remark = match args.fresh {
             true => "; there are no shards that could replace it",

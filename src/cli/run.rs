@@ -15,7 +15,7 @@ use slipmap::store::map_maker::{self, Job};
 use slipmap::store::schema::root;
 use slipmap::store::tiles::{Manifest, shards};
 use slipmap::store::{MapFile, StoreError};
-use slipmap::sweep::{Memory, Plan, RunError, Shard};
+use slipmap::sweep::{Memory, Pieces, Plan, RunError, Shard};
 
 use super::failure::Failure;
 use super::output::{self, output_path, provenance};
@@ -79,16 +79,16 @@ pub fn parse_memory(text: &str) -> Result<u64, String> {
 /// As many of the threads that are `asked` for as stay within `memory` bytes.
 pub fn threads_within(plan: &Plan, memory: u64, asked: usize) -> Result<usize, Failure> {
     let needs = Memory::of(plan);
-    let threads = needs.threads_within(memory, asked).ok_or_else(|| {
+    let useful = usize::try_from(Pieces::of(plan).total()).unwrap_or(asked);
+    needs.threads_within(memory, asked.min(useful)).ok_or_else(|| {
         let (least, given) = (bytes(needs.on(1)), bytes(memory));
         Failure::bad_input_with_help(
             format!(
                 "one thread takes up to {least} of memory in this sweep, --memory allows {given}"
             ),
-            "a larger --memory, or a sweep of shorter delays or fewer cells",
+            "--memory with a larger size, such as 2GB, allows it",
         )
-    })?;
-    Ok(threads)
+    })
 }
 
 /// Seconds of a `--save-every` flag.
@@ -111,7 +111,7 @@ pub fn main(args: &Args) -> Result<(), Failure> {
     let signals = Signals::catch()?;
     let plan = read_plan(&args.sweep)?;
     let path = output_path(args.output.as_deref(), &args.sweep, "map")?;
-    shards::settle(&path, || map_maker::is_complete(&path))?;
+    shards::settle(&path, |hash| map_maker::is_complete(&path, Some(hash)))?;
     if let Some(remark) = already_there(&path, &plan, args.fresh)? {
         drop(shards::remove_root(&path));
         return nothing_to_do(&path, &remark, args.quiet, &signals);
@@ -123,7 +123,8 @@ pub fn main(args: &Args) -> Result<(), Failure> {
     }
     let asked = args.threads.unwrap_or_else(default_threads);
     let threads = threads_within(&plan, args.memory, asked)?;
-    if threads < asked && !args.quiet {
+    let pieces = Pieces::of(&plan).total();
+    if threads < asked && (threads as u64) < pieces && !args.quiet {
         let (memory, one) = (bytes(args.memory), bytes(Memory::of(&plan).per_thread));
         say::remark(format_args!(
             "{threads} of {asked} threads: each may take {one}, and --memory allows {memory}"

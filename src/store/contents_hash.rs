@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use hdf5::{Dataset, File, Group, Location};
+use hdf5::{Dataset, File, Location};
 use sha2::{Digest, Sha256};
 
 use super::attributes::{numbers, text};
@@ -20,88 +20,79 @@ const LEFT_OUT: [&str; 5] = [
     root::HISTORY,
 ];
 
+/// More attributes than this are on nothing in a map.
+const MOST_ATTRIBUTES: usize = 64;
+
 /// SHA-256, in hexadecimal, over every group and dataset, sorted by name: name, attributes, and for datasets that are not
 /// `cells` shape and values.
 ///
 /// # Errors
 /// When something cannot be read, or is something that no map holds: other groups than slipmap's, groups in these, links.
 pub(super) fn contents_hash(file: &File, cells: &[&str]) -> hdf5::Result<String> {
-    let mut parts = BTreeMap::new();
-    let root = file.group("/")?;
-    collect(&root, "", cells, &mut parts)?;
+    let mut groups = vec![(String::new(), file.group("/")?)];
     for name in [BOUNDARIES, BEST] {
         if file.link_exists(name) {
-            let group = open::group(file, name)?;
-            collect(&group, &format!("/{name}"), cells, &mut parts)?;
+            groups.push((format!("/{name}"), open::group(file, name)?));
+        }
+    }
+    // By path: one part after the other is read, since all together may be large.
+    let mut parts = BTreeMap::new();
+    for (path, group) in &groups {
+        let own = if path.is_empty() { "/" } else { path };
+        parts.insert(own.to_owned(), (group, None));
+        for name in open::names(group)? {
+            if !(path.is_empty() && [BOUNDARIES, BEST].contains(&&*name)) {
+                parts.insert(format!("{path}/{name}"), (group, Some(name)));
+            }
         }
     }
     let mut hash = Sha256::new();
-    for (name, part) in parts {
-        hash.update((name.len() as u64).to_le_bytes());
-        hash.update(name);
-        part.add_to(&mut hash)?;
+    for (path, (group, name)) in parts {
+        hash.update((path.len() as u64).to_le_bytes());
+        hash.update(&path);
+        match name {
+            Some(name) => {
+                let dataset = open::dataset(group, &name);
+                let dataset = dataset.map_err(|why| format!("no map holds {name}: {why}"))?;
+                let is_cells = cells.iter().any(|cell| path == format!("/{cell}"));
+                add_dataset(&dataset, is_cells, &mut hash)?;
+            }
+            None => add_part(&attributes(group)?, None, &mut hash)?,
+        }
     }
     Ok(in_hexadecimal(&hash.finalize()))
 }
 
-/// Attributes and shape as bytes, and the dataset whose values come behind.
-struct Part {
-    head: Vec<u8>,
-    values: Option<Dataset>,
+fn add_dataset(dataset: &Dataset, is_cells: bool, hash: &mut Sha256) -> hdf5::Result<()> {
+    let mut head = attributes(dataset)?;
+    if is_cells {
+        return add_part(&head, None, hash);
+    }
+    for length in dataset.shape() {
+        head.extend((length as u64).to_le_bytes());
+    }
+    // Scales without coordinates have a length and nothing else.
+    let values = (dataset.storage_size() > 0).then_some(dataset);
+    add_part(&head, values, hash)
 }
 
-impl Part {
-    fn of(dataset: Dataset, is_cells: bool) -> hdf5::Result<Self> {
-        let mut head = attributes(&dataset)?;
-        if is_cells {
-            return Ok(Self { head, values: None });
-        }
-        for length in dataset.shape() {
-            head.extend((length as u64).to_le_bytes());
-        }
-        // Scales without coordinates have a length and nothing else.
-        let values = (dataset.storage_size() > 0).then_some(dataset);
-        Ok(Self { head, values })
-    }
-
-    fn add_to(&self, hash: &mut Sha256) -> hdf5::Result<()> {
-        let bytes = match &self.values {
-            Some(dataset) => dataset.size().saturating_mul(dataset.dtype()?.size()),
-            None => 0,
-        };
-        hash.update((self.head.len().saturating_add(bytes) as u64).to_le_bytes());
-        hash.update(&self.head);
-        match &self.values {
-            Some(dataset) => add_values(dataset, hash),
-            None => Ok(()),
-        }
-    }
-}
-
-fn collect(
-    group: &Group,
-    path: &str,
-    cells: &[&str],
-    parts: &mut BTreeMap<String, Part>,
-) -> hdf5::Result<()> {
-    let name = if path.is_empty() { "/" } else { path };
-    let head = attributes(group)?;
-    parts.insert(name.to_owned(), Part { head, values: None });
-    for name in open::names(group)? {
-        if path.is_empty() && [BOUNDARIES, BEST].contains(&&*name) {
-            continue;
-        }
-        let dataset = open::dataset(group, &name);
-        let dataset = dataset.map_err(|why| format!("no map holds {name}: {why}"))?;
-        let is_cells = path.is_empty() && cells.contains(&&*name);
-        parts.insert(format!("{path}/{name}"), Part::of(dataset, is_cells)?);
-    }
-    Ok(())
+/// Adds attributes and shape as bytes, and the values that come behind, after the length of both.
+fn add_part(head: &[u8], values: Option<&Dataset>, hash: &mut Sha256) -> hdf5::Result<()> {
+    let bytes = match values {
+        Some(dataset) => dataset.size().saturating_mul(dataset.dtype()?.size()),
+        None => 0,
+    };
+    hash.update((head.len().saturating_add(bytes) as u64).to_le_bytes());
+    hash.update(head);
+    values.map_or(Ok(()), |dataset| add_values(dataset, hash))
 }
 
 /// Names and values of all attributes that count, by name.
 fn attributes(of: &Location) -> hdf5::Result<Vec<u8>> {
     let mut names = of.attr_names()?;
+    if names.len() > MOST_ATTRIBUTES {
+        return Err(format!("something with {} attributes", names.len()).into());
+    }
     names.sort();
     let mut bytes = Vec::new();
     for name in names

@@ -10,6 +10,7 @@ use super::error::StoreError;
 use super::map_file::MapFile;
 use super::map_writer::Provenance;
 use super::output::Output;
+use super::schema::root;
 use super::source::InMemory;
 use super::tiles::folder::BETWEEN_FILES;
 use super::tiles::shards::{self, Shards};
@@ -138,7 +139,11 @@ pub fn merge(
     let (mut source, damaged) = Shards::claim(folders, &expected, Pieces::of(plan), stop)?;
     tell(&damaged, observer);
     let lacking = source.missing(Pieces::of(plan).total());
-    if lacking > 0 && missing == Missing::Leave && !asked.replace_complete && is_complete(map) {
+    if lacking > 0
+        && missing == Missing::Leave
+        && !asked.replace_complete
+        && is_complete(map, None)?
+    {
         return Err(StoreError::WouldLose {
             path: map.to_owned(),
             pieces: lacking,
@@ -149,17 +154,27 @@ pub fn merge(
         .remove_beside
         .filter(|_| assembled.pieces_missing == 0)
     {
-        shards::mark_merged(beside)?;
+        shards::mark_merged(beside, &plan.hash())?;
         source.remove()?;
         shards::remove_root(beside)?;
     }
     Ok(assembled)
 }
 
-/// Whether a map that lacks nothing is at `path`.
-#[must_use]
-pub fn is_complete(path: &Path) -> bool {
-    MapFile::open(path).is_ok_and(|map| !map.is_partial())
+/// Whether a map that lacks nothing is at `path`, that of a plan where its hash is given.
+///
+/// # Errors
+/// When something is there that cannot be read as a map: whether it is one is not known then.
+pub fn is_complete(path: &Path, plan_hash: Option<&str>) -> Result<bool, StoreError> {
+    if !path.exists() {
+        return Ok(false);
+    }
+    let map = MapFile::open(path)?;
+    let of_plan = plan_hash.is_none_or(|hash| {
+        // Marks of earlier programs are empty.
+        hash.is_empty() || map.root_text(root::PLAN_HASH).as_deref() == Some(hash)
+    });
+    Ok(of_plan && !map.is_partial())
 }
 
 /// Computes a map without leaving anything beside it: for small ones.

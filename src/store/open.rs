@@ -213,6 +213,9 @@ fn filters(plist: hid_t) -> Vec<c_int> {
 /// Why a dataset is none of slipmap's, before anything of it is read.
 fn vet_dataset(dataset: &Dataset) -> Result<(), String> {
     let damaged = |error: hdf5::Error| format!("cannot be read: {error}");
+    if dataset.loc_info().map_err(damaged)?.num_links != 1 {
+        return Err("stands under several names".into());
+    }
     let plist = dataset.create_plist().map_err(damaged)?;
     // SAFETY: the property list is open.
     let outside = hdf5::sync::sync(|| unsafe { H5Pget_external_count(plist.id()) });

@@ -17,8 +17,10 @@ const COPIES_OF_AXES: u64 = 4;
 const PER_THREAD: u64 = 2 << 20;
 /// A tile in a thread: as numbers, as it is compressed, and those that wait for the disk.
 const COPIES_OF_TILES: u64 = 4;
-/// A plane with as many curves as are traced, with its copies on the way to the disk.
+/// A plane with as many curves as are traced, with its copies on the way to the disk; and one more degree of stability, of
+/// whose curves only those are traced that bound a region.
 const PLANE_OF_CURVES: u64 = 24 << 20;
+const CURVES_OF_A_DEGREE: u64 = 1 << 20;
 /// Pasts of motions that a thread has at once, where outcomes are looked for, and where critical velocities are.
 const PASTS_OF_OUTCOMES: u64 = 1;
 const PASTS_OF_CRITICAL: u64 = 10;
@@ -46,10 +48,10 @@ impl Memory {
             + PER_BEST * pieces.best
             + COPIES_OF_AXES * axes * size_of::<f64>() as u64;
         let tile = plan.tiles.tile_cells() as u64 * plan.bytes_per_cell();
-        let degrees = 1 + plan.spec.degrees_of_stability.len() as u64;
+        let degrees = plan.spec.degrees_of_stability.len() as u64;
         let curves = match pieces.curves {
             0 => 0,
-            _ => PLANE_OF_CURVES * degrees,
+            _ => PLANE_OF_CURVES + CURVES_OF_A_DEGREE * degrees,
         };
         let per_thread = PER_THREAD + COPIES_OF_TILES * tile + curves + pasts(plan);
         Self { shared, per_thread }

@@ -2,11 +2,12 @@
 
 use std::collections::BTreeSet;
 use std::fs;
-use std::io::ErrorKind::NotFound;
+use std::io::ErrorKind::{NotADirectory, NotFound};
+use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::AtomicBool;
 
-use super::super::durable::{sync_name, write_synced};
+use super::super::durable::{NotRead, read_regular, sync_name, write_synced};
 use super::super::error::StoreError;
 use super::super::source::Source;
 use super::folder::{self, Belongs, TileFolder};
@@ -30,8 +31,10 @@ pub fn folder_of(map: &Path, shard: Shard) -> PathBuf {
     root(map).join(format!("{number}-of-{of}"))
 }
 
-/// In the folder of shards: the map of all of them is complete, and they are being removed.
+/// In the folder of shards: the map of all of them is complete, and they are being removed. Holds the hash of its plan.
 const MERGED: &str = "merged";
+/// More bytes are in no such file.
+const MOST_OF_MARK: u64 = 1024;
 
 fn marker(map: &Path) -> PathBuf {
     root(map).join(MERGED)
@@ -41,26 +44,34 @@ fn marker(map: &Path) -> PathBuf {
 ///
 /// # Errors
 /// When the system refuses.
-pub fn mark_merged(map: &Path) -> Result<(), StoreError> {
+pub fn mark_merged(map: &Path, plan_hash: &str) -> Result<(), StoreError> {
     let path = marker(map);
     if path.exists() {
         return Ok(());
     }
-    write_synced(&path, |_| Ok(()))?;
+    write_synced(&path, |out| out.write_all(plan_hash.as_bytes()))?;
     sync_name(&path)
 }
 
-/// Goes on with a removal of shards that was stopped midway, and says whether there was one. Where their map is not complete, it
-/// has gone since, and the shards that are left count as any.
+/// Goes on with a removal of shards that was stopped midway, and says whether there was one. `is_complete` is asked whether the
+/// map of a plan's hash is; where it is not, it has gone since, and the shards that are left count as any.
 ///
 /// # Errors
-/// As [`clear`].
-pub fn settle(map: &Path, is_complete: impl FnOnce() -> bool) -> Result<bool, StoreError> {
+/// As [`clear`], and those of `is_complete`: the shards are then neither removed nor taken for half a map.
+pub fn settle(
+    map: &Path,
+    is_complete: impl FnOnce(&str) -> Result<bool, StoreError>,
+) -> Result<bool, StoreError> {
     let path = marker(map);
-    if !path.exists() {
-        return Ok(false);
-    }
-    if is_complete() {
+    let hash = match read_regular(&path, MOST_OF_MARK) {
+        Ok(hash) => hash,
+        Err(NotRead::Refused(error)) if [NotFound, NotADirectory].contains(&error.kind()) => {
+            return Ok(false);
+        }
+        Err(NotRead::Refused(error)) => return Err(StoreError::io("read", &path)(error)),
+        Err(NotRead::Large(_) | NotRead::Foreign) => return Err(StoreError::Foreign { path }),
+    };
+    if is_complete(&String::from_utf8_lossy(&hash))? {
         return clear(map).map(|()| true);
     }
     let removed = fs::remove_file(&path).map_err(StoreError::io("remove", &path));
@@ -89,13 +100,25 @@ fn all(map: &Path) -> Result<Vec<(Shard, PathBuf)>, StoreError> {
     if !root.exists() {
         return Ok(Vec::new());
     }
+    refuse_link(&root)?;
     let paths = folder::listed(&root, |name| shard_of(name).is_some())?;
+    paths.iter().try_for_each(|path| refuse_link(path))?;
     let mut shards: Vec<(Shard, PathBuf)> = paths
         .into_iter()
         .filter_map(|path| Some((shard_of(path.file_name()?.to_str()?)?, path)))
         .collect();
     shards.sort_by_key(|(shard, _)| shard.numbers());
     Ok(shards)
+}
+
+/// What is removed later has to be a folder of its own, not a way to one elsewhere.
+fn refuse_link(folder: &Path) -> Result<(), StoreError> {
+    match folder.symlink_metadata().is_ok_and(|m| m.is_dir()) {
+        true => Ok(()),
+        false => Err(StoreError::Foreign {
+            path: folder.to_owned(),
+        }),
+    }
 }
 
 /// The first sound manifest of the folders of shards, and the plan that it is of.
@@ -206,13 +229,10 @@ pub fn clear_shard(map: &Path, shard: Shard) -> Result<(), StoreError> {
 pub fn make_root(map: &Path) -> Result<(), StoreError> {
     let root = root(map);
     folder::make(&root)?;
-    let foreign = |path: PathBuf| Err(StoreError::Foreign { path });
-    if !root.symlink_metadata().is_ok_and(|m| m.is_dir()) {
-        return foreign(root);
-    }
+    refuse_link(&root)?;
     let foreign_name = |name: &str| name != MERGED && shard_of(name).is_none();
     match folder::listed(&root, foreign_name)?.pop() {
-        Some(path) => foreign(path),
+        Some(path) => Err(StoreError::Foreign { path }),
         None => Ok(()),
     }
 }
