@@ -9,9 +9,9 @@ use super::plan::Plan;
 /// A part of a sweep that is computed, stored and checked by itself; each kind is numbered from 0.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Piece {
-    /// The curves of a plane, see [`super::boundaries::planes`].
+    /// The curves of a plane, see [`super::boundaries::plane`].
     Curves(u64),
-    /// The best settings of a plane, see [`super::best::best_planes`].
+    /// The best settings of a plane, see [`super::best::best_plane`].
     Best(u64),
     /// The cells of a tile.
     Tile(u64),
