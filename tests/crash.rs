@@ -5,6 +5,8 @@
 //! `SLIPMAP_FAULTS=all` asks for states at every place of the traces; by default some are tried. `SLIPMAP_SEED` for others.
 #![cfg(target_os = "linux")]
 
+#[path = "common/chance.rs"]
+mod chance;
 #[path = "crash/disk.rs"]
 mod disk;
 #[path = "common/interposer.rs"]
@@ -19,23 +21,15 @@ mod trace;
 use std::collections::{BTreeMap, HashSet};
 use std::hash::{DefaultHasher, Hash, Hasher};
 
+use chance::Chance;
 use disk::{Change, Disk, Name, Number, lasting};
-use interposer::{copy, interposed};
+use interposer::{SWEEP, copy, interposed};
 use map::datasets;
 use program::{Folder, err, out};
 use slipmap::store::tiles::{Manifest, format};
 use slipmap::sweep::Piece;
 use trace::Trace;
 
-/// Curves, best settings and decay rates in a few tiles.
-const SWEEP: &str = "
-    fields = [\"n_unstable\", \"abscissa\"]
-    best = true
-    [axes]
-    mu_prime = [-0.5, -0.2]
-    alpha_n = { from = -3.0, to = 1.0, points = 31 }
-    tau = { from = 0.05, to = 9.0, points = 40 }
-";
 const OLD: &str = "[axes]\nmu_prime = [-0.3]\nalpha_n = { from = -3.0, to = 1.0, points = 9 }\ntau = [1.0, 2.0, 3.0]\n";
 
 /// States of a case that the test command tries.
@@ -112,19 +106,6 @@ const CASES: [Case; 5] = [
         then: &[],
     },
 ];
-
-/// SplitMix64.
-struct Chance(u64);
-
-impl Chance {
-    fn below(&mut self, n: u64) -> u64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        (z ^ (z >> 31)) % n
-    }
-}
 
 /// What there is of changes that were not synced.
 #[derive(Debug, Clone, Copy)]

@@ -16,19 +16,10 @@ use std::path::Path;
 use std::process::{Command, Output, Stdio};
 use std::time::{Duration, Instant};
 
-use interposer::{copy, interposed};
+use interposer::{SWEEP, copy, interposed};
 use map::datasets;
 use program::{Folder, err, expect};
 
-/// Curves, best settings and decay rates in a few tiles' files.
-const SWEEP: &str = "
-    fields = [\"n_unstable\", \"abscissa\"]
-    best = true
-    [axes]
-    mu_prime = [-0.5, -0.2]
-    alpha_n = { from = -3.0, to = 1.0, points = 31 }
-    tau = { from = 0.05, to = 9.0, points = 40 }
-";
 const CASE: &str = "[friction]\nlaw = \"weakening\"\nmu0 = 0.5\nv_s = 0.5\n[fixed]\nv0 = 0.1\nalpha_n = -10\ntau = 0.5\n\
                     [trace]\nuntil = 30\n";
 

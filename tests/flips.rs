@@ -5,6 +5,8 @@
 
 #![cfg(unix)]
 
+#[path = "common/chance.rs"]
+mod chance;
 #[path = "common/limited.rs"]
 mod limited;
 #[path = "common/map.rs"]
@@ -16,6 +18,7 @@ use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
 
+use chance::{Chance, asked};
 use limited::End;
 use program::{Folder, err, expect};
 use slipmap::sweep::Plan;
@@ -30,29 +33,25 @@ const SWEEPS: [&str; 3] = [
      [fixed]\nv0 = 0.2\nnormal_load = 2\n[friction]\nlaw = \"weakening\"\nmu0 = 0.5\nv_s = 0.5\n",
 ];
 
-fn asked(name: &str, otherwise: u64) -> u64 {
-    let number = std::env::var(name).ok().and_then(|n| n.parse().ok());
-    number.unwrap_or(otherwise)
+/// Flips another bit in one place, and tells which.
+fn flip(chance: &mut Chance, bytes: &mut [u8]) -> usize {
+    let bit = chance.below(8 * bytes.len() as u64) as usize;
+    bytes[bit / 8] ^= 1 << (bit % 8);
+    bit
 }
 
-/// SplitMix64.
-struct Chance(u64);
+/// The command that computes a shard of the map.
+fn run(shard: &str) -> Vec<&str> {
+    let shard = ["--shard", shard, "-q", "--save-every", "0"];
+    ["run", "sweep.toml", "-o", "map.h5"]
+        .into_iter()
+        .chain(shard)
+        .collect()
+}
 
-impl Chance {
-    fn below(&mut self, n: usize) -> usize {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        ((z ^ (z >> 31)) % n as u64) as usize
-    }
-
-    /// Another bit in one place.
-    fn flip(&mut self, bytes: &mut [u8]) -> usize {
-        let bit = self.below(8 * bytes.len());
-        bytes[bit / 8] ^= 1 << (bit % 8);
-        bit
-    }
+/// The command that computes a shard and drops what is there first.
+fn run_fresh(shard: &str) -> Vec<&str> {
+    run(shard).into_iter().chain(["--fresh"]).collect()
 }
 
 #[test]
@@ -73,7 +72,7 @@ fn every_flipped_bit_of_a_map_is_found() {
     for number in 0..asked("SLIPMAP_FLIPS", 150) as usize {
         let kind = number % maps.len();
         let mut bytes = maps[kind].clone();
-        let bit = chance.flip(&mut bytes);
+        let bit = flip(&mut chance, &mut bytes);
         fs::write(&path, &bytes).unwrap();
         let ended = limited::run(folder.path(), &verify, &[]);
         let text = ended.text();
@@ -135,19 +134,6 @@ fn told(path: &Path) -> (Vec<Option<String>>, BTreeMap<String, Vec<u8>>) {
 fn a_flipped_bit_of_tiles_and_manifests_makes_no_other_map() {
     let sweep = SWEEPS[1];
     let shards = ["1/2", "2/2"];
-    let run = |shard| {
-        [
-            "run",
-            "sweep.toml",
-            "-o",
-            "map.h5",
-            "--shard",
-            shard,
-            "-q",
-            "--save-every",
-            "0",
-        ]
-    };
     let folder = Folder::with(&[("sweep.toml", sweep)]);
     let path = |name: &str| folder.path().join(name);
     for shard in shards {
@@ -171,9 +157,9 @@ fn a_flipped_bit_of_tiles_and_manifests_makes_no_other_map() {
         // Every other time a manifest.
         let wanted = |f: &&PathBuf| number % 2 == 0 || f.ends_with("manifest.json");
         let candidates: Vec<&PathBuf> = all.iter().filter(wanted).collect();
-        let file = candidates[chance.below(candidates.len())];
+        let file = candidates[chance.below(candidates.len() as u64) as usize];
         let mut bytes = fs::read(file).unwrap();
-        let bit = chance.flip(&mut bytes);
+        let bit = flip(&mut chance, &mut bytes);
         fs::write(file, &bytes).unwrap();
         let what = format!("bit {bit} of {}", file.display());
         // Half of the time the runs go on first, as after a requeue.
@@ -191,8 +177,7 @@ fn a_flipped_bit_of_tiles_and_manifests_makes_no_other_map() {
             for shard in shards {
                 let again = folder.run(&run(shard));
                 if again.status.code() != Some(0) {
-                    let fresh: Vec<&str> = run(shard).into_iter().chain(["--fresh"]).collect();
-                    expect(&folder.run(&fresh), 0, "complete");
+                    expect(&folder.run(&run_fresh(shard)), 0, "complete");
                 }
             }
             expect(&folder.run(&["merge", "map.h5"]), 0, "");
@@ -232,17 +217,7 @@ fn mend(folder: &Folder, refused: &std::process::Output, what: &str) -> &'static
     );
     if words.contains("--fresh") {
         for shard in ["1/2", "2/2"] {
-            let fresh = [
-                "run",
-                "sweep.toml",
-                "-o",
-                "map.h5",
-                "--shard",
-                shard,
-                "-q",
-                "--fresh",
-            ];
-            expect(&folder.run(&fresh), 0, "complete");
+            expect(&folder.run(&run_fresh(shard)), 0, "complete");
         }
         return "--fresh";
     }

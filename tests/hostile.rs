@@ -123,46 +123,31 @@ const EDITS: [(&str, Edit, &str, Reach); 24] = [
     ),
     (
         "an axis in another file",
-        |f, _| {
-            f.unlink("tau")?;
-            f.link_external("other.h5", "/tau", "tau")
-        },
+        |f, _| linked(f, "tau", "other.h5"),
         "tau is a link",
         Reach::Nothing,
     ),
     (
         "an axis in a pipe",
-        |f, _| {
-            f.unlink("tau")?;
-            f.link_external("pipe", "/tau", "tau")
-        },
+        |f, _| linked(f, "tau", "pipe"),
         "tau is a link",
         Reach::Nothing,
     ),
     (
         "a field in another file",
-        |f, _| {
-            f.unlink("abscissa")?;
-            f.link_external("other.h5", "/abscissa", "abscissa")
-        },
+        |f, _| linked(f, "abscissa", "other.h5"),
         "abscissa is a link",
         Reach::Nothing,
     ),
     (
         "a group in another file",
-        |f, _| {
-            f.unlink("best")?;
-            f.link_external("other.h5", "/best", "best")
-        },
+        |f, _| linked(f, "best", "other.h5"),
         "best",
         Reach::Nothing,
     ),
     (
         "curves in another file",
-        |f, _| {
-            f.unlink("boundaries/tau")?;
-            f.link_external("other.h5", "/boundaries/tau", "boundaries/tau")
-        },
+        |f, _| linked(f, "boundaries/tau", "other.h5"),
         "tau is a link",
         Reach::Some,
     ),
@@ -239,6 +224,12 @@ const EDITS: [(&str, Edit, &str, Reach); 24] = [
         Reach::Some,
     ),
 ];
+
+/// Puts a link to another file in the place of something.
+fn linked(file: &File, name: &str, other: &str) -> hdf5::Result<()> {
+    file.unlink(name)?;
+    file.link_external(other, &format!("/{name}"), name)
+}
 
 fn nested(file: &File, _: &Path) -> hdf5::Result<()> {
     let mut group = file.create_group("deep")?;

@@ -5,6 +5,8 @@
 
 #![cfg(unix)]
 
+#[path = "common/chance.rs"]
+mod chance;
 #[path = "common/map.rs"]
 mod map;
 #[path = "common/program.rs"]
@@ -17,6 +19,7 @@ use std::sync::atomic::AtomicBool;
 use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
 
+use chance::{Chance, asked};
 use map::datasets;
 use program::{Folder, expect, out};
 use slipmap::store::assembly::Missing;
@@ -51,26 +54,6 @@ const LARGE: &str = "
 fn alone() -> MutexGuard<'static, ()> {
     static ONE: Mutex<()> = Mutex::new(());
     ONE.lock().unwrap_or_else(PoisonError::into_inner)
-}
-
-fn asked(name: &str, otherwise: u64) -> u64 {
-    std::env::var(name)
-        .ok()
-        .and_then(|n| n.parse().ok())
-        .unwrap_or(otherwise)
-}
-
-/// SplitMix64.
-struct Chance(u64);
-
-impl Chance {
-    fn below(&mut self, n: u64) -> u64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        (z ^ (z >> 31)) % n
-    }
 }
 
 fn start(folder: &Folder, args: &[&str]) -> Child {

@@ -76,11 +76,15 @@ pub fn parse_memory(text: &str) -> Result<u64, String> {
         .map_err(|_| "expected a size such as 500MB or 2GiB".to_owned())
 }
 
-/// As many of the threads that are `asked` for as stay within `memory` bytes.
+/// Of the threads that are `asked` for, as many as there are pieces.
+fn useful(plan: &Plan, asked: usize) -> usize {
+    usize::try_from(Pieces::of(plan).total()).map_or(asked, |pieces| asked.min(pieces))
+}
+
+/// As many of the threads that are `asked` for as are useful and stay within `memory` bytes.
 pub fn threads_within(plan: &Plan, memory: u64, asked: usize) -> Result<usize, Failure> {
     let needs = Memory::of(plan);
-    let useful = usize::try_from(Pieces::of(plan).total()).unwrap_or(asked);
-    needs.threads_within(memory, asked.min(useful)).ok_or_else(|| {
+    needs.threads_within(memory, useful(plan, asked)).ok_or_else(|| {
         let (least, given) = (bytes(needs.on(1)), bytes(memory));
         Failure::bad_input_with_help(
             format!(
@@ -123,8 +127,7 @@ pub fn main(args: &Args) -> Result<(), Failure> {
     }
     let asked = args.threads.unwrap_or_else(default_threads);
     let threads = threads_within(&plan, args.memory, asked)?;
-    let pieces = Pieces::of(&plan).total();
-    if threads < asked && (threads as u64) < pieces && !args.quiet {
+    if threads < useful(&plan, asked) && !args.quiet {
         let (memory, one) = (bytes(args.memory), bytes(Memory::of(&plan).per_thread));
         say::remark(format_args!(
             "{threads} of {asked} threads: each may take {one}, and --memory allows {memory}"

@@ -29,7 +29,7 @@ pub fn remark(line: impl Display) {
     coloured(visible(&line.to_string()));
 }
 
-/// The same of a text that holds no other control characters than slipmap's own.
+/// A line for people, of a text that holds no other control characters than slipmap's own.
 pub fn coloured(text: impl Display) {
     let _ = writeln!(std::io::stderr(), "{text}");
 }

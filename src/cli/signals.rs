@@ -57,7 +57,7 @@ impl Signals {
         }
     }
 
-    /// The same, if one has come; else `failure`.
+    /// [`Signals::interrupted`] where a signal has come, else `failure`.
     pub fn or_stopped(&self, failure: Failure, message: impl Display) -> Failure {
         match self.stop.load(Ordering::Relaxed) {
             true => self.interrupted(message),

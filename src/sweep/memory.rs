@@ -38,7 +38,7 @@ pub struct Memory {
 }
 
 impl Memory {
-    /// Of a run of `plan`.
+    /// What a run of `plan` takes at most.
     #[must_use]
     pub fn of(plan: &Plan) -> Self {
         let pieces = Pieces::of(plan);
@@ -57,7 +57,7 @@ impl Memory {
         Self { shared, per_thread }
     }
 
-    /// On so many threads.
+    /// Bytes that a run on so many threads takes at most.
     #[must_use]
     pub fn on(&self, threads: usize) -> u64 {
         self.shared + self.per_thread * threads as u64

@@ -6,6 +6,16 @@ use std::sync::OnceLock;
 
 use super::program::{Folder, err};
 
+/// Curves, best settings and decay rates in a few tiles.
+pub const SWEEP: &str = "
+    fields = [\"n_unstable\", \"abscissa\"]
+    best = true
+    [axes]
+    mu_prime = [-0.5, -0.2]
+    alpha_n = { from = -3.0, to = 1.0, points = 31 }
+    tau = { from = 0.05, to = 9.0, points = 40 }
+";
+
 /// The library, built once.
 fn library() -> &'static Path {
     static BUILT: OnceLock<(tempfile::TempDir, PathBuf)> = OnceLock::new();
