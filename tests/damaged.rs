@@ -3,6 +3,8 @@
 //!
 //! `SLIPMAP_DAMAGED=10000 cargo test --release --test damaged -- --nocapture` tries so many files and prints how they ended.
 
+#[path = "common/chance.rs"]
+mod chance;
 #[path = "damaged/checksums.rs"]
 mod checksums;
 #[path = "common/limited.rs"]
@@ -16,6 +18,7 @@ use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
 
+use chance::Chance;
 use limited::End;
 use program::{Folder, expect};
 
@@ -57,23 +60,6 @@ const SIGNATURES: [&[u8]; 10] = [
     b"\x89HDF", b"OHDR", b"OCHK", b"TREE", b"HEAP", b"SNOD", b"GCOL", b"FRHP", b"BTHD", b"FADB",
 ];
 
-/// A reproducible stream of numbers (SplitMix64).
-struct Chance(u64);
-
-impl Chance {
-    fn next(&mut self) -> u64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        z ^ (z >> 31)
-    }
-
-    fn below(&mut self, end: usize) -> usize {
-        (self.next() % end.max(1) as u64) as usize
-    }
-}
-
 /// Places where metadata begins.
 fn metadata(bytes: &[u8]) -> Vec<usize> {
     let signed = |at: &usize| SIGNATURES.iter().any(|s| bytes[*at..].starts_with(s));
@@ -83,32 +69,30 @@ fn metadata(bytes: &[u8]) -> Vec<usize> {
 /// The bytes, damaged in one to three places, most of them in metadata.
 fn damaged(sound: &[u8], metadata: &[usize], chance: &mut Chance) -> Vec<u8> {
     let mut bytes = sound.to_vec();
-    for _ in 0..=chance.below(3) {
-        let at = match chance.below(10) {
-            0..6 if !metadata.is_empty() => {
-                metadata[chance.below(metadata.len())] + chance.below(200)
-            }
-            0..8 => chance.below(2048),
-            _ => chance.below(bytes.len()),
+    for _ in 0..=chance.of(3) {
+        let at = match chance.of(10) {
+            0..6 if !metadata.is_empty() => metadata[chance.of(metadata.len())] + chance.of(200),
+            0..8 => chance.of(2048),
+            _ => chance.of(bytes.len()),
         };
         if bytes.is_empty() {
             break;
         }
         let at = at.min(bytes.len() - 1);
-        let end = (at + 1 + chance.below(64)).min(bytes.len());
-        match chance.below(12) {
-            0..4 => bytes[at] ^= 1 << chance.below(8),
+        let end = (at + 1 + chance.of(64)).min(bytes.len());
+        match chance.of(12) {
+            0..4 => bytes[at] ^= 1 << chance.of(8),
             4..6 => bytes[at] = chance.next() as u8,
             6 => bytes[at..end].fill(0),
             7 => bytes[at..end].fill(0xff),
-            8 => bytes[at] = [0, 1, 0x7f, 0x80, 0xfe, 0xff][chance.below(6)],
+            8 => bytes[at] = [0, 1, 0x7f, 0x80, 0xfe, 0xff][chance.of(6)],
             9 => {
                 let end = (at + 8).min(bytes.len());
-                let huge = [u64::MAX, 1 << 40, 1 << 31, 1 << 63, 0][chance.below(5)];
+                let huge = [u64::MAX, 1 << 40, 1 << 31, 1 << 63, 0][chance.of(5)];
                 bytes[at..end].copy_from_slice(&huge.to_le_bytes()[..end - at]);
             }
             10 => {
-                let from = chance.below(bytes.len() - (end - at) + 1);
+                let from = chance.of(bytes.len() - (end - at) + 1);
                 bytes.copy_within(from..from + (end - at), at);
             }
             _ => bytes.truncate(at),
@@ -237,7 +221,7 @@ fn damaged_files_end_in_a_message() {
         let (whole, places, blocks) = &sources[usize::from(name == "simulate")];
         let mut bytes = damaged(whole, places, &mut chance);
         // Every other file gets past the library's own checksums.
-        if chance.below(2) == 0 {
+        if chance.of(2) == 0 {
             checksums::repair(&mut bytes, blocks);
         }
         sound.put(name, &bytes);

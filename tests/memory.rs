@@ -35,6 +35,18 @@ const BILLION: &str = "fields = [\"n_unstable\"]\n[axes]\n\
     alpha_v = { from = -2.0, to = 2.0, points = 1000 }\n\
     tau = { from = 0.1, to = 10.0, points = 1000 }\n";
 
+/// As many degrees of stability as a sweep may ask for.
+const DEGREES: &str = "fields = [\"n_unstable\"]\nboundaries = true\n\
+    degree_of_stability = [0.01, 0.02, 0.03, 0.04, 0.05, 0.06, 0.07, 0.08, \
+    0.09, 0.1, 0.11, 0.12, 0.13, 0.14, 0.15, 0.16]\n[axes]\n\
+    mu_prime = { from = -0.5, to = 0.1, points = 3 }\n\
+    alpha_n = { from = -3.0, to = 1.0, points = 41 }\n\
+    tau = { from = 0.1, to = 60.0, points = 41 }\n";
+
+/// As many points along an axis as there may be.
+const LONG_AXIS: &str = "fields = [\"n_unstable\"]\n[axes]\n\
+    tau = { from = 0.1, to = 10.0, points = 10000000 }\n[fixed]\nmu_prime = -0.1\nalpha_v = -0.2\n";
+
 /// Delays of 10⁷ units of time.
 const LONG_DELAYS: &str = "fields = [\"vc\"]\n[axes]\nalpha_v = [0.00165272, 0.0016]\ntau = [6280.74, 6281.0]\n\
     [friction]\nlaw = \"coulomb\"\nmu0 = 0.455747\n\
@@ -168,10 +180,13 @@ fn sweeps(folder: &Folder) -> Vec<String> {
     }
     assert!(names.len() >= if all { 15 } else { 3 });
     names.sort();
+    write(folder, "degrees.toml", DEGREES);
+    names.push("degrees".to_owned());
     if all {
+        write(folder, "long_axis.toml", LONG_AXIS);
         write(folder, "slopes.toml", &slopes(4000));
         write(folder, "billion.toml", BILLION);
-        names.extend(["slopes".to_owned(), "billion".to_owned()]);
+        names.extend(["long_axis", "slopes", "billion"].map(str::to_owned));
     }
     names
 }

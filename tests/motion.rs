@@ -2,6 +2,10 @@
 //!
 //! Units: M = κ = N0 = 1, so that everything is dimensionless as in `slipmap::slip::motion`.
 
+#[path = "common/chance.rs"]
+mod chance;
+
+use chance::Chance;
 use slipmap::linear::rightmost::Rightmost;
 use slipmap::linear::{Crossings, MarginalTolerance};
 use slipmap::model::friction::Kind;
@@ -452,31 +456,6 @@ fn kinks_long_ago_do_not_stop_the_motion() {
             let event = motion.advance(end);
             assert!(motion.t > before || event.is_some(), "{tau}: {before}");
         }
-    }
-}
-
-/// Numbers that look random, the same in every run (splitmix64).
-struct Chance(u64);
-
-impl Chance {
-    fn unit(&mut self) -> f64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        ((z ^ (z >> 31)) >> 11) as f64 / (1_u64 << 53) as f64
-    }
-
-    fn between(&mut self, from: f64, to: f64) -> f64 {
-        from + (to - from) * self.unit()
-    }
-
-    fn log(&mut self, from: f64, to: f64) -> f64 {
-        self.between(from.ln(), to.ln()).exp()
-    }
-
-    fn of(&mut self, n: usize) -> usize {
-        (self.unit() * n as f64) as usize
     }
 }
 

@@ -9,6 +9,7 @@ use super::schema::{BEST, best as names};
 use super::values::{Number, whole};
 use crate::linear::best::Kind;
 use crate::sweep::Parameter;
+use crate::sweep::tile::index_of;
 
 /// The best setting of one plane of a map, in the units of the map.
 #[derive(Debug, Clone, PartialEq)]
@@ -52,7 +53,8 @@ impl MapFile {
             .filter(|&axis| axis != gain && axis != tau)
             .map(|axis| self.axes()[axis].values.as_slice())
             .collect();
-        let planes = outer.iter().map(|values| values.len()).product();
+        let lengths: Vec<usize> = outer.iter().map(|values| values.len()).collect();
+        let planes = lengths.iter().product();
         let read = || -> hdf5::Result<Vec<MapBest>> {
             let group = Columns {
                 group: self.group(BEST)?,
@@ -67,7 +69,9 @@ impl MapFile {
             let certified = group.read::<i8>(names::CERTIFIED)?;
             let regions = group.read::<i32>(names::REGIONS)?;
             let best = |i: usize| MapBest {
-                outer: outer_values(&outer, i),
+                outer: (index_of(i as u64, &lengths).into_iter().zip(&outer))
+                    .map(|(at, values)| values[at])
+                    .collect(),
                 gain: gains[i],
                 tau: taus[i],
                 abscissa: abscissas[i],
@@ -104,14 +108,4 @@ impl Columns {
 fn kind(number: i8) -> Option<Kind> {
     let place = usize::try_from(number).ok()?;
     Kind::ALL.get(place).copied()
-}
-
-/// The values of the axes at the plane `number`, the last axis fastest.
-fn outer_values(axes: &[&[f64]], mut number: usize) -> Vec<f64> {
-    let mut values = vec![0.0; axes.len()];
-    for (value, axis) in values.iter_mut().zip(axes).rev() {
-        *value = axis[number % axis.len()];
-        number /= axis.len();
-    }
-    values
 }

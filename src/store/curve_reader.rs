@@ -181,12 +181,6 @@ impl CurveColumns {
 
 /// Some values of a column.
 fn part<T: Number>(column: &Dataset, rows: Range<usize>) -> hdf5::Result<Vec<T>> {
-    if !column.is_chunked() {
-        // Not slipmap's, and no larger than what is stored of it.
-        let all = values::whole::<T>(column)?;
-        let part = all.get(rows).ok_or("it has fewer values")?;
-        return Ok(part.to_vec());
-    }
     let slab = SliceOrIndex::SliceCount {
         start: rows.start,
         step: 1,

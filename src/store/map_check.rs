@@ -21,6 +21,7 @@ use crate::sweep::engine::{Computed, Encode, STATUS_FILL, Worker};
 use crate::sweep::pieces::{Piece, spread};
 use crate::sweep::plan::{Plan, in_hexadecimal};
 use crate::sweep::second_look::{Answer, Question, Stored, second_look};
+use crate::sweep::tile::index_of;
 use crate::sweep::{Field, SweepSpec};
 
 /// A child that is being started shares the library's lock on a file until it runs its own program: no longer than this.
@@ -64,6 +65,7 @@ pub fn check(map: &MapFile, program: (&str, &str), effort: Effort) -> Result<Rep
     let Some(plan) = planned(map, &mut report) else {
         return Ok(report);
     };
+    check_seal(map, &mut report);
     check_schema(map, &plan, &mut report);
     check_checksums(map, &plan, &mut report, &AtomicBool::new(false));
     if map.is_partial() {
@@ -81,8 +83,8 @@ pub fn check(map: &MapFile, program: (&str, &str), effort: Effort) -> Result<Rep
     Ok(report)
 }
 
-/// Whether a file is the sound map of `plan`, whose cells need not all be there; else what is wrong first. Once `stop` is set, no
-/// more is read, and the answer means nothing.
+/// Whether a file without a seal is the sound map of `plan`, whose cells need not all be there; else what is wrong first. Once
+/// `stop` is set, no more is read, and the answer means nothing.
 pub(super) fn as_written(path: &Path, plan: &Plan, stop: &AtomicBool) -> Result<(), String> {
     let map = opened(path).map_err(|error| error.to_string())?;
     let mut report = Report::default();
@@ -209,7 +211,6 @@ fn check_seal(map: &MapFile, report: &mut Report) {
 }
 
 fn check_checksums(map: &MapFile, plan: &Plan, report: &mut Report, stop: &AtomicBool) {
-    check_seal(map, report);
     let mut without = 0;
     for name in names(map) {
         let Ok(dataset) = map.dataset(name) else {
@@ -352,15 +353,6 @@ fn tally(plan: &Plan, index: &[usize], answers: &[(Question, Answer)], report: &
                 .push(format!("{} differs at {}", question.name(), at.join(", ")));
         }
     }
-}
-
-fn index_of(mut number: u64, shape: &[usize]) -> Vec<usize> {
-    let mut index = vec![0; shape.len()];
-    for (place, &length) in index.iter_mut().zip(shape).rev() {
-        *place = (number % length as u64) as usize;
-        number /= length as u64;
-    }
-    index
 }
 
 fn compute_tiles(

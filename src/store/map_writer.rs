@@ -172,12 +172,15 @@ impl<'p> MapWriter<'p> {
         self.file
             .close()
             .map_err(StoreError::hdf5("close", &path))?;
-        seal::put(self.output.part()).map_err(StoreError::io("write", &path))?;
         let sound = as_written(self.output.part(), self.plan, stop);
         if stop.load(Ordering::Relaxed) {
             return Err(StoreError::Stopped);
         }
-        sound.map_err(|why| StoreError::Unsound { path, why })?;
+        sound.map_err(|why| StoreError::Unsound {
+            path: path.clone(),
+            why,
+        })?;
+        seal::put(self.output.part()).map_err(StoreError::io("write", &path))?;
         self.output.commit()
     }
 }

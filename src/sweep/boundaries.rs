@@ -3,6 +3,7 @@
 
 use super::parameter::{Parameter, Setting};
 use super::plan::Plan;
+use super::tile::index_of;
 use crate::linear::Crossings;
 use crate::linear::curves::{PlaneCurves, TooManyCurves, Window, scan_breakpoints, trace};
 use crate::linear::decay;
@@ -39,14 +40,11 @@ pub fn plane(plan: &Plan, number: u64) -> Vec<usize> {
 
 /// The setting of that number of the axes outside a plane, the last one fastest, as indices along every axis.
 pub(super) fn plane_spanned(plan: &Plan, plane: Option<(usize, usize)>, number: u64) -> Vec<usize> {
-    let (p, tau) = plane.unwrap_or((usize::MAX, usize::MAX));
-    let mut index = vec![0; plan.shape().len()];
-    let mut rest = number as usize;
-    for axis in (0..index.len()).rev().filter(|&a| a != p && a != tau) {
-        index[axis] = rest % plan.shape()[axis];
-        rest /= plan.shape()[axis];
+    let mut shape = plan.shape().to_vec();
+    if let Some((p, tau)) = plane {
+        (shape[p], shape[tau]) = (1, 1);
     }
-    index
+    index_of(number, &shape)
 }
 
 /// Traces the curves of the [`plane`] at `index`.

@@ -69,17 +69,10 @@ impl TileGrid {
     /// The tile of number `number`, row by row, last axis fastest.
     #[must_use]
     pub fn tile(&self, number: usize) -> Tile {
-        let mut offset = vec![0; self.shape.len()];
-        let mut rest = number;
-        for (axis, along) in self
-            .tiles_along()
-            .enumerate()
-            .collect::<Vec<_>>()
-            .into_iter()
-            .rev()
-        {
-            offset[axis] = (rest % along) * self.tile_shape[axis];
-            rest /= along;
+        let along: Vec<usize> = self.tiles_along().collect();
+        let mut offset = index_of(number as u64, &along);
+        for (offset, &length) in offset.iter_mut().zip(&self.tile_shape) {
+            *offset *= length;
         }
         let extent = offset
             .iter()
@@ -99,6 +92,16 @@ impl TileGrid {
         }
         strides
     }
+}
+
+/// The index in a box of that shape of its cell of number `number`, last axis fastest.
+pub(crate) fn index_of(number: u64, shape: &[usize]) -> Vec<usize> {
+    let (mut index, mut rest) = (vec![0; shape.len()], number);
+    for (place, &length) in index.iter_mut().zip(shape).rev() {
+        *place = (rest % length as u64) as usize;
+        rest /= length as u64;
+    }
+    index
 }
 
 /// Every index of a box, last axis fastest; `skip` names an axis that stays at 0.

@@ -8,11 +8,36 @@ use slipmap::sweep::pieces::mixed;
 pub struct Chance(pub u64);
 
 impl Chance {
-    /// The next number, less than `n`.
-    pub fn below(&mut self, n: u64) -> u64 {
+    /// The next number.
+    pub fn next(&mut self) -> u64 {
         let number = mixed(self.0);
         self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        number % n
+        number
+    }
+
+    /// A number less than `n`.
+    pub fn below(&mut self, n: u64) -> u64 {
+        self.next() % n
+    }
+
+    /// A number in [0, 1).
+    pub fn unit(&mut self) -> f64 {
+        (self.next() >> 11) as f64 / (1_u64 << 53) as f64
+    }
+
+    /// A number in [`from`, `to`).
+    pub fn between(&mut self, from: f64, to: f64) -> f64 {
+        from + (to - from) * self.unit()
+    }
+
+    /// A number whose logarithm lies anywhere between theirs.
+    pub fn log(&mut self, from: f64, to: f64) -> f64 {
+        self.between(from.ln(), to.ln()).exp()
+    }
+
+    /// An index into `n` things.
+    pub fn of(&mut self, n: usize) -> usize {
+        (self.unit() * n as f64) as usize
     }
 }
 
