@@ -72,8 +72,10 @@ build_aarch64() {
     local root=$folder/arm64 flags="" library
     # hdf5-metno-sys loads what it finds to learn its version: the one of this machine, of the same Debian.
     for library in "$root"{/lib/aarch64-linux-gnu,/usr/lib/aarch64-linux-gnu{,/hdf5/serial}}; do
-        flags+=" -C link-arg=-Wl,-rpath-link,$library -C link-arg=-L$library"
+        flags+=" -C link-arg=-Wl,-rpath-link,$library"
     done
+    # Not where its C library is: that one names its parts by paths of a whole system.
+    flags+=" -C link-arg=-L$root/usr/lib/aarch64-linux-gnu/hdf5/serial"
     RUSTC=$root/rustc CARGO_TARGET_DIR=$folder/build CARGO_PROFILE_RELEASE_DEBUG=false \
         PKG_CONFIG_ALLOW_CROSS=1 PKG_CONFIG_SYSROOT_DIR=$root \
         PKG_CONFIG_LIBDIR=$root/usr/lib/aarch64-linux-gnu/pkgconfig \

@@ -25,6 +25,8 @@ const OUTCOME: &str = "fields = [\"outcome\"]\n[axes]\ntau = [0.5, 1.5, 2.5]\n[f
                        [friction]\nlaw = \"weakening\"\nmu0 = 0.5\nv_s = 0.5\n";
 const SWITCH_ON: &str = "protocol = \"switch-on\"\nfields = [\"vc\", \"outcome\"]\n[axes]\ntau = [0.4, 0.5]\nalpha_n = [-10]\n\
                          [friction]\nlaw = \"weakening\"\nmu0 = 0.5\nv_s = 0.5\n";
+const STRONG_LOAD: &str = "fields = [\"vc\", \"outcome\", \"v_liftoff\"]\n[axes]\nalpha_n = [-89.27022408427234]\n\
+                           tau = [0.3169786384922227]\n[friction]\nlaw = \"coulomb\"\nmu0 = 0.5\n";
 const LIMIT: &str = "protocol = \"limit\"\nfields = [\"vc_over_vtilde\"]\n[axes]\ngamma = { from = 0.1, to = 0.9, points = 10 }\n\
                      [fixed]\nmu_ratio = 0.5\n";
 
@@ -294,6 +296,24 @@ fn wrong_values_are_seen_by_second_methods() {
             "{field:?}"
         );
     }
+}
+
+/// Where large steps of v0 throw stick-slip to a kind that ends earlier, and small ones do not decide, nothing is contradicted.
+/// v_c by the program of `tests/referee` in four kinds of steps: 0.0288921.
+#[test]
+fn a_search_that_large_steps_have_thrown_contradicts_nothing() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("map.h5");
+    let plan = plan(STRONG_LOAD);
+    map::write(&plan, 2, &path);
+    let vc = MapFile::open(&path)
+        .unwrap()
+        .plane(Field::Vc, &[0, 0], (1, 1), usize::MAX);
+    let vc = vc.unwrap().cells[0];
+    assert!((vc / 0.0288921 - 1.0).abs() < 1e-4, "{vc}");
+    let untouched = (Field::DelayMargin, 0.0);
+    let answer = looked(&plan, &path, untouched, 0, Question::CriticalVelocity);
+    assert_ne!(answer, Answer::Differs);
 }
 
 #[test]

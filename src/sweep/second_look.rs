@@ -212,9 +212,8 @@ fn critical_velocity(
         decided: true,
     };
     let integrator = Integrator::Collocation;
-    Ok(told(vc::simulation_agrees(
-        &problem, &units, &found, integrator,
-    )))
+    let agrees = vc::simulation_agrees(&problem, &units, &found, integrator);
+    Ok(agrees.map_or(Answer::Open, told))
 }
 
 /// How far from an edge stick-slip is switched on, relative.

@@ -251,29 +251,34 @@ fn in_motion_units(phase: Phase, units: &CaseUnits) -> Phase {
 
 /// First steps of v0, relative, and those through what ends by chance, where a cell is recomputed: other ones than where it was
 /// computed; and small ones, which throw stick-slip from one kind to another least, where these lead elsewhere.
-const SAMPLE_STEPS: [[f64; 2]; 2] = [[0.35, 0.1], [0.02, 0.005]];
+const SAMPLE_STEPS: [[f64; 2]; 3] = [[0.35, 0.1], [0.05, 0.02], [0.02, 0.005]];
+/// Larger ones may throw stick-slip to where it ends elsewhere: they contradict nothing.
+const TOO_LARGE: f64 = 0.1;
+/// The most steps of the integrator there.
+const SAMPLE_TOTAL_STEPS: u64 = 10_000_000;
 /// The errors of a step of the integrator there.
-const fn sample_tolerances(integrator: Integrator) -> [f64; 2] {
+const fn sample_tolerances(integrator: Integrator) -> [f64; 3] {
     match integrator {
-        Integrator::Taylor => [1e-10, 1e-12],
-        Integrator::Collocation => [1e-9, 1e-10],
+        Integrator::Taylor => [1e-10, 1e-11, 1e-12],
+        Integrator::Collocation => [1e-9, 1e-9, 1e-10],
     }
 }
 
-/// Whether simulation alone, with steps of its own by this `integrator`, does not contradict `found`, the answer for `problem` by the protocol
-/// `follow`, in `units`: it has to see stick-slip end at the same velocity, see [`Critical::ends_like`]. A cell that is not
-/// decided claims nothing.
+/// Whether simulation alone, with steps of v0 of its own by this `integrator`, agrees with `found`, the answer for
+/// `problem` by the protocol `follow`, in `units`: it has to see stick-slip end at the same velocity, see
+/// [`Critical::ends_like`]. None where it cannot tell: small steps do not decide, and large ones, which may throw
+/// stick-slip from one kind to another, end elsewhere; or where the cell is not decided and claims nothing.
 #[must_use]
 pub fn simulation_agrees(
     problem: &Problem,
     units: &CaseUnits,
     found: &Critical,
     integrator: Integrator,
-) -> bool {
+) -> Option<bool> {
     if !found.decided {
-        return true;
+        return None;
     }
-    let mut contradicted = false;
+    let mut differs = None;
     let tolerances = sample_tolerances(integrator);
     for ([first, unseen], tolerance) in SAMPLE_STEPS.into_iter().zip(tolerances) {
         let pace = Pace {
@@ -281,6 +286,7 @@ pub fn simulation_agrees(
             largest: first,
             unseen,
             patient: true,
+            total_steps: SAMPLE_TOTAL_STEPS,
             ..Pace::default()
         };
         let accuracy = Accuracy {
@@ -289,11 +295,13 @@ pub fn simulation_agrees(
         };
         let again = by_simulation(problem, &pace, accuracy);
         if found.ends_like(&in_units(&again, units)) {
-            return true;
+            return Some(true);
         }
-        contradicted |= again.decided;
+        if again.decided && first < TOO_LARGE {
+            differs = Some(false);
+        }
     }
-    !contradicted
+    differs
 }
 
 /// What a working velocity v0 is good for.

@@ -190,7 +190,8 @@ impl VcColumns {
         if sampled {
             status |= SAMPLED;
             let critical = &found.critical;
-            if !vc::simulation_agrees(&problem, &units, critical, Integrator::Taylor) {
+            let agrees = vc::simulation_agrees(&problem, &units, critical, Integrator::Taylor);
+            if agrees == Some(false) {
                 status |= DISAGREE;
             }
         }
