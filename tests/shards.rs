@@ -96,6 +96,18 @@ fn a_plain_shell_computes_shards_and_merges_them() {
 }
 
 #[test]
+fn more_shards_than_open_files_are_merged() {
+    let work = Work::new();
+    let of = 80;
+    for number in 1..=of {
+        let shard = format!("{number}/{of}");
+        work.run(&["run", "sweep.toml", "-o", "map.h5", "-q", "--shard", &shard]);
+    }
+    succeed(&mut work.command("sh", &["-c", "ulimit -Sn 40 && slipmap merge map.h5"]));
+    work.check_map();
+}
+
+#[test]
 fn a_merge_without_shards_is_refused() {
     let work = Work::new();
     let refused = work.command("slipmap", &["merge", "map.h5"]).output();

@@ -14,7 +14,7 @@ use slipmap::sweep::{Plan, Shard};
 use super::failure::Failure;
 use super::output::{provenance, tell_assembled};
 use super::signals::Signals;
-use super::{run, say};
+use super::{open_files, run, say};
 
 #[derive(Debug, clap::Args)]
 pub struct Args {
@@ -45,6 +45,7 @@ pub fn main(args: &Args) -> Result<(), Failure> {
     if folders.is_empty() {
         return nothing_to_merge(args, target, &signals);
     }
+    open_files::as_many_as_allowed();
     let (_, plan) = shards::plan(&folders)?;
     if let Some(remark) = run::already_there(target, &plan, args.fresh)? {
         drop(shards::remove_root(target));

@@ -5,6 +5,7 @@ mod failure;
 mod info;
 mod merge;
 mod open;
+mod open_files;
 mod output;
 mod parameters;
 mod plan;

@@ -1,6 +1,7 @@
 //! A hash of everything in a map besides the cells themselves: axes, scalars, curves, best settings, and what describes them.
 
 use std::collections::BTreeMap;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 use hdf5::{Dataset, File, Location};
 use sha2::{Digest, Sha256};
@@ -27,8 +28,13 @@ const MOST_ATTRIBUTES: usize = 64;
 /// `cells` shape and values.
 ///
 /// # Errors
-/// When something cannot be read, or is something that no map holds: other groups than slipmap's, groups in these, links.
-pub(super) fn contents_hash(file: &File, cells: &[&str]) -> hdf5::Result<String> {
+/// When something cannot be read, or is something that no map holds: other groups than slipmap's, groups in these, links;
+/// soon after `stop` is set.
+pub(super) fn contents_hash(
+    file: &File,
+    cells: &[&str],
+    stop: &AtomicBool,
+) -> hdf5::Result<String> {
     let mut groups = vec![(String::new(), file.group("/")?)];
     for name in [BOUNDARIES, BEST] {
         if file.link_exists(name) {
@@ -48,6 +54,7 @@ pub(super) fn contents_hash(file: &File, cells: &[&str]) -> hdf5::Result<String>
     }
     let mut hash = Sha256::new();
     for (path, (group, name)) in parts {
+        heed(stop)?;
         hash.update((path.len() as u64).to_le_bytes());
         hash.update(&path);
         match name {
@@ -55,36 +62,53 @@ pub(super) fn contents_hash(file: &File, cells: &[&str]) -> hdf5::Result<String>
                 let dataset = open::dataset(group, &name);
                 let dataset = dataset.map_err(|why| format!("no map holds {name}: {why}"))?;
                 let is_cells = cells.iter().any(|cell| path == format!("/{cell}"));
-                add_dataset(&dataset, is_cells, &mut hash)?;
+                add_dataset(&dataset, is_cells, &mut hash, stop)?;
             }
-            None => add_part(&attributes(group)?, None, &mut hash)?,
+            None => add_part(&attributes(group)?, None, &mut hash, stop)?,
         }
     }
     Ok(in_hexadecimal(&hash.finalize()))
 }
 
-fn add_dataset(dataset: &Dataset, is_cells: bool, hash: &mut Sha256) -> hdf5::Result<()> {
+fn heed(stop: &AtomicBool) -> hdf5::Result<()> {
+    match stop.load(Ordering::Relaxed) {
+        true => Err("it was stopped".into()),
+        false => Ok(()),
+    }
+}
+
+fn add_dataset(
+    dataset: &Dataset,
+    is_cells: bool,
+    hash: &mut Sha256,
+    stop: &AtomicBool,
+) -> hdf5::Result<()> {
     let mut head = attributes(dataset)?;
     if is_cells {
-        return add_part(&head, None, hash);
+        return add_part(&head, None, hash, stop);
     }
     for length in dataset.shape() {
         head.extend((length as u64).to_le_bytes());
     }
     // Scales without coordinates have a length and nothing else.
     let values = (dataset.storage_size() > 0).then_some(dataset);
-    add_part(&head, values, hash)
+    add_part(&head, values, hash, stop)
 }
 
 /// Adds attributes and shape as bytes, and the values that come behind, after the length of both.
-fn add_part(head: &[u8], values: Option<&Dataset>, hash: &mut Sha256) -> hdf5::Result<()> {
+fn add_part(
+    head: &[u8],
+    values: Option<&Dataset>,
+    hash: &mut Sha256,
+    stop: &AtomicBool,
+) -> hdf5::Result<()> {
     let bytes = match values {
         Some(dataset) => dataset.size().saturating_mul(dataset.dtype()?.size()),
         None => 0,
     };
     hash.update((head.len().saturating_add(bytes) as u64).to_le_bytes());
     hash.update(head);
-    values.map_or(Ok(()), |dataset| add_values(dataset, hash))
+    values.map_or(Ok(()), |dataset| add_values(dataset, hash, stop))
 }
 
 /// Names and values of all attributes that count, by name.
@@ -139,13 +163,14 @@ fn attribute_bytes(of: &Location, name: &str) -> hdf5::Result<Vec<u8>> {
     by_type!(attribute.dtype(), read)
 }
 
-fn add_values(dataset: &Dataset, hash: &mut Sha256) -> hdf5::Result<()> {
+fn add_values(dataset: &Dataset, hash: &mut Sha256, stop: &AtomicBool) -> hdf5::Result<()> {
     macro_rules! read {
         ($kind:ty) => {
             for_each_part::<$kind>(dataset, |values| {
                 for value in values {
                     hash.update(value.to_le_bytes());
                 }
+                heed(stop)
             })
         };
     }

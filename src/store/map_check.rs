@@ -236,7 +236,10 @@ fn check_checksums(map: &MapFile, plan: &Plan, report: &mut Report, stop: &Atomi
                 .push(format!("{name}: chunks cannot be read: {error}")),
         }
     }
-    match (map.root_text(schema::CONTENTS_SHA256), map.contents_hash()) {
+    match (
+        map.root_text(schema::CONTENTS_SHA256),
+        map.contents_hash(stop),
+    ) {
         // An earlier version wrote no checksum at all.
         (None, Ok(_)) if report.checksums == 0 => {}
         (None, Ok(_)) => {

@@ -1,6 +1,7 @@
 //! Reads maps.
 
 use std::path::{Path, PathBuf};
+use std::sync::atomic::AtomicBool;
 
 use hdf5::{Dataset, File, Group, SliceOrIndex};
 
@@ -148,9 +149,13 @@ impl MapFile {
     }
 
     /// The hash of everything besides the cells, as it is now.
-    pub(super) fn contents_hash(&self) -> hdf5::Result<String> {
+    pub(super) fn contents_hash(&self, stop: &AtomicBool) -> hdf5::Result<String> {
         let fields = self.fields.iter().map(|field| field.name());
-        contents_hash(&self.file, &fields.chain([STATUS]).collect::<Vec<_>>())
+        contents_hash(
+            &self.file,
+            &fields.chain([STATUS]).collect::<Vec<_>>(),
+            stop,
+        )
     }
 
     /// Version of the layout that it has.

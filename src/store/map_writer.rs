@@ -162,11 +162,15 @@ impl<'p> MapWriter<'p> {
             self.file.flush()?;
             let fields = self.plan.spec.fields.iter().map(|field| field.name());
             let cells: Vec<&str> = fields.chain([STATUS]).collect();
-            let hash = contents_hash(&self.file, &cells)?;
+            let hash = contents_hash(&self.file, &cells, stop)?;
             put_text(&self.file, schema::CONTENTS_SHA256, &hash)?;
             self.file.flush()
         };
-        close().map_err(StoreError::hdf5("write", &path))?;
+        let closed = close();
+        if stop.load(Ordering::Relaxed) {
+            return Err(StoreError::Stopped);
+        }
+        closed.map_err(StoreError::hdf5("write", &path))?;
         // All handles, so that the file is closed before it is renamed.
         drop((self.cells, self.boundaries, self.best, self.dimensions));
         self.file

@@ -394,15 +394,14 @@ pub(super) fn whole<T: Number>(dataset: &Dataset) -> hdf5::Result<Vec<T>> {
 /// The values of a dataset, those of a list in chunks some at a time.
 ///
 /// # Errors
-/// As for [`whole`].
+/// As for [`whole`], and those of `visit`.
 pub(super) fn for_each_part<T: Number>(
     dataset: &Dataset,
-    mut visit: impl FnMut(&[T]),
+    mut visit: impl FnMut(&[T]) -> hdf5::Result<()>,
 ) -> hdf5::Result<()> {
     let (shape, chunk) = (dataset.shape(), dataset.chunk());
     let ([length], Some([chunk])) = (&shape[..], chunk.as_deref()) else {
-        visit(&whole(dataset)?);
-        return Ok(());
+        return visit(&whole(dataset)?);
     };
     count::<T>(dataset)?;
     for start in (0..*length).step_by((*chunk).max(1)) {
@@ -413,7 +412,7 @@ pub(super) fn for_each_part<T: Number>(
             count,
             block: 1,
         };
-        visit(&read::<T>(dataset, &[part])?);
+        visit(&read::<T>(dataset, &[part])?)?;
     }
     Ok(())
 }
