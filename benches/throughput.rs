@@ -16,7 +16,7 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::time::Instant;
 
-use slipmap::store::map_maker::{Job, make, make_in_memory};
+use slipmap::maps::maker::{Job, make, make_in_memory};
 use slipmap::store::map_writer::Provenance;
 use slipmap::sweep::engine::{TileBuffers, Worker};
 use slipmap::sweep::events::Silent;

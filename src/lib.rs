@@ -13,7 +13,8 @@
 //! | [`slip`] | the nonlinear oscillator: stick, slip, lift-off, delayed feedback |
 //! | [`critical`] | the critical velocity below which stick-slip survives |
 //! | [`sweep`] | sweep files, plans, the engine that computes maps |
-//! | [`store`] | maps on disk |
+//! | [`store`] | maps on disk: their files |
+//! | [`maps`] | from a plan to its map; whether a map is true |
 //! | [`report`] | progress, pictures |
 //!
 //! # Example
@@ -42,6 +43,8 @@
 pub mod critical;
 #[cfg_attr(not(test), warn(clippy::disallowed_methods))]
 pub mod linear;
+#[cfg_attr(not(test), warn(clippy::disallowed_methods))]
+pub mod maps;
 #[cfg_attr(not(test), warn(clippy::disallowed_methods))]
 pub mod model;
 pub mod report;

@@ -9,7 +9,9 @@ use slipmap::slip::case::{Case, Start};
 use slipmap::slip::cycle::after_release;
 use slipmap::slip::motion::Accuracy;
 use slipmap::slip::outcome::{Outcome, Summary};
-use slipmap::sweep::vc::{self, Class, Protocol};
+use slipmap::sweep::cells::vc::{self, class_at};
+use slipmap::sweep::input::class::Class;
+use slipmap::sweep::input::search::Protocol;
 use slipmap::sweep::{Parameter, Plan, SweepSpec};
 
 const FIG3B: &str = include_str!("../sweeps/velocity_at_fig3b.toml");
@@ -146,7 +148,7 @@ fn share(text: &str, v0: f64, points: u32) -> f64 {
         }
         let found = vc::find_in(&problem, &units, Protocol::Follow);
         let of = (&problem, &units);
-        let class = Class::at(
+        let class = class_at(
             v0,
             of,
             (Protocol::Follow, &found),

@@ -5,7 +5,7 @@ mod program;
 
 use program::{Folder, err, expect, out};
 use serde_json::Value;
-use slipmap::sweep::limit_columns::LimitField;
+use slipmap::sweep::input::limit_field::LimitField;
 use slipmap::sweep::{Field, Plan, SweepSpec};
 
 /// μ_K/μ_S, γ, v_c/ṽ, ω0 T, lift-off.

@@ -10,7 +10,7 @@ use slipmap::linear::certificate::roots_right_of;
 use slipmap::linear::curves::StableSide;
 use slipmap::linear::status::MARGINAL;
 use slipmap::store::MapFile;
-use slipmap::sweep::best::{best_of_plane, best_plane};
+use slipmap::sweep::cells::best::{best_of_plane, best_plane};
 use slipmap::sweep::{Field, Parameter, Plan, engine};
 
 #[path = "common/map.rs"]

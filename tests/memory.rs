@@ -201,7 +201,6 @@ fn every_command_keeps_the_promise() {
             // One motion.
             let picture = format!("{map}.svg");
             holds(&folder, &["simulate", &sweep, "-o", &map], PROMISED);
-            holds(&folder, &["info", &map], PROMISED);
             holds(&folder, &["plot", &map, "-o", &picture], PROMISED);
             continue;
         }

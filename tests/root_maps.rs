@@ -6,7 +6,7 @@ use slipmap::linear::rightmost::Rightmost;
 use slipmap::linear::status::{CERTIFIED, DISAGREE, MARGINAL, NOT_CONVERGED};
 use slipmap::linear::{Crossings, MarginalTolerance};
 use slipmap::store::MapFile;
-use slipmap::sweep::field::Storage;
+use slipmap::sweep::input::field::Storage;
 use slipmap::sweep::plan::BLOCK_OF_DELAYS;
 use slipmap::sweep::{Field, Parameter, Plan, Setting, engine};
 

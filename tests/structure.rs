@@ -1,10 +1,15 @@
 //! Holds the structure that DESIGN.md describes.
 
+#[path = "structure/uses.rs"]
+mod uses;
+
 use std::path::{Path, PathBuf};
 
-const LAYERS: [&str; 8] = [
-    "model", "linear", "slip", "critical", "sweep", "store", "report", "cli",
+const LAYERS: [&str; 9] = [
+    "model", "linear", "slip", "critical", "sweep", "store", "maps", "report", "cli",
 ];
+/// The rooms of a sweep, each above those before it; beside them stands what a sweep tells.
+const ROOMS: [&str; 5] = ["events", "input", "plan", "cells", "engine"];
 
 fn sources(folder: &Path) -> Vec<PathBuf> {
     let mut files = Vec::new();
@@ -43,6 +48,40 @@ fn layers_use_only_those_below() {
         }
     }
     assert!(imports > 20, "the test still sees the imports: {imports}");
+}
+
+#[test]
+fn rooms_of_a_sweep_use_only_those_below() {
+    let room_of = |path: &Path| {
+        let inside = path.strip_prefix("src/sweep").ok()?.with_extension("");
+        let first = inside.iter().next()?.to_str()?.to_owned();
+        ROOMS.iter().position(|room| *room == first)
+    };
+    let mut uses = 0;
+    for (path, used) in uses::graph(&sources(Path::new("src"))) {
+        let Some(room) = room_of(&path) else {
+            continue;
+        };
+        for other in used {
+            let below = room_of(&other).is_none_or(|other| other <= room);
+            assert!(below, "{} uses {}", path.display(), other.display());
+            // The facade names what is in all rooms.
+            assert!(!other.ends_with("sweep/mod.rs"), "{}", path.display());
+            uses += 1;
+        }
+    }
+    assert!(uses > 100, "the test still sees them: {uses}");
+}
+
+/// Two files may know one another, such as a type and its parts; more, or such of two rooms, are one job in pieces.
+#[test]
+fn no_circles_but_pairs_in_one_room() {
+    let graph = uses::graph(&sources(Path::new("src")));
+    assert!(graph.values().map(|used| used.len()).sum::<usize>() > 400);
+    for circle in uses::circles(&graph) {
+        let rooms: std::collections::BTreeSet<_> = circle.iter().map(|p| p.parent()).collect();
+        assert!(circle.len() <= 2 && rooms.len() == 1, "{circle:?}");
+    }
 }
 
 #[test]

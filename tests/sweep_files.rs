@@ -1,7 +1,7 @@
 //! Sweep files: what is understood, and that every mistake is pointed at.
 
 use slipmap::linear::MarginalTolerance;
-use slipmap::sweep::parameter::LawKind;
+use slipmap::sweep::input::parameter::LawKind;
 use slipmap::sweep::{CaseSpec, Field, Parameter, Plan, SweepSpec};
 
 const GOOD: &str = "\

@@ -15,7 +15,7 @@ use slipmap::linear::status::{DISAGREE, NOT_CONVERGED, SAMPLED};
 use slipmap::store::MapFile;
 use slipmap::store::source::InMemory;
 use slipmap::sweep::events::Silent;
-use slipmap::sweep::field::OUTCOMES;
+use slipmap::sweep::input::field::OUTCOMES;
 use slipmap::sweep::{Field, Parameter, Plan, RunError, SweepSpec, Todo, engine};
 
 #[path = "common/map.rs"]
@@ -344,7 +344,14 @@ fn a_stop_is_heeded_between_cells() {
     let plan = Arc::new(plan(&sweeps()[2]));
     let stop = Arc::new(AtomicBool::new(true));
     let mut pieces = InMemory::default();
-    let stopped = engine::run(&plan, Todo::all(&plan), 1, &mut pieces, &Silent, &stop);
+    let stopped = engine::run(
+        &plan,
+        Todo::all(plan.pieces()),
+        1,
+        &mut pieces,
+        &Silent,
+        &stop,
+    );
     assert!(matches!(stopped, Err(RunError::Interrupted)));
     let mut worker = engine::Worker::new(&plan);
     assert!(!worker.compute_until(&plan.tiles.tile(0), &stop));

@@ -11,9 +11,9 @@ use std::str::FromStr;
 use map::edit;
 use program::{Folder, expect, out};
 use slipmap::linear::status::{DISAGREE, MARGINAL, NOT_CONVERGED};
+use slipmap::maps::check::{Effort, check};
 use slipmap::store::MapFile;
-use slipmap::store::map_check::{Effort, check};
-use slipmap::sweep::second_look::{Answer, Question, Stored, second_look};
+use slipmap::sweep::cells::second_look::{Answer, Question, Stored, second_look};
 use slipmap::sweep::{Field, Plan};
 
 const DECAY: &str = "fields = [\"n_unstable\", \"abscissa\", \"frequency\"]\n[axes]\nmu_prime = [-0.3, -0.1]\n\

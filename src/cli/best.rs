@@ -5,7 +5,9 @@ use std::io::Write;
 use clap::ValueEnum;
 use serde::Serialize;
 use slipmap::linear::best::{Optimum, SearchedGain};
-use slipmap::sweep::best::{BestRegion, BestSettings, Ranges, best_settings, default_ranges};
+use slipmap::sweep::cells::best::{
+    BestRegion, BestSettings, Ranges, best_settings, default_ranges,
+};
 use slipmap::sweep::{Parameter, Setting};
 
 use super::failure::Failure;

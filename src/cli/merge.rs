@@ -2,12 +2,12 @@
 
 use std::path::{Path, PathBuf};
 
+use slipmap::maps::assembly::{Assembled, Missing};
+use slipmap::maps::maker::{self, Merge};
 use slipmap::report::log::{Both, Log};
 use slipmap::report::numbers::{bytes, grouped};
 use slipmap::report::progress::Progress;
 use slipmap::store::StoreError;
-use slipmap::store::assembly::{Assembled, Missing};
-use slipmap::store::map_maker::{self, Merge};
 use slipmap::store::tiles::shards;
 use slipmap::sweep::{Plan, Shard};
 
@@ -38,7 +38,7 @@ pub struct Args {
 pub fn main(args: &Args) -> Result<(), Failure> {
     let signals = Signals::catch()?;
     let target = args.output.as_ref().unwrap_or(&args.map);
-    if shards::settle(&args.map, |hash| map_maker::is_complete(target, Some(hash)))? {
+    if shards::settle(&args.map, |hash| maker::is_complete(target, Some(hash)))? {
         return run::nothing_to_do(target, "", false, &signals);
     }
     let folders = folders(args)?;
@@ -67,7 +67,7 @@ pub fn main(args: &Args) -> Result<(), Failure> {
         replace_complete: args.fresh,
         remove_beside: (!keep).then_some(&*args.map),
     };
-    let merged = map_maker::merge(&plan, &asked, &provenance, (&observer, &signals.stop));
+    let merged = maker::merge(&plan, &asked, &provenance, (&observer, &signals.stop));
     let assembled = merged.map_err(|error| failure(error, &args.map, &signals))?;
     tell(target, &plan, &assembled)?;
     run::show(target, false, &signals);
@@ -91,7 +91,7 @@ fn folders(args: &Args) -> Result<Vec<PathBuf>, Failure> {
 
 /// An error, unless the shards are gone because their map is complete: a merge that is run again has nothing to do, with --fresh too.
 fn nothing_to_merge(args: &Args, target: &Path, signals: &Signals) -> Result<(), Failure> {
-    if map_maker::is_complete(target, None)? {
+    if maker::is_complete(target, None)? {
         drop(shards::remove_root(&args.map));
         let remark = match args.fresh {
             true => "; there are no shards that could replace it",

@@ -3,11 +3,10 @@
 use std::path::{Path, PathBuf};
 use std::sync::atomic::AtomicBool;
 
+use slipmap::maps::assembly::{Missing, assemble};
 use slipmap::report::numbers::grouped;
-use slipmap::store::assembly::{Missing, assemble};
 use slipmap::store::tiles::{TileReader, shards};
 use slipmap::store::{MapFile, Output};
-use slipmap::sweep::Pieces;
 
 use super::failure::Failure;
 use super::output::provenance;
@@ -41,7 +40,7 @@ fn so_far(path: &Path, folders: &[PathBuf], stop: &AtomicBool) -> Result<MapFile
     let (manifest, plan) = shards::plan(folders)?;
     let mut source = Vec::new();
     for folder in folders {
-        source.push(TileReader::of(folder, manifest.layout(), Pieces::of(&plan), stop)?.0);
+        source.push(TileReader::of(folder, manifest.layout(), plan.pieces(), stop)?.0);
     }
     let file = path.with_file_name(format!(
         ".{}.slipmap-so-far",

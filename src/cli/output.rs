@@ -3,8 +3,8 @@
 use std::path::{Path, PathBuf};
 use std::time::SystemTime;
 
+use slipmap::maps::assembly::Assembled;
 use slipmap::report::numbers::{grouped, representable};
-use slipmap::store::assembly::Assembled;
 use slipmap::store::map_writer::Provenance;
 
 use super::failure::Failure;

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use clap::{Args, ValueEnum};
 use slipmap::model::{ModelError, Shown};
 use slipmap::sweep::Parameter;
-use slipmap::sweep::parameter::{LawKind, Setting};
+use slipmap::sweep::input::parameter::{LawKind, Setting};
 
 use super::failure::Failure;
 use super::sweep_file::read_table;

@@ -6,10 +6,10 @@ use std::time::{Duration, Instant};
 
 use slipmap::report::numbers::{bytes, grouped, seconds};
 use slipmap::store::tiles::RecordEncoder;
-use slipmap::sweep::best::{best_of_plane, best_plane};
-use slipmap::sweep::boundaries::{plane, trace_plane};
+use slipmap::sweep::cells::best::{best_of_plane, best_plane};
+use slipmap::sweep::cells::boundaries::{plane, trace_plane};
 use slipmap::sweep::engine::{Computed, Encode, Worker};
-use slipmap::sweep::pieces::spread;
+use slipmap::sweep::plan::pieces::spread;
 use slipmap::sweep::{Memory, Piece, Plan};
 
 use super::failure::Failure;

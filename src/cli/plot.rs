@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use clap::ValueEnum;
 use slipmap::report::picture::{self, Picture, PictureError, PictureKind, PictureOptions};
-use slipmap::sweep::field::known_fields;
+use slipmap::sweep::input::field::known_fields;
 use slipmap::sweep::{Field, Parameter};
 
 use super::failure::Failure;

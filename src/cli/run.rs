@@ -6,16 +6,16 @@ use std::sync::Arc;
 use std::time::Duration;
 
 use bytesize::ByteSize;
+use slipmap::maps::maker::{self, Job};
 use slipmap::report::log::{Both, Log};
 use slipmap::report::numbers::{bytes, grouped, prefixed, seconds};
 use slipmap::report::picture::{self, Picture, PictureError, PictureOptions};
 use slipmap::report::preview::preview;
 use slipmap::report::progress::Progress;
-use slipmap::store::map_maker::{self, Job};
 use slipmap::store::schema::root;
 use slipmap::store::tiles::{Manifest, shards};
 use slipmap::store::{MapFile, StoreError};
-use slipmap::sweep::{Memory, Pieces, Plan, RunError, Shard};
+use slipmap::sweep::{Memory, Plan, RunError, Shard};
 
 use super::failure::Failure;
 use super::output::{self, output_path, provenance};
@@ -78,7 +78,7 @@ pub fn parse_memory(text: &str) -> Result<u64, String> {
 
 /// Of the threads that are `asked` for, as many as there are pieces.
 fn useful(plan: &Plan, asked: usize) -> usize {
-    usize::try_from(Pieces::of(plan).total()).map_or(asked, |pieces| asked.min(pieces))
+    usize::try_from(plan.pieces().total()).map_or(asked, |pieces| asked.min(pieces))
 }
 
 /// As many of the threads that are `asked` for as are useful and stay within `memory` bytes.
@@ -115,7 +115,7 @@ pub fn main(args: &Args) -> Result<(), Failure> {
     let signals = Signals::catch()?;
     let plan = read_plan(&args.sweep)?;
     let path = output_path(args.output.as_deref(), &args.sweep, "map")?;
-    shards::settle(&path, |hash| map_maker::is_complete(&path, Some(hash)))?;
+    shards::settle(&path, |hash| maker::is_complete(&path, Some(hash)))?;
     if let Some(remark) = already_there(&path, &plan, args.fresh)? {
         drop(shards::remove_root(&path));
         return nothing_to_do(&path, &remark, args.quiet, &signals);
@@ -158,7 +158,7 @@ fn run_shard(
     fresh: bool,
 ) -> Result<(), Failure> {
     refuse_other_way(job.map, shard)?;
-    let made = map_maker::make_shard(plan, job, shard, observers, &signals.stop);
+    let made = maker::make_shard(plan, job, shard, observers, &signals.stop);
     made.map_err(|error| failure(error, (job.map, fresh), (observers, signals)))?;
     let (number, of) = shard.numbers();
     let map = job.map.display();
@@ -175,7 +175,7 @@ fn run_whole(
 ) -> Result<(), Failure> {
     let (fresh, quiet) = (args.fresh, args.quiet);
     refuse_other_way(job.map, Shard::WHOLE)?;
-    let made = map_maker::make(plan, job, observers, &signals.stop);
+    let made = maker::make(plan, job, observers, &signals.stop);
     let assembled = made.map_err(|error| failure(error, (job.map, fresh), (observers, signals)))?;
     let (elapsed, cells) = (observers.0.elapsed(), observers.0.computed());
     output::tell_assembled(&assembled, quiet);

@@ -9,7 +9,7 @@ use slipmap::report::picture::{self, Picture};
 use slipmap::slip::motion::MOST_KEPT;
 use slipmap::slip::outcome::{Outcome, Summary};
 use slipmap::store::{Output, StoreError, trace_file};
-use slipmap::sweep::trace::{TraceError, TraceEvent};
+use slipmap::sweep::cells::trace::{TraceError, TraceEvent};
 use slipmap::sweep::{CaseSpec, Trace};
 
 use super::failure::Failure;

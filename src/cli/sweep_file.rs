@@ -4,7 +4,7 @@ use std::path::Path;
 
 use slipmap::model::Table;
 use slipmap::report::numbers::bytes;
-use slipmap::sweep::friction_table::table_of_columns;
+use slipmap::sweep::input::friction_table::table_of_columns;
 use slipmap::sweep::{CaseSpec, Plan, SpecError, SweepSpec};
 
 use super::failure::Failure;

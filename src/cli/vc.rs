@@ -7,9 +7,11 @@ use clap::ValueEnum;
 use serde::Serialize;
 use slipmap::critical::switch_on::Phase;
 use slipmap::sweep::Parameter;
-use slipmap::sweep::field::{OUTCOMES, number_of_outcome};
-use slipmap::sweep::limit_columns::{LimitCell, LimitField};
-use slipmap::sweep::vc::{self, PHASES};
+use slipmap::sweep::cells::limit_columns::LimitCell;
+use slipmap::sweep::cells::vc;
+use slipmap::sweep::input::field::{OUTCOMES, number_of_outcome};
+use slipmap::sweep::input::limit_field::LimitField;
+use slipmap::sweep::input::search::{self, PHASES};
 
 use super::failure::Failure;
 use super::parameters::{ParameterArgs, flag};
@@ -85,8 +87,8 @@ pub fn main(args: &Args) -> Result<(), Failure> {
         protocol => {
             let setting = args.parameters.setting_without_v0()?;
             let protocol = match protocol {
-                Protocol::SwitchOn => vc::Protocol::SwitchOn(args.phase()?),
-                _ => vc::Protocol::Follow,
+                Protocol::SwitchOn => search::Protocol::SwitchOn(args.phase()?),
+                _ => search::Protocol::Follow,
             };
             let found = vc::find(&setting, protocol).map_err(|e| args.parameters.refused(&e))?;
             print(&mut out, args.json, &told(found, protocol))
@@ -117,7 +119,7 @@ fn finite(value: f64) -> Option<f64> {
 }
 
 /// What is found by a protocol of motions.
-fn told(found: vc::Found, protocol: vc::Protocol) -> Found {
+fn told(found: vc::Found, protocol: search::Protocol) -> Found {
     let critical = found.critical;
     Found {
         vc: finite(critical.vc),

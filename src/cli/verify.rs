@@ -4,9 +4,9 @@ use std::io::Write;
 use std::path::PathBuf;
 
 use serde_json::{Value, json};
+use slipmap::maps::check::{Effort, Report, check};
 use slipmap::report::numbers::grouped;
 use slipmap::store::MapFile;
-use slipmap::store::map_check::{Effort, Report, check};
 
 use super::failure::Failure;
 use super::say::{self, visible_line};

@@ -3,7 +3,7 @@
 use super::numbers::short;
 use crate::store::map_file::{MapAxis, Plane};
 use crate::store::{MapFile, StoreError};
-use crate::sweep::field::Storage;
+use crate::sweep::input::field::Storage;
 use crate::sweep::{Field, Parameter};
 
 /// Lines of the picture itself; captions take three more.

@@ -9,7 +9,7 @@ use super::schema::{BEST, best as names};
 use super::values::{Number, whole};
 use crate::linear::best::Kind;
 use crate::sweep::Parameter;
-use crate::sweep::tile::index_of;
+use crate::sweep::plan::tile::index_of;
 
 /// The best setting of one plane of a map, in the units of the map.
 #[derive(Debug, Clone, PartialEq)]

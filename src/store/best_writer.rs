@@ -14,12 +14,12 @@ use super::map_writer::describe_parameter;
 use super::netcdf::{DimensionId, Dimensions, named};
 use super::schema::{BEST, BEST_FLAG_FILL, PLANE, best as names};
 use crate::linear::best::Kind;
-use crate::sweep::best::BestSettings;
+use crate::sweep::cells::best::BestSettings;
 use crate::sweep::{Parameter, Plan};
 
 /// The best setting of one plane as the values of the group's variables, in their order; fill values where there is none.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub(super) struct BestRow {
+pub(crate) struct BestRow {
     numbers: [f64; 5],
     flags: [i8; 2],
     regions: i32,

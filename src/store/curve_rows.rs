@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 use crate::linear::Direction;
 use crate::linear::curves::{Corner, CurvePiece, StableSide};
 use crate::sweep::Plan;
-use crate::sweep::boundaries::BoundaryPlane;
+use crate::sweep::cells::boundaries::BoundaryPlane;
 
 /// The curves of one plane, column by column: one row per curve, per vertex and per corner.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]

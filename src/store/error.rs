@@ -3,7 +3,7 @@
 use std::io;
 use std::path::{Path, PathBuf};
 
-use crate::sweep::pieces::Piece;
+use crate::sweep::plan::pieces::Piece;
 
 /// What went wrong with a file.
 #[derive(Debug, thiserror::Error)]

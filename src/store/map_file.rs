@@ -11,10 +11,10 @@ pub use super::curve_reader::MapCurve;
 use super::error::StoreError;
 use super::open;
 use super::schema::{self, BEST, BOUNDARIES, DEGREE_OF_STABILITY, PLANE, STATUS, root};
-use super::values::{Number, read, whole};
-use crate::sweep::axis::{Axis, MOST_POINTS};
+use super::values::{Chunks, Number, read, whole};
 use crate::sweep::engine::{FEW_FILL, N_UNSTABLE_FILL, STATUS_FILL};
-use crate::sweep::field::Storage;
+use crate::sweep::input::axis::{Axis, MOST_POINTS};
+use crate::sweep::input::field::Storage;
 use crate::sweep::plan::MOST_CELLS;
 use crate::sweep::{Field, Parameter};
 
@@ -277,14 +277,28 @@ impl MapFile {
         })
     }
 
+    /// The bytes of a dataset's chunk whose first cell is at `offset`, as they stand in the file; none where there is none.
+    pub(crate) fn stored_chunk(
+        &self,
+        name: &str,
+        offset: &[usize],
+    ) -> Result<Option<Vec<u8>>, StoreError> {
+        let dataset = self.dataset(name)?;
+        let read = || -> hdf5::Result<Option<Vec<u8>>> {
+            let chunks = Chunks::of(&dataset)?.ok_or("it is not stored in chunks")?;
+            chunks.stored(offset)
+        };
+        read().map_err(StoreError::hdf5("read", self.path()))
+    }
+
     /// One cell of a field as a number: NaN where it has no value.
-    pub(super) fn cell(&self, field: Field, index: &[usize]) -> Result<f64, StoreError> {
+    pub(crate) fn cell(&self, field: Field, index: &[usize]) -> Result<f64, StoreError> {
         let cells = self.read_field(field, &self.dataset(field.name())?, at(index))?;
         Ok(cells.first().copied().unwrap_or(f64::NAN))
     }
 
     /// The status of one cell.
-    pub(super) fn cell_status(&self, index: &[usize]) -> Result<u8, StoreError> {
+    pub(crate) fn cell_status(&self, index: &[usize]) -> Result<u8, StoreError> {
         let cells = self.read::<u8>(&self.dataset(STATUS)?, at(index))?;
         Ok(cells.first().copied().unwrap_or(STATUS_FILL))
     }

@@ -17,20 +17,20 @@ use super::codec::DEFLATE_LEVEL;
 use super::contents_hash::contents_hash;
 use super::curve_rows::{CurveRows, outer_values};
 use super::error::StoreError;
-use super::map_check::as_written;
 use super::netcdf::{DimensionId, Dimensions, named};
 use super::output::Output;
 use super::schema::{self, STATUS, root};
 use super::seal;
+use super::soundness::as_written;
 use crate::critical::switch_on::Phase;
 use crate::linear::status::FLAGS;
 use crate::sweep::engine::{FEW_FILL, N_UNSTABLE_FILL, STATUS_FILL};
-use crate::sweep::field::Storage;
-use crate::sweep::parameter::LawKind;
-use crate::sweep::parameter::Units;
+use crate::sweep::input::field::Storage;
+use crate::sweep::input::parameter::LawKind;
+use crate::sweep::input::parameter::Units;
+use crate::sweep::input::search::{Protocol, Search};
 use crate::sweep::plan::in_hexadecimal;
-use crate::sweep::tile::Tile;
-use crate::sweep::vc::{Protocol, Search};
+use crate::sweep::plan::tile::Tile;
 use crate::sweep::{Field, Parameter, Plan, Setting};
 
 /// Who made a map, for its root attributes.
@@ -99,7 +99,7 @@ impl<'p> MapWriter<'p> {
     }
 
     /// Appends the curves of the plane at `index`. Planes come in their order.
-    pub(super) fn put_curves(
+    pub(crate) fn put_curves(
         &mut self,
         index: &[usize],
         rows: &CurveRows,
@@ -113,14 +113,14 @@ impl<'p> MapWriter<'p> {
     }
 
     /// Appends the best setting of a plane. Planes come in their order.
-    pub(super) fn put_best(&mut self, row: &BestRow) {
+    pub(crate) fn put_best(&mut self, row: &BestRow) {
         if let Some(best) = &mut self.best {
             best.append(row);
         }
     }
 
     /// Puts the compressed chunks of a tile, in the order of the datasets. Tiles come in their order.
-    pub(super) fn put_tile(&mut self, tile: &Tile, chunks: &[&[u8]]) -> Result<(), StoreError> {
+    pub(crate) fn put_tile(&mut self, tile: &Tile, chunks: &[&[u8]]) -> Result<(), StoreError> {
         let offset: Vec<u64> = tile.offset.iter().map(|&o| o as u64).collect();
         for (variable, chunk) in self.cells.iter_mut().zip(chunks) {
             variable.chunks.update(chunk);
@@ -131,12 +131,12 @@ impl<'p> MapWriter<'p> {
     }
 
     /// How many chunks a tile has.
-    pub(super) fn chunks_of_tile(&self) -> usize {
+    pub(crate) fn chunks_of_tile(&self) -> usize {
         self.cells.len()
     }
 
     /// Says how many cells the map lacks.
-    pub(super) fn put_missing(&self, cells: u64) -> Result<(), StoreError> {
+    pub(crate) fn put_missing(&self, cells: u64) -> Result<(), StoreError> {
         put_numbers(&self.file, root::CELLS_MISSING, &[cells])
             .map_err(StoreError::hdf5("write", self.output.path()))
     }

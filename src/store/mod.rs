@@ -2,18 +2,14 @@
 //!
 //! - [`schema`]: names, meanings and format version
 //! - [`tiles`]: finished pieces of a sweep in files of their own, checked when they are read
-//! - [`map_maker`]: computes what is missing, and puts the map together
-//! - [`assembly`]: from pieces to a map
 //! - [`map_writer`]: the map's file, under a temporary name until it is complete
 //! - [`map_file`]: reads maps
-//! - [`map_check`]: whether a map is as it was written, and what other methods say of it
 //! - [`trace_file`]: writes motions sampled over time, and recognises them
 //! - [`output`]: the temporary name, the lock, the final rename
 
-pub mod assembly;
 mod attributes;
 mod best_reader;
-mod best_writer;
+pub(crate) mod best_writer;
 mod boundary_writer;
 mod codec;
 mod contents_hash;
@@ -22,17 +18,16 @@ pub mod curve_rows;
 mod durable;
 mod error;
 mod lock;
-pub mod map_check;
 pub mod map_file;
-pub mod map_maker;
 mod map_summary;
 pub mod map_writer;
 mod netcdf;
 mod open;
 pub mod output;
-mod sample;
+pub(crate) mod sample;
 pub mod schema;
 mod seal;
+pub mod soundness;
 pub mod source;
 pub mod tiles;
 pub mod trace_file;

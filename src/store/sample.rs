@@ -9,8 +9,8 @@ use super::error::StoreError;
 use super::map_file::MapFile;
 use super::map_summary::for_each_chunk;
 use crate::sweep::Field;
-use crate::sweep::pieces::{mixed, spread};
 use crate::sweep::plan::Plan;
+use crate::sweep::plan::pieces::{mixed, spread};
 
 /// What tells cells of one sort from those of another.
 const SORTS: [Field; 2] = [Field::Outcome, Field::Method];
@@ -19,7 +19,7 @@ const SORTS: [Field; 2] = [Field::Outcome, Field::Method];
 ///
 /// # Errors
 /// When the map cannot be read.
-pub(super) fn sample(map: &MapFile, plan: &Plan, count: u64) -> Result<Vec<u64>, StoreError> {
+pub(crate) fn sample(map: &MapFile, plan: &Plan, count: u64) -> Result<Vec<u64>, StoreError> {
     let count = count.min(plan.cells());
     let told = SORTS
         .iter()

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use super::error::StoreError;
 use super::tiles::{Record, RecordEncoder};
 use crate::sweep::engine::Sink;
-use crate::sweep::pieces::Piece;
+use crate::sweep::plan::pieces::Piece;
 
 /// Gives pieces as the bytes of their records.
 pub trait Source {

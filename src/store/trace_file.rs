@@ -14,8 +14,8 @@ use super::netcdf::{DimensionId, Dimensions, named};
 use super::open;
 use super::output::Output;
 use super::schema::{self, trace};
-use crate::sweep::parameter::Units;
-use crate::sweep::trace::{EVENTS, MODES, Sample, TraceEvent};
+use crate::sweep::cells::trace::{EVENTS, MODES, Sample, TraceEvent};
+use crate::sweep::input::parameter::Units;
 use crate::sweep::{CaseSpec, Trace};
 
 /// Elements in a chunk.

@@ -13,7 +13,7 @@ use hdf5_sys::h5p::H5P_DEFAULT;
 use zlib_rs::{InflateConfig, ReturnCode, decompress_slice};
 
 use super::open::{self, DEFLATE, SHUFFLE};
-use crate::sweep::axis::MOST_POINTS;
+use crate::sweep::input::axis::MOST_POINTS;
 
 unsafe extern "C" {
     /// Not in the binding.

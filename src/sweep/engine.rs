@@ -7,12 +7,13 @@ use std::time::{Duration, Instant};
 
 use rayon::{ThreadPool, ThreadPoolBuilder};
 
-use super::best::{BestSettings, best_of_plane, best_plane};
-use super::boundaries::{BoundaryPlane, plane, trace_plane};
+use super::cells::best::{BestSettings, best_of_plane, best_plane};
+use super::cells::boundaries::{BoundaryPlane, plane, trace_plane};
+pub use super::cells::buffers::{Column, FEW_FILL, N_UNSTABLE_FILL, STATUS_FILL, TileBuffers};
+pub use super::cells::worker::Worker;
 use super::events::{Event, Observer};
-use super::pieces::{Piece, Todo};
 use super::plan::Plan;
-pub use super::worker::{Column, FEW_FILL, N_UNSTABLE_FILL, STATUS_FILL, TileBuffers, Worker};
+use super::plan::pieces::{Piece, Todo};
 use crate::model::ModelError;
 
 /// Pieces that wait for the sink, per thread.

@@ -2,7 +2,7 @@
 
 #![allow(dead_code, reason = "no test uses all of it")]
 
-use slipmap::sweep::pieces::mixed;
+use slipmap::sweep::plan::pieces::mixed;
 
 /// SplitMix64.
 pub struct Chance(pub u64);

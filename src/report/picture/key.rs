@@ -8,7 +8,7 @@ use super::scene::Scene;
 use super::text::{Rich, decimal_exponent, field_name, number, suffix};
 use crate::store::map_file::Plane;
 use crate::sweep::Field;
-use crate::sweep::field::Storage;
+use crate::sweep::input::field::Storage;
 
 /// Width of boundary lines.
 pub const BOUNDARY_WIDTH: f64 = 1.8;

@@ -13,7 +13,7 @@ use super::view::View;
 use crate::store::map_file::MapAxis;
 use crate::store::{MapFile, StoreError};
 use crate::sweep::Field;
-use crate::sweep::field::Storage;
+use crate::sweep::input::field::Storage;
 
 const WIDTH: f64 = 3.2;
 /// Dashes of approximations, (length, gap).

@@ -41,7 +41,7 @@ use std::path::{Path, PathBuf};
 use crate::report::visible::visible_line;
 use crate::store::schema::root;
 use crate::store::{MapFile, Output, StoreError};
-use crate::sweep::limit_columns::LimitField;
+use crate::sweep::input::limit_field::LimitField;
 use crate::sweep::{CaseSpec, Field, Parameter, Trace};
 pub use error::PictureError;
 use scene::Scene;
@@ -316,7 +316,7 @@ mod tests {
     use std::sync::Arc;
 
     use super::*;
-    use crate::store::map_maker::make_in_memory;
+    use crate::maps::maker::make_in_memory;
     use crate::store::map_writer::Provenance;
     use crate::sweep::{Plan, SweepSpec};
 

@@ -10,8 +10,8 @@ use super::stack::{Row, Stack};
 use super::text::{Rich, assignment, number, suffix};
 use crate::slip::motion::Event;
 use crate::slip::outcome::Outcome;
-use crate::sweep::parameter::Units;
-use crate::sweep::trace::{Sample, TraceEvent};
+use crate::sweep::cells::trace::{Sample, TraceEvent};
+use crate::sweep::input::parameter::Units;
 use crate::sweep::{CaseSpec, Parameter, Trace};
 
 const WIDTH: f64 = 2.6;

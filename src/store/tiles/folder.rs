@@ -15,7 +15,7 @@ use super::manifest::{self, Manifest};
 use super::reader::{self, Damaged, TileReader};
 use super::record::{Digest, Record, RecordEncoder};
 use crate::sweep::engine::Sink;
-use crate::sweep::pieces::{Piece, Pieces};
+use crate::sweep::plan::pieces::{Piece, Pieces};
 
 /// A file is written that often, unless asked for otherwise.
 pub const BETWEEN_FILES: Duration = Duration::from_secs(2);

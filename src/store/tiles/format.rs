@@ -13,7 +13,7 @@ use std::io::{self, Write};
 use std::ops::Range;
 
 use super::record::{Digest, Record, digest};
-use crate::sweep::pieces::Piece;
+use crate::sweep::plan::pieces::Piece;
 
 const MAGIC: [u8; 16] = *b"slipmap tiles 1\n";
 const HEAD: usize = MAGIC.len() + size_of::<Digest>() + 8;

@@ -11,7 +11,7 @@ use super::super::source::Source;
 use super::folder::{is_tile_file, listed};
 use super::format::{self, Damage, Entry};
 use super::record::{Digest, Record, digest};
-use crate::sweep::pieces::{Piece, Pieces};
+use crate::sweep::plan::pieces::{Piece, Pieces};
 
 /// More bytes than this are no tile file.
 const MOST_BYTES: u64 = 4 << 30;

@@ -8,7 +8,7 @@ use super::super::best_writer::BestRow;
 use super::super::codec::{Chunk, ChunkCodec, decode_bytes};
 use super::super::curve_rows::CurveRows;
 use crate::sweep::engine::{Computed, Encode};
-use crate::sweep::pieces::Piece;
+use crate::sweep::plan::pieces::Piece;
 
 /// SHA-256.
 pub type Digest = [u8; 32];
@@ -40,7 +40,7 @@ pub(super) fn digest(bytes: &[u8]) -> Digest {
 }
 
 /// What a payload holds.
-pub(in super::super) enum Content<'a> {
+pub(crate) enum Content<'a> {
     /// The rows of a plane of curves.
     Curves(Box<CurveRows>),
     /// The row of a plane of best settings.

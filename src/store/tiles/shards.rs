@@ -13,8 +13,8 @@ use super::super::source::Source;
 use super::folder::{self, Belongs, TileFolder};
 use super::manifest::{self, Manifest};
 use super::reader::Damaged;
-use crate::sweep::pieces::{Piece, Pieces, Shard};
 use crate::sweep::plan::Plan;
+use crate::sweep::plan::pieces::{Piece, Pieces, Shard};
 
 /// The folder beside `map` in which the folders of its shards are.
 #[must_use]

@@ -10,9 +10,9 @@ use super::manifest::{self, Manifest};
 use super::reader::Checked;
 use super::record::Content;
 use super::shards;
-use crate::sweep::pieces::{Piece, Pieces, Shard};
 use crate::sweep::plan::Plan;
-use crate::sweep::tile::for_each_index;
+use crate::sweep::plan::pieces::{Piece, Pieces, Shard};
+use crate::sweep::plan::tile::for_each_index;
 
 /// What the tiles of all shards of a map hold.
 #[derive(Debug)]
@@ -68,7 +68,7 @@ impl Survey {
         }
         let folders: Vec<PathBuf> = present.iter().map(|(_, path)| path.clone()).collect();
         let (manifest, plan) = shards::plan(&folders)?;
-        let pieces = Pieces::of(&plan);
+        let pieces = plan.pieces();
         let mut survey = Self {
             plan,
             shards: Vec::new(),

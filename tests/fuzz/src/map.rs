@@ -7,9 +7,9 @@ use std::sync::LazyLock;
 
 use hdf5::types::{FixedAscii, FixedUnicode, VarLenUnicode};
 use hdf5::{Dataset, File, Group, H5Type, Location};
+use slipmap::maps::check::{Effort, check};
 use slipmap::report::preview::preview;
 use slipmap::store::MapFile;
-use slipmap::store::map_check::{Effort, check};
 use slipmap::sweep::{Plan, SweepSpec};
 
 const SWEEP: &str = "fields = [\"n_unstable\", \"abscissa\"]\nbest = true\n[axes]\nmu_prime = [-0.2, -0.1]\n\
@@ -358,7 +358,9 @@ fn put_as<T: H5Type>(
         4 => builder.chunk(vec![1000; shape.len()]).shape(shape),
         5 => builder.no_chunk().shape(shape),
         // As slipmap writes datasets of cells of this size.
-        0 if shape.len() > 1 => builder.chunk(shape.to_vec()).shape(shape),
+        0 if shape.len() > 1 || at.name() == "/boundaries" => {
+            builder.chunk(shape.to_vec()).shape(shape)
+        }
         _ => builder.shape(shape),
     }
     .create(name)?;

@@ -2,8 +2,8 @@
 
 use slipmap::store::map_writer::Provenance;
 use slipmap::store::tiles::Manifest;
-use slipmap::sweep::friction_table::table_of_columns;
-use slipmap::sweep::{CaseSpec, Pieces, Plan, Shard, SpecError, SweepSpec, Todo};
+use slipmap::sweep::input::friction_table::table_of_columns;
+use slipmap::sweep::{CaseSpec, Plan, Shard, SpecError, SweepSpec, Todo};
 
 /// Axes of more points than this are passed over: they cost time and nothing else. Long ones stand among the regressions.
 const LONG: usize = 20_000;
@@ -89,12 +89,12 @@ fn look_at(plan: &Plan) {
     }
     assert_eq!(plan.hash().len(), 64);
     assert!(!plan.description().is_empty() && plan.bytes_per_cell() > 0);
-    let pieces = Pieces::of(plan);
+    let pieces = plan.pieces();
     for place in [0, pieces.total() / 3, pieces.total() - 1] {
         assert_eq!(pieces.place(pieces.at(place)), Some(place));
     }
     if pieces.total() < 10_000 {
-        assert!(Todo::all(plan).next().is_some());
+        assert!(Todo::all(plan.pieces()).next().is_some());
     }
 }
 

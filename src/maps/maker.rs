@@ -6,18 +6,18 @@ use std::sync::atomic::AtomicBool;
 use std::time::Duration;
 
 use super::assembly::{Assembled, Missing, assemble};
-use super::error::StoreError;
-use super::map_file::MapFile;
-use super::map_writer::Provenance;
-use super::output::Output;
-use super::schema::root;
-use super::source::InMemory;
-use super::tiles::folder::BETWEEN_FILES;
-use super::tiles::shards::{self, Shards};
-use super::tiles::{Damaged, Manifest, TileFolder};
+use crate::store::StoreError;
+use crate::store::map_file::MapFile;
+use crate::store::map_writer::Provenance;
+use crate::store::output::Output;
+use crate::store::schema::root;
+use crate::store::source::InMemory;
+use crate::store::tiles::folder::BETWEEN_FILES;
+use crate::store::tiles::shards::{self, Shards};
+use crate::store::tiles::{Damaged, Manifest, TileFolder};
 use crate::sweep::events::{Event, Observer, Silent};
-use crate::sweep::pieces::{Order, Piece, Pieces, Shard, Todo};
 use crate::sweep::plan::Plan;
+use crate::sweep::plan::pieces::{Order, Piece, Shard, Todo};
 use crate::sweep::{RunError, engine};
 
 /// How a sweep is run.
@@ -136,9 +136,9 @@ pub fn merge(
     } = asked;
     let output = Output::claim(map)?;
     let expected = Manifest::of(plan, Shard::WHOLE, provenance);
-    let (mut source, damaged) = Shards::claim(folders, &expected, Pieces::of(plan), stop)?;
+    let (mut source, damaged) = Shards::claim(folders, &expected, plan.pieces(), stop)?;
     tell(&damaged, observer);
-    let lacking = source.missing(Pieces::of(plan).total());
+    let lacking = source.missing(plan.pieces().total());
     if lacking > 0
         && missing == Missing::Leave
         && !asked.replace_complete
@@ -190,7 +190,14 @@ pub fn make_in_memory(
     let output = Output::claim(map).map_err(RunError::Sink)?;
     let mut pieces = InMemory::default();
     let stop = Arc::new(AtomicBool::new(false));
-    engine::run(plan, Todo::all(plan), threads, &mut pieces, &Silent, &stop)?;
+    engine::run(
+        plan,
+        Todo::all(plan.pieces()),
+        threads,
+        &mut pieces,
+        &Silent,
+        &stop,
+    )?;
     let how = (Missing::Refuse, &*stop);
     assemble(plan, output, provenance, &mut pieces, how).map_err(RunError::Sink)
 }
@@ -204,7 +211,7 @@ fn claimed(
     let manifest = Manifest::of(plan, shard, job.provenance);
     shards::make_root(job.map).map_err(ended)?;
     let path = shards::folder_of(job.map, shard);
-    let claimed = TileFolder::claim(&path, &manifest, Pieces::of(plan), stop);
+    let claimed = TileFolder::claim(&path, &manifest, plan.pieces(), stop);
     let (mut folder, damaged) = claimed.map_err(ended)?;
     folder.save_every(job.save_every);
     tell(&damaged, observer);
@@ -218,7 +225,7 @@ fn compute(
     folder: &mut TileFolder,
     (observer, stop): (&dyn Observer, &Arc<AtomicBool>),
 ) -> Result<(), RunError<StoreError>> {
-    let mut todo = Todo::new(Pieces::of(plan), shard, job.order);
+    let mut todo = Todo::new(plan.pieces(), shard, job.order);
     let done: Vec<Piece> = folder.done().collect();
     done.into_iter().for_each(|piece| todo.mark_done(piece));
     engine::run(plan, todo, job.threads, folder, observer, stop)

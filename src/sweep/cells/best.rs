@@ -1,12 +1,12 @@
 //! Settings of fastest decay in physical units, for a point of parameter space and for the planes of a sweep.
 
-use super::axis::Axis;
 use super::boundaries::plane_spanned;
-use super::parameter::{Parameter, Setting};
-use super::plan::Plan;
 use crate::linear::best::{self, Optimum, Search, SearchedGain};
 use crate::linear::lobes::minimal_negative_load_gain;
 use crate::model::{Groups, ModelError};
+use crate::sweep::input::best_plane::searched_gain;
+use crate::sweep::input::parameter::Setting;
+use crate::sweep::plan::Plan;
 
 /// Largest |b| for which best settings are searched.
 const STEEPEST: f64 = 1e4;
@@ -47,16 +47,6 @@ pub struct BestSettings {
     pub regions: Vec<BestRegion>,
     /// Further regions, which were not searched.
     pub regions_left_out: usize,
-}
-
-/// Which gain a parameter is; none for those that are no gain.
-#[must_use]
-pub fn searched_gain(parameter: Parameter) -> Option<SearchedGain> {
-    match parameter {
-        Parameter::AlphaV => Some(SearchedGain::Velocity),
-        Parameter::AlphaN => Some(SearchedGain::Load),
-        _ => None,
-    }
 }
 
 /// What turns dimensionless gains and delays into physical ones.
@@ -167,19 +157,6 @@ pub fn best_settings(
             .collect(),
         regions_left_out: found.regions_left_out,
     })
-}
-
-/// The axes (gain, delay) of the planes whose best settings are looked for: the last gain axis and the delay, if both have
-/// more points than one.
-#[must_use]
-pub fn gain_plane(axes: &[Axis]) -> Option<(usize, usize)> {
-    let gain = axes
-        .iter()
-        .rposition(|axis| axis.len() > 1 && searched_gain(axis.parameter).is_some())?;
-    let tau = axes
-        .iter()
-        .position(|axis| axis.len() > 1 && axis.parameter == Parameter::Tau)?;
-    Some((gain, tau))
 }
 
 /// Where the plane of number `number` whose best settings are looked for lies, as indices along every axis.

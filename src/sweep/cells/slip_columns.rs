@@ -2,17 +2,17 @@
 
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use super::field::Field;
-use super::parameter::{Parameter, Setting};
-use super::simulation::Simulation;
-use super::spec::SweepSpec;
-use super::worker::TileBuffers;
+use super::buffers::TileBuffers;
 use crate::linear::status::NOT_CONVERGED;
 use crate::model::Groups;
 use crate::slip::case::{Case, CaseError};
 use crate::slip::cycle::NoCycle;
 use crate::slip::motion::Motion;
 use crate::slip::outcome::{Outcome, Summary};
+use crate::sweep::input::field::Field;
+use crate::sweep::input::parameter::{Parameter, Setting};
+use crate::sweep::input::simulation::Simulation;
+use crate::sweep::input::spec::SweepSpec;
 
 /// Fills the columns of one thread's tiles.
 pub(super) struct SlipColumns<'p> {

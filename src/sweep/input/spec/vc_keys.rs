@@ -2,11 +2,11 @@
 
 use std::ops::Range;
 
-use super::super::parameter::{Parameter, Setting};
-use super::super::toml_reader::{Entry, SpecError};
-use super::super::vc::{PHASES, Protocol, Search};
 use super::{Draft, Field};
 use crate::critical::switch_on::Phase;
+use crate::sweep::input::parameter::{Parameter, Setting};
+use crate::sweep::input::search::{PHASES, Protocol, Search};
+use crate::sweep::input::toml_reader::{Entry, SpecError};
 
 /// The share of cells that are recomputed where the file does not say.
 const VERIFIED: f64 = 1.0 / 256.0;

@@ -1,18 +1,22 @@
 //! The plan of a sweep: its cells, cut into tiles.
 
+pub mod memory;
+pub mod pieces;
+pub mod tile;
+
 use std::borrow::Cow;
 
 use sha2::{Digest, Sha256};
 
-use super::axis::plane_of_curves;
-use super::best::gain_plane;
-use super::parameter::{LawKind, Parameter, Setting};
-use super::pieces::Piece;
-use super::spec::{SpecError, SweepSpec};
-use super::tile::{Tile, TileGrid};
-use super::vc::Protocol;
+use self::pieces::{Piece, Pieces};
+use self::tile::{Tile, TileGrid};
 use crate::critical::switch_on::Phase;
 use crate::model::table::Column;
+use crate::sweep::input::axis::plane_of_curves;
+use crate::sweep::input::best_plane::gain_plane;
+use crate::sweep::input::parameter::{LawKind, Parameter, Setting};
+use crate::sweep::input::search::Protocol;
+use crate::sweep::input::spec::{SpecError, SweepSpec};
 
 /// Cells in a tile, about: small enough for a processor's cache, large enough to compress and write well.
 const CELLS_PER_TILE: usize = 1 << 18;
@@ -143,6 +147,16 @@ impl Plan {
     pub fn bytes_per_cell(&self) -> u64 {
         let fields: usize = self.spec.fields.iter().map(|f| f.bytes()).sum();
         (fields + size_of::<u8>()) as u64
+    }
+
+    /// What it is made of.
+    #[must_use]
+    pub fn pieces(&self) -> Pieces {
+        Pieces {
+            curves: self.boundary_planes(),
+            best: self.best_planes(),
+            tiles: self.tiles.len() as u64,
+        }
     }
 
     /// Number of planes in which crossing curves are traced.

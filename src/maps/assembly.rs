@@ -2,15 +2,15 @@
 
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use super::best_writer::BestRow;
-use super::error::StoreError;
-use super::map_writer::{MapWriter, Provenance};
-use super::output::Output;
-use super::source::Source;
-use super::tiles::record::Content;
-use crate::sweep::boundaries::plane;
-use crate::sweep::pieces::{Piece, Pieces};
+use crate::store::StoreError;
+use crate::store::best_writer::BestRow;
+use crate::store::map_writer::{MapWriter, Provenance};
+use crate::store::output::Output;
+use crate::store::source::Source;
+use crate::store::tiles::record::Content;
+use crate::sweep::cells::boundaries::plane;
 use crate::sweep::plan::Plan;
+use crate::sweep::plan::pieces::Piece;
 
 /// What to do where pieces are missing.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -52,7 +52,7 @@ pub fn assemble(
 ) -> Result<Assembled, StoreError> {
     let mut writer = MapWriter::create(plan, output, provenance)?;
     let mut assembled = Assembled::default();
-    let pieces = Pieces::of(plan);
+    let pieces = plan.pieces();
     for piece in (0..pieces.total()).map(|place| pieces.at(place)) {
         if stop.load(Ordering::Relaxed) {
             return Err(StoreError::Stopped);

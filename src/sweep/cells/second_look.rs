@@ -1,9 +1,6 @@
 //! A cell of a map, looked at once more by methods that did not compute it.
 
-use super::field::{Field, number_of_end};
-use super::parameter::Setting;
-use super::plan::Plan;
-use super::vc::{self, Protocol};
+use super::vc;
 use crate::critical::switch_on::{Phase, Survival};
 use crate::critical::{Critical, End, Method};
 use crate::linear::certificate::roots_right_of;
@@ -12,6 +9,10 @@ use crate::model::{Groups, ModelError};
 use crate::slip::case::Case;
 use crate::slip::motion::{Accuracy, Integrator};
 use crate::slip::outcome::Outcome;
+use crate::sweep::input::field::{Field, number_of_end};
+use crate::sweep::input::parameter::Setting;
+use crate::sweep::input::search::Protocol;
+use crate::sweep::plan::Plan;
 
 /// What a map holds of one cell.
 pub struct Stored<'a> {

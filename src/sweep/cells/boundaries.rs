@@ -1,15 +1,15 @@
 //! Crossing curves of a whole sweep, and those of its degrees of stability: one plane (parameter, delay) for each setting of
 //! the other axes.
 
-use super::parameter::{Parameter, Setting};
-use super::plan::Plan;
-use super::tile::index_of;
 use crate::linear::Crossings;
 use crate::linear::curves::{PlaneCurves, TooManyCurves, Window, scan_breakpoints, trace};
 use crate::linear::decay;
 use crate::linear::gains::{load_gain_breakpoints, velocity_gain_breakpoints};
 use crate::model::friction::Kind;
 use crate::model::{Groups, ModelError};
+use crate::sweep::input::parameter::{Parameter, Setting};
+use crate::sweep::plan::Plan;
+use crate::sweep::plan::tile::index_of;
 
 /// Steps in which breakpoints are looked for along a parameter that is no gain.
 const SCAN_STEPS: usize = 4096;

@@ -1,10 +1,10 @@
 //! The fields that come from characteristic roots: from the dimensionless roots of a cell to physical values.
 
-use super::field::{Field, Slope};
-use super::worker::Column;
+use super::buffers::Column;
 use crate::linear::sensitivity::Sensitivity;
 use crate::linear::track::{Cell, RootTracker};
 use crate::model::Groups;
+use crate::sweep::input::field::{Field, Slope};
 
 /// A line of cells, or a part of it.
 pub(super) struct Line<'a> {

@@ -1,8 +1,8 @@
 //! What a map can hold for each cell: every field's one name, meaning, unit and type.
 
-use super::limit_columns::LimitField;
+use super::class::Class;
+use super::limit_field::LimitField;
 use super::parameter::{Parameter, Units};
-use super::vc::Class;
 use crate::critical::{Critical, End, Method};
 use crate::linear::track::MOST_ROOTS;
 use crate::slip::outcome::Outcome;
@@ -158,7 +158,7 @@ pub fn number_of_outcome(critical: &Critical) -> u8 {
 }
 
 /// The place of an end in [`OUTCOMES`].
-pub(super) fn number_of_end(end: End) -> u8 {
+pub(crate) fn number_of_end(end: End) -> u8 {
     let first = Outcome::ALL.len() as u8;
     match end {
         End::LiftOff => Outcome::LiftOff as u8,

@@ -4,14 +4,12 @@ use std::fmt;
 use std::str::FromStr;
 use std::sync::atomic::{AtomicU64, Ordering};
 
-use super::plan::Plan;
-
 /// A part of a sweep that is computed, stored and checked by itself; each kind is numbered from 0.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Piece {
-    /// The curves of a plane, see [`super::boundaries::plane`].
+    /// The curves of a plane, see [`crate::sweep::cells::boundaries::plane`].
     Curves(u64),
-    /// The best settings of a plane, see [`super::best::best_plane`].
+    /// The best settings of a plane, see [`crate::sweep::cells::best::best_plane`].
     Best(u64),
     /// The cells of a tile.
     Tile(u64),
@@ -29,16 +27,6 @@ pub struct Pieces {
 }
 
 impl Pieces {
-    /// The pieces of a plan.
-    #[must_use]
-    pub fn of(plan: &Plan) -> Self {
-        Self {
-            curves: plan.boundary_planes(),
-            best: plan.best_planes(),
-            tiles: plan.tiles.len() as u64,
-        }
-    }
-
     /// How many there are.
     #[must_use]
     pub fn total(&self) -> u64 {
@@ -157,10 +145,10 @@ pub struct Todo {
 }
 
 impl Todo {
-    /// All pieces of a plan.
+    /// All of `pieces`.
     #[must_use]
-    pub fn all(plan: &Plan) -> Self {
-        Self::new(Pieces::of(plan), Shard::WHOLE, Order::Forward)
+    pub fn all(pieces: Pieces) -> Self {
+        Self::new(pieces, Shard::WHOLE, Order::Forward)
     }
 
     /// The pieces of a shard, in an order.

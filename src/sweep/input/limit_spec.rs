@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use super::field::Field;
 use super::given::GivenParameters;
-use super::limit_columns::LimitField;
+use super::limit_field::LimitField;
 use super::parameter::{GivenError, Parameter, Setting};
 use super::protocol::Protocol;
 use super::toml_reader::{Entry, SpecError};

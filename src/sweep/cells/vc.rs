@@ -1,86 +1,22 @@
 //! The critical velocity in the units of a setting, by one protocol or the other.
 
-use super::parameter::{Parameter, Setting};
 use crate::critical::follow::Pace;
 use crate::critical::switch_on::{self, Phase, Scan, Survival, Trials, Windows};
-use crate::critical::{
-    Critical, End, GRAZE_PRECISION, Method, Problem, by_simulation, critical_velocity, line,
-};
+use crate::critical::{Critical, End, Method, Problem, by_simulation, critical_velocity, line};
 use crate::linear::{Crossings, MarginalTolerance};
 use crate::model::ModelError;
 use crate::model::elementary::pow;
 use crate::slip::case::CaseUnits;
 use crate::slip::motion::{Accuracy, Integrator};
-
-/// Phases over one cycle for the worst case.
-pub const PHASES: u32 = 32;
+use crate::sweep::input::class::Class;
+use crate::sweep::input::parameter::{Parameter, Setting};
+use crate::sweep::input::search::Protocol;
 
 /// Error allowed in a step where control is switched on.
 const SWITCH_ON_ACCURACY: f64 = 1e-9;
 
 /// How many times as many steps a motion may take by collocation.
 pub const MORE_STEPS: u64 = 100;
-
-/// Which question is asked.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Protocol {
-    /// From controlled stick-slip at low v0, raised until stick-slip ends.
-    Follow,
-    /// Control is switched on at a phase of uncontrolled stick-slip; the phase is in units of the setting.
-    SwitchOn(Phase),
-}
-
-impl Protocol {
-    /// Names of the protocols.
-    pub const NAMES: [&'static str; 2] = ["follow", "switch-on"];
-
-    /// The name in flags, sweep files and maps.
-    #[must_use]
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::Follow => Self::NAMES[0],
-            Self::SwitchOn(_) => Self::NAMES[1],
-        }
-    }
-
-    /// The protocol for a setting, which may have a phase of its own.
-    #[must_use]
-    pub fn at(self, setting: &Setting) -> Self {
-        match (self, setting.get(Parameter::SwitchOnPhase)) {
-            (Self::SwitchOn(Phase::After(_)), phase) if !phase.is_nan() => {
-                Self::SwitchOn(Phase::After(phase))
-            }
-            (protocol, _) => protocol,
-        }
-    }
-
-    /// The largest v0 at which stick-slip is looked for, in units of μ_S N0/√(κM).
-    #[must_use]
-    pub fn v_max(self) -> f64 {
-        match self {
-            Self::Follow => Pace::default().v_max,
-            Self::SwitchOn(_) => Scan::default().v_max,
-        }
-    }
-
-    /// To what v_c is known, relative.
-    #[must_use]
-    pub fn precision(self) -> f64 {
-        match self {
-            Self::Follow => GRAZE_PRECISION,
-            Self::SwitchOn(_) => Scan::default().precision,
-        }
-    }
-}
-
-/// How the critical velocities of a sweep are looked for.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Search {
-    /// Which question is asked; a setting's own phase of switch-on comes before the one here.
-    pub protocol: Protocol,
-    /// The share of cells that are recomputed by simulation, 0 to 1.
-    pub verify: f64,
-}
 
 /// The critical velocity of a setting, and what is known besides.
 #[derive(Debug, Clone, PartialEq)]
@@ -304,90 +240,52 @@ pub fn simulation_agrees(
     differs
 }
 
-/// What a working velocity v0 is good for.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub enum Class {
-    /// Sliding is linearly stable, and there is no stick-slip beside it.
-    Stable,
-    /// Sliding is linearly stable, and stick-slip persists beside it.
-    Bistable,
-    /// Sliding is linearly unstable.
-    Unstable,
-    /// Sliding is linearly stable, and the way there leads through N ≤ 0.
-    LiftOff,
-    /// Sliding is marginal, or what becomes of stick-slip is not known.
-    Undecided,
+/// The class of `v0`, in units of the setting, where the critical velocity is `found` by `protocol`.
+#[must_use]
+pub fn class_at(
+    v0: f64,
+    (problem, units): (&Problem, &CaseUnits),
+    (protocol, found): (Protocol, &Found),
+    tolerance: MarginalTolerance,
+) -> Class {
+    let speed = v0 / units.velocity;
+    let count = Crossings::of(problem.groups(speed)).count(problem.tau, tolerance);
+    if count.marginal {
+        return Class::Undecided;
+    }
+    if !count.stable() {
+        return Class::Unstable;
+    }
+    match protocol {
+        Protocol::Follow => {
+            let v_max = protocol.v_max() * problem.law.mu_s() * units.velocity;
+            beside_sliding(v0, &found.critical, v_max)
+        }
+        Protocol::SwitchOn(phase) => {
+            let phase = in_motion_units(phase, units);
+            let accuracy = Accuracy::of(SWITCH_ON_ACCURACY);
+            let steps = Scan::default().steps;
+            match Trials::new(problem, phase, accuracy, steps).at(speed) {
+                Survival::Survives | Survival::Irregular => Class::Bistable,
+                Survival::Ends | Survival::NoStickSlip => Class::Stable,
+                Survival::LiftOff => Class::LiftOff,
+                Survival::Undecided => Class::Undecided,
+            }
+        }
+    }
 }
 
-impl Class {
-    /// All, in the order of their numbers in a map.
-    pub const ALL: [Self; 5] = [
-        Self::Stable,
-        Self::Bistable,
-        Self::Unstable,
-        Self::LiftOff,
-        Self::Undecided,
-    ];
-
-    /// The name in maps.
-    #[must_use]
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::Stable => "stable",
-            Self::Bistable => "bistable",
-            Self::Unstable => "unstable",
-            Self::LiftOff => "lift-off",
-            Self::Undecided => "undecided",
-        }
-    }
-
-    /// The class of `v0`, in units of the setting, where the critical velocity is `found` by `protocol`.
-    #[must_use]
-    pub fn at(
-        v0: f64,
-        (problem, units): (&Problem, &CaseUnits),
-        (protocol, found): (Protocol, &Found),
-        tolerance: MarginalTolerance,
-    ) -> Self {
-        let speed = v0 / units.velocity;
-        let count = Crossings::of(problem.groups(speed)).count(problem.tau, tolerance);
-        if count.marginal {
-            return Self::Undecided;
-        }
-        if !count.stable() {
-            return Self::Unstable;
-        }
-        match protocol {
-            Protocol::Follow => {
-                let v_max = protocol.v_max() * problem.law.mu_s() * units.velocity;
-                Self::beside_sliding(v0, &found.critical, v_max)
-            }
-            Protocol::SwitchOn(phase) => {
-                let phase = in_motion_units(phase, units);
-                let accuracy = Accuracy::of(SWITCH_ON_ACCURACY);
-                let steps = Scan::default().steps;
-                match Trials::new(problem, phase, accuracy, steps).at(speed) {
-                    Survival::Survives | Survival::Irregular => Self::Bistable,
-                    Survival::Ends | Survival::NoStickSlip => Self::Stable,
-                    Survival::LiftOff => Self::LiftOff,
-                    Survival::Undecided => Self::Undecided,
-                }
-            }
-        }
-    }
-
-    /// The same by the protocol `follow`, up to `v_max`, where sliding at `v0` is linearly stable.
-    fn beside_sliding(v0: f64, critical: &Critical, v_max: f64) -> Self {
-        match critical.end {
-            _ if !critical.decided => Self::Undecided,
-            End::LiftOff if v0 >= critical.v_liftoff => Self::LiftOff,
-            End::LiftOff if !critical.sustained => Self::Stable,
-            End::LiftOff => Self::Bistable,
-            End::Persists if v0 > v_max => Self::Undecided,
-            End::Persists => Self::Bistable,
-            _ if v0 > critical.vc => Self::Stable,
-            _ => Self::Bistable,
-        }
+/// The same by the protocol `follow`, up to `v_max`, where sliding at `v0` is linearly stable.
+fn beside_sliding(v0: f64, critical: &Critical, v_max: f64) -> Class {
+    match critical.end {
+        _ if !critical.decided => Class::Undecided,
+        End::LiftOff if v0 >= critical.v_liftoff => Class::LiftOff,
+        End::LiftOff if !critical.sustained => Class::Stable,
+        End::LiftOff => Class::Bistable,
+        End::Persists if v0 > v_max => Class::Undecided,
+        End::Persists => Class::Bistable,
+        _ if v0 > critical.vc => Class::Stable,
+        _ => Class::Bistable,
     }
 }
 
@@ -463,13 +361,9 @@ mod tests {
             (End::Persists, none, none, 101.0, Class::Undecided),
         ] {
             let mut critical = critical(end, vc, v_liftoff);
-            assert_eq!(
-                Class::beside_sliding(at, &critical, 100.0),
-                class,
-                "{end:?} {at}"
-            );
+            assert_eq!(beside_sliding(at, &critical, 100.0), class, "{end:?} {at}");
             critical.decided = false;
-            let unknown = Class::beside_sliding(at, &critical, 100.0);
+            let unknown = beside_sliding(at, &critical, 100.0);
             assert_eq!(unknown, Class::Undecided);
         }
     }
@@ -480,7 +374,7 @@ mod tests {
         let mut lifted = critical(End::LiftOff, f64::NAN, 0.2);
         lifted.sustained = false;
         for (v0, class) in [(0.1, Class::Stable), (0.2, Class::LiftOff)] {
-            assert_eq!(Class::beside_sliding(v0, &lifted, 100.0), class);
+            assert_eq!(beside_sliding(v0, &lifted, 100.0), class);
         }
     }
 

@@ -1,9 +1,9 @@
 //! A motion sampled over time, with its events: a case followed to its outcome and to the end of its trace.
 
-use super::case_file::{CaseSpec, Sampling};
 use crate::slip::case::{Case, CaseError, CaseUnits};
 use crate::slip::motion::{Event, MOST_KEPT, Mode, Motion};
 use crate::slip::outcome::{Observer, Outcome, Summary};
+use crate::sweep::input::case_file::{CaseSpec, Sampling};
 
 /// More samples than this make no trace: some 300 MB.
 const MOST_SAMPLES: usize = 2_000_000;
@@ -315,7 +315,7 @@ impl Recorder {
 mod tests {
     use super::*;
 
-    const FIG3A: &str = include_str!("../../sweeps/fig3a.toml");
+    const FIG3A: &str = include_str!("../../../sweeps/fig3a.toml");
 
     fn trace(text: &str) -> (CaseSpec, Trace) {
         let spec: CaseSpec = text.parse().unwrap();

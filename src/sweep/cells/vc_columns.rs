@@ -3,12 +3,8 @@
 use std::ops::Range;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use super::field::{Field, number_of_outcome};
-use super::parameter::{Parameter, Setting};
-use super::pieces::mixed;
-use super::spec::SweepSpec;
-use super::vc::{self, Class, Found, Protocol, Search};
-use super::worker::{FEW_FILL, TileBuffers};
+use super::buffers::{FEW_FILL, TileBuffers};
+use super::vc::{self, Found, class_at};
 use crate::critical::Problem;
 use crate::critical::line::BLOCK;
 use crate::linear::MarginalTolerance;
@@ -16,6 +12,12 @@ use crate::linear::status::{DISAGREE, NOT_CONVERGED, SAMPLED};
 use crate::model::ModelError;
 use crate::slip::case::CaseUnits;
 use crate::slip::motion::Integrator;
+use crate::sweep::input::class::Class;
+use crate::sweep::input::field::{Field, number_of_outcome};
+use crate::sweep::input::parameter::{Parameter, Setting};
+use crate::sweep::input::search::{Protocol, Search};
+use crate::sweep::input::spec::SweepSpec;
+use crate::sweep::plan::pieces::mixed;
 
 /// Fills the columns of one thread's tiles.
 pub(super) struct VcColumns {
@@ -196,7 +198,7 @@ impl VcColumns {
             }
         }
         Ok(Cell {
-            class: classed.then(|| Class::at(v0, at, (protocol, found), tolerance)),
+            class: classed.then(|| class_at(v0, at, (protocol, found), tolerance)),
             v_smooth: match smooth {
                 true => vc::v_smooth(at, vc, protocol.v_max()),
                 false => f64::NAN,

@@ -1,4 +1,4 @@
-//! Whether a map is as it was written, and what other methods say of it.
+//! Whether the file of a map is as it was written: its schema against its sweep, its checksums.
 
 use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -10,19 +10,11 @@ use sha2::{Digest, Sha256};
 use super::attributes::text;
 use super::error::StoreError;
 use super::map_file::MapFile;
-use super::sample::sample;
-use super::schema::{self, STATUS, root};
+use super::schema::{self, STATUS};
 use super::seal::{self, Seal};
-use super::tiles::RecordEncoder;
-use super::tiles::record::Content;
 use super::values::Chunks;
-use crate::linear::status::{DISAGREE, FLAGS};
-use crate::sweep::engine::{Computed, Encode, STATUS_FILL, Worker};
-use crate::sweep::pieces::{Piece, spread};
+use crate::sweep::cells::second_look::Question;
 use crate::sweep::plan::{Plan, in_hexadecimal};
-use crate::sweep::second_look::{Answer, Question, Stored, second_look};
-use crate::sweep::tile::index_of;
-use crate::sweep::{Field, SweepSpec};
 
 /// A child that is being started shares the library's lock on a file until it runs its own program: no longer than this.
 const FORKED: Duration = Duration::from_secs(2);
@@ -44,43 +36,6 @@ pub struct Report {
     pub tiles: u64,
     /// Those of them of which all bytes are equal.
     pub tiles_equal: u64,
-}
-
-/// How much of a map is computed again.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Effort {
-    /// Cells at which second methods look.
-    pub cells: u64,
-    /// Tiles that are computed again, bit by bit.
-    pub tiles: u64,
-}
-
-/// Checks a map: its schema against its own sweep, its checksums, and samples of its cells; `program` is the version and revision
-/// of the program that runs.
-///
-/// # Errors
-/// When the map cannot be read at all.
-pub fn check(map: &MapFile, program: (&str, &str), effort: Effort) -> Result<Report, StoreError> {
-    let mut report = Report::default();
-    let Some(plan) = planned(map, &mut report) else {
-        return Ok(report);
-    };
-    check_seal(map, &mut report);
-    check_schema(map, &plan, &mut report);
-    check_checksums(map, &plan, &mut report, &AtomicBool::new(false));
-    if map.is_partial() {
-        let missing = map.cells_missing();
-        report
-            .remarks
-            .push(format!("{missing} cells are not computed yet"));
-    }
-    // Values of a map whose bytes are wrong are not worth a look.
-    if report.faults.is_empty() {
-        check_statuses(map, &mut report)?;
-        look_at_cells(map, &plan, effort.cells, &mut report)?;
-        compute_tiles(map, &plan, program, effort.tiles, &mut report)?;
-    }
-    Ok(report)
 }
 
 /// Whether a file without a seal is the sound map of `plan`, whose cells need not all be there; else what is wrong first. Once
@@ -109,26 +64,7 @@ fn opened(path: &Path) -> Result<MapFile, StoreError> {
     }
 }
 
-fn planned(map: &MapFile, report: &mut Report) -> Option<Plan> {
-    let sweep = map.root_text(root::SWEEP).unwrap_or_default();
-    match sweep.parse::<SweepSpec>().and_then(Plan::new) {
-        Ok(plan) if map.root_text(root::PLAN_HASH).as_deref() == Some(&plan.hash()) => Some(plan),
-        Ok(_) => {
-            let fault = "the sweep in the map does not have the hash of its plan";
-            report.faults.push(fault.to_owned());
-            None
-        }
-        Err(error) => {
-            report.faults.push(format!(
-                "the sweep in the map cannot be read: {}",
-                error.message
-            ));
-            None
-        }
-    }
-}
-
-fn check_schema(map: &MapFile, plan: &Plan, report: &mut Report) {
+pub(crate) fn check_schema(map: &MapFile, plan: &Plan, report: &mut Report) {
     let faults = &mut report.faults;
     let axes = &plan.spec.axes;
     if map.axes().len() != axes.len() {
@@ -189,11 +125,11 @@ fn has_dimensions(map: &MapFile, name: &str) -> bool {
 }
 
 /// The datasets of cells.
-fn names(map: &MapFile) -> impl Iterator<Item = &'static str> {
+pub(crate) fn names(map: &MapFile) -> impl Iterator<Item = &'static str> {
     map.fields().iter().map(|f| f.name()).chain([STATUS])
 }
 
-fn check_seal(map: &MapFile, report: &mut Report) {
+pub(crate) fn check_seal(map: &MapFile, report: &mut Report) {
     match seal::check(map.path()) {
         Ok(Seal::Whole) => report.checksums += 1,
         Ok(Seal::Broken) => {
@@ -210,7 +146,7 @@ fn check_seal(map: &MapFile, report: &mut Report) {
     }
 }
 
-fn check_checksums(map: &MapFile, plan: &Plan, report: &mut Report, stop: &AtomicBool) {
+pub(crate) fn check_checksums(map: &MapFile, plan: &Plan, report: &mut Report, stop: &AtomicBool) {
     let mut without = 0;
     for name in names(map) {
         let Ok(dataset) = map.dataset(name) else {
@@ -279,128 +215,4 @@ fn hash_of_chunks(dataset: &Dataset, plan: &Plan, stop: &AtomicBool) -> hdf5::Re
         }
     }
     Ok(in_hexadecimal(&hash.finalize()))
-}
-
-fn check_statuses(map: &MapFile, report: &mut Report) -> Result<(), StoreError> {
-    let found = map.status_counts()?;
-    let computed = map.cells() - map.cells_missing().min(map.cells());
-    if found.computed != computed {
-        let (cells, of) = (found.computed, computed);
-        report
-            .faults
-            .push(format!("{cells} cells have a status, {of} should"));
-    }
-    for (count, (mask, name)) in found.flagged.iter().zip(FLAGS) {
-        if mask == DISAGREE && *count > 0 {
-            report.remarks.push(format!(
-                "{count} cells say themselves that two methods {name}"
-            ));
-        }
-    }
-    Ok(())
-}
-
-fn look_at_cells(
-    map: &MapFile,
-    plan: &Plan,
-    cells: u64,
-    report: &mut Report,
-) -> Result<(), StoreError> {
-    for number in sample(map, plan, cells)? {
-        let index = index_of(number, plan.shape());
-        let status = map.cell_status(&index)?;
-        if status == STATUS_FILL {
-            continue;
-        }
-        let mut values = Vec::new();
-        for &field in &plan.spec.fields {
-            values.push((field, map.cell(field, &index)?));
-        }
-        let value = |field: Field| {
-            let found = values.iter().find(|(f, _)| *f == field);
-            found.map_or(f64::NAN, |(_, value)| *value)
-        };
-        let stored = Stored {
-            status,
-            value: &value,
-        };
-        match second_look(plan, &index, &stored) {
-            Ok(answers) if answers.is_empty() => {
-                let remark = "no second method looks at the fields of this map";
-                report.remarks.push(remark.to_owned());
-                break;
-            }
-            Ok(answers) => tally(plan, &index, &answers, report),
-            Err(error) => report.remarks.push(format!("cell {index:?}: {error}")),
-        }
-    }
-    Ok(())
-}
-
-fn tally(plan: &Plan, index: &[usize], answers: &[(Question, Answer)], report: &mut Report) {
-    report.cells += 1;
-    for &(question, answer) in answers {
-        let place = report.answers.iter().position(|(q, _)| *q == question);
-        let place = place.unwrap_or_else(|| {
-            report.answers.push((question, [0; 3]));
-            report.answers.len() - 1
-        });
-        report.answers[place].1[answer as usize] += 1;
-        if answer == Answer::Differs {
-            let axes = plan.spec.axes.iter().zip(index);
-            let at: Vec<String> = axes
-                .map(|(axis, &i)| format!("{} = {}", axis.parameter.name(), axis.values[i]))
-                .collect();
-            report
-                .faults
-                .push(format!("{} differs at {}", question.name(), at.join(", ")));
-        }
-    }
-}
-
-fn compute_tiles(
-    map: &MapFile,
-    plan: &Plan,
-    (version, revision): (&str, &str),
-    tiles: u64,
-    report: &mut Report,
-) -> Result<(), StoreError> {
-    let by = |name, this| map.root_text(name).as_deref() == Some(this);
-    if !by(root::PROGRAM_VERSION, version) || !by(root::GIT_REVISION, revision) {
-        let remark = "no tiles are compared bit by bit: another revision of slipmap computed them";
-        report.remarks.push(remark.to_owned());
-        return Ok(());
-    }
-    let mut worker = Worker::new(plan);
-    let mut encoder = RecordEncoder::default();
-    for sample in 0..tiles.min(plan.tiles.len() as u64) {
-        let number = (spread(sample) * plan.tiles.len() as f64) as usize;
-        let tile = plan.tiles.tile(number);
-        worker.compute(&tile);
-        let piece = Piece::Tile(number as u64);
-        let record = encoder.encode(piece, Computed::Tile(&worker.buffers));
-        let Some(Content::Tile(chunks)) = Content::read(piece, &record.payload) else {
-            continue;
-        };
-        let mut equal = true;
-        let held = plan.spec.fields.iter().map(|f| f.name()).chain([STATUS]);
-        for (name, chunk) in held.zip(chunks) {
-            let dataset = map.dataset(name)?;
-            let chunks = Chunks::of(&dataset).ok().flatten();
-            match chunks.map(|chunks| chunks.stored(&tile.offset)) {
-                Some(Ok(Some(stored))) if stored == chunk => {}
-                // Of a map that is not complete.
-                Some(Ok(None)) if map.is_partial() => equal = false,
-                _ => {
-                    equal = false;
-                    report
-                        .faults
-                        .push(format!("{name}: tile {number} comes out differently"));
-                }
-            }
-        }
-        report.tiles += 1;
-        report.tiles_equal += u64::from(equal);
-    }
-    Ok(())
 }

@@ -1,9 +1,8 @@
 //! How much memory a run takes, before it begins: bounds from the plan alone, to which `--memory` fits the threads.
 
-use super::parameter::{Parameter, Setting};
-use super::pieces::Pieces;
-use super::plan::Plan;
+use super::Plan;
 use crate::slip::motion::{BYTES_OF_A_STEP, MOST_KEPT};
+use crate::sweep::input::parameter::{Parameter, Setting};
 
 /// The program, the HDF5 library, the tiles that wait to be saved, a picture.
 const BASE: u64 = 90 << 20;
@@ -41,7 +40,7 @@ impl Memory {
     /// What a run of `plan` takes at most.
     #[must_use]
     pub fn of(plan: &Plan) -> Self {
-        let pieces = Pieces::of(plan);
+        let pieces = plan.pieces();
         let axes: u64 = plan.shape().iter().map(|&n| n as u64).sum();
         let shared = BASE
             + PER_PIECE * pieces.total()

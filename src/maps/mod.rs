@@ -1,0 +1,9 @@
+//! From a plan to its map, and whether a map is true.
+//!
+//! - [`maker`]: computes what is missing, and puts the map together; shards, and their merge
+//! - [`assembly`]: from pieces to a map
+//! - [`check`]: whether a map is as it was written, and what other methods say of it
+
+pub mod assembly;
+pub mod check;
+pub mod maker;

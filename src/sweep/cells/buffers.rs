@@ -1,0 +1,85 @@
+//! The cells of a tile in memory, a column for each field.
+
+use crate::sweep::input::field::{Field, Storage};
+use crate::sweep::plan::Plan;
+
+/// The cells of one tile, in memory in the order of its strides. Cells beyond the map hold fill values.
+#[derive(Debug, Clone)]
+pub struct TileBuffers {
+    /// Status of each cell, see [`crate::linear::status`].
+    pub status: Vec<u8>,
+    /// Number of unstable roots, if asked for.
+    pub n_unstable: Option<Vec<u16>>,
+    /// The fields stored as u8 that are asked for, in their order: kinds and small counts.
+    pub kinds: Vec<Column<u8>>,
+    /// The other fields that are asked for, in their order.
+    pub columns: Vec<Column>,
+}
+
+/// The cells of one field.
+#[derive(Debug, Clone)]
+pub struct Column<T = f64> {
+    /// The field.
+    pub field: Field,
+    /// Its value in each cell; NaN or [`FEW_FILL`] where there is none.
+    pub cells: Vec<T>,
+}
+
+/// Value of `n_unstable` in cells that are not computed.
+pub const N_UNSTABLE_FILL: u16 = u16::MAX;
+/// Value of kinds and small counts in cells without a value.
+pub const FEW_FILL: u8 = u8::MAX;
+/// Value of `status` in cells that are not computed.
+pub const STATUS_FILL: u8 = u8::MAX;
+
+impl TileBuffers {
+    /// Buffers for tiles of `plan`, all fill values.
+    #[must_use]
+    pub fn new(plan: &Plan) -> Self {
+        let cells = plan.tiles.tile_cells();
+        let fields = &plan.spec.fields;
+        Self {
+            status: vec![STATUS_FILL; cells],
+            n_unstable: fields
+                .contains(&Field::NUnstable)
+                .then(|| vec![N_UNSTABLE_FILL; cells]),
+            kinds: columns(fields, &[Storage::Kind, Storage::Few], FEW_FILL, cells),
+            columns: columns(fields, &[Storage::Real], f64::NAN, cells),
+        }
+    }
+
+    pub(super) fn clear(&mut self) {
+        self.status.fill(STATUS_FILL);
+        if let Some(n) = &mut self.n_unstable {
+            n.fill(N_UNSTABLE_FILL);
+        }
+        for column in &mut self.kinds {
+            column.cells.fill(FEW_FILL);
+        }
+        for column in &mut self.columns {
+            column.cells.fill(f64::NAN);
+        }
+    }
+}
+
+/// Columns of so many cells for the fields that are stored so.
+fn columns<T: Clone>(
+    fields: &[Field],
+    stored: &[Storage],
+    fill: T,
+    cells: usize,
+) -> Vec<Column<T>> {
+    let stored = fields.iter().filter(|f| stored.contains(&f.storage()));
+    let column = |&field: &Field| Column {
+        field,
+        cells: vec![fill.clone(); cells],
+    };
+    stored.map(column).collect()
+}
+
+/// Leaves one zero and one NaN: of 0/0, of the larger of both zeros and the like processors choose the sign themselves.
+pub(super) fn one_zero_and_one_nan(cells: &mut [f64]) {
+    for cell in cells {
+        *cell = if cell.is_nan() { f64::NAN } else { *cell + 0.0 };
+    }
+}

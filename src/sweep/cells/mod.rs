@@ -1,0 +1,13 @@
+//! The cells of a tile, and what belongs to planes of cells: one thread's work.
+
+pub mod best;
+pub mod boundaries;
+pub mod buffers;
+pub mod limit_columns;
+pub mod root_columns;
+pub mod second_look;
+mod slip_columns;
+pub mod trace;
+pub mod vc;
+mod vc_columns;
+pub mod worker;

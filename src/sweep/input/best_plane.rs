@@ -1,0 +1,28 @@
+//! The plane of a sweep whose best settings are looked for.
+
+use super::axis::Axis;
+use super::parameter::Parameter;
+use crate::linear::best::SearchedGain;
+
+/// Which gain a parameter is; none for those that are no gain.
+#[must_use]
+pub fn searched_gain(parameter: Parameter) -> Option<SearchedGain> {
+    match parameter {
+        Parameter::AlphaV => Some(SearchedGain::Velocity),
+        Parameter::AlphaN => Some(SearchedGain::Load),
+        _ => None,
+    }
+}
+
+/// The axes (gain, delay) of the planes whose best settings are looked for: the last gain axis and the delay, if both have
+/// more points than one.
+#[must_use]
+pub fn gain_plane(axes: &[Axis]) -> Option<(usize, usize)> {
+    let gain = axes
+        .iter()
+        .rposition(|axis| axis.len() > 1 && searched_gain(axis.parameter).is_some())?;
+    let tau = axes
+        .iter()
+        .position(|axis| axis.len() > 1 && axis.parameter == Parameter::Tau)?;
+    Some((gain, tau))
+}

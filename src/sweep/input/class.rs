@@ -1,0 +1,39 @@
+//! Classes of working velocities.
+
+/// What a working velocity v0 is good for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum Class {
+    /// Sliding is linearly stable, and there is no stick-slip beside it.
+    Stable,
+    /// Sliding is linearly stable, and stick-slip persists beside it.
+    Bistable,
+    /// Sliding is linearly unstable.
+    Unstable,
+    /// Sliding is linearly stable, and the way there leads through N ≤ 0.
+    LiftOff,
+    /// Sliding is marginal, or what becomes of stick-slip is not known.
+    Undecided,
+}
+
+impl Class {
+    /// All, in the order of their numbers in a map.
+    pub const ALL: [Self; 5] = [
+        Self::Stable,
+        Self::Bistable,
+        Self::Unstable,
+        Self::LiftOff,
+        Self::Undecided,
+    ];
+
+    /// The name in maps.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Stable => "stable",
+            Self::Bistable => "bistable",
+            Self::Unstable => "unstable",
+            Self::LiftOff => "lift-off",
+            Self::Undecided => "undecided",
+        }
+    }
+}

@@ -1,0 +1,17 @@
+//! What the user wrote: parameters, axes, fields, and the files that name them.
+
+pub mod axis;
+pub mod best_plane;
+pub mod case_file;
+pub mod class;
+pub mod field;
+pub mod friction_table;
+mod given;
+pub mod limit_field;
+mod limit_spec;
+pub mod parameter;
+pub mod protocol;
+pub mod search;
+pub mod simulation;
+pub mod spec;
+mod toml_reader;
