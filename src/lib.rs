@@ -1,8 +1,9 @@
 //! Exact stability maps of delayed-feedback control of dry friction.
 //!
-//! A block on a spring, pulled over dry friction, sticks and slips. Feeding the delayed spring elongation a(t) − a(t − τ)
-//! back to the pulling velocity (gain α_v) or to the normal load (gain α_N) can turn this into continuous sliding. slipmap
-//! says for which gains and delays: exactly, from the closed form of the crossing curves, over whole grids of parameters.
+//! A block on a spring, pulled over dry friction, sticks and slips. Feeding the delayed spring
+//! elongation a(t) − a(t − τ) back to the pulling velocity (gain α_v) or to the normal load (gain
+//! α_N) can turn this into continuous sliding. slipmap says for which gains and delays: exactly,
+//! from the closed form of the crossing curves, over whole grids of parameters.
 //!
 //! Source of the model: F.-J. Elmer, *Controlling friction* (1997), "the letter".
 //!
@@ -19,8 +20,8 @@
 //!
 //! # Example
 //!
-//! All delays at which velocity control with α_v = −0.33 stabilises sliding on a weakening law at v0 = 0.35, which are
-//! the parameters of the letter's Fig. 3(a):
+//! All delays at which velocity control with α_v = −0.33 stabilises sliding on a weakening law at
+//! v0 = 0.35, which are the parameters of the letter's Fig. 3(a):
 //!
 //! ```
 //! use slipmap::linear::Crossings;

@@ -9,8 +9,9 @@ const DIRTY: &str = "-dirty";
 /// What the program is made from.
 pub const SOURCE: [&str; 4] = ["Cargo.toml", "Cargo.lock", "build.rs", "src"];
 
-/// Git's revision where the repository is the folder's own, else that which a package carries, else one made of the source's bytes.
-/// Where the source is not that of the revision its bytes count too: two programs of different source never have the same one.
+/// Git's revision where the repository is the folder's own, else that which a package carries, else
+/// one made of the source's bytes. Where the source is not that of the revision its bytes count
+/// too: two programs of different source never have the same one.
 pub fn of(folder: &Path) -> String {
     let own = folder.join(".git").exists().then(|| of_git(folder));
     let known = own.flatten().or_else(|| of_package(folder));
@@ -113,7 +114,8 @@ mod tests {
         assert!(own.contains("-dirty-"), "{own}");
     }
 
-    /// Two sources that were both changed since the same revision are not the same program; one that was not changed is.
+    /// Two sources that were both changed since the same revision are not the same program; one
+    /// that was not changed is.
     #[test]
     fn changed_sources_differ_by_what_was_changed() {
         let files = [("src/lib.rs", "one"), ("Cargo.toml", ""), ("notes", "")];
@@ -138,8 +140,9 @@ mod tests {
 
     #[test]
     fn a_package_has_the_revision_it_was_made_from() {
-        let info = r#"{ "git": { "sha1": "0123456789abcdef0123456789abcdef01234567" }, "path_in_vcs": "" }"#;
-        let package = written(&[(".cargo_vcs_info.json", info), ("src/lib.rs", "")]);
+        let sha1 = "0123456789abcdef0123456789abcdef01234567";
+        let info = format!(r#"{{ "git": {{ "sha1": "{sha1}" }}, "path_in_vcs": "" }}"#);
+        let package = written(&[(".cargo_vcs_info.json", &info), ("src/lib.rs", "")]);
         assert_eq!(of(package.path()), "0123456789ab");
         let dirty = info.replace("\" }", "\", \"dirty\": true }");
         let package = written(&[(".cargo_vcs_info.json", &dirty)]);

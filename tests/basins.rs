@@ -1,4 +1,5 @@
-//! Maps of motions: outcomes at phases of switch-on against known velocities, cells against `simulate`, threads, mistakes.
+//! Maps of motions: outcomes at phases of switch-on against known velocities, cells against
+//! `simulate`, threads, mistakes.
 
 #[path = "common/program.rs"]
 mod program;
@@ -26,7 +27,8 @@ fn outcomes(path: &Path) -> Vec<Outcome> {
     numbers.into_iter().map(outcome).collect()
 }
 
-/// The topmost velocities at which stick-slip survives that control is switched on so long after a release.
+/// The topmost velocities at which stick-slip survives that control is switched on so long after a
+/// release.
 #[test]
 fn stick_slip_ends_at_the_known_velocities() {
     let folder = tempfile::tempdir().unwrap();

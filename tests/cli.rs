@@ -510,8 +510,8 @@ fn point_agrees_with_itself_in_other_units() {
     assert!((law["mu_prime"].as_f64().unwrap() + 1.0 / 1.44).abs() < 1e-12);
 }
 
-/// Gains, delays, abscissas and frequencies of the snapshot, and the gain of the triple root, solve D = D′ = 0 and
-/// D = D′ = D″ = 0 in 30-digit arithmetic (mpmath).
+/// Gains, delays, abscissas and frequencies of the snapshot, and the gain of the triple root, solve
+/// D = D′ = 0 and D = D′ = D″ = 0 in 30-digit arithmetic (mpmath).
 #[test]
 fn best_says_where_decay_is_fastest() {
     let folder = Folder::new();
@@ -757,7 +757,8 @@ fn a_measured_friction_law_goes_through_every_command() {
     expect(&wrong(&misplaced), 2, "with --friction table only");
 }
 
-/// Names that HDF5 cannot open and folders are refused at once; texts of a map are shown, not obeyed.
+/// Names that HDF5 cannot open and folders are refused at once; texts of a map are shown, not
+/// obeyed.
 #[cfg(unix)]
 #[test]
 fn odd_names_and_texts_are_answered() {

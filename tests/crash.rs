@@ -1,8 +1,10 @@
-//! Losses of power: a recorded trace of what a command does to files is replayed up to any place without all or some of what was
-//! not synced until there. Afterwards the old or the new map is whole, what was told as saved is there, and the same command
-//! succeeds with the same bytes in every dataset.
+//! Losses of power: a recorded trace of what a command does to files is replayed up to any place
+//! without all or some of what was not synced until there. Afterwards the old or the new map is
+//! whole, what was told as saved is there, and the same command succeeds with the same bytes in
+//! every dataset.
 //!
-//! `SLIPMAP_FAULTS=all` asks for states at every place of the traces; by default some are tried. `SLIPMAP_SEED` for others.
+//! `SLIPMAP_FAULTS=all` asks for states at every place of the traces; by default some are tried.
+//! `SLIPMAP_SEED` for others.
 #![cfg(target_os = "linux")]
 
 #[path = "common/chance.rs"]
@@ -289,7 +291,8 @@ impl Known {
         }
     }
 
-    /// Places of the trace and what there is of what was not synced, without those that leave the same.
+    /// Places of the trace and what there is of what was not synced, without those that leave the
+    /// same.
     fn states(&self, every: bool, seed: u64) -> Vec<(usize, Unsynced)> {
         let changes = &self.trace.changes;
         let is_data = |i: usize| changes.get(i).is_none_or(Change::is_of_data);
@@ -369,7 +372,8 @@ fn check(case: &Case, known: &Known, place: usize, unsynced: Unsynced) {
     let told = &known.told[place];
     check_map(&folder, known, told, &what);
     let left = check_kept(&folder, told, &what);
-    // Where tiles are kept, --fresh drops them as it was asked to; without it they are gone on with.
+    // Where tiles are kept, --fresh drops them as it was asked to; without it they are gone on
+    // with.
     let goes_on = left.is_some() && case.args.contains(&"run");
     let args: Vec<&str> = case
         .args

@@ -1,4 +1,5 @@
-//! The critical velocity against reference values, the closed form of the limit, and its roads against one another.
+//! The critical velocity against reference values, the closed form of the limit, and its roads
+//! against one another.
 //!
 //! Units: M = κ = N0 = 1, so that everything is dimensionless as in `slipmap::slip::motion`.
 
@@ -236,7 +237,8 @@ fn the_roads_agree() {
                 c.vc
             }
         };
-        // Simulation is thrown off by steps of one size or another; what it does not know says nothing.
+        // Simulation is thrown off by steps of one size or another; what it does not know says
+        // nothing.
         let mut differs = None;
         for first in [0.35, 0.6, 0.15] {
             let slow = simulated_by(&problem, first);
@@ -265,9 +267,10 @@ fn the_roads_agree() {
     assert!(others.len() as u32 * 200 <= claimed, "{}", others.len());
 }
 
-/// Kinds of stick-slip that follow one another as v0 grows: what was there before the graze of the first one, or the
-/// doubling of its period, or where it begins to turn back, goes on as another one. Its end by two slow ramps in fixed steps
-/// (`tests/referee` is such a program), which agree on the digits given; so are those below.
+/// Kinds of stick-slip that follow one another as v0 grows: what was there before the graze of the
+/// first one, or the doubling of its period, or where it begins to turn back, goes on as another
+/// one. Its end by two slow ramps in fixed steps (`tests/referee` is such a program), which agree
+/// on the digits given; so are those below.
 #[test]
 fn the_last_kind_of_stick_slip_counts() {
     let of = |slope: f64, alpha_v: f64, alpha_n: f64, tau: f64| {
@@ -275,7 +278,8 @@ fn the_last_kind_of_stick_slip_counts() {
         problem(law, alpha_v, alpha_n, tau)
     };
     for (problem, end, expected) in [
-        // A graze at 0.6009, after which the block swings up to 0.53 v0 and then comes to stick again.
+        // A graze at 0.6009, after which the block swings up to 0.53 v0 and then comes to stick
+        // again.
         (of(-2.0, -0.5753, 0.0, 4.733), End::Grazing, 1.001322),
         // It turns back at its stops from 0.8735 on.
         (of(-1.5842, 0.0, -3.0022, 0.0397), End::Fold, 3.003350),
@@ -295,8 +299,8 @@ fn the_last_kind_of_stick_slip_counts() {
     }
 }
 
-/// One slip grazes below the velocity from which v0 is raised at first, where the block does not stick again; from the next one on
-/// stick-slip is sustained, and ends where two slow ramps say.
+/// One slip grazes below the velocity from which v0 is raised at first, where the block does not
+/// stick again; from the next one on stick-slip is sustained, and ends where two slow ramps say.
 #[test]
 fn an_end_below_the_start_is_none() {
     let speeds = [
@@ -324,8 +328,9 @@ fn an_end_below_the_start_is_none() {
     );
 }
 
-/// An orbit that has doubled its period, unstable, has a graze of its own above that of the doubled one; and sticks that only seem
-/// to be left by a coarse integration vanish later than those of a fine one.
+/// An orbit that has doubled its period, unstable, has a graze of its own above that of the doubled
+/// one; and sticks that only seem to be left by a coarse integration vanish later than those of a
+/// fine one.
 #[test]
 fn an_orbit_that_does_not_attract_is_not_followed_to_its_end() {
     let stribeck =
@@ -342,8 +347,9 @@ fn an_orbit_that_does_not_attract_is_not_followed_to_its_end() {
     }
 }
 
-/// Narrow Stribeck laws, whose flank a slip comes down to from far above: a slow ramp of v0 by Runge–Kutta's classical method in
-/// fixed steps, with two step sizes, comes to these velocities (`tests/referee` is such a program).
+/// Narrow Stribeck laws, whose flank a slip comes down to from far above: a slow ramp of v0 by
+/// Runge–Kutta's classical method in fixed steps, with two step sizes, comes to these velocities
+/// (`tests/referee` is such a program).
 #[test]
 fn narrow_stribeck_laws_have_the_critical_velocity_of_a_slow_ramp() {
     for (law, alpha_v, tau, vc) in [
@@ -373,7 +379,8 @@ fn narrow_stribeck_laws_have_the_critical_velocity_of_a_slow_ramp() {
     }
 }
 
-/// Ramps by steps of 1, 3, 6 and 10 % end at 0.8756, 0.8756, 16.19 and 16.29 here: no answer is decided.
+/// Ramps by steps of 1, 3, 6 and 10 % end at 0.8756, 0.8756, 16.19 and 16.29 here: no answer is
+/// decided.
 #[test]
 fn what_depends_on_the_ramp_is_not_decided() {
     let law = FrictionLaw::weakening(0.18418667391163734, 0.5843453093116782, 0.5565222639562568);
@@ -387,8 +394,8 @@ fn what_depends_on_the_ramp_is_not_decided() {
     assert!(!found.decided, "{found:?}");
 }
 
-/// Where irregular stick-slip ends, ramps by Runge–Kutta's method agree on by steps of 2 and 5 %: 1.085294 and 1.085286, 1.335628 and
-/// 1.335625.
+/// Where irregular stick-slip ends, ramps by Runge–Kutta's method agree on by steps of 2 and 5 %:
+/// 1.085294 and 1.085286, 1.335628 and 1.335625.
 #[test]
 fn irregular_ends_are_decided_where_ramps_agree() {
     for (law, alpha_v, tau, vc) in [
@@ -456,7 +463,8 @@ fn lines_are_what_their_cells_are() {
     assert!(none.iter().all(Option::is_none));
 }
 
-/// Over a few delays a graze opens below the one that a line follows: stick-slip raised from low velocities ends there.
+/// Over a few delays a graze opens below the one that a line follows: stick-slip raised from low
+/// velocities ends there.
 #[test]
 fn ends_that_open_below_a_branch_are_found() {
     let law = FrictionLaw::weakening(0.5, 0.44869374168435217, 1.0).unwrap();
@@ -475,8 +483,8 @@ fn ends_that_open_below_a_branch_are_found() {
     assert!(below > 3, "{below}");
 }
 
-/// Irregular stick-slip leads to an orbit that ends soon, and another kind goes on above that: steps that are too large for it
-/// come to the other one.
+/// Irregular stick-slip leads to an orbit that ends soon, and another kind goes on above that:
+/// steps that are too large for it come to the other one.
 #[test]
 fn an_end_soon_after_irregular_stick_slip_is_found() {
     let law = FrictionLaw::weakening(0.5, 0.296875, 1.0).unwrap();
@@ -490,7 +498,8 @@ fn an_end_soon_after_irregular_stick_slip_is_found() {
     }
 }
 
-/// Stick-slip goes on just beyond a graze, in a cell of a line whose neighbours end by theirs: the slip is another one there.
+/// Stick-slip goes on just beyond a graze, in a cell of a line whose neighbours end by theirs: the
+/// slip is another one there.
 #[test]
 fn what_changes_along_a_line_is_looked_beyond() {
     let law = FrictionLaw::weakening(0.5, 0.5 / (2.0 - 1.5 * 13.0 / 19.0), 1.0).unwrap();
@@ -517,7 +526,8 @@ fn an_orbit_that_is_lost_just_below_its_end_is_not_thrown_off() {
     }
 }
 
-/// Sticks shorten as a square root towards a graze here, and errors of the integration within a tolerance of 1e-6 move it by 1e-3.
+/// Sticks shorten as a square root towards a graze here, and errors of the integration within a
+/// tolerance of 1e-6 move it by 1e-3.
 #[test]
 fn ends_are_checked_by_a_finer_integration() {
     let law = FrictionLaw::stribeck(0.4244, 0.304, 1.0).unwrap();
@@ -533,7 +543,8 @@ fn ends_that_are_not_confirmed_are_not_decided() {
     let found = critical_velocity(&problem(fast, -0.7553344615011054, 0.0, 0.01));
     let told = (found.vc / 88.1329 - 1.0).abs() < 1e-4;
     assert!(!found.decided || told, "{found:?}");
-    // It lifts off in a transient, by some steps: at 0.81278 by the ramp of another program, from v0 = 0.1 in steps of 1 to 10 %.
+    // It lifts off in a transient, by some steps: at 0.81278 by the ramp of another program, from
+    // v0 = 0.1 in steps of 1 to 10 %.
     let law = FrictionLaw::weakening(0.7659505970022644, 1.0087382393833446, 1.0).unwrap();
     let lifted = problem(law, 0.10212109734575425, -0.4470567829329153, 15.8);
     let found = critical_velocity(&lifted);
@@ -541,7 +552,8 @@ fn ends_that_are_not_confirmed_are_not_decided() {
     assert!(!found.decided || told, "{found:?}");
 }
 
-/// One cell ends with two slips in a period, its neighbours at nearly the same v0 with one: none is continued to the other.
+/// One cell ends with two slips in a period, its neighbours at nearly the same v0 with one: none is
+/// continued to the other.
 #[test]
 fn kinds_that_end_alike_are_told_apart() {
     let law = FrictionLaw::weakening(0.954641831528965, 0.5410746973058337, 1.0).unwrap();
@@ -555,9 +567,9 @@ fn kinds_that_end_alike_are_told_apart() {
     }
 }
 
-/// Without control Coulomb friction keeps stick-slip at any v0. Under weakening friction the swing of a slip grows: from
-/// some v0 on the block slips backwards where it stuck, sticks become shorter, and at a finite v0 none is left: that one by SciPy's
-/// DOP853 from event to event.
+/// Without control Coulomb friction keeps stick-slip at any v0. Under weakening friction the swing
+/// of a slip grows: from some v0 on the block slips backwards where it stuck, sticks become
+/// shorter, and at a finite v0 none is left: that one by SciPy's DOP853 from event to event.
 #[test]
 fn uncontrolled_stick_slip() {
     let coulomb = problem(FrictionLaw::coulomb(0.6, 1.0).unwrap(), 0.0, 0.0, 1.0);

@@ -1,7 +1,8 @@
-//! Damaged HDF5 files through the whole program, each in a process of its own with a limit on its memory: whatever a file holds, the
-//! program ends with a message and an exit code.
+//! Damaged HDF5 files through the whole program, each in a process of its own with a limit on its
+//! memory: whatever a file holds, the program ends with a message and an exit code.
 //!
-//! `SLIPMAP_DAMAGED=10000 cargo test --release --test damaged -- --nocapture` tries so many files and prints how they ended.
+//! `SLIPMAP_DAMAGED=10000 cargo test --release --test damaged -- --nocapture` tries so many files
+//! and prints how they ended.
 
 #[path = "common/chance.rs"]
 mod chance;
@@ -30,7 +31,8 @@ const SWEEP: &str = "title = \"Damaged\"\nfields = [\"n_unstable\", \"abscissa\"
     tau = { from = 0.5, to = 6.0, points = 9 }\n[fixed]\nalpha_n = 0.0\n";
 const CASE: &str = "horizon = 50.0\n[friction]\nlaw = \"coulomb\"\nmu0 = 0.4\n[fixed]\nv0 = 0.1\n[trace]\nuntil = 20.0\n";
 
-/// What is done with a damaged file. All of `run`, `merge` and `simulate` look at it because it has their output's name.
+/// What is done with a damaged file. All of `run`, `merge` and `simulate` look at it because it has
+/// their output's name.
 const COMMANDS: [(&str, &[&str]); 7] = [
     ("info", &["info", "map.h5"]),
     ("plot", &["plot", "map.h5", "-o", "map.png"]),
@@ -324,7 +326,8 @@ fn odd_maps_are_refused() {
     }
 }
 
-/// An axis that claims to be one value, in chunks of a list, as earlier versions stored them: libhdf5 would read for ever.
+/// An axis that claims to be one value, in chunks of a list, as earlier versions stored them:
+/// libhdf5 would read for ever.
 #[test]
 fn chunks_of_other_dimensions_are_refused() {
     use hdf5::types::FixedUnicode;

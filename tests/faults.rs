@@ -1,8 +1,10 @@
-//! Commands whose calls of the system fail or are their last, one after the other: afterwards the old or the new file is whole,
-//! the exit code is true, and the same command succeeds with the same bytes in every dataset.
+//! Commands whose calls of the system fail or are their last, one after the other: afterwards the
+//! old or the new file is whole, the exit code is true, and the same command succeeds with the same
+//! bytes in every dataset.
 //!
-//! The calls are those by which files are changed (`tests/faults/interpose.c`, which the tests build). `SLIPMAP_FAULTS=all` asks
-//! for every one of them; by default some of each command and kind are tried.
+//! The calls are those by which files are changed (`tests/faults/interpose.c`, which the tests
+//! build). `SLIPMAP_FAULTS=all` asks for every one of them; by default some of each command and
+//! kind are tried.
 #![cfg(target_os = "linux")]
 
 #[path = "common/interposer.rs"]
@@ -26,7 +28,8 @@ const CASE: &str = "[friction]\nlaw = \"weakening\"\nmu0 = 0.5\nv_s = 0.5\n[fixe
 /// How a call ends.
 const KINDS: [&str; 5] = ["kill", "eio", "enospc", "eintr", "term"];
 
-/// Runs a command; the number of calls it made, where it came to its end, is in `count` beside the folder.
+/// Runs a command; the number of calls it made, where it came to its end, is in `count` beside the
+/// folder.
 fn faulty(folder: &Folder, args: &[&str], fault: Option<(u64, &str)>, count: &Path) -> Output {
     let mut command = interposed(folder, args);
     command.env("FAULTS_COUNT", count);
@@ -231,7 +234,8 @@ fn check_stopped(done: &Output, folder: &Folder, what: &str) {
     assert!(left.is_empty(), "{what}: {left:?} is left");
 }
 
-/// A command whose every look into a file takes long gets a signal once `when` is so: it ends soon, with nothing half done.
+/// A command whose every look into a file takes long gets a signal once `when` is so: it ends soon,
+/// with nothing half done.
 fn stopped_soon(
     folder: &Folder,
     args: &[&str],

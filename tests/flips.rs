@@ -1,7 +1,8 @@
-//! Single bits of maps, tiles and manifests that are flipped: `verify` finds every one in a map, and none in what a run has left
-//! makes another map than there would have been.
+//! Single bits of maps, tiles and manifests that are flipped: `verify` finds every one in a map,
+//! and none in what a run has left makes another map than there would have been.
 //!
-//! `SLIPMAP_FLIPS=2500` flips more bits of maps than 150, `SLIPMAP_TILE_FLIPS=1000` more of tiles and manifests than 30.
+//! `SLIPMAP_FLIPS=2500` flips more bits of maps than 150, `SLIPMAP_TILE_FLIPS=1000` more of tiles
+//! and manifests than 30.
 
 #![cfg(unix)]
 
@@ -129,7 +130,8 @@ fn told(path: &Path) -> (Vec<Option<String>>, BTreeMap<String, Vec<u8>>) {
     (texts, map::datasets(path))
 }
 
-/// Two shards, of which one bit of one file is flipped before the same commands go on: they make the same map, or say what to do.
+/// Two shards, of which one bit of one file is flipped before the same commands go on: they make
+/// the same map, or say what to do.
 #[test]
 fn a_flipped_bit_of_tiles_and_manifests_makes_no_other_map() {
     let sweep = SWEEPS[1];

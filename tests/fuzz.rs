@@ -1,5 +1,5 @@
-//! Replays everything that fuzzing has kept: the smallest set of inputs that reaches all code it ever reached, and every input that
-//! once was answered wrongly. `scripts/fuzz.sh` looks for more.
+//! Replays everything that fuzzing has kept: the smallest set of inputs that reaches all code it
+//! ever reached, and every input that once was answered wrongly. `scripts/fuzz.sh` looks for more.
 
 #[path = "fuzz/src/memory.rs"]
 mod memory;
@@ -87,7 +87,8 @@ fn maps_odd_in_one_place() {
     }
 }
 
-/// Fuzzing passes over long axes. The longest that are taken stay within the allocator's cap, and more of them are refused.
+/// Fuzzing passes over long axes. The longest that are taken stay within the allocator's cap, and
+/// more of them are refused.
 #[test]
 fn the_longest_axes_stay_within_the_cap() {
     let axis = |name: &str, points: u64| {

@@ -1,5 +1,5 @@
-//! Maps that somebody made to do harm, through every command that opens one: each ends soon, with a message, with little memory,
-//! and shows nothing of another file.
+//! Maps that somebody made to do harm, through every command that opens one: each ends soon, with a
+//! message, with little memory, and shows nothing of another file.
 
 #![cfg(unix)]
 
@@ -243,7 +243,8 @@ fn many(file: &File, _: &Path) -> hdf5::Result<()> {
     (0..1001).try_for_each(|i| file.create_group(&format!("g{i}")).map(drop))
 }
 
-/// Makes a dataset of reals in the place of the axis tau, as the properties say that `set` gives it.
+/// Makes a dataset of reals in the place of the axis tau, as the properties say that `set` gives
+/// it.
 fn axis(file: &File, length: usize, set: impl FnOnce(i64) -> i32) -> hdf5::Result<()> {
     file.unlink("tau")?;
     let kind = hdf5::Datatype::from_type::<f64>()?;
@@ -636,7 +637,8 @@ fn put_long(file: &File, name: &str) {
     let text = vec![0x1b_u8; 60 << 20];
     let name = std::ffi::CString::new(name).unwrap();
     let written = hdf5::sync::sync(|| {
-        // SAFETY: the file is open, the text has the length of its type, and every identifier is closed.
+        // SAFETY: the file is open, the text has the length of its type, and every identifier is
+        // closed.
         unsafe {
             let kind = H5Tcreate(H5T_class_t::H5T_STRING, text.len());
             let space = H5Screate(H5S_class_t::H5S_SCALAR);

@@ -21,7 +21,8 @@ fn fine(from: f64, to: f64, points: u32) -> impl Iterator<Item = f64> {
 fn velocity_control_ends_at_the_tangency() {
     let end = LobeControl::Velocity.lobe_end(0);
     assert!((end.b - -0.725_635_939_603).abs() < 1e-9);
-    // Beside the limit the lobe is a sliver at the fold: look there finely, and everywhere coarsely.
+    // Beside the limit the lobe is a sliver at the fold: look there finely, and everywhere
+    // coarsely.
     for (distance, width) in [(1e-2, 1e-2), (1e-3, 1e-3), (1e-4, 1e-4)] {
         let fold = |b: f64| 0.5 * b - b * b * b / 8.0;
         let (inside, outside) = (end.b + distance, end.b - distance);
@@ -47,7 +48,8 @@ fn velocity_control_outlives_the_letters_limit() {
     }
 }
 
-/// Each further lobe shrinks to a point at its own slope: stable delays near it just inside, none just outside.
+/// Each further lobe shrinks to a point at its own slope: stable delays near it just inside, none
+/// just outside.
 #[test]
 fn further_velocity_lobes_end_at_their_tangencies() {
     for (lobe, expected) in [(1, -0.369_620_351_789), (2, -0.240_297_356_210)] {
@@ -66,7 +68,8 @@ fn further_velocity_lobes_end_at_their_tangencies() {
     }
 }
 
-/// "In pure load control there is always a stable region. Only the minimal value of |α_N| increases with |μ_K′|."
+/// "In pure load control there is always a stable region. Only the minimal value of |α_N| increases
+/// with |μ_K′|."
 #[test]
 fn load_control_always_has_a_stable_region() {
     let mut previous = 0.0;
@@ -117,8 +120,8 @@ fn positive_load_gain_stabilises_in_lobes_of_its_own() {
     assert!((second.b - -0.167_365_699).abs() < 1e-9);
 }
 
-/// τ → 0: velocity control alone never stabilises; load control does if α_N < μ_K′ N0/(μ_K τ), the letter's last equation
-/// on linear stability.
+/// τ → 0: velocity control alone never stabilises; load control does if α_N < μ_K′ N0/(μ_K τ), the
+/// letter's last equation on linear stability.
 #[test]
 fn short_delays_follow_the_letters_limit() {
     let tau = 1e-5;

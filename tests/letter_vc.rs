@@ -1,4 +1,5 @@
-//! The letter's statements about stick-slip under control, as tests on coarse grids of the shipped sweeps.
+//! The letter's statements about stick-slip under control, as tests on coarse grids of the shipped
+//! sweeps.
 
 use slipmap::critical::limit::CoulombLimit;
 use slipmap::critical::{Critical, Problem, critical_velocity};
@@ -48,9 +49,10 @@ fn followed(plan: &Plan, index: &[usize], horizon: f64) -> Summary {
     Case { horizon, ..case }.run(&mut ()).unwrap()
 }
 
-/// "Stick-slip motion can not be destroyed by pure velocity control for that value of v0 for which in Fig. 3(b) load control turns
-/// easily stick-slip motion into continuous sliding." Wherever it is switched on, the block sticks again and again; where gains are
-/// large and positive it may diverge.
+/// "Stick-slip motion can not be destroyed by pure velocity control for that value of v0 for which
+/// in Fig. 3(b) load control turns easily stick-slip motion into continuous sliding." Wherever it
+/// is switched on, the block sticks again and again; where gains are large and positive it may
+/// diverge.
 #[test]
 fn velocity_control_does_not_end_stick_slip_at_fig_3b() {
     let plan = plan(
@@ -82,7 +84,8 @@ fn velocity_control_does_not_end_stick_slip_at_fig_3b() {
     assert!(seen[Outcome::StickSlip as usize] > 300, "{seen:?}");
 }
 
-/// Nor where sliding is stable there, in its one small lobe: both persist beside one another, at every phase of switch-on.
+/// Nor where sliding is stable there, in its one small lobe: both persist beside one another, at
+/// every phase of switch-on.
 #[test]
 fn nor_where_sliding_is_stable_there() {
     let lobe = [
@@ -122,7 +125,8 @@ fn nor_where_sliding_is_stable_there() {
     };
     assert_eq!(case.run(&mut ()).unwrap().outcome, Outcome::Sliding);
     let (problem, _) = vc::problem(&setting).unwrap();
-    // By brute force, at α_v = −0.316 and τ = 4.3: v0 raised in small steps by a program of its own.
+    // By brute force, at α_v = −0.316 and τ = 4.3: v0 raised in small steps by a program of its
+    // own.
     let found = critical_velocity(&problem);
     assert!(
         found.decided && (found.vc / 0.370_237_3 - 1.0).abs() < 1e-4,
@@ -161,8 +165,9 @@ fn share(text: &str, v0: f64, points: u32) -> f64 {
     stable / all
 }
 
-/// "The velocity control is less robust than the load control": at low velocities it works in much less of the plane of gain and
-/// delay, and below some velocity nowhere. At high ones it catches up: load control then lifts the block off in places.
+/// "The velocity control is less robust than the load control": at low velocities it works in much
+/// less of the plane of gain and delay, and below some velocity nowhere. At high ones it catches
+/// up: load control then lifts the block off in places.
 #[test]
 fn velocity_control_is_less_robust_at_low_velocities() {
     for (v0, factor) in [(0.35, 10.0), (0.5, 4.0)] {
@@ -193,10 +198,12 @@ fn letters(alpha_v: f64, alpha_n: f64, tau: f64) -> Problem {
     }
 }
 
-/// "As a rule of thumb we found that in the case of pure velocity control the sticking time has to be of the same order or less
-/// than the slipping time." Around the gain and the delay at which velocity control smooths the lowest velocities, these are no
-/// lower than where the uncontrolled block sticks twice as long as it slips; load control smooths those with tens of times.
-/// The lowest velocity is that of brute force at α_v = −0.38, τ = 4.25, the ratio there that of SciPy's DOP853.
+/// "As a rule of thumb we found that in the case of pure velocity control the sticking time has to
+/// be of the same order or less than the slipping time." Around the gain and the delay at which
+/// velocity control smooths the lowest velocities, these are no lower than where the uncontrolled
+/// block sticks twice as long as it slips; load control smooths those with tens of times. The
+/// lowest velocity is that of brute force at α_v = −0.38, τ = 4.25, the ratio there that of SciPy's
+/// DOP853.
 #[test]
 fn velocity_control_needs_short_sticks() {
     let smooth = |problem: &Problem| {
@@ -228,11 +235,13 @@ fn coulomb(gamma: f64, tau: f64) -> Problem {
     }
 }
 
-/// v_c = 0 from γ = 1 on holds as the delay vanishes. At finite delays it is back at the longer ones: from τ = 0.977 at γ = 1, 0.900
-/// at 1.5, 0.794 at 2, 0.616 at 3 and 0.409 at 5. Where v_c = 0 the rightmost root is real: nothing oscillates about sliding.
+/// v_c = 0 from γ = 1 on holds as the delay vanishes. At finite delays it is back at the longer
+/// ones: from τ = 0.977 at γ = 1, 0.900 at 1.5, 0.794 at 2, 0.616 at 3 and 0.409 at 5. Where v_c =
+/// 0 the rightmost root is real: nothing oscillates about sliding.
 ///
-/// A slip after a stick without memory is linear in v0. Edges, where its minimum of ẋ is 0 as v0 → 0, and v_c a fiftieth beyond
-/// τ = 0.977, 0.9, 0.794, 0.616, 0.409, where both parts of it graze, are SciPy's (DOP853 from delay to delay).
+/// A slip after a stick without memory is linear in v0. Edges, where its minimum of ẋ is 0 as v0 →
+/// 0, and v_c a fiftieth beyond τ = 0.977, 0.9, 0.794, 0.616, 0.409, where both parts of it graze,
+/// are SciPy's (DOP853 from delay to delay).
 #[test]
 fn stick_slip_comes_back_beyond_critical_damping() {
     for (gamma, edge, beyond, vc) in [
@@ -266,8 +275,9 @@ fn rate(gamma: f64, tau: f64) -> f64 {
     (found.vc / 0.5 - limit) / tau
 }
 
-/// The limit is approached as the first power of τ, from above for weak control, from below for strong. The rates are SciPy's:
-/// DOP853 from delay to delay for the two parts of a slip, which is linear in v0, at τ = 0.01 and 0.005.
+/// The limit is approached as the first power of τ, from above for weak control, from below for
+/// strong. The rates are SciPy's: DOP853 from delay to delay for the two parts of a slip, which is
+/// linear in v0, at τ = 0.01 and 0.005.
 #[test]
 fn the_limit_of_short_delays_is_approached_in_proportion() {
     for (gamma, expected) in [

@@ -1,4 +1,5 @@
-//! The limit of a short delay: the letter's Fig. 4 as a map and at one point, against reference values; its mistakes.
+//! The limit of a short delay: the letter's Fig. 4 as a map and at one point, against reference
+//! values; its mistakes.
 
 #[path = "common/program.rs"]
 mod program;
@@ -76,7 +77,8 @@ fn a_map_and_single_points_are_the_reference() {
     expect(&folder.run(&["info", "plane.h5"]), 0, "protocol limit");
 }
 
-/// Over many cells, in tiles of every size: lift-off above v_c, the approximations and their errors as they are defined.
+/// Over many cells, in tiles of every size: lift-off above v_c, the approximations and their errors
+/// as they are defined.
 #[test]
 fn lift_off_lies_above_the_critical_velocity() {
     let text = "protocol = \"limit\"\n[axes]\ngamma = { from = 1e-3, to = 0.999, points = 500 }\n\

@@ -2,6 +2,7 @@
 
 mod common;
 
+use common::cases::cases;
 use common::winding;
 use proptest::prelude::*;
 use slipmap::linear::{Crossings, MarginalTolerance};
@@ -42,7 +43,7 @@ fn gain(range: std::ops::Range<f64>) -> impl Strategy<Value = f64> {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 20_000, ..ProptestConfig::default() })]
+    #![proptest_config(cases(20_000, "proptest-regressions/linear_counts.txt"))]
 
     #[test]
     fn counts_equal_winding_numbers(
@@ -56,7 +57,7 @@ proptest! {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 4_000, ..ProptestConfig::default() })]
+    #![proptest_config(cases(4_000, "proptest-regressions/linear_counts.txt"))]
 
     /// Where the closed form has its special cases: b = 0, folds, tiny gains, short delays.
     #[test]
@@ -97,7 +98,8 @@ fn undamped_counts_equal_winding_numbers() {
     }
 }
 
-/// ω → 0: whether the slow crossing exists at all is decided by a sign, however small the frequency is.
+/// ω → 0: whether the slow crossing exists at all is decided by a sign, however small the frequency
+/// is.
 #[test]
 fn slow_crossings_exist_or_not() {
     for (b, a_n) in [
@@ -117,8 +119,8 @@ fn slow_crossings_exist_or_not() {
     }
 }
 
-/// Slow crossings among others at very long delays, where every digit of ω₋ counts. Reference counts from the quadratic in
-/// 60-digit arithmetic.
+/// Slow crossings among others at very long delays, where every digit of ω₋ counts. Reference
+/// counts from the quadratic in 60-digit arithmetic.
 #[test]
 fn slow_crossings_count_at_long_delays() {
     for (b, a_v, a_n, tau, expected) in [
@@ -154,8 +156,8 @@ fn slow_crossings_count_at_long_delays() {
 }
 
 proptest! {
-    /// At a tangency in physical units the groups themselves are rounded: it is recognised all the same, and its cells are
-    /// marginal rather than wrong.
+    /// At a tangency in physical units the groups themselves are rounded: it is recognised all the
+    /// same, and its cells are marginal rather than wrong.
     #[test]
     fn tangencies_in_physical_units_are_marginal(
         b in -5.0..-0.01_f64,

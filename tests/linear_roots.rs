@@ -2,6 +2,7 @@
 
 mod common;
 
+use common::cases::cases;
 use common::winding;
 use num_complex::Complex64;
 use proptest::prelude::*;
@@ -97,7 +98,7 @@ fn reference_rows_to_eleven_digits() {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(50_000))]
+    #![proptest_config(cases(50_000, "proptest-regressions/linear_roots.txt"))]
 
     /// The closed form of the argument principle agrees with following the argument step by step.
     #[test]
@@ -266,8 +267,8 @@ fn extreme_cells_come_to_an_answer() {
     assert!(flagged < 20, "{flagged} of 20000");
 }
 
-/// A line and the same line ten times finer agree where they meet, over swaps of the rightmost root, roots that come in
-/// from the left and pairs that merge on the real axis.
+/// A line and the same line ten times finer agree where they meet, over swaps of the rightmost
+/// root, roots that come in from the left and pairs that merge on the real axis.
 #[test]
 fn refining_a_line_changes_nothing() {
     let mut number = numbers(5);
@@ -295,7 +296,8 @@ fn refining_a_line_changes_nothing() {
     }
 }
 
-/// Where hundreds of roots crowd within 1e-9 of the axis, the rightmost one is still the rightmost one.
+/// Where hundreds of roots crowd within 1e-9 of the axis, the rightmost one is still the rightmost
+/// one.
 #[test]
 fn crowded_roots_are_told_apart() {
     for (groups, to) in [
@@ -322,7 +324,8 @@ fn crowded_roots_are_told_apart() {
     }
 }
 
-/// With gains at rounding level the further roots are far away: a cell has them, or says that it has not.
+/// With gains at rounding level the further roots are far away: a cell has them, or says that it
+/// has not.
 #[test]
 fn roots_that_are_not_found_are_not_certified() {
     for gain in [-1.1102230246251565e-16, 1.5641393157423528e-12, 1e-300] {
@@ -339,8 +342,9 @@ fn roots_that_are_not_found_are_not_certified() {
     }
 }
 
-/// The optima of both controls are a double pair and a triple real root: found, and certified with a wider margin. Settings and
-/// abscissas solve D = D′ = 0 and D = D′ = D″ = 0 in 30-digit arithmetic (mpmath); as rounded here the roots lie 1e-5 apart.
+/// The optima of both controls are a double pair and a triple real root: found, and certified with
+/// a wider margin. Settings and abscissas solve D = D′ = 0 and D = D′ = D″ = 0 in 30-digit
+/// arithmetic (mpmath); as rounded here the roots lie 1e-5 apart.
 #[test]
 fn multiple_roots_are_found() {
     for (groups, tau, abscissa) in [
@@ -404,8 +408,8 @@ fn a_hundred_thousand_delays_stay_certified() {
     }
 }
 
-/// Through a double root on the real axis: two real roots meet and leave as a pair. Near it the margin widens, or not; the
-/// value stays within what rounding of D allows.
+/// Through a double root on the real axis: two real roots meet and leave as a pair. Near it the
+/// margin widens, or not; the value stays within what rounding of D allows.
 #[test]
 fn real_roots_merge_into_pairs() {
     // (λ² + bλ + 1) with b = 2 − s: the roots meet at τ-dependent places for weak control.
@@ -420,7 +424,8 @@ fn real_roots_merge_into_pairs() {
     assert!(merges > 10, "{merges}");
 }
 
-/// Every root that is reported, with the line just left of the last: as many as the winding number says.
+/// Every root that is reported, with the line just left of the last: as many as the winding number
+/// says.
 #[test]
 fn the_spectrum_is_complete() {
     let mut number = numbers(11);

@@ -1,4 +1,5 @@
-//! Maps: every cell is what the library says of its point, for any order of axes, and independent of threads.
+//! Maps: every cell is what the library says of its point, for any order of axes, and independent
+//! of threads.
 
 #[allow(dead_code, reason = "not every test binary uses all of it")]
 mod common;
@@ -154,7 +155,8 @@ fn the_same_sweep_gives_the_same_bytes_on_any_number_of_threads() {
     }
 }
 
-/// The map and the curves in it say the same: cells on the two sides of a bounding curve differ in stability.
+/// The map and the curves in it say the same: cells on the two sides of a bounding curve differ in
+/// stability.
 #[test]
 fn curves_in_the_map_separate_its_stable_cells() {
     let folder = tempfile::tempdir().unwrap();
@@ -189,7 +191,8 @@ fn curves_in_the_map_separate_its_stable_cells() {
 
 const DEGREES: &str = "degree_of_stability = [0.05, 0.1]\n[axes]\nmass = [1, 4]\nalpha_n = { from = -6, to = 1, points = 50 }\ntau = { from = 0, to = 12, points = 50 }\n[fixed]\nmu_prime = -0.1\nalpha_v = -0.05\n[units]\nforce = \"N\"\nlength = \"m\"\ntime = \"s\"\n";
 
-/// Curves of a degree of stability come back from the file, and roots are where they say: by winding numbers.
+/// Curves of a degree of stability come back from the file, and roots are where they say: by
+/// winding numbers.
 #[test]
 fn degrees_of_stability_bound_what_they_say() {
     let folder = tempfile::tempdir().unwrap();
@@ -236,9 +239,10 @@ fn degrees_of_stability_bound_what_they_say() {
     assert!(degrees.unwrap().read_raw::<f64>().unwrap().contains(&0.05));
 }
 
-/// A map of the first format version holds no degrees of stability: its curves are crossings.
-/// A map that slipmap 0.1.0 wrote before maps had a seal: `title`, `n_unstable`, `delay_margin`, curves and best settings over
-/// mu_prime [-0.3, -0.1], alpha_v -1 to 0 (7 points), tau 0.5 to 8 (9 points).
+/// A map of the first format version holds no degrees of stability: its curves are crossings. A map
+/// that slipmap 0.1.0 wrote before maps had a seal: `title`, `n_unstable`, `delay_margin`, curves
+/// and best settings over mu_prime [-0.3, -0.1], alpha_v -1 to 0 (7 points), tau 0.5 to 8 (9
+/// points).
 #[test]
 fn a_map_of_the_second_version_is_read() {
     let path = Path::new("tests/reference/format_version_2.h5");
@@ -301,7 +305,8 @@ fn degrees_of_stability_are_part_of_the_plan() {
     assert!(hashes[0] != hashes[1] && hashes[1] != hashes[2]);
 }
 
-/// The best settings of every plane, in any order of the axes and of the gain's and the delay's among them.
+/// The best settings of every plane, in any order of the axes and of the gain's and the delay's
+/// among them.
 #[test]
 fn best_settings_are_those_of_the_library() {
     let folder = tempfile::tempdir().unwrap();
@@ -395,7 +400,8 @@ fn cells(text: &str, mut visit: impl FnMut(&slipmap::sweep::Setting, u16)) {
     }
 }
 
-/// The end of velocity control by the tangency condition, seen in a map: stable cells on one side of it, none on the other.
+/// The end of velocity control by the tangency condition, seen in a map: stable cells on one side
+/// of it, none on the other.
 #[test]
 fn velocity_control_ends_in_the_map_where_the_tangency_says() {
     let end = slipmap::linear::lobes::LobeControl::Velocity.lobe_end(0);

@@ -1,6 +1,8 @@
-//! How much memory commands take at most: what `--memory` promises, of maps of many curves and of long delays.
+//! How much memory commands take at most: what `--memory` promises, of maps of many curves and of
+//! long delays.
 //!
-//! `SLIPMAP_MEMORY=all` asks for every command over the shipped sweeps, a map of 10⁹ cells and 4,000 planes of curves as well.
+//! `SLIPMAP_MEMORY=all` asks for every command over the shipped sweeps, a map of 10⁹ cells and
+//! 4,000 planes of curves as well.
 #![cfg(target_os = "linux")]
 
 #[path = "common/limited.rs"]

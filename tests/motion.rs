@@ -1,4 +1,5 @@
-//! The integrator against known event times, linear theory, closed forms, an energy balance, another integrator, and chance.
+//! The integrator against known event times, linear theory, closed forms, an energy balance,
+//! another integrator, and chance.
 //!
 //! Units: M = κ = N0 = 1, so that everything is dimensionless as in `slipmap::slip::motion`.
 
@@ -66,7 +67,8 @@ fn events_from(
     events
 }
 
-/// Slip and stick duration of the last full cycle before switch-on, the end of the last stick, the elongation there.
+/// Slip and stick duration of the last full cycle before switch-on, the end of the last stick, the
+/// elongation there.
 fn landmarks(events: &[(Event, f64, f64)]) -> [f64; 4] {
     let switch = events.iter().position(|e| e.0 == Event::SwitchOn).unwrap();
     let before = &events[..switch];
@@ -128,8 +130,8 @@ fn errors_are_proportional_to_the_tolerance() {
     }
 }
 
-/// Under every law, the narrow ones too, and both controls, down to where rounding begins. The referee of
-/// `tests/referee.rs` holds the same laws to values of its own.
+/// Under every law, the narrow ones too, and both controls, down to where rounding begins. The
+/// referee of `tests/referee.rs` holds the same laws to values of its own.
 #[test]
 fn errors_are_proportional_to_the_tolerance_under_every_law() {
     let table = Table::new(vec![0.0, 0.02, 0.06, 0.2], vec![1.0, 0.7, 0.5, 0.45]).unwrap();
@@ -168,7 +170,8 @@ fn errors_are_proportional_to_the_tolerance_under_every_law() {
     }
 }
 
-/// Steps outlast a short delay, since the polynomial of the last one goes on to be the motion; errors stay in proportion.
+/// Steps outlast a short delay, since the polynomial of the last one goes on to be the motion;
+/// errors stay in proportion.
 #[test]
 fn steps_longer_than_the_delay_are_as_exact() {
     for (gains, tau) in [
@@ -282,8 +285,8 @@ fn small_deviations_grow_and_decay_as_linear_theory_says() {
     println!("{seen:?}");
 }
 
-/// Compares a small deviation of `p` with its rightmost root. Says whether it grows; none where this does not tell apart:
-/// where the next root is too near, the rate too slow or too fast.
+/// Compares a small deviation of `p` with its rightmost root. Says whether it grows; none where
+/// this does not tell apart: where the next root is too near, the rate too slow or too fast.
 fn deviation_follows_linear_theory(p: &Parameters) -> Option<bool> {
     let groups = Groups::new(
         p.law.mu_prime(p.v0),
@@ -359,7 +362,8 @@ fn coulomb_slip_is_its_closed_form() {
             mu + p * t.cos() - q * t.sin(),
         )
     });
-    // Load control over the first delay: a″ = −(1 − μα)(a − a*), with a constant delayed elongation.
+    // Load control over the first delay: a″ = −(1 − μα)(a − a*), with a constant delayed
+    // elongation.
     let (alpha, tau) = (-1.5, 3.0);
     let w2: f64 = 1.0 - mu * alpha;
     let rest = mu * (1.0 - alpha * a0) / w2;

@@ -1,7 +1,8 @@
-//! Runs that are killed, stopped, starved of disk or robbed of their folders: nothing that is finished is lost, and what comes
-//! out is what an uninterrupted run makes.
+//! Runs that are killed, stopped, starved of disk or robbed of their folders: nothing that is
+//! finished is lost, and what comes out is what an uninterrupted run makes.
 //!
-//! `SLIPMAP_KILLS=100` kills more often than the 20 times of the suite; `SLIPMAP_DAMAGES=1000` damages more files than 60.
+//! `SLIPMAP_KILLS=100` kills more often than the 20 times of the suite; `SLIPMAP_DAMAGES=1000`
+//! damages more files than 60.
 
 #![cfg(unix)]
 
@@ -50,7 +51,8 @@ const LARGE: &str = "
     mu_prime = -0.3
 ";
 
-/// One test at a time: they are timed, and a child that is just being started would hold the locks of another test's maps.
+/// One test at a time: they are timed, and a child that is just being started would hold the locks
+/// of another test's maps.
 fn alone() -> MutexGuard<'static, ()> {
     static ONE: Mutex<()> = Mutex::new(());
     ONE.lock().unwrap_or_else(PoisonError::into_inner)
@@ -315,7 +317,8 @@ fn slow_cells_do_not_delay_a_stop() {
     expect(&output, 143, "the same command goes on");
 }
 
-/// A disk that takes no more: first a limit on the size of files, which fails in the same calls, then a small disk.
+/// A disk that takes no more: first a limit on the size of files, which fails in the same calls,
+/// then a small disk.
 #[test]
 fn a_full_disk_is_named_and_nothing_is_lost() {
     let _alone = alone();
@@ -404,7 +407,8 @@ fn a_folder_that_cannot_be_written_to_is_named() {
     }
 }
 
-/// Tile files and manifests that were cut short, flipped or emptied: all are noticed, and the map is the same.
+/// Tile files and manifests that were cut short, flipped or emptied: all are noticed, and the map
+/// is the same.
 #[test]
 fn damaged_tiles_are_noticed_and_computed_again() {
     let _alone = alone();
@@ -579,8 +583,8 @@ fn a_manifest_of_something_else_is_refused_with_the_difference() {
     assert!(!shards::root(&map).exists());
 }
 
-/// A manifest that is damaged is written anew where the tiles say what they belong to; nothing is computed again, and no tile of
-/// another sweep is dropped.
+/// A manifest that is damaged is written anew where the tiles say what they belong to; nothing is
+/// computed again, and no tile of another sweep is dropped.
 #[test]
 fn a_damaged_manifest_is_written_anew() {
     let _alone = alone();
@@ -629,7 +633,8 @@ fn a_damaged_manifest_is_written_anew() {
     assert_eq!(datasets(&map), whole);
 }
 
-/// A map that is being replaced stays until the new one is complete, and the replacement goes on without --fresh.
+/// A map that is being replaced stays until the new one is complete, and the replacement goes on
+/// without --fresh.
 #[test]
 fn a_replacement_that_was_stopped_goes_on() {
     let _alone = alone();
@@ -667,7 +672,8 @@ fn a_replacement_that_was_stopped_goes_on() {
     assert!(tile_files(&map).len() > kept);
 }
 
-/// What is left where a run or merge is killed between giving the map its name and removing the tiles, or while it removes them.
+/// What is left where a run or merge is killed between giving the map its name and removing the
+/// tiles, or while it removes them.
 #[test]
 fn leftovers_of_a_complete_map_are_removed() {
     let _alone = alone();
@@ -724,7 +730,8 @@ fn leftovers_of_a_complete_map_are_removed() {
     assert!(!root.exists());
 }
 
-/// A complete map can be computed again, as a whole or in shards; what is stopped goes on; and no shard drops another.
+/// A complete map can be computed again, as a whole or in shards; what is stopped goes on; and no
+/// shard drops another.
 #[test]
 fn a_complete_map_is_computed_again() {
     let _alone = alone();
@@ -888,7 +895,8 @@ fn shards_by_the_program() {
     }
 }
 
-/// The state in which a kill leaves a merge that was removing its shards: the map is complete, some shards have gone.
+/// The state in which a kill leaves a merge that was removing its shards: the map is complete, some
+/// shards have gone.
 #[test]
 fn a_merge_that_was_killed_while_it_cleaned_up_is_complete() {
     let _alone = alone();
@@ -946,7 +954,8 @@ fn a_merge_that_was_killed_while_it_cleaned_up_is_complete() {
     );
     assert!(tiles.join("2-of-3").exists() && std::fs::read(&map).unwrap() == complete);
     std::fs::remove_dir_all(&tiles).unwrap();
-    // Without the mark the shards are those of a map that is being computed again; the complete one stays all the same.
+    // Without the mark the shards are those of a map that is being computed again; the complete one
+    // stays all the same.
     killed(false);
     expect(
         &folder.run(&["merge", "night.h5", "--partial"]),
@@ -954,7 +963,8 @@ fn a_merge_that_was_killed_while_it_cleaned_up_is_complete() {
         "is complete, and",
     );
     assert!(std::fs::read(&map).unwrap() == complete);
-    // The map has gone since: what is left of the shards counts, and the others are to be computed again.
+    // The map has gone since: what is left of the shards counts, and the others are to be computed
+    // again.
     std::fs::write(tiles.join("merged"), "").unwrap();
     std::fs::remove_file(&map).unwrap();
     expect(
@@ -1033,7 +1043,8 @@ fn links_and_pipes_in_the_place_of_tiles_are_refused() {
     assert!(file.exists());
 }
 
-/// A whole run and shards of one map do not work side by side; a hang-up stops a run in order, unless it was ignored.
+/// A whole run and shards of one map do not work side by side; a hang-up stops a run in order,
+/// unless it was ignored.
 #[cfg(unix)]
 #[test]
 fn a_hang_up_stops_a_run_unless_it_is_ignored() {

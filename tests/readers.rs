@@ -1,8 +1,10 @@
-//! Maps as other people's programs read them: xarray, h5py, netCDF4, ncdump, h5dump, Octave, R and Julia. A test whose program is
-//! missing fails; `scripts/test.sh` leaves such a test out and says so.
+//! Maps as other people's programs read them: xarray, h5py, netCDF4, ncdump, h5dump, Octave, R and
+//! Julia. A test whose program is missing fails; `scripts/test.sh` leaves such a test out and says
+//! so.
 //!
-//! Each map comes from the program itself; what must be in it comes from the library, cell by cell, and is handed to the
-//! Python programs in `readers/` as a folder with `expected.json` and raw arrays.
+//! Each map comes from the program itself; what must be in it comes from the library, cell by cell,
+//! and is handed to the Python programs in `readers/` as a folder with `expected.json` and raw
+//! arrays.
 
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
@@ -223,7 +225,8 @@ impl Case {
         (n, crossings.delay_margin(tau), count.marginal)
     }
 
-    /// Points off the grid, by a quarter of the step to the next value, with the count at the cell next to them.
+    /// Points off the grid, by a quarter of the step to the next value, with the count at the cell
+    /// next to them.
     fn picks(&self) -> Vec<Value> {
         (0..12)
             .map(|i| (i * 7919 + 13) % self.cells())
@@ -371,7 +374,8 @@ fn python_reads_friction_laws_with_units() {
     }
 }
 
-/// A map of roots in physical units, with lines without delay, where all but the rightmost root are at −∞.
+/// A map of roots in physical units, with lines without delay, where all but the rightmost root are
+/// at −∞.
 #[test]
 fn python_reads_roots() {
     let folder = TempDir::new().unwrap();
@@ -514,7 +518,8 @@ fn h5dump_writes_the_counts() {
     assert_eq!(bytes, counts);
 }
 
-/// Octave has the dimensions in reverse order, and the values of whole arrays in the same order as the file.
+/// Octave has the dimensions in reverse order, and the values of whole arrays in the same order as
+/// the file.
 #[test]
 fn octave_loads_the_map() {
     let written = Written::new(load_control());
@@ -668,7 +673,8 @@ fn python_draws_figures_of_the_critical_velocity() {
     }
 }
 
-/// Traces in xarray, netCDF4 and ncdump; the publication figures from them and from the map of Fig. 4.
+/// Traces in xarray, netCDF4 and ncdump; the publication figures from them and from the map of Fig.
+/// 4.
 #[test]
 fn python_reads_traces_and_draws_figures_3_and_4() {
     let folder = tempfile::tempdir().expect("a folder");
@@ -712,10 +718,12 @@ fn python_reads_traces_and_draws_figures_3_and_4() {
     }
 }
 
-/// The example of a language in `scripts/read`, with arguments `map.h5` and `picture.png`, reads a real map.
+/// The example of a language in `scripts/read`, with arguments `map.h5` and `picture.png`, reads a
+/// real map.
 ///
-/// It prints the axes' values and the abscissa of a cell after "nearest", an interpolated abscissa after "interpolated" where it can
-/// do that, and the numbers of certified cells and of cells of a plane after "certified"; each is told by other means here.
+/// It prints the axes' values and the abscissa of a cell after "nearest", an interpolated abscissa
+/// after "interpolated" where it can do that, and the numbers of certified cells and of cells of a
+/// plane after "certified"; each is told by other means here.
 fn check_example(interpolates: bool, example: impl FnOnce(&Path, PathBuf) -> Command) {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
     let folder = TempDir::new().expect("a temporary folder");

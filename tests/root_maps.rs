@@ -1,4 +1,5 @@
-//! Maps of roots: every cell is what a point there has, for any order of axes, number of threads and size of tiles.
+//! Maps of roots: every cell is what a point there has, for any order of axes, number of threads
+//! and size of tiles.
 
 use std::path::Path;
 
@@ -18,7 +19,8 @@ const ALL: &str = "[\"n_unstable\", \"delay_margin\", \"abscissa\", \"abscissa_2
                    \"frequency_2\", \"frequency_8\", \"relaxation_time\", \"d_abscissa_d_tau\", \"d_abscissa_d_alpha_v\", \
                    \"d_abscissa_d_alpha_n\", \"d_abscissa_d_mu_prime\"]";
 
-/// Sweeps with delays last, first, in the middle and not at all; without delay and without control; in other units.
+/// Sweeps with delays last, first, in the middle and not at all; without delay and without control;
+/// in other units.
 const SWEEPS: [&str; 4] = [
     "[axes]\nmu_prime = [-0.3, 0.2]\nalpha_n = { from = -3, to = 1, points = 9 }\ntau = { from = 0, to = 12, points = 41 }\n[fixed]\nalpha_v = -0.1\n",
     "[axes]\ntau = { from = 0.01, to = 30, points = 43, spacing = \"log\" }\nalpha_v = { from = -1, to = 1, points = 11 }\n[fixed]\nmu_prime = -0.1\nmass = 4\nstiffness = 9\nnormal_load = 3\nmu_k = 0.5\nalpha_n = -2\n",
@@ -184,7 +186,8 @@ fn bytes(cells: &Cells) -> Vec<Vec<u8>> {
     all
 }
 
-/// One line over two blocks and a bit, in tiles of one, two or all of its blocks, and delays first or last.
+/// One line over two blocks and a bit, in tiles of one, two or all of its blocks, and delays first
+/// or last.
 #[test]
 fn cells_depend_neither_on_threads_nor_on_tiles() {
     let folder = tempfile::tempdir().unwrap();

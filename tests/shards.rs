@@ -1,5 +1,6 @@
-//! The scripts that compute a map in shards, without a scheduler: a plain shell's, Kubernetes' and Slurm's, each with the
-//! environment that its scheduler gives. `tests/slurm/run.sh` has a real Slurm.
+//! The scripts that compute a map in shards, without a scheduler: a plain shell's, Kubernetes' and
+//! Slurm's, each with the environment that its scheduler gives. `tests/slurm/run.sh` has a real
+//! Slurm.
 #![cfg(unix)]
 
 use std::path::{Path, PathBuf};

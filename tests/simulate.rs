@@ -58,8 +58,8 @@ fn figure_3_has_its_events() {
     }
 }
 
-/// Events, `settle_time`, `n_min` and `peak_force` of the snapshot are those of Runge–Kutta steps of 0.001, of a program of its
-/// own: to all digits shown, to 0.001, 3e-12 and 2e-8.
+/// Events, `settle_time`, `n_min` and `peak_force` of the snapshot are those of Runge–Kutta steps
+/// of 0.001, of a program of its own: to all digits shown, to 0.001, 3e-12 and 2e-8.
 #[test]
 fn the_summary_for_people() {
     let folder = Folder::with(&[("fig3b.toml", FIG3B)]);

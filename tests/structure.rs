@@ -73,7 +73,8 @@ fn rooms_of_a_sweep_use_only_those_below() {
     assert!(uses > 100, "the test still sees them: {uses}");
 }
 
-/// Two files may know one another, such as a type and its parts; more, or such of two rooms, are one job in pieces.
+/// Two files may know one another, such as a type and its parts; more, or such of two rooms, are
+/// one job in pieces.
 #[test]
 fn no_circles_but_pairs_in_one_room() {
     let graph = uses::graph(&sources(Path::new("src")));
@@ -81,6 +82,23 @@ fn no_circles_but_pairs_in_one_room() {
     for circle in uses::circles(&graph) {
         let rooms: std::collections::BTreeSet<_> = circle.iter().map(|p| p.parent()).collect();
         assert!(circle.len() <= 2 && rooms.len() == 1, "{circle:?}");
+    }
+}
+
+/// Lines that fit beside one another on a screen.
+#[test]
+fn lines_are_within_100_columns() {
+    for path in sources(Path::new("src")) {
+        let text = std::fs::read_to_string(&path).unwrap();
+        for (number, line) in text.lines().enumerate() {
+            let columns = line.chars().count();
+            assert!(
+                columns <= 100,
+                "{}:{}: {columns}",
+                path.display(),
+                number + 1
+            );
+        }
     }
 }
 

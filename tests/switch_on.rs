@@ -1,5 +1,5 @@
-//! Control switched on at a phase of uncontrolled stick-slip, against programs that share nothing with slipmap: fates, uncontrolled
-//! cycles, windows.
+//! Control switched on at a phase of uncontrolled stick-slip, against programs that share nothing
+//! with slipmap: fates, uncontrolled cycles, windows.
 //!
 //! Units: M = κ = N0 = μ_S = 1, so that everything is dimensionless as in `slipmap::slip::motion`.
 
@@ -37,8 +37,9 @@ fn law(kind: &str, mu0: &str, v_s: &str) -> FrictionLaw {
     law.unwrap()
 }
 
-/// `tests/reference/switch_on_fate.csv` comes from a program of its own: Runge–Kutta steps of a fixed size that end on every kink
-/// of the delayed elongation, events by bisection, two sizes that agree.
+/// `tests/reference/switch_on_fate.csv` comes from a program of its own: Runge–Kutta steps of a
+/// fixed size that end on every kink of the delayed elongation, events by bisection, two sizes that
+/// agree.
 const FATES: &str = include_str!("reference/switch_on_fate.csv");
 
 /// What a fate of that table is called here.
@@ -139,9 +140,10 @@ fn survival(problem: &Problem, phase: f64, v0: f64) -> Survival {
     Trials::new(problem, Phase::After(phase), Accuracy::of(1e-9), steps).at(v0)
 }
 
-/// `tests/reference/uncontrolled_cycles.csv` comes from SciPy's DOP853, restarted at every zero of ẋ and followed until the block
-/// sticks, or for 25 turns, or for 400 units of time without one: two settings that agree. It stops, slides back before it
-/// sticks, slides for ever, or turns round without sticking.
+/// `tests/reference/uncontrolled_cycles.csv` comes from SciPy's DOP853, restarted at every zero of
+/// ẋ and followed until the block sticks, or for 25 turns, or for 400 units of time without one:
+/// two settings that agree. It stops, slides back before it sticks, slides for ever, or turns round
+/// without sticking.
 #[test]
 fn uncontrolled_cycles_are_those_of_another_integrator() {
     let mut seen = [0; 4];
@@ -176,9 +178,10 @@ fn law_of([kind, mu0, v_s, speeds, mu_k]: [&str; 5]) -> FrictionLaw {
     FrictionLaw::table(Table::new(points(speeds), points(mu_k)).unwrap(), 1.0).unwrap()
 }
 
-/// `tests/reference/switch_on_edges.csv` holds edges of windows, bisected by the program of `switch_on_fate.csv` with two step
-/// sizes, and with motions followed for twice as long. At most of them the uncontrolled block slides back before it sticks;
-/// next to some a slip takes thousands of cycles to come to rest, or back to stick-slip.
+/// `tests/reference/switch_on_edges.csv` holds edges of windows, bisected by the program of
+/// `switch_on_fate.csv` with two step sizes, and with motions followed for twice as long. At most
+/// of them the uncontrolled block slides back before it sticks; next to some a slip takes thousands
+/// of cycles to come to rest, or back to stick-slip.
 #[test]
 fn windows_end_where_brute_force_says() {
     let mut seen = 0;
@@ -217,8 +220,8 @@ fn windows_end_where_brute_force_says() {
     assert!(seen >= 20, "{seen}");
 }
 
-/// Where stick-slip is irregular its edge is one by chance: it survives at 0.13008 and is lost at 0.1301 by the program of
-/// `switch_on_fate.csv`, but cycles do not come to repeat.
+/// Where stick-slip is irregular its edge is one by chance: it survives at 0.13008 and is lost at
+/// 0.1301 by the program of `switch_on_fate.csv`, but cycles do not come to repeat.
 #[test]
 fn edges_by_chance_are_not_decided() {
     let law = FrictionLaw::weakening(0.7105, 0.6113, 1.0).unwrap();
@@ -259,9 +262,10 @@ fn kinds(path: &Path, field: Field) -> Vec<&'static str> {
     cells.into_iter().map(|n| names[usize::from(n)]).collect()
 }
 
-/// Without control this block slides back from v0 = 0.956934 on, and sticks up to 4.141388 (SciPy's DOP853 to rounding). With
-/// control stick-slip survives up to 2.091742 (`switch_on_edges.csv`); the argument principle on a fine contour counts two unstable
-/// roots of sliding at 0.96, and none from 1.5 on.
+/// Without control this block slides back from v0 = 0.956934 on, and sticks up to 4.141388 (SciPy's
+/// DOP853 to rounding). With control stick-slip survives up to 2.091742 (`switch_on_edges.csv`);
+/// the argument principle on a fine contour counts two unstable roots of sliding at 0.96, and none
+/// from 1.5 on.
 #[test]
 fn a_block_that_slides_back_is_in_stick_slip() {
     let folder = tempfile::tempdir().unwrap();

@@ -1,4 +1,5 @@
-//! The same bytes on unlike processors: what the C library has for this one, for others, and other processors altogether.
+//! The same bytes on unlike processors: what the C library has for this one, for others, and other
+//! processors altogether.
 //!
 //! `scripts/unlike.sh` asks the same of the shipped sweeps as they are, and of an aarch64 program.
 #![cfg(all(target_os = "linux", target_arch = "x86_64", target_env = "gnu"))]

@@ -1,4 +1,5 @@
-//! Maps of the critical velocity: cells against `vc`, classes, the slope at rest, threads and tiles, the sample, mistakes.
+//! Maps of the critical velocity: cells against `vc`, classes, the slope at rest, threads and
+//! tiles, the sample, mistakes.
 
 #[path = "common/program.rs"]
 mod program;
@@ -26,7 +27,8 @@ const LAW: &str = "[friction]\nlaw = \"weakening\"\nmu0 = 0.5\nv_s = 0.5\n";
 const VC: &str =
     "\"vc\", \"outcome\", \"method\", \"v_liftoff\", \"stick_time\", \"slip_time\", \"windows\"";
 
-/// One test at a time: a child that is just being started would hold the locks of maps that another test writes.
+/// One test at a time: a child that is just being started would hold the locks of maps that another
+/// test writes.
 fn alone() -> MutexGuard<'static, ()> {
     static ONE: Mutex<()> = Mutex::new(());
     ONE.lock().unwrap_or_else(PoisonError::into_inner)
@@ -140,7 +142,8 @@ fn every_cell_is_what_vc_says() {
             assert_eq!(said["decided"], !undecided, "{flags:?}");
             for name in ["vc", "v_liftoff", "stick_time", "slip_time"] {
                 let value = values(&map, name)[cell];
-                // A graze that starts from its neighbour's orbit is known to that; a slip at its end is longer by a root.
+                // A graze that starts from its neighbour's orbit is known to that; a slip at its
+                // end is longer by a root.
                 let allowed = match name {
                     "vc" | "v_liftoff" => GRAZE_PRECISION,
                     _ => 10.0 * GRAZE_PRECISION,
@@ -177,7 +180,8 @@ fn maps_do_not_depend_on_threads_or_tiles() {
     }
 }
 
-/// Classes follow from the count, v_c and v0; every other cell or so was recomputed, to the same answer.
+/// Classes follow from the count, v_c and v0; every other cell or so was recomputed, to the same
+/// answer.
 #[test]
 fn classes_and_samples() {
     let _alone = alone();
@@ -224,9 +228,10 @@ fn classes_and_samples() {
     }
 }
 
-/// What maps of the protocol `follow` hold is what brute force tells: v0 raised in small steps by a program of its own, by two
-/// ramps (steps of 6 % with 12 stops at each, of 2 % with 40) that agree to 2e-6. By load control at α_N = 2, τ = 2 the block
-/// lifts off at the start, however slowly it is pulled.
+/// What maps of the protocol `follow` hold is what brute force tells: v0 raised in small steps by a
+/// program of its own, by two ramps (steps of 6 % with 12 stops at each, of 2 % with 40) that agree
+/// to 2e-6. By load control at α_N = 2, τ = 2 the block lifts off at the start, however slowly it
+/// is pulled.
 #[test]
 fn critical_velocities_are_those_of_brute_force() {
     let _alone = alone();
@@ -307,7 +312,8 @@ fn the_slope_at_rest_stands_for_v_s_or_mu0() {
     assert!(!said[0].is_empty() && said[0] == said[1]);
 }
 
-/// What stands around the numbers: one table of flags, the protocol with its limits, the map's summary.
+/// What stands around the numbers: one table of flags, the protocol with its limits, the map's
+/// summary.
 #[test]
 fn a_map_says_what_it_holds() {
     let _alone = alone();
@@ -331,7 +337,8 @@ fn a_map_says_what_it_holds() {
     let info = out(&folder.run(&["info", "sweep.h5"]));
     assert!(info.contains("2 lost"), "{info}");
     let map = folder.path().join("sweep.h5");
-    // The letter's Fig. 3(a), just released; and where the block stops, where survival is re-entrant.
+    // The letter's Fig. 3(a), just released; and where the block stops, where survival is
+    // re-entrant.
     assert!((values_of(&map)[0] - 0.233773).abs() < 2e-6);
 }
 
@@ -432,7 +439,8 @@ fn the_worst_phase_in_a_map() {
         &map,
     );
     for one in values_of(&map) {
-        // The phases of the worst case are 32 of its own, so one between them may be a little worse.
+        // The phases of the worst case are 32 of its own, so one between them may be a little
+        // worse.
         assert!(one <= worst * 1.01, "{one} {worst}");
     }
 }

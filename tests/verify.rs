@@ -170,7 +170,8 @@ fn changed_maps_do_not() {
         // The library looks at the mask of a chunk of another length only.
         let bytes = [stored, &[0]].concat();
         let written = hdf5::sync::sync(|| {
-            // SAFETY: the dataset is open, the offset has an entry for each of its dimensions, and the slice lives.
+            // SAFETY: the dataset is open, the offset has an entry for each of its dimensions, and
+            // the slice lives.
             unsafe {
                 hdf5_sys::h5d::H5Dwrite_chunk(
                     dataset.id(),
@@ -298,8 +299,9 @@ fn wrong_values_are_seen_by_second_methods() {
     }
 }
 
-/// Where large steps of v0 throw stick-slip to a kind that ends earlier, and small ones do not decide, nothing is contradicted.
-/// v_c by the program of `tests/referee` in four kinds of steps: 0.0288921.
+/// Where large steps of v0 throw stick-slip to a kind that ends earlier, and small ones do not
+/// decide, nothing is contradicted. v_c by the program of `tests/referee` in four kinds of steps:
+/// 0.0288921.
 #[test]
 fn a_search_that_large_steps_have_thrown_contradicts_nothing() {
     let folder = tempfile::tempdir().unwrap();

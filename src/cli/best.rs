@@ -16,8 +16,10 @@ use super::parameters::ParameterArgs;
 #[derive(Debug, clap::Args)]
 #[command(after_help = "Example: slipmap best --mu-prime -0.3 --control velocity
 
-Searched where no ranges are given, with b = μ′N0/√(κM): delays from 0 to four periods of the free oscillator; gains of
-velocity control up to ±2 max(1, |b|) √(κ/M); gains of load control from 4(1 + |b|) κ/μ_K below the weakest negative one that
+Searched where no ranges are given, with b = μ′N0/√(κM): delays from 0 to \
+four periods of the free oscillator; gains of
+velocity control up to ±2 max(1, |b|) √(κ/M); gains of load \
+control from 4(1 + |b|) κ/μ_K below the weakest negative one that
 stabilises, -(|b| + b²/2) κ/μ_K, to 4(1 + |b|) κ/μ_K.")]
 pub struct Args {
     #[command(flatten)]
@@ -133,7 +135,8 @@ impl From<&Optimum> for OptimumOut {
 
 pub fn main(args: &Args) -> Result<(), Failure> {
     let gain = args.control.searched();
-    let help = "leave it out; --alpha-from, --alpha-to, --tau-from and --tau-to are the ranges of the search";
+    let help = "leave it out; --alpha-from, --alpha-to, --tau-from and --tau-to are the ranges of \
+        the search";
     let setting = args
         .parameters
         .setting_but(&[args.control.parameter(), Parameter::Tau], help)?;

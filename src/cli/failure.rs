@@ -32,7 +32,7 @@ impl Failure {
         Self::Failed(Report::new(shown(message)))
     }
 
-    /// The same with advice.
+    /// What failed, with advice on what to do.
     pub fn failed_with_help(message: impl Into<String>, help: impl Into<String>) -> Self {
         Self::Failed(Report::new(shown(message).with_help(visible(&help.into()))))
     }

@@ -21,7 +21,8 @@ pub struct Args {
     /// The map that `run --shard` was given, or would have been by default
     #[arg(value_name = "MAP.h5")]
     map: PathBuf,
-    /// Folders of shards, where they were computed elsewhere; these stay [default: all in MAP.h5.tiles]
+    /// Folders of shards, where they were computed elsewhere; these stay [default: all in
+    /// MAP.h5.tiles]
     #[arg(value_name = "FOLDER")]
     folders: Vec<PathBuf>,
     /// Write the map here instead
@@ -89,7 +90,8 @@ fn folders(args: &Args) -> Result<Vec<PathBuf>, Failure> {
     Ok(present.into_iter().map(|(_, path)| path).collect())
 }
 
-/// An error, unless the shards are gone because their map is complete: a merge that is run again has nothing to do, with --fresh too.
+/// An error, unless the shards are gone because their map is complete: a merge that is run again
+/// has nothing to do, with --fresh too.
 fn nothing_to_merge(args: &Args, target: &Path, signals: &Signals) -> Result<(), Failure> {
     if maker::is_complete(target, None)? {
         drop(shards::remove_root(&args.map));
@@ -104,7 +106,8 @@ fn nothing_to_merge(args: &Args, target: &Path, signals: &Signals) -> Result<(),
             "there are no shards in {}",
             shards::root(&args.map).display()
         ),
-        "`slipmap run SWEEP.toml -o MAP.h5 --shard I/N` computes one; folders from elsewhere are named after MAP.h5",
+        "`slipmap run SWEEP.toml -o MAP.h5 --shard I/N` computes one; folders from elsewhere are \
+        named after MAP.h5",
     ))
 }
 

@@ -27,7 +27,8 @@ use clap::{Parser, Subcommand};
 
 /// Exact stability maps of delayed-feedback control of dry friction.
 #[derive(Parser)]
-#[command(version, long_version = concat!(env!("CARGO_PKG_VERSION"), " (", env!("SLIPMAP_GIT_REVISION"), ")"))]
+#[command(version, long_version = concat!(env!("CARGO_PKG_VERSION"), " \
+    (", env!("SLIPMAP_GIT_REVISION"), ")"))]
 #[command(
     after_help = "Exit codes: 0 done, 1 failed, 2 bad input or usage, 129, 130 or 143 interrupted."
 )]
@@ -62,7 +63,8 @@ enum Command {
     Info(info::Args),
 }
 
-/// Help, or what is wrong with the arguments, of which some may be names that hold control characters.
+/// Help, or what is wrong with the arguments, of which some may be names that hold control
+/// characters.
 fn say_usage(error: &clap::Error) -> ExitCode {
     let odd = |arg: std::ffi::OsString| {
         let arg = arg.to_string_lossy().into_owned();
@@ -81,8 +83,8 @@ pub fn main() -> ExitCode {
         Ok(cli) => cli.command,
         Err(error) => return say_usage(&error),
     };
-    // Caught and not looked at: a limit on file sizes then fails the write instead of ending the process. Where it cannot be
-    // caught, such a limit ends the process, no more.
+    // Caught and not looked at: a limit on file sizes then fails the write instead of ending the
+    // process. Where it cannot be caught, such a limit ends the process, no more.
     let _ = signal_hook::flag::register(signal_hook::consts::SIGXFSZ, Arc::default());
     let result = match command {
         Command::Run(args) => run::main(&args),

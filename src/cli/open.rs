@@ -13,7 +13,8 @@ use super::output::provenance;
 use super::say;
 use super::signals::Signals;
 
-/// The map at `path`. Where there is none yet, what its tiles hold, put together in a file of its own that is gone afterwards.
+/// The map at `path`. Where there is none yet, what its tiles hold, put together in a file of its
+/// own that is gone afterwards.
 ///
 /// A signal ends it, with `message`.
 pub fn open(path: &Path, signals: &Signals, message: &str) -> Result<MapFile, Failure> {

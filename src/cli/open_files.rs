@@ -1,7 +1,8 @@
 //! How many files this process may have open at once.
 
-/// Raises the limit that a user gives to programs to the one that the system gives to users: a merge holds one file of every
-/// shard. Where the system refuses, the limit stays, and opening one more says so.
+/// Raises the limit that a user gives to programs to the one that the system gives to users: a
+/// merge holds one file of every shard. Where the system refuses, the limit stays, and opening one
+/// more says so.
 pub fn as_many_as_allowed() {
     #[cfg(unix)]
     {

@@ -10,7 +10,8 @@ use slipmap::store::map_writer::Provenance;
 use super::failure::Failure;
 use super::say;
 
-/// The file to write: `given`, or the name of `input` with .h5 in the current folder. `kind`: map or trace.
+/// The file to write: `given`, or the name of `input` with .h5 in the current folder. `kind`: map
+/// or trace.
 pub fn output_path(given: Option<&Path>, input: &Path, kind: &str) -> Result<PathBuf, Failure> {
     let path = match given {
         Some(path) => path.to_owned(),

@@ -127,7 +127,8 @@ impl ParameterArgs {
         Ok(setting)
     }
 
-    /// The setting of a critical velocity: a friction law, no v0, and a delay only where control acts.
+    /// The setting of a critical velocity: a friction law, no v0, and a delay only where control
+    /// acts.
     pub fn setting_without_v0(&self) -> Result<Setting, Failure> {
         if self.friction.is_none() {
             return Err(Failure::bad_input_with_help(
@@ -151,13 +152,14 @@ impl ParameterArgs {
         flags || Parameter::ALL.into_iter().any(|p| self.given(p).is_some())
     }
 
-    /// The setting that the flags describe but for the parameters `searched`, which must not be given.
-    /// `help` says why.
+    /// The setting that the flags describe but for the parameters `searched`, which must not be
+    /// given. `help` says why.
     pub fn setting_but(&self, searched: &[Parameter], help: &str) -> Result<Setting, Failure> {
         self.setting_with(None, searched, help)
     }
 
-    /// As [`ParameterArgs::setting_but`], with a value for a parameter that need not be given.
+    /// The setting that the flags describe, as [`ParameterArgs::setting_but`] reads it, with a
+    /// value for a parameter that need not be given.
     fn setting_with(
         &self,
         unneeded: Option<(Parameter, f64)>,

@@ -16,7 +16,8 @@ use super::failure::Failure;
 use super::run::{MEMORY, default_threads, parse_memory, parse_threads, threads_within};
 use super::sweep_file::read_plan;
 
-/// A sample ends after so long, once it has this many pieces; or after the longest time, whatever it has.
+/// A sample ends after so long, once it has this many pieces; or after the longest time, whatever
+/// it has.
 const SAMPLE: Duration = Duration::from_millis(500);
 const ENOUGH: usize = 12;
 const LONGEST_SAMPLE: Duration = Duration::from_secs(6);
@@ -29,7 +30,8 @@ pub struct Args {
     /// Threads to plan for [default: as many as the machine offers]
     #[arg(long, value_name = "N", value_parser = parse_threads)]
     threads: Option<usize>,
-    /// The most memory to plan for, such as 500MB or 2GiB: fewer threads compute where so many would take more
+    /// The most memory to plan for, such as 500MB or 2GiB: fewer threads compute where so many
+    /// would take more
     #[arg(long, value_name = "SIZE", default_value = MEMORY, value_parser = parse_memory)]
     memory: u64,
 }

@@ -23,14 +23,16 @@ pub struct Args {
     /// The picture to write, .png or .svg [default: the map's name with .png, beside it]
     #[arg(short, long, value_name = "PICTURE")]
     output: Option<PathBuf>,
-    /// What to show, a field of the map [default: the first held of class, vc, outcome, abscissa, n_unstable]
+    /// What to show, a field of the map [default: the first held of class, vc, outcome, abscissa,
+    /// n_unstable]
     #[arg(long, value_name = "NAME", value_parser = parse_field)]
     field: Option<Field>,
-    /// Curves or cells [default: curves where the map holds them for a few values of one axis and no abscissa, and no --field
-    /// is given]
+    /// Curves or cells [default: curves where the map holds them for a few values of one axis and
+    /// no abscissa, and no --field is given]
     #[arg(long)]
     kind: Option<Kind>,
-    /// Hold an axis at the value nearest to this; again for the same axis: show several values of it
+    /// Hold an axis at the value nearest to this; again for the same axis: show several values of
+    /// it
     #[arg(long, value_name = "AXIS=VALUE", value_parser = parse_at)]
     at: Vec<(Parameter, f64)>,
 }

@@ -14,7 +14,8 @@ use super::say;
 
 /// Stable intervals printed for people; the JSON output has them all, up to `MOST_INTERVALS`.
 const INTERVALS_SHOWN: usize = 12;
-/// Near a tangency there can be millions of stable intervals; more than this are cut, and the output says so.
+/// Near a tangency there can be millions of stable intervals; more than this are cut, and the
+/// output says so.
 const MOST_INTERVALS: usize = 100_000;
 
 #[derive(Debug, clap::Args)]
@@ -23,7 +24,8 @@ pub struct Args {
     #[command(flatten)]
     parameters: ParameterArgs,
     /// How many characteristic roots to list, from the right; pairs count once
-    #[arg(long, value_name = "K", default_value_t = 4, value_parser = clap::value_parser!(u8).range(1..=64))]
+    #[arg(long, value_name = "K", default_value_t = 4,
+          value_parser = clap::value_parser!(u8).range(1..=64))]
     roots: u8,
     /// One JSON object on standard output; infinities are null
     #[arg(long)]
@@ -101,7 +103,8 @@ impl Spectrum {
     ) -> std::io::Result<()> {
         let certified = match (self.certified, self.certificate_margin) {
             (true, Some(margin)) => format!(
-                "yes: no root farther right than abscissa + {margin:e} max(1/sqrt(M/kappa), |abscissa|)"
+                "yes: no root farther right than abscissa + {margin:e} max(1/sqrt(M/kappa), \
+                |abscissa|)"
             ),
             _ => "no".into(),
         };

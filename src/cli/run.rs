@@ -44,10 +44,12 @@ pub struct Args {
     /// Compute only every N-th piece, from the I-th on; `slipmap merge` puts the shards together
     #[arg(long, value_name = "I/N")]
     shard: Option<Shard>,
-    /// The most memory to take, such as 500MB or 2GiB: fewer threads compute where so many would take more
+    /// The most memory to take, such as 500MB or 2GiB: fewer threads compute where so many would
+    /// take more
     #[arg(long, value_name = "SIZE", default_value = MEMORY, value_parser = parse_memory)]
     memory: u64,
-    /// Start over, replacing a map that is already there and dropping what an earlier run, or this shard, computed
+    /// Start over, replacing a map that is already there and dropping what an earlier run, or this
+    /// shard, computed
     #[arg(long)]
     fresh: bool,
     /// Save what is computed every so many seconds
@@ -192,7 +194,8 @@ fn run_whole(
     told
 }
 
-/// A map is computed whole or in shards: what the other way has computed is not begun a second time.
+/// A map is computed whole or in shards: what the other way has computed is not begun a second
+/// time.
 fn refuse_other_way(map: &Path, asked: Shard) -> Result<(), Failure> {
     let others = shards::present(map)?;
     let is_other = |shard: &Shard| shard.is_whole() != asked.is_whole();
@@ -240,7 +243,8 @@ fn lacks_picture(map: &Path) -> bool {
     }
 }
 
-/// Draws a complete map beside it, and on the terminal. What fails here is a warning: the map is there.
+/// Draws a complete map beside it, and on the terminal. What fails here is a warning: the map is
+/// there.
 pub fn show(path: &Path, quiet: bool, signals: &Signals) {
     let complete = format!("{} is complete, the same command draws it", path.display());
     let map = match signals.or_end(&complete, || MapFile::open(path)) {
@@ -255,7 +259,8 @@ pub fn show(path: &Path, quiet: bool, signals: &Signals) {
     } else {
         let name = picture.display();
         say::remark(format_args!(
-            "warning: no picture: {name} is there and not by slipmap; `slipmap plot -o` draws elsewhere"
+            "warning: no picture: {name} is there and not by slipmap; `slipmap plot -o` draws \
+            elsewhere"
         ));
         Err(PictureError::NothingToDraw)
     };
@@ -276,7 +281,8 @@ pub fn show(path: &Path, quiet: bool, signals: &Signals) {
     }
 }
 
-/// A remark if the map of this plan is there and `fresh` is not set; an error if what is there must not be replaced.
+/// A remark if the map of this plan is there and `fresh` is not set; an error if what is there must
+/// not be replaced.
 ///
 /// `fresh` replaces maps only: another file under that name is more likely a slip than a wish.
 pub fn already_there(path: &Path, plan: &Plan, fresh: bool) -> Result<Option<String>, Failure> {

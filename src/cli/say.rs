@@ -1,4 +1,5 @@
-//! Telling the user things. A reader that has gone (`slipmap … | head`) or a closed stream is no reason to fail or to panic.
+//! Telling the user things. A reader that has gone (`slipmap … | head`) or a closed stream is no
+//! reason to fail or to panic.
 
 use std::fmt::Display;
 use std::io::Write;

@@ -65,8 +65,8 @@ impl Signals {
         }
     }
 
-    /// Does work that changes no file and cannot look at a flag, a call of a library for instance. A signal before or meanwhile
-    /// ends the process with `message`.
+    /// Does work that changes no file and cannot look at a flag, a call of a library for instance.
+    /// A signal before or meanwhile ends the process with `message`.
     pub fn or_end<T>(&self, message: impl Display, work: impl FnOnce() -> T) -> T {
         let busy = Arc::new(AtomicBool::new(true));
         let watch = Watch {
@@ -109,7 +109,8 @@ impl Watch {
     fn look(&self) {
         if self.stop.load(Ordering::Relaxed) && self.busy.swap(false, Ordering::SeqCst) {
             say::remark(&self.message);
-            // Not by way of the hooks at exit: the HDF5 library would close files that the work is reading.
+            // Not by way of the hooks at exit: the HDF5 library would close files that the work is
+            // reading.
             low_level::exit(self.code.load(Ordering::Relaxed) as i32);
         }
     }

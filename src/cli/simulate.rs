@@ -131,7 +131,8 @@ fn check_picture(args: &Args, trace: &Path) -> Result<(), Failure> {
     }
 }
 
-/// An error if what stands at `path` must not be replaced: only traces are, those of other cases only with `fresh`.
+/// An error if what stands at `path` must not be replaced: only traces are, those of other cases
+/// only with `fresh`.
 fn check_replaced(path: &Path, spec: &CaseSpec, fresh: bool) -> Result<(), Failure> {
     if !path.exists() {
         return Ok(());
@@ -141,7 +142,8 @@ fn check_replaced(path: &Path, spec: &CaseSpec, fresh: bool) -> Result<(), Failu
         Ok(text) if fresh || text == spec.text => Ok(()),
         Ok(_) => Err(Failure::bad_input_with_help(
             format!(
-                "{name} is already there: the trace of another case, or of this one before it changed"
+                "{name} is already there: the trace of another case, or of this one before it \
+                changed"
             ),
             "--fresh replaces it; -o writes elsewhere",
         )),
@@ -153,7 +155,8 @@ fn check_replaced(path: &Path, spec: &CaseSpec, fresh: bool) -> Result<(), Failu
     }
 }
 
-/// Draws the picture. One that is not asked for by name does not replace what is not slipmap's; what fails then is a warning.
+/// Draws the picture. One that is not asked for by name does not replace what is not slipmap's;
+/// what fails then is a warning.
 fn draw(
     args: &Args,
     (spec, trace): (&CaseSpec, &Trace),
@@ -254,7 +257,8 @@ fn verdict(summary: &Summary, spec: &CaseSpec) -> String {
             format!("undecided after {} steps", grouped(summary.steps))
         }
         Outcome::Undecided if summary.decided < spec.case.horizon => format!(
-            "undecided at t = {}: two delays take more than {MOST_KEPT} steps, the most that are kept",
+            "undecided at t = {}: two delays take more than {MOST_KEPT} steps, the most that are \
+            kept",
             digits(summary.decided)
         ),
         Outcome::Undecided => format!("undecided at the horizon, t = {}", spec.case.horizon),

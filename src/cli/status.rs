@@ -154,15 +154,19 @@ impl Status {
             .iter()
             .map(|s| {
                 json!({
-                    "shard": s.shard, "running": s.running, "cells": s.cells, "cells_done": s.cells_done,
-                    "pieces": s.pieces, "pieces_done": s.pieces_done, "damaged_files": s.damaged_files,
+                    "shard": s.shard, "running": s.running, "cells": s.cells,
+                    "cells_done": s.cells_done,
+                    "pieces": s.pieces, "pieces_done": s.pieces_done,
+                    "damaged_files": s.damaged_files,
                     "cells_per_second": s.rate, "seconds_left": s.seconds_left(),
                 })
             })
             .collect();
         json!({
-            "complete": self.complete, "running": self.running(), "cells": self.cells, "cells_done": self.cells_done,
-            "cells_per_second": self.rate(), "seconds_left": self.seconds_left(), "cells_by_status": by_status,
+            "complete": self.complete, "running": self.running(), "cells": self.cells,
+            "cells_done": self.cells_done,
+            "cells_per_second": self.rate(), "seconds_left": self.seconds_left(),
+            "cells_by_status": by_status,
             "shards": shards,
         })
     }

@@ -9,7 +9,8 @@ use slipmap::sweep::{CaseSpec, Plan, SpecError, SweepSpec};
 
 use super::failure::Failure;
 
-/// A file larger than this is none of these. The text goes into maps and, with up to twice as many bytes, into manifests.
+/// A file larger than this is none of these. The text goes into maps and, with up to twice as many
+/// bytes, into manifests.
 const MOST_BYTES: u64 = 16 << 20;
 
 /// The plan of the sweep file at `path`.

@@ -19,7 +19,8 @@ use super::parameters::{ParameterArgs, flag};
 #[derive(Debug, clap::Args)]
 #[command(after_help = "Examples:
   slipmap vc --friction weakening --mu0 0.5 --v-s 0.5 --alpha-v=-0.33 --tau 4.15
-  slipmap vc --friction weakening --mu0 0.5 --v-s 0.5 --alpha-v=-0.33 --tau 4.15 --protocol switch-on --phase 0.2
+  slipmap vc --friction weakening --mu0 0.5 --v-s 0.5 --alpha-v=-0.33 --tau 4.15 \
+--protocol switch-on --phase 0.2
   slipmap vc --protocol limit --gamma 0.25 --mu-ratio 0.5")]
 pub struct Args {
     #[command(flatten)]
@@ -27,7 +28,8 @@ pub struct Args {
     /// Which question is asked
     #[arg(long, value_enum, default_value_t = Protocol::Follow)]
     protocol: Protocol,
-    /// Time from a release to switch-on, or `worst` for the worst of 32 phases (with --protocol switch-on) [default: 0]
+    /// Time from a release to switch-on, or `worst` for the worst of 32 phases (with --protocol
+    /// switch-on) [default: 0]
     #[arg(long, value_name = "T", allow_hyphen_values = true)]
     phase: Option<String>,
     /// γ = −μ_K α_N τ/(2√(κM)) (with --protocol limit)

@@ -1,4 +1,5 @@
-//! `slipmap verify`: whether a map is as it was written, and what other methods say of a sample of its cells.
+//! `slipmap verify`: whether a map is as it was written, and what other methods say of a sample of
+//! its cells.
 
 use std::io::Write;
 use std::path::PathBuf;
@@ -20,10 +21,12 @@ pub struct Args {
     #[arg(value_name = "MAP.h5")]
     map: PathBuf,
     /// Cells at which second methods look, spread over the map
-    #[arg(long, value_name = "N", default_value_t = 100, value_parser = clap::value_parser!(u64).range(..=MOST))]
+    #[arg(long, value_name = "N", default_value_t = 100,
+          value_parser = clap::value_parser!(u64).range(..=MOST))]
     cells: u64,
     /// Tiles that are computed again, to be equal bit by bit
-    #[arg(long, value_name = "N", default_value_t = 2, value_parser = clap::value_parser!(u64).range(..=MOST))]
+    #[arg(long, value_name = "N", default_value_t = 2,
+          value_parser = clap::value_parser!(u64).range(..=MOST))]
     tiles: u64,
     /// Print one JSON object instead
     #[arg(long)]
@@ -63,8 +66,8 @@ fn to_json(report: &Report) -> Value {
         .collect();
     json!({
         "sound": report.faults.is_empty(), "faults": report.faults, "remarks": report.remarks,
-        "checksums": report.checksums, "cells": report.cells, "answers": answers, "tiles": report.tiles,
-        "tiles_equal": report.tiles_equal,
+        "checksums": report.checksums, "cells": report.cells, "answers": answers,
+        "tiles": report.tiles, "tiles_equal": report.tiles_equal,
     })
 }
 

@@ -10,8 +10,8 @@ use crate::slip::outcome::{Observer, Outcome};
 /// What becomes of stick-slip beyond a graze.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Beyond {
-    /// It ends; the minima of ẋ after that, over v0, are not below this, where that is known, else 0; 1 where the block slides
-    /// and turns back at once.
+    /// It ends; the minima of ẋ after that, over v0, are not below this, where that is known, else
+    /// 0; 1 where the block slides and turns back at once.
     Ends(f64),
     /// It is stick-slip of another kind, with so many slips in a period.
     Persists(usize),
@@ -23,9 +23,10 @@ pub(super) enum Beyond {
 
 /// The last trials are this far below and above a graze, relative: v_c is known to it.
 pub(super) const PRECISION: f64 = 1e-5;
-/// The block is released so far past the graze, relative; the first one at which it does not stop counts.
+/// The block is released so far past the graze, relative; the first one at which it does not stop
+/// counts.
 const STEPS: [f64; 2] = [PRECISION, 1e-4];
-/// And so far past it, where that decides on its end.
+/// How far past an end the block is released, where that decides on the end; relative.
 const OTHER_STEPS: [f64; 2] = [1e-4, 2e-6];
 /// The lowest minimum of ẋ after a graze, and how long after it.
 #[derive(Debug, Clone, Copy)]
@@ -36,11 +37,13 @@ struct Lowest {
 
 /// For so long after its lowest minimum the block is followed that was released otherwise.
 const AFTER: f64 = std::f64::consts::TAU;
-/// Minima of ẋ, over v0, that leave no doubt on which side of zero they are after other steps of v0.
+/// Minima of ẋ, over v0, that leave no doubt on which side of zero they are after other steps of
+/// v0.
 const CLEAR: f64 = 0.05;
 
-/// What becomes, just beyond the graze at `v0` of a slip that took `slip`, of the block that `road` releases for that slip. Where
-/// the block comes near another stop and steps of different sizes lead to different ends, that is not known.
+/// What becomes, just beyond the graze at `v0` of a slip that took `slip`, of the block that `road`
+/// releases for that slip. Where the block comes near another stop and steps of different sizes
+/// lead to different ends, that is not known.
 pub(super) fn beyond(problem: &Problem, (v0, slip): (f64, f64), road: &mut impl Road) -> Beyond {
     let least = slip + problem.tau;
     let mut passed = STEPS.iter().filter_map(|above| {
@@ -96,18 +99,20 @@ pub(super) fn without_stick(problem: &Problem, v0: f64, road: &mut impl Road) ->
     Beyond::Ends(1.0)
 }
 
-/// How far beyond a vanished stick is looked, relative, and for how long, in delays and two periods of free oscillation.
+/// How far beyond a vanished stick is looked, relative, and for how long, in delays and two periods
+/// of free oscillation.
 const VANISHED: f64 = 1e-4;
 const PERIODS_WITHOUT: u32 = 10;
 
-/// The share of v0 above which ẋ stays once the block slides. Minima that only rise to half of v0 may fall again: an unstable
-/// oscillation about stable sliding can be on either side.
+/// The share of v0 above which ẋ stays once the block slides. Minima that only rise to half of v0
+/// may fall again: an unstable oscillation about stable sliding can be on either side.
 const SLIDING: f64 = 0.8;
 
 /// The most steps of a slip.
 const STEPS_OF_SLIP: u32 = 5_000;
 
-/// Follows a block that was just released past the minimum of ẋ that ended its `slip` before; false where it stops there.
+/// Follows a block that was just released past the minimum of ẋ that ended its `slip` before; false
+/// where it stops there.
 fn passes(motion: &mut Motion, slip: f64) -> bool {
     let start = motion.t;
     for _ in 0..STEPS_OF_SLIP {
@@ -122,8 +127,9 @@ fn passes(motion: &mut Motion, slip: f64) -> bool {
     false
 }
 
-/// The lowest minimum of ẋ beyond a graze, of a block that slips on: its velocity's minima do not fall for long; or, where
-/// sliding is stable, rise nearly to v0, for at least the time `least`. None where it stops again.
+/// The lowest minimum of ẋ beyond a graze, of a block that slips on: its velocity's minima do not
+/// fall for long; or, where sliding is stable, rise nearly to v0, for at least the time `least`.
+/// None where it stops again.
 fn slips_on(problem: &Problem, motion: &mut Motion, least: f64) -> Option<Lowest> {
     let v0 = motion.parameters().v0;
     let stable = problem.count(v0).stable();

@@ -1,5 +1,5 @@
-//! Raising v0 towards where a number vanishes that is seen in every period of stick-slip: the depth of a stop, the load, or a
-//! stick.
+//! Raising v0 towards where a number vanishes that is seen in every period of stick-slip: the depth
+//! of a stop, the load, or a stick.
 
 use crate::model::elementary::power;
 use crate::slip::motion::{Accuracy, Motion};
@@ -10,10 +10,10 @@ use super::cycle::{DIP, GAUGES, LOAD, Period, STICK, TURN};
 pub(super) const LARGEST_STEP: f64 = 1.0;
 /// Nearer than this to the end, relative, the rest of the way is told from the last two trials.
 const NEAR: f64 = 1e-4;
-/// As near as this the last two trials tell, if they agree to that on where it ends.
+/// Within this of an end, relative, the last two trials tell it if they agree on it to [`AGREES`].
 const QUITE_NEAR: f64 = 3e-3;
 const AGREES: f64 = 3e-6;
-/// As near as this by slopes of a problem like it.
+/// Within this of an end, relative, slopes of a problem like this one tell it.
 const AT_ONCE: f64 = 3e-5;
 /// The most trials.
 const MOST_TRIALS: u32 = 60;
@@ -43,8 +43,8 @@ pub(super) enum Ran {
 pub(super) trait Road {
     /// A block that is released at `v0`, with a past like that of the trials that were kept.
     fn place(&mut self, v0: f64) -> &mut Motion;
-    /// What a block released at `v0` does, from where the last trial that was kept ended.
-    /// With memory, period after period until their gauges differ by no more than `settled`, relative.
+    /// What a block released at `v0` does, from where the last trial that was kept ended. With
+    /// memory, period after period until their gauges differ by no more than `settled`, relative.
     fn trial(&mut self, v0: f64, expected: Option<&Period>, settled: f64) -> Ran;
     /// Goes on from the end of the last trial.
     fn keep(&mut self);
@@ -67,8 +67,8 @@ pub(super) enum Climbed {
     Unclear,
 }
 
-/// Whether the last members of a sequence differ by no more than `settled`, relative, and by less and less: else the orbit
-/// that they seem to reach may be unstable. Or by no more than `noise`.
+/// Whether the last members of a sequence differ by no more than `settled`, relative, and by less
+/// and less: else the orbit that they seem to reach may be unstable. Or by no more than `noise`.
 fn come_to_rest([first, second, third]: &[f64; 3], settled: f64, noise: f64) -> bool {
     let (before, last) = ((second - first).abs(), (third - second).abs());
     let falls = settled > SETTLED || last <= CONTRACTION * before || last <= NOISE * third.abs();
@@ -91,7 +91,7 @@ fn limit([first, second, third]: [f64; 3]) -> f64 {
 pub(super) struct Seen([[f64; 3]; GAUGES]);
 
 impl Seen {
-    /// None yet.
+    /// Before the first period.
     pub fn none() -> Self {
         Self([[f64::NAN; 3]; GAUGES])
     }
@@ -156,7 +156,8 @@ impl Place {
         }
     }
 
-    /// By how much v0 has to grow until the first gauge vanishes, relative, and which one; +∞ where none comes to that.
+    /// By how much v0 has to grow until the first gauge vanishes, relative, and which one; +∞ where
+    /// none comes to that.
     pub fn gap(&self) -> (f64, usize) {
         let mut first = (f64::INFINITY, LOAD);
         for (i, (gauge, slope)) in self.gauges.iter().zip(&self.slopes).enumerate() {
@@ -208,13 +209,16 @@ impl Place {
 
 /// Where the end is near, periods have to be settled to this.
 pub(super) const SETTLED: f64 = 0.05;
-/// The most by which periods that come to rest differ from one to the next, compared with the difference before.
+/// The most by which periods that come to rest differ from one to the next, compared with the
+/// difference before.
 const CONTRACTION: f64 = 0.8;
-/// Noise of the gauges, relative to themselves, and to v0 or to the forces and times of free oscillation.
+/// Noise of the gauges, relative to themselves, and to v0 or to the forces and times of free
+/// oscillation.
 const NOISE: f64 = 1e-6;
 /// The share of the way to the expected end that is taken at once.
 const SHARE: f64 = 0.97;
-/// The same where slopes are not its own, and transients are of the first order in the step.
+/// The share of the way that is taken at once where slopes are those of a problem like it, and
+/// transients are of the first order in the step.
 const FIRST_SHARE: f64 = 0.7;
 
 /// How settled a trial has to be after a step of v0.
@@ -227,14 +231,16 @@ fn needed(step: f64) -> f64 {
     }
 }
 
-/// A trial beyond one that failed is made by a step this much smaller than the one that failed there.
+/// A trial beyond one that failed is made by a step this much smaller than the one that failed
+/// there.
 const SMALLER: f64 = 0.3;
 
 /// How far the next trial may go, relative.
 #[derive(Debug, Clone, Copy)]
 struct Reach {
     most: f64,
-    /// The v0 of the last trial that failed, unless one beyond it has not, and the step that led there.
+    /// The v0 of the last trial that failed, unless one beyond it has not, and the step that led
+    /// there.
     failed: Option<(f64, f64)>,
 }
 
@@ -306,17 +312,19 @@ pub(super) fn climb(road: &mut impl Road, mut at: Place, most: f64) -> (Climbed,
     (Climbed::Unclear, at)
 }
 
-/// The largest relative step of v0 that may lead from one kind of stick-slip to another: v0 is raised slowly.
+/// The largest relative step of v0 that may lead from one kind of stick-slip to another: v0 is
+/// raised slowly.
 pub(super) const JUMP: f64 = 1e-5;
 
-/// Whether a relative `step` of v0 threw stick-slip from one kind to another: the mean cycle or the mean slip of its period
-/// changed by more than such a step explains.
+/// Whether a relative `step` of v0 threw stick-slip from one kind to another: the mean cycle or the
+/// mean slip of its period changed by more than such a step explains.
 pub(super) fn jumps(before: &Period, after: &Period, step: f64) -> bool {
     let turns = |p: &Period| p.cycles().iter().map(|cycle| cycle.reversals).sum::<u32>();
     turns(before) != turns(after) || thrown(before.mean_times(), after.mean_times(), step)
 }
 
-/// The same, from the mean cycles and slips.
+/// Whether a relative `step` of v0 threw stick-slip from one kind to another, told from its mean
+/// cycles and slips.
 pub(super) fn thrown(before: [f64; 2], after: [f64; 2], step: f64) -> bool {
     let [period, slip] = [0, 1].map(|i| after[i] / before[i]);
     // Where sticks are not followed, slips tell.
@@ -324,19 +332,21 @@ pub(super) fn thrown(before: [f64; 2], after: [f64; 2], step: f64) -> bool {
     !same_period || !(0.8..=1.4).contains(&slip)
 }
 
-/// Below this v0, over μ_S N0/√(κM), errors of the elongation are felt in the depth of a stop, which is to be known compared
-/// with v0.
+/// Below this v0, over μ_S N0/√(κM), errors of the elongation are felt in the depth of a stop,
+/// which is to be known compared with v0.
 const SLOW: f64 = 0.03;
 
-/// Above this v0, in the same units, what ends a slip is a difference of forces that falls as 1/v0, of speeds that grow as v0.
+/// Above this v0, in the same units, what ends a slip is a difference of forces that falls as 1/v0,
+/// of speeds that grow as v0.
 const FAST: f64 = 1.0;
 
 /// A finer integration, and how well an end has to be the same by it, relative.
 const FINER: f64 = 1e-2;
 const SAME_END: f64 = 1e-5;
 
-/// Raises v0 as [`climb`] does, and once more from there with a finer integration where the end is at a low v0, which it is not known at without; or where it is
-/// another one by it. An end that only the coarse one has is unclear.
+/// Raises v0 as [`climb`] does, and once more from there with a finer integration where the end is
+/// at a low v0, which it is not known at without; or where it is another one by it. An end that
+/// only the coarse one has is unclear.
 pub(super) fn climb_finely<R: Road + Clone>(
     road: &mut R,
     from: Place,
@@ -379,7 +389,8 @@ fn climb_again(road: &mut impl Road, at: &Place) -> (Climbed, Place) {
     climb(road, from, BACK)
 }
 
-/// Whether what vanishes at the end of a climb says by the road as it is now that it ends where it told before.
+/// Whether what vanishes at the end of a climb says by the road as it is now that it ends where it
+/// told before.
 fn ends_alike(road: &mut impl Road, at: &Place) -> bool {
     let gauge = at.gap().1;
     match road.trial(at.v0, Some(&at.period), SETTLED) {

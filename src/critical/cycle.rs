@@ -1,4 +1,5 @@
-//! One cycle of stick-slip: a slip and the stick after it, how far it is from a graze and from lift-off; and periods of some.
+//! One cycle of stick-slip: a slip and the stick after it, how far it is from a graze and from
+//! lift-off; and periods of some.
 
 use crate::slip::motion::{Event, Mode, Motion};
 
@@ -14,8 +15,8 @@ const MISSED: f64 = 1.6;
 /// One slip and the stick after it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Cycle {
-    /// Minimum of ẋ that the slip would have reached beyond its stop, ≤ 0 (minus the maximum, if it came to its stop backwards);
-    /// 0 where the stop is a graze.
+    /// Minimum of ẋ that the slip would have reached beyond its stop, ≤ 0 (minus the maximum, if it
+    /// came to its stop backwards); 0 where the stop is a graze.
     pub depth: f64,
     /// From the stop until ẋ would have been at that minimum.
     pub to_minimum: f64,
@@ -34,7 +35,7 @@ pub struct Cycle {
 }
 
 impl Cycle {
-    /// None.
+    /// A period without cycles.
     pub const NONE: Self = Self {
         depth: f64::NAN,
         to_minimum: f64::NAN,
@@ -113,7 +114,7 @@ impl Period {
         self.cycles.map(|cycle| cycle.stop())
     }
 
-    /// The same, begun `by` cycles later.
+    /// This period, begun `by` cycles later.
     #[must_use]
     pub fn rotated(mut self, by: usize) -> Self {
         self.cycles[..self.slips].rotate_left(by);
@@ -127,9 +128,10 @@ impl Period {
         loads.fold(f64::INFINITY, f64::min)
     }
 
-    /// Minus the distances to where stick-slip ends: the depth of every stop (NaN for slips that it does not have), the load,
-    /// and the shortest stick (NaN where sticks were not followed). And minus those to where it becomes of another kind: the
-    /// force that is missing for the block to turn back at a stop, and the lowest minimum of ẋ on the way to one.
+    /// Minus the distances to where stick-slip ends: the depth of every stop (NaN for slips that it
+    /// does not have), the load, and the shortest stick (NaN where sticks were not followed). And
+    /// minus those to where it becomes of another kind: the force that is missing for the block to
+    /// turn back at a stop, and the lowest minimum of ẋ on the way to one.
     #[must_use]
     pub fn gauges(&self) -> [f64; GAUGES] {
         let mut gauges = [f64::NAN; GAUGES];
@@ -154,7 +156,8 @@ pub const TURN: usize = MOST_SLIPS + 2;
 /// The minimum before a stop.
 pub const DIP: usize = MOST_SLIPS + 3;
 
-/// A stop that is expected: the slip until then, and the time from there to the minimum of ẋ that it cuts off.
+/// A stop that is expected: the slip until then, and the time from there to the minimum of ẋ that
+/// it cuts off.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Stop {
     slip: f64,
@@ -166,7 +169,8 @@ pub struct Stop {
 pub enum Ride {
     /// It stopped, and stuck until it was released again.
     Cycle(Cycle),
-    /// It passed the minimum of ẋ at which it was expected to stop, or did not stop for much longer than expected.
+    /// It passed the minimum of ẋ at which it was expected to stop, or did not stop for much longer
+    /// than expected.
     Pass,
     /// N ≤ 0.
     LiftOff,
@@ -238,7 +242,8 @@ pub fn ride(motion: &mut Motion, expected: Option<Stop>) -> Ride {
 /// Slips last less than this before anything is known of them, in units of √(M/κ).
 const LONGEST_SLIP: f64 = 60.0;
 
-/// Whether the last step of a slip, `since` its release, shows that the stop `expected` does not come.
+/// Whether the last step of a slip, `since` its release, shows that the stop `expected` does not
+/// come.
 fn passed(motion: &Motion, since: f64, expected: Stop) -> bool {
     let step = motion.last_step();
     let slip = expected.slip;

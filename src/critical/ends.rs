@@ -1,5 +1,5 @@
-//! Where the orbit of stick-slip ends: a slip grazes ẋ = ẍ = 0, or the load or a stick vanishes. How an end that a climb came to
-//! is checked, and what comes after it.
+//! Where the orbit of stick-slip ends: a slip grazes ẋ = ẍ = 0, or the load or a stick vanishes.
+//! How an end that a climb came to is checked, and what comes after it.
 
 use super::Problem;
 use super::beyond::{Beyond, PRECISION, beyond, without_stick};
@@ -17,7 +17,8 @@ pub(super) enum Found {
     Vanish(f64, Period),
     /// N ≤ 0.
     LiftOff(f64),
-    /// Another kind of stick-slip goes on beyond it, with so many slips in a period; from the motion that was tried last.
+    /// Another kind of stick-slip goes on beyond it, with so many slips in a period; from the
+    /// motion that was tried last.
     Persists(usize),
     /// It becomes of another kind at this v0.
     Changes(f64),
@@ -42,7 +43,8 @@ pub(super) const MOST_KINDS: usize = 24;
 /// The first relative step of v0 with another kind of stick-slip than the first.
 pub(super) const FIRST_STEP: f64 = 0.02;
 
-/// How far beyond a change of kind the next one is looked for, relative: forces have to differ by more than their noise.
+/// How far beyond a change of kind the next one is looked for, relative: forces have to differ by
+/// more than their noise.
 pub(super) const CHANGED: f64 = 1e-4;
 /// How much the slip may lengthen on the last bit of the way, where it grows as a square root.
 const SAME_SLIP: f64 = 0.1;
@@ -58,7 +60,7 @@ pub(super) fn finish(problem: &Problem, road: &mut Orbit, climbed: Climbed, at: 
     verify(problem, road, end).0
 }
 
-/// The same, before it is known what comes after it.
+/// The end that a climb came to, before it is known what comes after it.
 pub(super) fn arrive(road: &mut Orbit, climbed: Climbed, at: &Place) -> Found {
     match climbed {
         Climbed::Graze { v0, slip } => grazes(road, v0, slip, at),
@@ -69,8 +71,8 @@ pub(super) fn arrive(road: &mut Orbit, climbed: Climbed, at: &Place) -> Found {
     }
 }
 
-/// What an end that was arrived at is when what comes after it is looked at; and how clearly, as a share of v0 that the block
-/// is away from stopping once more.
+/// What an end that was arrived at is when what comes after it is looked at; and how clearly, as a
+/// share of v0 that the block is away from stopping once more.
 pub(super) fn verify(problem: &Problem, road: &mut Orbit, end: Found) -> (Found, f64) {
     let beyond = match end {
         Found::Graze(v0, period) if !holds_below(road, v0, &period) => {
@@ -133,14 +135,16 @@ fn vanishes(road: &mut Orbit, v0: f64, at: &Place) -> Found {
     Found::Vanish(v0, period)
 }
 
-/// A graze ends stick-slip if its orbit attracts this far below it, relative: nearer than v_c is asked for it may not, since
-/// what the delayed slip does to the next one grows without bounds there. Disturbed by more it would be thrown over the graze.
+/// A graze ends stick-slip if its orbit attracts this far below it, relative: nearer than v_c is
+/// asked for it may not, since what the delayed slip does to the next one grows without bounds
+/// there. Disturbed by more it would be thrown over the graze.
 const BELOW_GRAZE: f64 = 1e-4;
 const DISTURBED_BELOW: f64 = 2e-5;
 /// Periods that are as good as at rest, and not asked to come nearer to one another.
 const AT_REST: f64 = 0.06;
 
-/// Whether stick-slip comes back to the orbit of a graze at `v0` just below it: one whose period has doubled goes on to a graze of its own.
+/// Whether stick-slip comes back to the orbit of a graze at `v0` just below it: one whose period
+/// has doubled goes on to a graze of its own.
 fn holds_below(road: &mut Orbit, v0: f64, period: &Period) -> bool {
     match road.trial(v0 * (1.0 - BELOW_GRAZE), Some(period), AT_REST) {
         Ran::Period(period, _) => attracts(road.tried().clone(), &period, DISTURBED_BELOW),
@@ -148,18 +152,20 @@ fn holds_below(road: &mut Orbit, v0: f64, period: &Period) -> bool {
     }
 }
 
-/// An orbit is disturbed by v0 being lower by this in one period, relative, and has so many to come back.
+/// An orbit is disturbed by v0 being lower by this in one period, relative, and has so many to come
+/// back.
 const DISTURBED: f64 = 2e-4;
 const PERIODS_BACK: usize = 30;
 /// It has come back where so many in a row are nearer than this, relative to the first.
 const NEAR_IN_A_ROW: u32 = 4;
 const BACK: f64 = 0.05;
-/// Sticks do not come nearer to one another than this, nor than this share of the last ones: they are there still.
+/// Sticks do not come nearer to one another than this, nor than this share of the last ones: they
+/// are there still.
 const STICKS_NOISE: f64 = 1e-7;
 const STICKS_LEFT: f64 = 0.3;
 
-/// Whether stick-slip comes back to the orbit that a motion is on when it is disturbed: an unstable one, followed from close by, seems to
-/// be at rest as well.
+/// Whether stick-slip comes back to the orbit that a motion is on when it is disturbed: an unstable
+/// one, followed from close by, seems to be at rest as well.
 fn attracts(mut motion: Motion, period: &Period, disturbed: f64) -> bool {
     let v0 = motion.parameters().v0;
     let stick = period.cycles()[0].stick;

@@ -1,4 +1,5 @@
-//! The critical velocity by simulation: stick-slip is followed while v0 is raised, carrying the state.
+//! The critical velocity by simulation: stick-slip is followed while v0 is raised, carrying the
+//! state.
 
 use super::Problem;
 use super::climb::JUMP;
@@ -21,8 +22,8 @@ pub struct Pace {
     pub unseen: f64,
     /// The last relative step: v_c is known to it.
     pub last: f64,
-    /// Up to this v0, in the units of a motion, v0 glides: it is held for a few cycles only, and what stick-slip comes to
-    /// there is not waited for. 0 where every v0 is held.
+    /// Up to this v0, in the units of a motion, v0 glides: it is held for a few cycles only, and
+    /// what stick-slip comes to there is not waited for. 0 where every v0 is held.
     pub glide: f64,
     /// The most v0 that are tried.
     pub trials: u32,
@@ -36,8 +37,9 @@ pub struct Pace {
     pub total_steps: u64,
     /// Whether the search ends where stick-slip has come to repeat.
     pub until_periodic: bool,
-    /// Whether every loss of stick-slip is waited for until the outcome of the motion is known. Else it counts once the
-    /// minima of ẋ no longer fall, and only the last one is waited for longer.
+    /// Whether every loss of stick-slip is waited for until the outcome of the motion is known.
+    /// Else it counts once the minima of ẋ no longer fall, and only the last one is waited for
+    /// longer.
     pub patient: bool,
 }
 
@@ -110,15 +112,19 @@ impl Sustained {
 pub struct Followed {
     /// The largest v0 at which stick-slip persists; none where it was not found anywhere.
     pub last: Option<Sustained>,
-    /// The smallest v0, above it, at which it does not; none where it persists to the end of the range.
+    /// The smallest v0, above it, at which it does not; none where it persists to the end of the
+    /// range.
     pub lost: Option<Sustained>,
-    /// Whether the search came to its end: to the end of the range, or to two v0 as near as asked for.
+    /// Whether the search came to its end: to the end of the range, or to two v0 as near as asked
+    /// for.
     pub complete: bool,
-    /// Whether stick-slip survived again and again where it had been lost: it is thrown off by chance.
+    /// Whether stick-slip survived again and again where it had been lost: it is thrown off by
+    /// chance.
     pub creeps: bool,
     /// Whether sticks become shorter such that none is left just beyond the last v0.
     pub vanish: bool,
-    /// The relative way beyond the last v0 to where the depth of the stops is expected to vanish; infinite where it is not.
+    /// The relative way beyond the last v0 to where the depth of the stops is expected to vanish;
+    /// infinite where it is not.
     pub graze_way: f64,
 }
 
@@ -139,7 +145,8 @@ pub fn critical_velocity(problem: &Problem, pace: &Pace, accuracy: Accuracy) -> 
         if followed.last.is_some() {
             return followed;
         }
-        // Where stick-slip was lost otherwise before, a lift-off at a larger start is that of the start alone.
+        // Where stick-slip was lost otherwise before, a lift-off at a larger start is that of the
+        // start alone.
         let lower = followed.lost.as_ref().is_some_and(|now| {
             let lowest = lost.as_ref().map_or(f64::INFINITY, |lost| lost.v0);
             now.fate == Fate::LiftOff && now.v0 < lowest
@@ -158,13 +165,14 @@ pub fn critical_velocity(problem: &Problem, pace: &Pace, accuracy: Accuracy) -> 
     }
 }
 
-/// The same from a motion in stick-slip of `problem` on, at the v0 it has.
+/// Follows a motion in stick-slip of `problem` from the v0 it has, while v0 is raised.
 #[must_use]
 pub fn from(problem: &Problem, mut motion: Motion, pace: &Pace) -> Followed {
     carry(problem, &mut motion, pace)
 }
 
-/// The same; leaves the motion where it comes to.
+/// Follows a motion in stick-slip from the v0 it has, as [`from`] does, and leaves it where it
+/// comes to.
 pub fn carry(problem: &Problem, motion: &mut Motion, pace: &Pace) -> Followed {
     let v0 = motion.parameters().v0;
     let how = Holding::new(pace, f64::INFINITY);
@@ -290,7 +298,8 @@ struct Climb<'p> {
     trial: Motion,
     before: Option<Sustained>,
     last: Sustained,
-    /// The smallest v0 above `last` at which stick-slip was lost, and the relative step that lost it.
+    /// The smallest v0 above `last` at which stick-slip was lost, and the relative step that lost
+    /// it.
     lost: Option<(Sustained, f64)>,
     /// The smallest v0 above `last` to which the step was too large for what it led to.
     jump: Option<f64>,
@@ -338,7 +347,8 @@ fn raise(problem: &Problem, motion: &mut Motion, first: Sustained, pace: &Pace) 
 }
 
 impl Climb<'_> {
-    /// Raises v0 until two v0 as near as asked for differ in their fate; false where that takes too long.
+    /// Raises v0 until two v0 as near as asked for differ in their fate; false where that takes too
+    /// long.
     fn run(&mut self) -> bool {
         let end = self.pace.v_max * self.problem.law.mu_s();
         for _ in 0..self.pace.trials {
@@ -379,7 +389,8 @@ impl Climb<'_> {
         }
     }
 
-    /// Where cycles do not repeat, one v0 after the other persists and is lost by chance on the last bit of the way.
+    /// Where cycles do not repeat, one v0 after the other persists and is lost by chance on the
+    /// last bit of the way.
     fn precision(&self) -> f64 {
         match self.last.fate {
             Fate::Irregular => self.pace.last.max(LAST_IRREGULAR),
@@ -387,7 +398,8 @@ impl Climb<'_> {
         }
     }
 
-    /// Whether stick-slip was lost again and again on a short way: steps however short throw it off by chance.
+    /// Whether stick-slip was lost again and again on a short way: steps however short throw it off
+    /// by chance.
     fn creeps(&self) -> bool {
         self.passed.1 >= MOST_PASSED
     }
@@ -424,7 +436,8 @@ impl Climb<'_> {
         step.min(0.5 * room)
     }
 
-    /// The largest relative step of v0 that may lead from the last place to `there`, where it took `step`.
+    /// The largest relative step of v0 that may lead from the last place to `there`, where it took
+    /// `step`.
     fn largest_step(&self, there: &Sustained, step: f64) -> f64 {
         let last = &self.last;
         match (last.fate, there.fate) {
@@ -449,7 +462,8 @@ impl Climb<'_> {
             if self.lost.is_none_or(|(lost, _)| v0 <= lost.v0) {
                 self.lost = Some((there, step));
             }
-            // Near its end stick-slip attracts from less and less far: steps have to shrink with the way that is left.
+            // Near its end stick-slip attracts from less and less far: steps have to shrink with
+            // the way that is left.
             let taken = step / expected_way(self.before, &self.last);
             if taken > LEAST_SHARE {
                 self.share = (0.5 * taken).clamp(LEAST_SHARE, self.share);
@@ -475,7 +489,8 @@ impl Climb<'_> {
         }
     }
 
-    /// Whether stick-slip really is lost where it was last: waits longer. If not, goes on from there.
+    /// Whether stick-slip really is lost where it was last: waits longer. If not, goes on from
+    /// there.
     fn is_lost(&mut self) -> bool {
         let slips = |(lost, _): &(Sustained, f64)| lost.fate == Fate::Slips;
         let Some((lost, by)) = self.lost.filter(slips).filter(|_| !self.creeps()) else {

@@ -1,11 +1,13 @@
-//! The critical velocity for Coulomb friction and load control in the limit of a short delay: the letter's Fig. 4.
+//! The critical velocity for Coulomb friction and load control in the limit of a short delay: the
+//! letter's Fig. 4.
 //!
-//! With α_N τ finite as τ → 0 the control is a viscous friction. One slip starts from ẋ = 0 and grazes ẋ = ẍ = 0 after the
-//! time T; with γ = −μ_K α_N τ/(2√(κM)), Ω = √(1−γ²), times in units of √(M/κ), ṽ = (μ_S−μ_K)N0/√(κM) and r = μ_K/μ_S
+//! With α_N τ finite as τ → 0 the control is a viscous friction. One slip starts from ẋ = 0 and
+//! grazes ẋ = ẍ = 0 after the time T; with γ = −μ_K α_N τ/(2√(κM)), Ω = √(1−γ²), times in units of
+//! √(M/κ), ṽ = (μ_S−μ_K)N0/√(κM) and r = μ_K/μ_S
 //!
 //! ```text
-//! cos ΩT − (γ/Ω) sin ΩT = e^(−γT),   π < ΩT < 2π                                                 (1)
-//! v_c/ṽ = 1/(ρ + 2γ(1−r)/r),   ρ = −sin ΩT e^(γT)/Ω                                              (2)
+//! cos ΩT − (γ/Ω) sin ΩT = e^(−γT),   π < ΩT < 2π      (1)
+//! v_c/ṽ = 1/(ρ + 2γ(1−r)/r),   ρ = −sin ΩT e^(γT)/Ω   (2)
 //! ```
 //!
 //! for 0 < γ < 1. v_c = 0 from γ = 1 on, where a slip is damped so strongly that it never ends.

@@ -1,9 +1,12 @@
-//! The critical velocities of a line of delays: each end of stick-slip starts from its neighbour's orbit.
+//! The critical velocities of a line of delays: each end of stick-slip starts from its neighbour's
+//! orbit.
 //!
-//! Such a continuation may go on along a branch of ends that stick-slip raised from low velocities does not come to. So the
-//! cells at both ends of a stretch are looked for from scratch, and what is continued from the one has to meet the other;
-//! else the stretch is halved. Where a kind of stick-slip ends, so does a stretch, and where ends change fast more cells are
-//! looked for from scratch. A line is cut into blocks for that, so that the answer in a cell depends on its block alone.
+//! Such a continuation may go on along a branch of ends that stick-slip raised from low velocities
+//! does not come to. So the cells at both ends of a stretch are looked for from scratch, and what
+//! is continued from the one has to meet the other; else the stretch is halved. Where a kind of
+//! stick-slip ends, so does a stretch, and where ends change fast more cells are looked for from
+//! scratch. A line is cut into blocks for that, so that the answer in a cell depends on its block
+//! alone.
 
 use super::search::from_scratch;
 use super::track::Track;
@@ -11,19 +14,21 @@ use super::{Critical, Method, Problem, of_found};
 
 /// Cells of a block; blocks start at multiples of it.
 pub const BLOCK: usize = 128;
-/// Cells of a stretch, at both ends of which cells are looked for from scratch; and the same where stick-slip of one kind followed
-/// that of another on the way to its end, and may end earlier.
+/// Cells of a stretch, at both ends of which cells are looked for from scratch; and the same where
+/// stick-slip of one kind followed that of another on the way to its end, and may end earlier.
 const STRETCH: usize = 64;
 const SHORT_STRETCH: usize = 16;
-/// An end that is not where it was expected is looked for from scratch, unless one was so few cells before.
+/// An end that is not where it was expected is looked for from scratch, unless one was so few cells
+/// before.
 const SURPRISES: usize = 2;
-/// How well a continuation has to meet what was found from scratch, relative; and how well in the time of slip, which tells how
-/// many slips a period has.
+/// How well a continuation has to meet what was found from scratch, relative; and how well in the
+/// time of slip, which tells how many slips a period has.
 const MEETS: f64 = 3e-5;
 const MEETS_IN_TIME: f64 = 1e-2;
 
-/// The critical velocities of a block of a line: problems that differ by their delay alone, which increases. `stopped` is asked
-/// before every visit to a cell; where it came first, some are none and the others are not to be used.
+/// The critical velocities of a block of a line: problems that differ by their delay alone, which
+/// increases. `stopped` is asked before every visit to a cell; where it came first, some are none
+/// and the others are not to be used.
 #[must_use]
 pub fn critical_velocities(
     problems: &[Problem],
@@ -70,8 +75,8 @@ impl Block<'_> {
         track
     }
 
-    /// Fills the cells between two that were found from scratch, the first one with its track; the track that led to the last one
-    /// if one did.
+    /// Fills the cells between two that were found from scratch, the first one with its track; the
+    /// track that led to the last one if one did.
     fn fill(&mut self, mut first: usize, last: usize, mut track: Option<Track>) -> Option<Track> {
         while first < last && !(self.stopped)() {
             let one_kind = track.as_ref().is_none_or(|track| track.one_kind);
@@ -113,8 +118,8 @@ impl Block<'_> {
         None
     }
 
-    /// Looks where a continuation that led from one cell to another, but does not meet it, meets cells in between, and fills what is
-    /// left.
+    /// Looks where a continuation that led from one cell to another, but does not meet it, meets
+    /// cells in between, and fills what is left.
     fn halve(&mut self, first: usize, last: usize) {
         let middle = usize::midpoint(first, last);
         if middle == first {
@@ -144,8 +149,8 @@ impl Block<'_> {
         (both.is_some_and(|(a, b)| meets(&a, &b)), track)
     }
 
-    /// Continues from `first` on; how far it is known to lead, to `last` if it meets what is known there, and whether that cell
-    /// was found from scratch.
+    /// Continues from `first` on; how far it is known to lead, to `last` if it meets what is known
+    /// there, and whether that cell was found from scratch.
     fn advance(&mut self, first: usize, last: usize, track: &mut Track) -> (usize, bool) {
         let (mut seen, mut checked) = (first, first);
         for cell in first + 1..=last {
@@ -167,7 +172,8 @@ impl Block<'_> {
             }
             self.found[cell] = Some(critical);
             if track.surprised() && cell >= checked + SURPRISES {
-                // Where ends change as fast as that along the line, stick-slip may have another one below.
+                // Where ends change as fast as that along the line, stick-slip may have another one
+                // below.
                 if !self.meet(cell).0 {
                     return (seen, seen == checked);
                 }

@@ -1,7 +1,8 @@
 //! The critical velocity v_c: the velocity of the pull below which stick-slip survives.
 //!
 //! - [`limit`]: Coulomb friction, load control, τ → 0: closed form (the letter's Fig. 4)
-//! - `search`: by the first road that leads to it; `one_slip` and `orbit` raise v0 (`climb`) to where stick-slip ends (`ends`)
+//! - `search`: by the first road that leads to it; `one_slip` and `orbit` raise v0 (`climb`) to
+//!   where stick-slip ends (`ends`)
 //! - [`mod@line`]: along a line of delays, each from its neighbour's orbit
 //! - [`follow`]: by simulation, v0 raised step by step
 //! - [`switch_on`]: by the other protocol, the windows in which stick-slip survives switching on
@@ -33,7 +34,8 @@ use cycle::Period;
 use ends::Found;
 use follow::{Fate, Followed, Pace, Sustained};
 
-/// A controlled oscillator whose critical velocity is asked for, in the units of [`crate::slip::motion`].
+/// A controlled oscillator whose critical velocity is asked for, in the units of
+/// [`crate::slip::motion`].
 #[derive(Debug, Clone, PartialEq)]
 pub struct Problem {
     /// The friction law.
@@ -64,7 +66,8 @@ impl Problem {
         }
     }
 
-    /// How long to wait for a motion's outcome at `v0`: transients, many delays, and thirty of the longest cycles.
+    /// How long to wait for a motion's outcome at `v0`: transients, many delays, and thirty of the
+    /// longest cycles.
     fn patience(&self, v0: f64) -> f64 {
         let longest_cycle = 2.0 * self.law.mu_s() / v0 + 10.0;
         600.0 + 20.0 * self.tau + 30.0 * longest_cycle
@@ -118,7 +121,8 @@ pub enum End {
     Persists,
     /// No stick-slip is sustained at any v0 that was tried: v_c = 0.
     Never,
-    /// It does not survive switching on above v_c, whatever it becomes: by the protocol [`switch_on`] no more is known.
+    /// It does not survive switching on above v_c, whatever it becomes: by the protocol
+    /// [`switch_on`] no more is known.
     Lost,
 }
 
@@ -177,7 +181,8 @@ impl Method {
     }
 }
 
-/// The critical velocity of a problem, in the units of [`crate::slip::motion`]; NaN for what there is not.
+/// The critical velocity of a problem, in the units of [`crate::slip::motion`]; NaN for what there
+/// is not.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Critical {
     /// The largest v0 at which stick-slip persists; 0 where it never does.
@@ -210,11 +215,12 @@ impl Critical {
         }
     }
 
-    /// Whether `other` says the same of the end of stick-slip: at v_c, or the velocity of lift-off, within
-    /// [`GRAZE_PRECISION`].
+    /// Whether `other` says the same of the end of stick-slip: at v_c, or the velocity of lift-off,
+    /// within [`GRAZE_PRECISION`].
     ///
-    /// Both have to lift off, to persist or never to be stick-slip; by which of the other ends it is lost is told from
-    /// the last v0 that holds it alone, whose cycles need not have come to repeat, so that is not compared.
+    /// Both have to lift off, to persist or never to be stick-slip; by which of the other ends it
+    /// is lost is told from the last v0 that holds it alone, whose cycles need not have come to
+    /// repeat, so that is not compared.
     #[must_use]
     pub fn ends_like(&self, other: &Self) -> bool {
         let near =
@@ -232,13 +238,15 @@ const GRAZE_TOLERANCE: f64 = 1e-6;
 /// Error allowed in a step where stick-slip is followed.
 const FOLLOW_TOLERANCE: f64 = 1e-8;
 
-/// The largest v0 at which stick-slip of `problem` persists while v0 is raised from low values: protocol `follow`.
+/// The largest v0 at which stick-slip of `problem` persists while v0 is raised from low values:
+/// protocol `follow`.
 #[must_use]
 pub fn critical_velocity(problem: &Problem) -> Critical {
     search::from_scratch(problem).0
 }
 
-/// The first step of v0 of a search that confirms another one, and the error allowed in a step of the integrator.
+/// The first step of v0 of a search that confirms another one, and the error allowed in a step of
+/// the integrator.
 const CONFIRM_FIRST: f64 = 0.2;
 const CONFIRM_TOLERANCE: f64 = 1e-10;
 /// Relative steps of v0 that glides; and how far below the end, relative, it does no longer.
@@ -247,7 +255,8 @@ const APPROACH: f64 = 0.02;
 /// The most v0 on the way: more than lead from the lowest to the largest.
 const GLIDE_TRIALS: u32 = 3000;
 
-/// v0 glides to near the end of stick-slip that was found: by small steps, without waiting for what it comes to on the way.
+/// v0 glides to near the end of stick-slip that was found: by small steps, without waiting for what
+/// it comes to on the way.
 fn gliding(found: &Critical) -> Pace {
     let end = found.end_of_stick_slip();
     Pace {
@@ -264,8 +273,9 @@ fn gliding(found: &Critical) -> Pace {
     }
 }
 
-/// What was `followed` by a `search` at this pace tells. v0 is raised slowly: an end that is another one with other steps of v0,
-/// a finer integration, or while v0 glides, is not decided. What ends by chance is where all of these tell the same.
+/// What was `followed` by a `search` at this pace tells. v0 is raised slowly: an end that is
+/// another one with other steps of v0, a finer integration, or while v0 glides, is not decided.
+/// What ends by chance is where all of these tell the same.
 fn confirmed(
     followed: &Followed,
     pace: &Pace,
@@ -299,8 +309,9 @@ fn of_found(found: &Found, method: Method) -> Option<Critical> {
     }
 }
 
-/// Without control, under Coulomb friction, stick-slip persists at every v0: a slip from a = μ_S goes half round the circle
-/// about sliding and comes to a stop at a = 2 μ_K − μ_S, where the block sticks.
+/// Without control, under Coulomb friction, stick-slip persists at every v0: a slip from a = μ_S
+/// goes half round the circle about sliding and comes to a stop at a = 2 μ_K − μ_S, where the block
+/// sticks.
 fn persists_without_control(problem: &Problem) -> bool {
     let uncontrolled = problem.alpha_v == 0.0 && problem.alpha_n == 0.0;
     let mu_s = problem.law.mu_s();
@@ -343,14 +354,14 @@ fn nothing(vc: f64, end: End, method: Method) -> Critical {
     }
 }
 
-/// The same by simulation alone, whatever the other roads say.
+/// The critical velocity by simulation alone, whatever the other roads say.
 #[must_use]
 pub fn by_simulation(problem: &Problem, pace: &Pace, accuracy: Accuracy) -> Critical {
     of_followed(&follow::critical_velocity(problem, pace, accuracy))
 }
 
-/// What one search tells. Where irregular stick-slip ends depends on the steps of v0 and on how long each is waited for: one search
-/// does not decide it.
+/// What one search tells. Where irregular stick-slip ends depends on the steps of v0 and on how
+/// long each is waited for: one search does not decide it.
 fn of_followed(followed: &Followed) -> Critical {
     let irregular = |last: &Sustained| last.fate == Fate::Irregular;
     let by_chance = followed.lost.is_some() && followed.last.as_ref().is_some_and(irregular);
@@ -400,7 +411,8 @@ fn told(followed: &Followed) -> Critical {
     }
 }
 
-/// Sticks shorter than this, over √(M/κ), are lost to rounding as v0 grows: what they end in is not told.
+/// Sticks shorter than this, over √(M/κ), are lost to rounding as v0 grows: what they end in is not
+/// told.
 const VANISHING: f64 = 1e-6;
 /// Depth of a stop, over v0, below which it is a graze.
 const GRAZING: f64 = 1e-3;

@@ -1,5 +1,6 @@
-//! The road of one slip: where the block sticks for longer than a delay under pure load control, all memory is erased. Every
-//! slip starts from a = μ_S (1 + α_n v0 τ), which has grown evenly, and one tells.
+//! The road of one slip: where the block sticks for longer than a delay under pure load control,
+//! all memory is erased. Every slip starts from a = μ_S (1 + α_n v0 τ), which has grown evenly, and
+//! one tells.
 
 use super::Problem;
 use super::beyond::{Beyond, PRECISION, beyond};
@@ -8,7 +9,8 @@ use super::cycle::{Period, Ride, ride};
 use super::ends::{CHANGED, FIRST_STEP, Found, MOST_KINDS, same_slip};
 use crate::slip::motion::{Accuracy, Motion};
 
-/// Where v0 of one slip starts, in order, in units of μ_S N0/√(κM): what has no memory ends in the same way from anywhere.
+/// Where v0 of one slip starts, in order, in units of μ_S N0/√(κM): what has no memory ends in the
+/// same way from anywhere.
 const STARTS: [f64; 4] = [6e-2, 6e-3, 1e-4, 1e-6];
 /// Slips that start without memory.
 #[derive(Clone)]

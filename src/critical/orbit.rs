@@ -1,8 +1,10 @@
-//! The road of the orbit: period after period of stick-slip, with all its memory, from one v0 to the next.
+//! The road of the orbit: period after period of stick-slip, with all its memory, from one v0 to
+//! the next.
 //!
-//! The past of a block that is released is a function of the time since then, smooth in v0 as long as stick-slip stays of one kind. So
-//! a new v0 starts from the pasts at the last two, extrapolated: what is left of a transient is of the second order in the
-//! step of v0, where simply going on would leave one of the first order.
+//! The past of a block that is released is a function of the time since then, smooth in v0 as long
+//! as stick-slip stays of one kind. So a new v0 starts from the pasts at the last two,
+//! extrapolated: what is left of a transient is of the second order in the step of v0, where simply
+//! going on would leave one of the first order.
 
 use super::Problem;
 use super::climb::{Place, Ran, Road, SETTLED, Seen};
@@ -25,8 +27,8 @@ pub(super) struct At {
 }
 
 impl At {
-    /// Becomes what is expected at another v0 and delay from the `last` and the one `before`, and `share` of what lies
-    /// between them; false where that cannot be told.
+    /// Becomes what is expected at another v0 and delay from the `last` and the one `before`, and
+    /// `share` of what lies between them; false where that cannot be told.
     fn extrapolate(
         &mut self,
         (last, before): (&mut Self, &mut Self),
@@ -110,7 +112,8 @@ impl Road for Orbit {
     }
 }
 
-/// Where v0 starts, in order, in units of μ_S N0/√(κM): as [`super::follow`] does after lift-off, whose smallest v0 is asked for.
+/// Where v0 starts, in order, in units of μ_S N0/√(κM): as [`super::follow`] does after lift-off,
+/// whose smallest v0 is asked for.
 const STARTS: [f64; 4] = [1e-2, 1e-3, 1e-4, 1e-6];
 
 impl Orbit {
@@ -121,8 +124,8 @@ impl Orbit {
         Self::of(motion, 1)
     }
 
-    /// The orbit from the first start at which the block does not lift off, with its first place; none where it does not stick again
-    /// there, or lifts off at all of them.
+    /// The orbit from the first start at which the block does not lift off, with its first place;
+    /// none where it does not stick again there, or lifts off at all of them.
     pub fn sustained(problem: &Problem, accuracy: Accuracy) -> Option<(Self, Place)> {
         for start in STARTS {
             let v0 = start * problem.law.mu_s();
@@ -141,7 +144,8 @@ impl Orbit {
         None
     }
 
-    /// Of a `motion` that is released in stick-slip of so many `slips`, at most [`MOST_SLIPS`], in a period.
+    /// Of a `motion` that is released in stick-slip of so many `slips`, at most [`MOST_SLIPS`], in
+    /// a period.
     pub fn of(motion: Motion, slips: usize) -> Self {
         let v0 = motion.parameters().v0;
         let at = At {
@@ -206,8 +210,9 @@ impl Orbit {
         Some(Place::first(v0, period, gauges, f64::INFINITY))
     }
 
-    /// Starts with another delay and `v0` from where it ended; with a motion that ended likewise at another delay, from both
-    /// pasts, extrapolated by `share` of what lies between them. Slopes are taken to be those of a place `like` it.
+    /// Starts with another delay and `v0` from where it ended; with a motion that ended likewise at
+    /// another delay, from both pasts, extrapolated by `share` of what lies between them. Slopes
+    /// are taken to be those of a place `like` it.
     pub fn restart(
         &mut self,
         before: Option<(&mut At, f64)>,

@@ -224,7 +224,8 @@ impl Kinds<'_> {
         reached.end(self.problem).0
     }
 
-    /// Once more from the first irregular stick-slip on, while v0 glides to near the end that was `found`.
+    /// Once more from the first irregular stick-slip on, while v0 glides to near the end that was
+    /// `found`.
     fn glide(&mut self, mut entry: Motion, found: &Critical) -> Critical {
         let pace = gliding(found);
         let v_max = pace.v_max.min(pace.glide / self.problem.law.mu_s());
@@ -238,8 +239,8 @@ impl Kinds<'_> {
     }
 }
 
-/// How far beyond its last place a kind of stick-slip that was lost from sight is looked for, relative: as far as it is still
-/// the same.
+/// How far beyond its last place a kind of stick-slip that was lost from sight is looked for,
+/// relative: as far as it is still the same.
 const NEXT: [f64; 4] = [1e-4, 1e-3, 5e-3, 2e-2];
 
 /// What became of stick-slip beyond where it was last.
@@ -267,8 +268,8 @@ fn changed(problem: &Problem, road: &mut Orbit, v0: f64) -> Next {
     Next::of(motion, beyond, CHANGED)
 }
 
-/// By simulation from the first of some motions in stick-slip on that is sustained, v0 raised by a relative `step` at first;
-/// from low velocities where none is.
+/// By simulation from the first of some motions in stick-slip on that is sustained, v0 raised by a
+/// relative `step` at first; from low velocities where none is.
 fn simulated_from(problem: &Problem, motions: Vec<Motion>, step: f64) -> Critical {
     for motion in motions {
         let search = |pace: &Pace, tolerance: f64| {

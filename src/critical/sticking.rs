@@ -1,5 +1,5 @@
-//! Whether a block goes on to stick from time to time, irregularly, or comes nearer and nearer to sliding: what is seen of a
-//! motion whose outcome takes long.
+//! Whether a block goes on to stick from time to time, irregularly, or comes nearer and nearer to
+//! sliding: what is seen of a motion whose outcome takes long.
 
 use crate::slip::motion::{Event, Motion};
 use crate::slip::outcome::Observer;
@@ -10,7 +10,7 @@ const RECENT: f64 = 0.25;
 const RETURNS: u32 = 3;
 /// Stretches of time in which minima of ẋ are compared, in that time.
 const STRETCHES: f64 = 8.0;
-/// So many stretches in a row in which the lowest minimum rises, a slip calms down.
+/// Stretches in a row in which the lowest minimum has to rise for a slip to calm down.
 const RISES: u32 = 16;
 
 /// Sees whether the block still sticks from time to time, or comes nearer and nearer to sliding.
@@ -25,7 +25,8 @@ pub(super) struct Sticking {
     returns: u32,
     /// Whether sliding is linearly stable.
     slides: bool,
-    /// The end of this stretch, the lowest minimum of ẋ in it and in the one before, and rises in a row.
+    /// The end of this stretch, the lowest minimum of ẋ in it and in the one before, and rises in a
+    /// row.
     stretch: f64,
     lowest: f64,
     before: f64,
@@ -53,13 +54,15 @@ impl Sticking {
         self.now - self.released < RECENT * self.patience
     }
 
-    /// Whether it still sticks, for longer than it was waited for to do so periodically, or has come back to it again and again.
+    /// Whether it still sticks, for longer than it was waited for to do so periodically, or has
+    /// come back to it again and again.
     pub fn goes_on(&self) -> bool {
         self.now >= self.until && self.recently() || self.returns >= RETURNS
     }
 
-    /// Whether it slips forwards, and has come nearer to stable sliding for long. That far from any stick only the amplitude
-    /// of its oscillation is left to change, slowly, and goes on as it does.
+    /// Whether it slips forwards, and has come nearer to stable sliding for long. That far from any
+    /// stick only the amplitude of its oscillation is left to change, slowly, and goes on as it
+    /// does.
     pub fn calms_down(&self) -> bool {
         self.slides && self.rises >= RISES
     }

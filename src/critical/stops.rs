@@ -1,4 +1,5 @@
-//! What is seen of stick-slip while it is followed: its last stops, and whether a block that slips will stop again.
+//! What is seen of stick-slip while it is followed: its last stops, and whether a block that slips
+//! will stop again.
 
 use crate::slip::motion::{Event, Mode, Motion};
 use crate::slip::outcome::Observer;
@@ -10,9 +11,9 @@ pub enum Waiting {
     Brief,
     /// Until the minima of ẋ have not fallen for three windows of time.
     Short,
-    /// As short, of stick-slip that does not repeat for many cycles.
+    /// A short wait, in which stick-slip that does not repeat is followed for many cycles.
     Lasting,
-    /// For ten.
+    /// Until the minima of ẋ have not fallen for ten windows of time.
     Long,
     /// Until the outcome of the motion is known.
     Patient,
@@ -43,7 +44,8 @@ impl Waiting {
 const RECENT: usize = 4;
 /// A minimum lower than those before by more than this, relative, falls.
 const FALLS: f64 = 1e-3;
-/// How many times as large as the forces of stick-slip, and the speed of the pull, what grows beyond bounds is.
+/// How many times as large as the forces of stick-slip, and the speed of the pull, what grows
+/// beyond bounds is.
 const FAR: f64 = 100.0;
 /// Windows without a fall at the end of a motion, after which it slips on.
 const ENOUGH: u32 = 6;
@@ -63,7 +65,8 @@ pub struct Stops {
     window: f64,
     until: f64,
     lowest: f64,
-    /// The lowest one of the window before: what has risen after a graze may fall again, to another kind of stick-slip.
+    /// The lowest one of the window before: what has risen after a graze may fall again, to another
+    /// kind of stick-slip.
     before: f64,
     windows: u32,
     /// Amplitudes beyond this are far from stick-slip.
@@ -97,7 +100,8 @@ impl Stops {
         }
     }
 
-    /// The shallowest stop of the last period, of so many `slips`: the time to its minimum, and its depth.
+    /// The shallowest stop of the last period, of so many `slips`: the time to its minimum, and its
+    /// depth.
     #[must_use]
     pub fn shallowest(&self, slips: u32) -> (f64, f64) {
         let recent = (slips.max(1) as usize).min(RECENT).min(self.count as usize);

@@ -1,5 +1,5 @@
-//! The critical velocity by the protocol `switch-on`: control is switched on at a phase of uncontrolled stick-slip, and the
-//! velocities v0 at which stick-slip survives that form windows.
+//! The critical velocity by the protocol `switch-on`: control is switched on at a phase of
+//! uncontrolled stick-slip, and the velocities v0 at which stick-slip survives that form windows.
 
 use super::Problem;
 use super::sticking::Sticking;
@@ -13,7 +13,8 @@ use crate::slip::outcome::{Limits, Outcome, follow};
 pub enum Phase {
     /// That long after a release, modulo the uncontrolled period; in units of √(M/κ).
     After(f64),
-    /// At each of so many phases, evenly over the uncontrolled period: stick-slip survives if it does for one of them.
+    /// At each of so many phases, evenly over the uncontrolled period: stick-slip survives if it
+    /// does for one of them.
     Worst(u32),
 }
 
@@ -24,8 +25,8 @@ pub struct Scan {
     pub v_min: f64,
     /// The largest one.
     pub v_max: f64,
-    /// How many v0 are tried before edges are looked for, evenly in their logarithms: windows narrower than their distance
-    /// can be missed.
+    /// How many v0 are tried before edges are looked for, evenly in their logarithms: windows
+    /// narrower than their distance can be missed.
     pub points: u32,
     /// Edges are known to this, relative.
     pub precision: f64,
@@ -53,7 +54,8 @@ impl Default for Scan {
 pub enum Survival {
     /// Stick-slip goes on, periodically.
     Survives,
-    /// It goes on for as long as was waited, in cycles that do not come to repeat: it may be lost by chance yet.
+    /// It goes on for as long as was waited, in cycles that do not come to repeat: it may be lost
+    /// by chance yet.
     Irregular,
     /// It does not.
     Ends,
@@ -76,7 +78,8 @@ impl Survival {
         matches!(self, Self::LiftOff)
     }
 
-    /// Whether an edge next to this one is where it was found to be: what ends by chance ends elsewhere with the next error.
+    /// Whether an edge next to this one is where it was found to be: what ends by chance ends
+    /// elsewhere with the next error.
     const fn certain(self) -> bool {
         !matches!(self, Self::Irregular | Self::Undecided)
     }
@@ -85,7 +88,8 @@ impl Survival {
 /// Where stick-slip survives.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Windows {
-    /// From and to, increasing; the first from is `v_min` where it survives there already, the last to `v_max` likewise.
+    /// From and to, increasing; the first from is `v_min` where it survives there already, the last
+    /// to `v_max` likewise.
     pub survives: Vec<[f64; 2]>,
     /// The smallest v0 at which N ≤ 0 occurs; none where it does not.
     pub v_liftoff: Option<f64>,
@@ -96,7 +100,8 @@ pub struct Windows {
 }
 
 impl Windows {
-    /// The topmost edge: above it, as far as v0 was tried, stick-slip does not survive. None where it does nowhere.
+    /// The topmost edge: above it, as far as v0 was tried, stick-slip does not survive. None where
+    /// it does nowhere.
     #[must_use]
     pub fn top(&self) -> Option<f64> {
         self.survives.last().map(|window| window[1])
@@ -145,7 +150,8 @@ impl<'p> Trials<'p> {
         }
     }
 
-    /// Survives if it does at one phase; else what is told first of: irregular, lift-off, undecided, the end.
+    /// Survives if it does at one phase; else what is told first of: irregular, lift-off,
+    /// undecided, the end.
     fn worst(&mut self, v0: f64, phases: u32) -> Survival {
         let (mut worst, period) = self.once(v0, 0.0, LONGEST);
         if period.is_nan() {
@@ -177,8 +183,8 @@ impl<'p> Trials<'p> {
         worst
     }
 
-    /// At one phase, with the uncontrolled period. What becomes of a slip is waited for `longest` times as long as stick-slip
-    /// is waited for to repeat.
+    /// At one phase, with the uncontrolled period. What becomes of a slip is waited for `longest`
+    /// times as long as stick-slip is waited for to repeat.
     fn once(&mut self, v0: f64, phase: f64, longest: f64) -> (Survival, f64) {
         let parameters = self.problem.at(v0, 0.0);
         let restarted = restart_after_release(&mut self.motion, &parameters, self.accuracy, phase);
@@ -213,8 +219,9 @@ impl<'p> Trials<'p> {
     }
 }
 
-/// A block that slips is waited for until it is known what becomes of it, so many times as long at most as stick-slip is waited
-/// for to repeat: near an unstable oscillation, or where sliding is hardly stable or unstable, that takes long.
+/// A block that slips is waited for until it is known what becomes of it, so many times as long at
+/// most as stick-slip is waited for to repeat: near an unstable oscillation, or where sliding is
+/// hardly stable or unstable, that takes long.
 const LONGEST: f64 = 100.0;
 /// The windows of v0 in which stick-slip of `problem` survives switching on at `phase`.
 #[must_use]

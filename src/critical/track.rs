@@ -23,8 +23,8 @@ pub(super) struct Track {
     near: f64,
     /// Cells in a row that ended by the slopes of one before.
     borrowed: u32,
-    /// How clearly stick-slip was seen to end where that was looked at last, the delay there, and the change with the delay's logarithm;
-    /// NaN where it is not known.
+    /// How clearly stick-slip was seen to end where that was looked at last, the delay there, and
+    /// the change with the delay's logarithm; NaN where it is not known.
     clear: f64,
     seen_at: f64,
     change: f64,
@@ -57,8 +57,9 @@ impl Ending {
         }
     }
 
-    /// From how far below the expected end a cell starts, relative: at first, as the transient of a new start, of a size that is
-    /// not known yet, can bring about an end too early; and at least, as gauges have their noise.
+    /// From how far below the expected end a cell starts, relative: at first, as the transient of a
+    /// new start, of a size that is not known yet, can bring about an end too early; and at least,
+    /// as gauges have their noise.
     fn nearest(self) -> [f64; 2] {
         match self {
             Self::Graze => [3e-4, 1e-5],
@@ -78,23 +79,25 @@ enum Lost {
 
 /// The largest distance from the expected end at which a cell starts, relative.
 const FARTHEST: f64 = 0.1;
-/// So many cells in a row may end by the slopes of one before, and from so far below its end, relative, the next one starts.
+/// The number of cells in a row that may end by the slopes of one before, and from so far below its
+/// end, relative, the next one starts.
 const MOST_BORROWED: u32 = 8;
 const FOR_SLOPES: f64 = 1e-4;
 /// A cell starts so many times further below its end than the transient of the cell before reached.
 const ROOM: f64 = 1.5;
 /// How much nearer it starts at least.
 const NEARER: f64 = 0.5;
-/// How many ends there may be in a row of which it is not looked at what comes after them; as well as this they are where they were
-/// expected, relative.
+/// How many ends there may be in a row of which it is not looked at what comes after them; as well
+/// as this they are where they were expected, relative.
 const MOST_UNSEEN: u32 = 3;
 const AS_EXPECTED: f64 = 3e-5;
-/// And as well as this its time in slip is that of the one that was looked at, relative.
+/// How well its time in slip has to be that of the one that was looked at, relative.
 const SAME_SLIP: f64 = 0.02;
-/// How clearly, at least, stick-slip ended before, and how many times the change of that since then has to fit into it.
+/// How clearly, at least, stick-slip ended before, and how many times the change of that since then
+/// has to fit into it.
 const CLEAR: f64 = 2e-3;
 const CAUTION: f64 = 6.0;
-/// The same where a stick vanishes: the largest change of the delay, relative.
+/// The largest change of the delay from one cell to the next where a stick vanishes, relative.
 const SMALL_CHANGE: f64 = 0.03;
 /// The largest change of the delay from cell to cell, relative.
 const LARGEST_CHANGE: f64 = 0.5;
@@ -102,7 +105,8 @@ const LARGEST_CHANGE: f64 = 0.5;
 const LEAST_CHANGE: f64 = 2e-3;
 /// How far from the last end, in its logarithm, the next one is looked for.
 const FARTHEST_LOG: f64 = 0.5;
-/// The most trials on the way from one cell to the next, and the part of a way that is tried where the whole of it failed.
+/// The most trials on the way from one cell to the next, and the part of a way that is tried where
+/// the whole of it failed.
 const MOST_TRIALS: u32 = 8;
 const PART: f64 = 0.25;
 /// An end so far from where it was expected, relative, is one that changes fast along the line.
@@ -137,20 +141,22 @@ impl Track {
         }
     }
 
-    /// The same with what is known of one that was come to from scratch at the same delay.
+    /// This end, with what is known of one that was come to from scratch at this delay.
     pub fn like(mut self, other: &Self) -> Self {
         (self.decided, self.one_kind) = (other.decided, other.one_kind);
         self
     }
 
-    /// The end of stick-slip of `problem`, which differs by its delay alone from the one before; none where the orbit before
-    /// does not lead to its end. After that the track is of no more use.
+    /// The end of stick-slip of `problem`, which differs by its delay alone from the one before;
+    /// none where the orbit before does not lead to its end. After that the track is of no more
+    /// use.
     pub fn next(&mut self, problem: &Problem) -> Option<Found> {
         let mut trials = MOST_TRIALS;
         self.approach(problem, &mut trials)
     }
 
-    /// The same, by way of delays in between where the whole way is too far, within so many `trials`.
+    /// The end at the delay of `problem`, by way of delays in between where the whole way is too
+    /// far, within so many `trials`.
     fn approach(&mut self, problem: &Problem, trials: &mut u32) -> Option<Found> {
         let first = self.ending.nearest()[0];
         loop {
@@ -213,8 +219,9 @@ impl Track {
         Ok(found)
     }
 
-    /// A first place at the delay `tau`, below the `expected` end; and from how far below its end the next cell may start, relative:
-    /// not nearer than the first number, and not farther than the second, unless something else asks for it.
+    /// A first place at the delay `tau`, below the `expected` end; and from how far below its end
+    /// the next cell may start, relative: not nearer than the first number, and not farther than
+    /// the second, unless something else asks for it.
     fn set_out(&mut self, tau: f64, expected: f64) -> Result<(Place, [f64; 2]), Lost> {
         let last = *self.ends.last().ok_or(Lost::Unknown)?;
         if (tau / last.0 - 1.0).abs() > LARGEST_CHANGE {
@@ -222,7 +229,8 @@ impl Track {
         }
         let mut near = (2.0 * self.off).max(self.near).min(FARTHEST);
         if self.before.is_none() {
-            // An orbit that has to change starts with a transient, a small one where its past is extrapolated.
+            // An orbit that has to change starts with a transient, a small one where its past is
+            // extrapolated.
             near = (0.15 * (expected / last.1 - 1.0).abs()).clamp(near, FARTHEST);
         }
         let off = match self.borrowed >= MOST_BORROWED {
@@ -239,8 +247,9 @@ impl Track {
         Err(Lost::Unknown)
     }
 
-    /// What an end that was arrived at is, looked at what comes after it unless that can be told from the ends before. There it was
-    /// expected at `expected`, and its orbit slips for `slip` in a period.
+    /// What an end that was arrived at is, looked at what comes after it unless that can be told
+    /// from the ends before. There it was expected at `expected`, and its orbit slips for `slip` in
+    /// a period.
     fn look(&mut self, problem: &Problem, end: Found, (expected, slip): (f64, f64)) -> Found {
         let as_expected = |end: f64| (end / expected - 1.0).abs() < AS_EXPECTED;
         let alike = Ending::of(&end) == self.ending
@@ -256,14 +265,15 @@ impl Track {
         seen
     }
 
-    /// Whether the next end, at `tau`, may be taken for that of stick-slip because it clearly ended at those before: what the block
-    /// does beyond them changes smoothly along a line.
+    /// Whether the next end, at `tau`, may be taken for that of stick-slip because it clearly ended
+    /// at those before: what the block does beyond them changes smoothly along a line.
     fn may_be_unseen(&self, tau: f64) -> bool {
         if self.unseen == MOST_UNSEEN {
             return false;
         }
         if self.ending == Ending::Vanish {
-            // Sticks are as short beyond their end as before it: only a small change says that nothing else becomes of it.
+            // Sticks are as short beyond their end as before it: only a small change says that
+            // nothing else becomes of it.
             let near = |last: &(f64, f64)| (tau / last.0 - 1.0).abs() < SMALL_CHANGE;
             return self.clear > 0.0 && self.ends.last().is_some_and(near);
         }
@@ -300,7 +310,8 @@ impl Track {
         (!jumps(&self.at.period, &place.period, change)).then_some(place)
     }
 
-    /// Learns of the cell before, whose end was found otherwise: an end like its own expects the next one better.
+    /// Learns of the cell before, whose end was found otherwise: an end like its own expects the
+    /// next one better.
     pub fn recall(&mut self, tau: f64, end: f64) {
         if self.ends.len() < KNOWN_ENDS && self.ends.first().is_some_and(|first| tau < first.0) {
             self.ends.insert(0, (tau, end));
@@ -308,7 +319,8 @@ impl Track {
         }
     }
 
-    /// The end at `tau`: its logarithm as the polynomial of that of the delay through the last ones (Neville).
+    /// The end at `tau`: its logarithm as the polynomial of that of the delay through the last ones
+    /// (Neville).
     fn expected(&self, tau: f64) -> f64 {
         let n = self.ends.len();
         let mut logs = [(0.0, 0.0); KNOWN_ENDS];

@@ -1,10 +1,12 @@
-//! What stick-slip at one v0 and at the next one tell: whether it is of one kind, and where it is expected to end.
+//! What stick-slip at one v0 and at the next one tell: whether it is of one kind, and where it is
+//! expected to end.
 
 use super::climb::thrown;
 use super::follow::Sustained;
 
-/// Whether a relative `step` of v0 threw the motion from one kind of periodic stick-slip to another: the mean cycle or the mean
-/// slip of its period changed by more than such a step explains.
+/// Whether a relative `step` of v0 threw the motion from one kind of periodic stick-slip to
+/// another: the mean cycle or the mean slip of its period changed by more than such a step
+/// explains.
 pub(super) fn jumps(last: &Sustained, there: &Sustained, step: f64) -> bool {
     let mean = |s: &Sustained| {
         let slips = f64::from(s.summary.slips.max(1));
@@ -22,12 +24,14 @@ pub(super) fn vanishes(before: &Sustained, last: &Sustained) -> bool {
     loss > 0.0 && last.summary.stick_time / loss < SOON * last.v0
 }
 
-/// The relative way to where the first of the depth of the stops, the smallest load and the sticks is expected to vanish.
+/// The relative way to where the first of the depth of the stops, the smallest load and the sticks
+/// is expected to vanish.
 pub(super) fn expected_way(before: Option<Sustained>, last: &Sustained) -> f64 {
     ways(before, last).into_iter().fold(f64::INFINITY, f64::min)
 }
 
-/// The relative ways to where the depth of the stops, the smallest load and the sticks are expected to vanish.
+/// The relative ways to where the depth of the stops, the smallest load and the sticks are expected
+/// to vanish.
 pub(super) fn ways(before: Option<Sustained>, last: &Sustained) -> [f64; 3] {
     let Some(before) = before.filter(|before| before.alike(last)) else {
         return [f64::INFINITY; 3];

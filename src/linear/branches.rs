@@ -1,9 +1,10 @@
 //! Starting values for characteristic roots from the branches of the complex logarithm.
 //!
-//! With P = B − A and Q = A the equation D = 0 reads λτ = log(−Q/P) + 2πik: every root belongs to a branch k, and for long
-//! delays or far from the zeros of P and Q to one branch a root. Newton's method on this equation is then near its goal
-//! from the start, at any delay and with no matrix. Nothing promises that all roots are found: [`super::spectrum`] counts
-//! them, and turns to collocation where some are missing.
+//! With P = B − A and Q = A the equation D = 0 reads λτ = log(−Q/P) + 2πik: every root belongs to a
+//! branch k, and for long delays or far from the zeros of P and Q to one branch a root. Newton's
+//! method on this equation is then near its goal from the start, at any delay and with no matrix.
+//! Nothing promises that all roots are found: [`super::spectrum`] counts them, and turns to
+//! collocation where some are missing.
 
 use std::f64::consts::{PI, TAU};
 
@@ -55,7 +56,8 @@ impl Pair {
     }
 }
 
-/// Writes starting values for the roots with Re λ > `line`, Im λ ≥ 0 to `starts`, replacing what it holds.
+/// Writes starting values for the roots with Re λ > `line`, Im λ ≥ 0 to `starts`, replacing what it
+/// holds.
 ///
 /// `tau` > 0 in units of √(M/κ). Control must act.
 pub fn starting_values(groups: Groups, tau: f64, line: f64, starts: &mut Vec<Complex64>) {
@@ -65,7 +67,8 @@ pub fn starting_values(groups: Groups, tau: f64, line: f64, starts: &mut Vec<Com
     let branches = (radius * tau / PI).ceil() + 2.0;
     let kappa = exp(-line * tau);
     let place = |j: usize| PI * j as f64 / tau;
-    // A root right of the line lies where feedback is the larger part on the line, as far as one can tell from there.
+    // A root right of the line lies where feedback is the larger part on the line, as far as one
+    // can tell from there.
     let inside = |j: usize| {
         let (p, _, q) = pair.at(Complex64::new(line, place(j)));
         p.norm_sqr() <= kappa * kappa * q.norm_sqr()

@@ -1,6 +1,8 @@
-//! How many characteristic roots lie right of a vertical line: the argument principle, evaluated in closed form.
+//! How many characteristic roots lie right of a vertical line: the argument principle, evaluated in
+//! closed form.
 //!
-//! With P = B − A and Q = A the characteristic function is D = P + Q e^(−λτ). On the line λ = σ + iω, with κ = e^(−στ),
+//! With P = B − A and Q = A the characteristic function is D = P + Q e^(−λτ). On the line λ = σ +
+//! iω, with κ = e^(−στ),
 //!
 //! ```text
 //! P = c − ω² + i p ω,        c = P(σ),  p = P′(σ)
@@ -9,10 +11,11 @@
 //!      = y² + 2hy + 2hc − κ²q₀²,         y = x − c = −Re P,   h = (p² − κ²q₁²)/2
 //! ```
 //!
-//! F has at most two zeros ω₋ < ω₊, so the line falls into at most three stretches on which either P or κQ e^(−iωτ) is
-//! the larger of the two. There arg D stays within a right angle of the argument of the larger term, which is known in
-//! closed form: arg P and arg Q keep to one half-plane each. No turn can be skipped, because none is stepped over. Where
-//! the stretches meet, both readings of arg D differ by a whole number of turns,
+//! F has at most two zeros ω₋ < ω₊, so the line falls into at most three stretches on which either
+//! P or κQ e^(−iωτ) is the larger of the two. There arg D stays within a right angle of the
+//! argument of the larger term, which is known in closed form: arg P and arg Q keep to one
+//! half-plane each. No turn can be skipped, because none is stepped over. Where the stretches meet,
+//! both readings of arg D differ by a whole number of turns,
 //!
 //! ```text
 //! m(ω) = round[(arg P − arg Q + ωτ)/2π],                                                    (2)
@@ -25,9 +28,9 @@
 //! n = 1 − [arg P(∞) − arg D(0)]/π + 2m(ω₊) − 2m(ω₋)                                         (4)
 //! ```
 //!
-//! roots, the term m(ω₋) being absent where κQ is the larger one at ω = 0. The count needs ω± only to the accuracy at which
-//! (2) rounds: it is undecided only where a root lies within rounding of the line. Nothing here is shared with the tracker,
-//! the spectrum or the crossing delays.
+//! roots, the term m(ω₋) being absent where κQ is the larger one at ω = 0. The count needs ω± only
+//! to the accuracy at which (2) rounds: it is undecided only where a root lies within rounding of
+//! the line. Nothing here is shared with the tracker, the spectrum or the crossing delays.
 //!
 //! Strong gains with a short delay make P and κQ large and nearly opposite: D is what little they
 //! leave. So B, in which the gains are not, and κ − 1 stand for P and κ wherever the two cancel,
@@ -41,15 +44,16 @@ use crate::model::elementary::{atan2, expm1};
 
 /// The number of roots with Re λ > `line`, or none where a root is too near to the line to tell.
 ///
-/// `tau` ≥ 0 in units of √(M/κ), `line` in their inverse. Real roots count once, complex pairs twice. Also none where
-/// e^(−στ) overflows.
+/// `tau` ≥ 0 in units of √(M/κ), `line` in their inverse. Real roots count once, complex pairs
+/// twice. Also none where e^(−στ) overflows.
 #[inline]
 #[must_use]
 pub fn roots_right_of(groups: Groups, tau: f64, line: f64) -> Option<u64> {
     Line::new(groups, tau, line)?.turning()?.count(tau)
 }
 
-/// The number of roots right of the imaginary axis, at any delay of a line: there κ = 1 and only (2) depends on the delay.
+/// The number of roots right of the imaginary axis, at any delay of a line: there κ = 1 and only
+/// (2) depends on the delay.
 #[derive(Debug, Clone, Copy)]
 pub struct UnstableCount(Option<Turning>);
 
@@ -61,7 +65,7 @@ impl UnstableCount {
         Self(line.and_then(|line| line.turning()))
     }
 
-    /// As [`roots_right_of`] zero at the delay `tau`.
+    /// The number of roots with positive real part at the delay `tau`, as [`roots_right_of`] 0.
     #[inline]
     #[must_use]
     pub fn at(&self, tau: f64) -> Option<u64> {
@@ -196,8 +200,8 @@ impl Line {
         })
     }
 
-    /// ω₋ and ω₊ coincide to rounding: whatever turns there are on the way up, there are on the way down. They cancel, but
-    /// for a delay at which it is in doubt which they are.
+    /// ω₋ and ω₊ coincide to rounding: whatever turns there are on the way up, there are on the way
+    /// down. They cancel, but for a delay at which it is in doubt which they are.
     fn nearly_touching(&self, discriminant_error: f64) -> Option<Turning> {
         let y = Rounded {
             value: -self.h.value,
@@ -212,8 +216,8 @@ impl Line {
         })
     }
 
-    /// y at ω₊ and ω₋ without cancellation, `root` being the square root of the discriminant: the larger one first, the
-    /// other from their product.
+    /// y at ω₊ and ω₋ without cancellation, `root` being the square root of the discriminant: the
+    /// larger one first, the other from their product.
     #[inline(always)]
     fn real_parts(&self, root: Rounded) -> [Rounded; 2] {
         let (c, h, echo) = (self.c, self.h, self.echo);
@@ -271,7 +275,8 @@ impl Line {
         })
     }
 
-    /// 1 − [arg P(∞) − arg D(0)]/π, where just above ω = 0 D has the argument of `real` + iω · `slope`.
+    /// 1 − [arg P(∞) − arg D(0)]/π, where just above ω = 0 D has the argument of `real` + iω ·
+    /// `slope`.
     #[inline(always)]
     fn without_turns(&self, real: f64, slope: f64) -> f64 {
         let far_out = if self.p.value < 0.0 { -1.0 } else { 1.0 };

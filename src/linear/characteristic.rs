@@ -88,8 +88,8 @@ pub fn characteristic(groups: Groups, tau: f64, lambda: Complex64) -> Complex64 
 
 /// The radius of a disc about 0 that holds every root with Re λ ≥ 0, for every delay.
 ///
-/// For such a root |1 − e^(−λτ)| ≤ 2, so |λ|² ≤ (|b| + 2|a_v|)|λ| + 1 + 2|b a_v + a_n|. This is the explicit form of the
-/// upper limits that the letter mentions below its Eq. (3).
+/// For such a root |1 − e^(−λτ)| ≤ 2, so |λ|² ≤ (|b| + 2|a_v|)|λ| + 1 + 2|b a_v + a_n|. This is the
+/// explicit form of the upper limits that the letter mentions below its Eq. (3).
 #[must_use]
 pub fn unstable_root_bound(groups: Groups) -> f64 {
     root_bound(groups, 0.0, 0.0)
@@ -97,7 +97,8 @@ pub fn unstable_root_bound(groups: Groups) -> f64 {
 
 /// The radius of a disc about 0 that holds every root with Re λ ≥ `line`, at the delay `tau` ≥ 0.
 ///
-/// There |1 − e^(−λτ)| ≤ 1 + e^(−στ) with σ = `line`, so |λ|² ≤ (|b| + (1 + e^(−στ))|a_v|)|λ| + 1 + (1 + e^(−στ))|b a_v + a_n|.
+/// There |1 − e^(−λτ)| ≤ 1 + e^(−στ) with σ = `line`, so |λ|² ≤ (|b| + (1 + e^(−στ))|a_v|)|λ| + 1 +
+/// (1 + e^(−στ))|b a_v + a_n|.
 #[must_use]
 pub fn root_bound(groups: Groups, tau: f64, line: f64) -> f64 {
     let Groups { b, a_v, a_n } = groups;

@@ -1,14 +1,15 @@
 //! Characteristic roots as eigenvalues: pseudospectral collocation of the infinitesimal generator.
 //!
-//! After Breda, Maset and Vermiglio (2005). With P = λ² + p₁λ + p₀ and Q = q₁λ + q₀ only u = q₀x + q₁ẋ is fed back, so the
-//! history of this one scalar is collocated, on N + 1 Chebyshev points θ_j of [−τ, 0]:
+//! After Breda, Maset and Vermiglio (2005). With P = λ² + p₁λ + p₀ and Q = q₁λ + q₀ only u = q₀x +
+//! q₁ẋ is fed back, so the history of this one scalar is collocated, on N + 1 Chebyshev points θ_j
+//! of [−τ, 0]:
 //!
 //! ```text
 //! d/dt (x, ẋ, u(θ₁), …, u(θ_N)) = (ẋ, −p₀x − p₁ẋ − u(θ_N), Σ_m D_jm u(θ_m))
 //! ```
 //!
-//! a matrix of N + 2 rows instead of the 2N + 2 of the general method. The only file that uses faer: without its feature `std`, with
-//! which it picks code by the processor.
+//! a matrix of N + 2 rows instead of the 2N + 2 of the general method. The only file that uses
+//! faer: without its feature `std`, with which it picks code by the processor.
 
 use std::f64::consts::PI;
 
@@ -26,9 +27,10 @@ pub const MOST_NODES: usize = 384;
 
 /// How many nodes resolve every root λ with |λ| ≤ `radius`.
 ///
-/// As Wu and Michiels (2012) advise, from the problem: the interpolant of e^(λθ) on [−τ, 0] has to be good on all of the
-/// region where roots can be. With |λ|τ/2 as the argument of the Chebyshev expansion its error falls faster than any power
-/// once N exceeds that argument.
+/// The number of nodes from the problem, as Wu and Michiels (2012) advise: the interpolant of
+/// e^(λθ) on [−τ, 0] has to be good on all of the region where roots can be. With |λ|τ/2 as the
+/// argument of the Chebyshev expansion its error falls faster than any power once N exceeds that
+/// argument.
 ///
 /// None where that takes more than is reasonable.
 #[must_use]
@@ -38,9 +40,11 @@ pub fn nodes_for(tau: f64, radius: f64) -> Option<usize> {
     (nodes <= MOST_NODES as f64).then_some(nodes as usize)
 }
 
-/// Approximate roots with Im λ ≥ 0 from `nodes` nodes, by falling real part; those far left mean nothing.
+/// Approximate roots with Im λ ≥ 0 from `nodes` nodes, by falling real part; those far left mean
+/// nothing.
 ///
-/// Newton's method has to polish them. `tau` > 0 in units of √(M/κ). None if the eigenvalue iteration fails.
+/// Newton's method has to polish them. `tau` > 0 in units of √(M/κ). None if the eigenvalue
+/// iteration fails.
 #[must_use]
 pub fn eigenvalues(groups: Groups, tau: f64, nodes: usize) -> Option<Vec<Complex64>> {
     let size = nodes + 2;
@@ -97,7 +101,8 @@ fn generator(groups: Groups, tau: f64, nodes: usize) -> Mat<f64> {
     matrix
 }
 
-/// Entry of the differentiation matrix on the Chebyshev points cos(πj/N) (Trefethen, Spectral Methods in MATLAB, ch. 6).
+/// Entry of the differentiation matrix on the Chebyshev points cos(πj/N) (Trefethen, Spectral
+/// Methods in MATLAB, ch. 6).
 fn differentiation(nodes: usize, row: usize, column: usize) -> f64 {
     let point = |j: usize| cos(PI * j as f64 / nodes as f64);
     let weight = |j: usize| {

@@ -6,10 +6,11 @@
 
 use super::crossing::{Crossing, Crossings};
 
-/// How near to a crossing a delay counts as marginal: |τ − τ_k| ≤ tolerance · max(1, τ_k), τ in units of √(M/κ).
+/// How near to a crossing a delay counts as marginal: |τ − τ_k| ≤ tolerance · max(1, τ_k), τ in
+/// units of √(M/κ).
 ///
-/// Where the crossing itself is known less well than that (near a tangency, or for tiny gains), the bound on its rounding
-/// error takes the place of the tolerance.
+/// Where the crossing itself is known less well than that (near a tangency, or for tiny gains), the
+/// bound on its rounding error takes the place of the tolerance.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct MarginalTolerance(pub f64);
 
@@ -40,7 +41,8 @@ impl Count {
 impl Crossings {
     /// The count of unstable roots at the delay `tau` ≥ 0, in the time unit of these crossings.
     ///
-    /// On a crossing itself the pair on the axis is not counted as moved, and the count is marginal.
+    /// On a crossing itself the pair on the axis is not counted as moved, and the count is
+    /// marginal.
     #[must_use]
     pub fn count(&self, tau: f64, tolerance: MarginalTolerance) -> Count {
         Count {
@@ -150,7 +152,8 @@ mod tests {
         }
     }
 
-    /// The pair ±i leaves the axis as the first order of τ says, so positive load gain destabilises at b = 0.
+    /// The pair ±i leaves the axis as the first order of τ says, so positive load gain destabilises
+    /// at b = 0.
     #[test]
     fn undamped_pair_moves_with_the_sign_of_the_load_gain() {
         assert_eq!(count(0.0, 0.0, 0.2, 0.1).n_unstable, 2);

@@ -1,21 +1,23 @@
 //! Where characteristic roots cross the imaginary axis as the delay grows, in closed form.
 //!
-//! On λ = iω the letter's Eq. (4), 2 Re(A B*) = |B|², is a quadratic in x = ω². Written in y = x − 1,
+//! On λ = iω the letter's Eq. (4), 2 Re(A B*) = |B|², is a quadratic in x = ω². Written in y = x −
+//! 1,
 //!
 //! ```text
-//! y² + c y + d = 0,   c = b² + 2 a_n,   d = b (b − 2 a_v),                                  (1)
+//! y² + c y + d = 0,   c = b² + 2 a_n,   d = b (b − 2 a_v),   (1)
 //! ```
 //!
-//! so there are at most two crossing frequencies ω₋ < ω₊, whatever τ is. In y rather than x because B = −y + i b ω at a
-//! crossing: the delay depends on y, and this form keeps its relative accuracy where y is small. The letter's Eq. (5)
-//! then gives the delays,
+//! so there are at most two crossing frequencies ω₋ < ω₊, whatever τ is. In y rather than x because
+//! B = −y + i b ω at a crossing: the delay depends on y, and this form keeps its relative accuracy
+//! where y is small. The letter's Eq. (5) then gives the delays,
 //!
 //! ```text
-//! τ_k = (θ + 2πk)/ω,   θ = arg[(|A|² − Re A B*) + i (A_r B_i − A_i B_r)] in [0, 2π),   k = 0, 1, …       (2)
+//! τ_k = (θ + 2πk)/ω,   k = 0, 1, …,
+//! θ = arg[(|A|² − Re A B*) + i (A_r B_i − A_i B_r)] in [0, 2π)   (2)
 //! ```
 //!
-//! With growing τ a pair of roots crosses to the right at every τ_k(ω₊) and to the left at every τ_k(ω₋): the sign of
-//! dRe λ/dτ there is that of dF/dx, F(x) being the left side of (1).
+//! With growing τ a pair of roots crosses to the right at every τ_k(ω₊) and to the left at every
+//! τ_k(ω₋): the sign of dRe λ/dτ there is that of dF/dx, F(x) being the left side of (1).
 
 use std::f64::consts::TAU;
 
@@ -28,7 +30,8 @@ const UNIT_ROUNDOFF: f64 = f64::EPSILON / 2.0;
 /// How many rounding errors the closed form may gather; a generous count of its operations.
 const ROUNDINGS: f64 = 16.0;
 
-/// Above this branch number neighbouring delays are closer than their rounding errors: all of them are marginal.
+/// Above this branch number neighbouring delays are closer than their rounding errors: all of them
+/// are marginal.
 const FINEST_BRANCH: f64 = (1_u64 << 52) as f64;
 
 /// The way in which a pair of roots crosses the imaginary axis as the delay grows.
@@ -80,7 +83,8 @@ impl Crossing {
 
     /// A bound on the rounding error of a delay of this crossing near `tau`.
     ///
-    /// Large where ω₋ and ω₊ nearly coincide or the gains are tiny: the crossing itself is then badly conditioned.
+    /// Large where ω₋ and ω₊ nearly coincide or the gains are tiny: the crossing itself is then
+    /// badly conditioned.
     #[inline]
     #[must_use]
     pub fn delay_error(&self, tau: f64) -> f64 {
@@ -115,7 +119,8 @@ impl Crossing {
         if estimate >= FINEST_BRANCH {
             return estimate as u64;
         }
-        // The estimate is off by rounding at most; `delay` alone decides, so that every caller agrees.
+        // The estimate is off by rounding at most; `delay` alone decides, so that every caller
+        // agrees.
         let mut k = (estimate as u64).max(self.first_branch);
         while k > self.first_branch && self.delay(k - 1) >= tau {
             k -= 1;
@@ -142,13 +147,14 @@ pub struct Crossings {
     pub undamped: bool,
     /// b = 0 without control: the roots lie on the imaginary axis at every delay.
     pub always_marginal: bool,
-    /// The unit of time √(M/κ) in which the delays and frequencies are given; 1 for dimensionless ones.
+    /// The unit of time √(M/κ) in which the delays and frequencies are given; 1 for dimensionless
+    /// ones.
     pub time_unit: f64,
 }
 
 impl Crossings {
-    /// The crossings of a line, from the quadratic (1) of the module. Finite groups are assumed; sizes below 1e-150 are taken
-    /// for zero.
+    /// The crossings of a line, from the quadratic (1) of the module. Finite groups are assumed;
+    /// sizes below 1e-150 are taken for zero.
     #[inline]
     #[must_use]
     pub fn of(groups: Groups) -> Self {
@@ -172,7 +178,8 @@ impl Crossings {
         }
         let (c, d) = quadratic(groups);
         let discriminant = discriminant(groups);
-        // What rounding of the groups themselves does to c and d counts as well: it matters where they cancel.
+        // What rounding of the groups themselves does to c and d counts as well: it matters where
+        // they cancel.
         let Groups { a_v, a_n, .. } = groups;
         let c_error = ROUNDINGS * UNIT_ROUNDOFF * (b * b + 2.0 * a_n.abs());
         let d_error = ROUNDINGS * UNIT_ROUNDOFF * (b * b + 2.0 * (b * a_v).abs());
@@ -189,7 +196,8 @@ impl Crossings {
             let mut x_error = (y_error + f64x2::splat(UNIT_ROUNDOFF)).to_array();
             for (small, other) in [(0, 1), (1, 0)] {
                 if x[small].abs() < 0.25 && x[other].abs() > 2.0 * x[small].abs() {
-                    // 1 + y loses digits where x is small, its sign among them; the product of both keeps them.
+                    // 1 + y loses digits where x is small, its sign among them; the product of both
+                    // keeps them.
                     x[small] = frequency_product(groups) / x[other];
                     let relative = x_error[other] / x[other].abs() + ROUNDINGS * UNIT_ROUNDOFF;
                     x_error[small] = x[small].abs() * relative;
@@ -203,7 +211,8 @@ impl Crossings {
         crossings
     }
 
-    /// The same crossings with delays in units of time of which `time_unit` = √(M/κ) makes one dimensionless unit.
+    /// These crossings with delays in units of time of which `time_unit` = √(M/κ) makes one
+    /// dimensionless unit.
     #[inline]
     #[must_use]
     pub fn in_physical_time(self, time_unit: f64) -> Self {
@@ -246,7 +255,8 @@ pub fn discriminant(groups: Groups) -> f64 {
     c.mul_add(c, -4.0 * d)
 }
 
-/// x₊ x₋ = F(0) = 1 − 2(a_n + b a_v): where it changes sign, ω₋ reaches zero and its delays infinity.
+/// x₊ x₋ = F(0) = 1 − 2(a_n + b a_v): where it changes sign, ω₋ reaches zero and its delays
+/// infinity.
 #[inline]
 #[must_use]
 pub fn frequency_product(groups: Groups) -> f64 {
@@ -260,8 +270,8 @@ pub fn frequency_product(groups: Groups) -> f64 {
 
 /// The number of unstable roots at τ = 0⁺.
 ///
-/// For b ≠ 0 these are the roots of B. For b = 0 the pair ±i moves off the axis with the first order of τ,
-/// Re λ ≈ a_n τ/2, or, if a_n = 0, Re λ ≈ a_v τ²/4.
+/// For b ≠ 0 these are the roots of B. For b = 0 the pair ±i moves off the axis with the first
+/// order of τ, Re λ ≈ a_n τ/2, or, if a_n = 0, Re λ ≈ a_v τ²/4.
 fn unstable_at_zero_delay(groups: Groups) -> u64 {
     let Groups { b, a_v, a_n } = groups;
     let growth = if b != 0.0 {
@@ -297,7 +307,8 @@ fn roots((c, c_error): (f64, f64), d: f64, root: f64, discriminant_error: f64) -
     }
 }
 
-/// What two crossings are made of, computed side by side: the arms ω₊ and ω₋ need the same operations.
+/// What two crossings are made of, computed side by side: the arms ω₊ and ω₋ need the same
+/// operations.
 struct Arms {
     x: [f64; 2],
     y: [f64; 2],
@@ -361,8 +372,8 @@ impl Arms {
 
 /// The argument of `cosine` + i `sine` in [0, 2π].
 ///
-/// A phase that is negative by less than rounding comes out as 2π, which is right: the crossing at τ = 0⁻ is none, the one
-/// a turn later is. The exact zero comes out as 0.
+/// A phase that is negative by less than rounding comes out as 2π, which is right: the crossing at
+/// τ = 0⁻ is none, the one a turn later is. The exact zero comes out as 0.
 #[inline(always)]
 fn phase(sine: f64x2, cosine: f64x2) -> f64x2 {
     let angle = atan2(sine, cosine);
@@ -371,8 +382,8 @@ fn phase(sine: f64x2, cosine: f64x2) -> f64x2 {
 
 /// The angles of the points (x, y) in [−π, π], to a few units in the last place; 0 at the origin.
 ///
-/// After Cephes and Agner Fog's vector class library, like wide's own, but that one fuses products and sums where the
-/// processor can: here bits are the same on all of them.
+/// After Cephes and Agner Fog's vector class library, like wide's own, but that one fuses products
+/// and sums where the processor can: here bits are the same on all of them.
 #[inline(always)]
 fn atan2(y: f64x2, x: f64x2) -> f64x2 {
     const MORE_BITS: f64 = 6.123_233_995_736_766e-17;

@@ -1,9 +1,11 @@
-//! Crossing curves in the plane of one parameter p and the delay τ, cut where they cross one another.
+//! Crossing curves in the plane of one parameter p and the delay τ, cut where they cross one
+//! another.
 //!
-//! Between two breakpoints of p (folds ω₋ = ω₊, and ω₋ = 0) each branch k of ω₊ and of ω₋ is a smooth arc τ_k(p). An arc
-//! is parametrised by s in [0, 1] with p = p₀ + (p₁ − p₀)(1 − cos πs)/2, which undoes the square root at a fold. Arcs are
-//! cut at corners, where τ_j(ω₊) = τ_k(ω₋): a double Hopf point. On each piece the number of unstable roots to both sides
-//! is then constant, and says whether the piece bounds the stable region.
+//! Between two breakpoints of p (folds ω₋ = ω₊, and ω₋ = 0) each branch k of ω₊ and of ω₋ is a
+//! smooth arc τ_k(p). An arc is parametrised by s in [0, 1] with p = p₀ + (p₁ − p₀)(1 − cos πs)/2,
+//! which undoes the square root at a fold. Arcs are cut at corners, where τ_j(ω₊) = τ_k(ω₋): a
+//! double Hopf point. On each piece the number of unstable roots to both sides is then constant,
+//! and says whether the piece bounds the stable region.
 
 use std::f64::consts::PI;
 use std::ops::RangeInclusive;
@@ -60,16 +62,19 @@ pub struct CurvePiece {
     pub vertices: Vec<Vertex>,
 }
 
-/// A point where two curves cross: two pairs lie on the axis at once, on one of ω₊ and on one of ω₋.
+/// A point where two curves cross: two pairs lie on the axis at once, on one of ω₊ and on one of
+/// ω₋.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Corner {
     /// The plane's parameter.
     pub p: f64,
     /// Delay.
     pub tau: f64,
-    /// Larger frequency, with its branch; on the imaginary axis that of the pair that crosses to the right.
+    /// Larger frequency, with its branch; on the imaginary axis that of the pair that crosses to
+    /// the right.
     pub upper: (f64, u64),
-    /// Smaller frequency, with its branch; on the imaginary axis that of the pair that crosses to the left.
+    /// Smaller frequency, with its branch; on the imaginary axis that of the pair that crosses to
+    /// the left.
     pub lower: (f64, u64),
     /// The stable region has a corner here.
     pub bounds_stable: bool,
@@ -87,7 +92,8 @@ pub struct PlaneCurves {
 /// Too many branches lie in the window to be traced one by one.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
 #[error(
-    "{arcs} crossing curves with {corners} corners or more lie in one window; at most {MOST_ARCS} with {MOST_CORNERS} are traced"
+    "{arcs} crossing curves with {corners} corners or more lie in one window; at most {MOST_ARCS} \
+    with {MOST_CORNERS} are traced"
 )]
 pub struct TooManyCurves {
     /// How many curves there are.
@@ -115,7 +121,8 @@ impl Window {
     }
 }
 
-/// Breakpoints of p for a plane without a closed form for them: sign changes of the discriminant, of F(0) and of b.
+/// Breakpoints of p for a plane without a closed form for them: sign changes of the discriminant,
+/// of F(0) and of b.
 ///
 /// Found on a grid of `samples` steps; two changes within one step are missed.
 #[must_use]
@@ -140,8 +147,8 @@ pub fn scan_breakpoints(
 
 /// Traces every crossing curve inside `window`.
 ///
-/// `crossings_at` gives the crossings of the line at p; `breakpoints` are the values of p at which their number changes
-/// (others do no harm; those outside the window are passed over).
+/// `crossings_at` gives the crossings of the line at p; `breakpoints` are the values of p at which
+/// their number changes (others do no harm; those outside the window are passed over).
 ///
 /// # Errors
 /// When more curves lie in the window than can be traced.
@@ -156,7 +163,8 @@ pub fn trace(
         .filter(|p| window.p.contains(p))
         .chain([*window.p.start(), *window.p.end()])
         .collect();
-    // The same breakpoint found by two conditions differs by rounding: the sliver between is no stretch.
+    // The same breakpoint found by two conditions differs by rounding: the sliver between is no
+    // stretch.
     let sliver = 1e-12 * window.p_width();
     for end in &mut ends {
         if end.abs() <= sliver {
@@ -236,8 +244,8 @@ impl<'a, F: Fn(f64) -> Crossings> Stretch<'a, F> {
         (self.crossings_at)(self.p(s))
     }
 
-    /// The end `s` (0 or 1), moved inwards as little as needed for the arcs of the middle to exist there: at a fold the two
-    /// arms end within the square root of rounding of one another.
+    /// The end `s` (0 or 1), moved inwards as little as needed for the arcs of the middle to exist
+    /// there: at a fold the two arms end within the square root of rounding of one another.
     fn end_node(&self, s: f64) -> f64 {
         // At b = 0 itself the numbering of the branches jumps.
         let arms = |c: Crossings| {
@@ -339,7 +347,8 @@ impl<'a, F: Fn(f64) -> Crossings> Stretch<'a, F> {
         cuts
     }
 
-    /// The nodes, with those at a fold moved off it: there both arms of a branch meet without crossing.
+    /// The nodes, with those at a fold moved off it: there both arms of a branch meet without
+    /// crossing.
     fn corner_nodes(&self) -> (Vec<f64>, Vec<Crossings>) {
         let (mut s, mut nodes) = (self.s.clone(), self.nodes.clone());
         let folded = |c: &Crossings| match (c.upper, c.lower) {
@@ -368,7 +377,8 @@ impl<'a, F: Fn(f64) -> Crossings> Stretch<'a, F> {
             tau: upper.delay(cut.upper),
             upper: (upper.omega, cut.upper),
             lower: (lower.omega, cut.lower),
-            // Before and after the corner; on one of its other two sides a pair is out, on one it is in.
+            // Before and after the corner; on one of its other two sides a pair is out, on one it
+            // is in.
             bounds_stable: others == 0 || others == 2,
         })
     }
@@ -448,7 +458,8 @@ impl<'a, F: Fn(f64) -> Crossings> Stretch<'a, F> {
         })
     }
 
-    /// Appends the vertices after `s.0` up to and with `s.1`, close enough together to draw straight lines between.
+    /// Appends the vertices after `s.0` up to and with `s.1`, close enough together to draw
+    /// straight lines between.
     fn refine(&self, arm: Arm, branch: u64, s: (f64, f64), halvings: u32, out: &mut Vec<Vertex>) {
         let middle = 0.5 * (s.0 + s.1);
         let at = |s: f64| self.vertex(s, arm, branch);
@@ -533,7 +544,8 @@ mod tests {
         curves
     }
 
-    /// The counts a little to both sides of each piece agree with its direction and its stable side.
+    /// The counts a little to both sides of each piece agree with its direction and its stable
+    /// side.
     fn check_sides(piece: &CurvePiece, at: &dyn Fn(f64) -> Crossings) {
         for v in &piece.vertices[1..piece.vertices.len() - 1] {
             let line = at(v.p);
@@ -604,7 +616,8 @@ mod tests {
         }
     }
 
-    /// Every change of stability along any line of the plane lies on a bounding piece: none is left out.
+    /// Every change of stability along any line of the plane lies on a bounding piece: none is left
+    /// out.
     #[test]
     fn no_boundary_is_missing() {
         for b in [-0.6, -0.3, -0.1, -0.02] {
@@ -641,7 +654,8 @@ mod tests {
         }
     }
 
-    /// A plane of b, which the sweep scans for its breakpoints: none of its pieces is a sliver at b = 0.
+    /// A plane of b, which the sweep scans for its breakpoints: none of its pieces is a sliver at b
+    /// = 0.
     #[test]
     fn the_plane_of_the_slope_crosses_zero_without_slivers() {
         let groups_at = |b: f64| Groups::new(b, 0.0, -0.38);

@@ -1,4 +1,5 @@
-//! The crossing curve with one gain given and the other expressed by the crossing frequency, as in the letter.
+//! The crossing curve with one gain given and the other expressed by the crossing frequency, as in
+//! the letter.
 //!
 //! The letter's Eq. (4) is linear in both gains. With x = ω²,
 //!
@@ -12,7 +13,8 @@
 use super::crossing::{Crossing, Crossings};
 use crate::model::Groups;
 
-/// The velocity gain a_v at which a pair crosses at the frequency `omega`, for given `b` ≠ 0 and a_n: equation (1).
+/// The velocity gain a_v at which a pair crosses at the frequency `omega`, for given `b` ≠ 0 and
+/// a_n: equation (1).
 ///
 /// At b = 0 the crossing frequency does not depend on a_v, and the result is infinite or NaN.
 #[must_use]
@@ -21,7 +23,8 @@ pub fn velocity_gain(omega: f64, b: f64, a_n: f64) -> f64 {
     ((1.0 - x) * (1.0 - x - 2.0 * a_n) + b * b * x) / (2.0 * b)
 }
 
-/// The load gain a_n at which a pair crosses at the frequency `omega` ≠ 1, for given `b` and a_v: equation (2).
+/// The load gain a_n at which a pair crosses at the frequency `omega` ≠ 1, for given `b` and a_v:
+/// equation (2).
 ///
 /// At ω = 1 the crossing condition does not depend on a_n, and the result is infinite or NaN.
 #[must_use]
@@ -32,7 +35,8 @@ pub fn load_gain(omega: f64, b: f64, a_v: f64) -> f64 {
 
 /// The crossing of `groups` whose frequency is nearest to `omega`, or none where nothing crosses.
 ///
-/// Together with [`velocity_gain`] or [`load_gain`] this gives the delays of the letter's Eq. (5) along a curve.
+/// Together with [`velocity_gain`] or [`load_gain`] this gives the delays of the letter's Eq. (5)
+/// along a curve.
 #[must_use]
 pub fn crossing_near(omega: f64, groups: Groups) -> Option<Crossing> {
     let crossings = Crossings::of(groups);
@@ -43,7 +47,8 @@ pub fn crossing_near(omega: f64, groups: Groups) -> Option<Crossing> {
         .copied()
 }
 
-/// The velocity gains a_v at which the crossings change their number, for given `b` and a_n: the fold ω₋ = ω₊, and ω₋ = 0.
+/// The velocity gains a_v at which the crossings change their number, for given `b` and a_n: the
+/// fold ω₋ = ω₊, and ω₋ = 0.
 ///
 /// At b = 0 the one such gain is a_v = 0, where control vanishes if a_n does.
 #[must_use]
@@ -58,7 +63,8 @@ pub fn velocity_gain_breakpoints(b: f64, a_n: f64) -> Vec<f64> {
     ]
 }
 
-/// The load gains a_n at which the crossings change their number, for given `b` and a_v; see [`velocity_gain_breakpoints`].
+/// The load gains a_n at which the crossings change their number, for given `b` and a_v; see
+/// [`velocity_gain_breakpoints`].
 #[must_use]
 pub fn load_gain_breakpoints(b: f64, a_v: f64) -> Vec<f64> {
     let mut points = vec![0.5 - b * a_v];

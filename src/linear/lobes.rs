@@ -6,8 +6,8 @@
 //! (b² + 2 a_n)² − 4 b² + 8 b a_v,                                                          (1)
 //! ```
 //!
-//! is positive. On its zero ω₋ = ω₊ = ω*, the fold of the crossing curve. A lobe of stable delays between the fold's two
-//! arms shrinks to a point where the arms have the same slope there,
+//! is positive. On its zero ω₋ = ω₊ = ω*, the fold of the crossing curve. A lobe of stable delays
+//! between the fold's two arms shrinks to a point where the arms have the same slope there,
 //!
 //! ```text
 //! ω* dθ/dω = θ + 2πk   at   ω = ω*.                                                        (2)
@@ -67,7 +67,8 @@ impl LobeControl {
         }
     }
 
-    /// Where the lobe number `lobe` = k (0 is the one at the shortest delays) ends, by condition (2).
+    /// Where the lobe number `lobe` = k (0 is the one at the shortest delays) ends, by condition
+    /// (2).
     #[must_use]
     pub fn lobe_end(self, lobe: u32) -> LobeEnd {
         let turns = TAU * f64::from(lobe);
@@ -94,7 +95,8 @@ impl LobeControl {
     }
 }
 
-/// θ of the letter's Eq. (5) and its derivative with the frequency, at fixed groups on the crossing curve.
+/// θ of the letter's Eq. (5) and its derivative with the frequency, at fixed groups on the crossing
+/// curve.
 fn phase_and_derivative(groups: Groups, omega: f64) -> (f64, f64) {
     let Groups { b, a_v, a_n } = groups;
     let i = Complex64::i();
@@ -109,7 +111,8 @@ fn phase_and_derivative(groups: Groups, omega: f64) -> (f64, f64) {
     (theta, derivative)
 }
 
-/// The weakest negative load gain a_n that stabilises at slope `b` < 0: −(b²/2 + |b|). Stable delays exist right below it.
+/// The weakest negative load gain a_n that stabilises at slope `b` < 0: −(b²/2 + |b|). Stable
+/// delays exist right below it.
 #[must_use]
 pub fn minimal_negative_load_gain(b: f64) -> f64 {
     -(0.5 * b * b + b.abs())

@@ -1,9 +1,11 @@
 //! Linear stability of continuous sliding.
 //!
-//! Everything here works on the dimensionless [`Groups`](crate::model::Groups) and on delays in units of √(M/κ).
+//! Everything here works on the dimensionless [`Groups`](crate::model::Groups) and on delays in
+//! units of √(M/κ).
 //!
 //! - [`characteristic`]: D(λ) of the letter's Eq. (3) and a bound on its unstable roots
-//! - [`crossing`]: frequencies and delays at which roots cross the imaginary axis (the letter's Eqs. 4 and 5)
+//! - [`crossing`]: frequencies and delays at which roots cross the imaginary axis (the letter's
+//!   Eqs. 4 and 5)
 //! - [`count`]: the exact number of unstable roots at a delay
 //! - [`stable_delays`]: all delay intervals on which sliding is stable
 //! - [`row`]: counts and margins at many delays of one line

@@ -14,7 +14,8 @@ const MOST_STEPS: u32 = 40;
 pub struct Root {
     /// λ with Im λ ≥ 0, in units of √(κ/M); with Im λ > 0 it stands for the pair λ, λ*.
     pub lambda: Complex64,
-    /// Estimate of |λ − exact root|: the rounding error of D over |D′|, or what it comes to at a double root.
+    /// Estimate of |λ − exact root|: the rounding error of D over |D′|, or what it comes to at a
+    /// double root.
     pub error: f64,
 }
 
@@ -32,7 +33,8 @@ impl Root {
     }
 }
 
-/// The step δ of Halley's method, λ − δ being the next iterate: cubic where Newton's is quadratic, at the cost of D″.
+/// The step δ of Halley's method, λ − δ being the next iterate: cubic where Newton's is quadratic,
+/// at the cost of D″.
 ///
 /// `newton` = D/D′ and `bend` = D″/D′.
 #[inline(always)]
@@ -41,8 +43,8 @@ pub(super) fn halley_step(newton: Complex64, bend: Complex64) -> Complex64 {
     divide(newton, 1.0 - 0.5 * newton * bend)
 }
 
-/// The step to the nearer zero of the parabola that touches D: Halley's but for the neighbourhood of a double root, where
-/// that one stalls.
+/// The step to the nearer zero of the parabola that touches D: Halley's but for the neighbourhood
+/// of a double root, where that one stalls.
 fn step_of(jet: &Jet) -> Complex64 {
     let square = jet.first * jet.first;
     let bent = 2.0 * jet.value * jet.second;
@@ -67,7 +69,8 @@ pub(super) fn divide(p: Complex64, q: Complex64) -> Complex64 {
 
 /// The root to which Halley's method converges from `start`, or none if it does not.
 ///
-/// A start on the real axis stays on it. A root within its error of the real axis is taken for a real one.
+/// A start on the real axis stays on it. A root within its error of the real axis is taken for a
+/// real one.
 #[must_use]
 pub fn polish(groups: Groups, tau: f64, start: Complex64) -> Option<Root> {
     let root = iterate(groups, tau, start)?;

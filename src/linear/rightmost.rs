@@ -10,9 +10,11 @@ use crate::model::Groups;
 /// The rightmost roots of a point. Dimensionless.
 #[derive(Debug, Clone)]
 pub struct Rightmost {
-    /// By falling real part, pairs counted once. Fewer than asked for where there are no more: without control or delay.
+    /// By falling real part, pairs counted once. Fewer than asked for where there are no more:
+    /// without control or delay.
     pub roots: Vec<Root>,
-    /// No root lies right of Re λ + margin·max(1, |Re λ|), λ being the first of `roots`; NaN where nothing converged.
+    /// No root lies right of Re λ + margin·max(1, |Re λ|), λ being the first of `roots`; NaN where
+    /// nothing converged.
     pub margin: f64,
     /// The argument principle confirms that, and the number of unstable roots.
     pub certified: bool,
@@ -21,7 +23,8 @@ pub struct Rightmost {
 }
 
 impl Rightmost {
-    /// The `wanted` rightmost roots, at least one, at the delay `tau` ≥ 0; `count` is what the closed form says there.
+    /// The `wanted` rightmost roots, at least one, at the delay `tau` ≥ 0; `count` is what the
+    /// closed form says there.
     #[must_use]
     pub fn at(groups: Groups, tau: f64, wanted: usize, count: Count) -> Self {
         let counted = count.n_unstable.min(u64::from(MOST_COUNTED));

@@ -1,6 +1,7 @@
 //! A row of cells: one line's crossings laid over many delays.
 //!
-//! Between two crossings the count is constant, so a row costs its crossings plus the time to fill memory.
+//! Between two crossings the count is constant, so a row costs its crossings plus the time to fill
+//! memory.
 
 use std::cell::Cell;
 
@@ -9,7 +10,8 @@ use super::crossing::{Crossing, Crossings};
 use super::stable_delays::MarginWalk;
 use super::status::{MARGINAL, MOST_COUNTED, SATURATED};
 
-/// Delays of a row: finite, not negative, strictly increasing, in the time unit of the crossings they are used with.
+/// Delays of a row: finite, not negative, strictly increasing, in the time unit of the crossings
+/// they are used with.
 #[derive(Debug, Clone)]
 pub struct Delays {
     /// −∞, the delays, ∞: no search runs off an end.
@@ -131,7 +133,8 @@ impl Row<'_> {
         }
     }
 
-    /// Marks the cells marginal to the crossing at `delay`, which lies just below the delay number `index`.
+    /// Marks the cells marginal to the crossing at `delay`, which lies just below the delay number
+    /// `index`.
     #[inline(always)]
     fn mark(&self, crossing: &Crossing, delay: f64, index: usize, status: &mut [u8]) {
         let allowed = self
@@ -225,7 +228,8 @@ impl Row<'_> {
     }
 }
 
-/// Fills at least the first `length` elements, in whole blocks: what is filled too much is overwritten by the next stretch.
+/// Fills at least the first `length` elements, in whole blocks: what is filled too much is
+/// overwritten by the next stretch.
 #[inline]
 fn fill_ahead(row: &mut [u16], length: usize, value: u16) {
     const BLOCK: usize = 32;
@@ -244,11 +248,12 @@ fn saturated(count: u64) -> u16 {
 }
 
 impl Crossings {
-    /// The count of unstable roots and the status at every delay of a row: as [`Crossings::count`] says, cell by cell.
+    /// The count of unstable roots and the status at every delay of a row: as [`Crossings::count`]
+    /// says, cell by cell.
     ///
-    /// `n_unstable` and `status` have the length of `delays`. Every element of `n_unstable` is written. `status` holds zeros
-    /// to begin with, and flags are added where there are any: true is returned if so. Counts above [`MOST_COUNTED`] are cut
-    /// and say so in the status.
+    /// `n_unstable` and `status` have the length of `delays`. Every element of `n_unstable` is
+    /// written. `status` holds zeros to begin with, and flags are added where there are any: true
+    /// is returned if so. Counts above [`MOST_COUNTED`] are cut and say so in the status.
     pub fn fill_counts(
         &self,
         delays: &Delays,
@@ -273,7 +278,8 @@ impl Crossings {
         row.flagged.get()
     }
 
-    /// The signed distance to the nearest change of stability at every delay of a row, see [`Crossings::delay_margin`].
+    /// The signed distance to the nearest change of stability at every delay of a row, see
+    /// [`Crossings::delay_margin`].
     pub fn fill_delay_margins(&self, delays: &Delays, margins: &mut [f64]) {
         let mut walk = MarginWalk::new(self);
         for (tau, margin) in delays.values().iter().zip(margins) {
@@ -305,7 +311,8 @@ mod tests {
     }
 
     proptest! {
-        /// A row and single cells agree exactly, for even and uneven delays, and for delays that hit crossings.
+        /// A row and single cells agree exactly, for even and uneven delays, and for delays that
+        /// hit crossings.
         #[test]
         fn rows_are_their_cells(
             b in prop_oneof![-2.5..1.0_f64, Just(0.0), Just(-0.5)],
@@ -316,12 +323,15 @@ mod tests {
             points in 1_usize..300,
         ) {
             let crossings = Crossings::of(Groups::new(b, a_v, a_n));
-            let even: Vec<f64> = (0..points).map(|i| from + length * i as f64 / points as f64).collect();
+            let even = |i: usize| from + length * i as f64 / points as f64;
+            let even: Vec<f64> = (0..points).map(even).collect();
             check_row(&crossings, &even);
             let squared: Vec<f64> = even.iter().map(|t| t * t).collect();
             check_row(&crossings, &squared);
-            let mut on_crossings: Vec<f64> =
-                crossings.iter().flat_map(|c| (0..40).map(|k| c.delay(k + c.first_branch))).collect();
+            let mut on_crossings: Vec<f64> = crossings
+                .iter()
+                .flat_map(|c| (0..40).map(|k| c.delay(k + c.first_branch)))
+                .collect();
             on_crossings.sort_by(f64::total_cmp);
             on_crossings.dedup();
             if !on_crossings.is_empty() {

@@ -20,7 +20,8 @@ const COLLOCATIONS: u32 = 3;
 /// |στ| up to which e^(−στ) and what is made of it neither overflow nor lose all meaning.
 const FARTHEST_LEFT: f64 = 700.0;
 
-/// Between roots that crowd together a line is looked for down to this distance (relative), in so many halvings.
+/// Between roots that crowd together a line is looked for down to this distance (relative), in so
+/// many halvings.
 const CROWDED: f64 = 1e-12;
 const MOST_HALVINGS: u32 = 64;
 /// How far from a cluster of nearly equal roots its number may be counted.
@@ -44,8 +45,8 @@ pub struct Incomplete {
 }
 
 impl RootFinder {
-    /// Every root with Re λ > `line` and Im λ ≥ 0: by falling real part, among equal ones by rising imaginary part.
-    /// A double root stands there twice.
+    /// Every root with Re λ > `line` and Im λ ≥ 0: by falling real part, among equal ones by rising
+    /// imaginary part. A double root stands there twice.
     ///
     /// `tau` ≥ 0 in units of √(M/κ), `line` in their inverse.
     ///
@@ -89,8 +90,8 @@ impl RootFinder {
         Err(incomplete)
     }
 
-    /// The rightmost roots, at least `wanted` counted with multiplicity and pairs as two, ordered as by
-    /// [`RootFinder::right_of`]; fewer where no more lie right of `leftmost`.
+    /// The rightmost roots, at least `wanted` counted with multiplicity and pairs as two, ordered
+    /// as by [`RootFinder::right_of`]; fewer where no more lie right of `leftmost`.
     ///
     /// # Errors
     /// When roots are missing.
@@ -145,7 +146,8 @@ impl RootFinder {
         Some(root)
     }
 
-    /// Whether the roots are `count`. Roots that rounding hardly tells apart are as many as are counted where they are.
+    /// Whether the roots are `count`. Roots that rounding hardly tells apart are as many as are
+    /// counted where they are.
     fn complete(&mut self, groups: Groups, tau: f64, count: u64) -> bool {
         let number = |roots: &[Root]| roots.iter().map(Root::count).sum::<u64>();
         if number(&self.roots) == count {
@@ -191,8 +193,8 @@ impl RootFinder {
     }
 }
 
-/// A strip of real parts that holds a range and a little around it, as little as rounding (`error`) allows, and the number
-/// of roots in it.
+/// A strip of real parts that holds a range and a little around it, as little as rounding (`error`)
+/// allows, and the number of roots in it.
 fn count_between(
     groups: Groups,
     tau: f64,
@@ -212,7 +214,8 @@ fn count_between(
     None
 }
 
-/// Roots of `cluster` that stand for `number` roots: its own, repeated or cut off, the last one real if that is needed.
+/// Roots of `cluster` that stand for `number` roots: its own, repeated or cut off, the last one
+/// real if that is needed.
 fn some_of(cluster: &[Root], number: u64) -> impl Iterator<Item = Root> {
     let mut left = number;
     cluster
@@ -243,7 +246,8 @@ fn neighbours(groups: Groups, tau: f64, lambda: Complex64) -> impl Iterator<Item
         .filter(|z| z.re.is_finite() && z.im.is_finite())
 }
 
-/// A line with at least `wanted` roots to its right and few more; at or a little right of `leftmost` where there are fewer.
+/// A line with at least `wanted` roots to its right and few more; at or a little right of
+/// `leftmost` where there are fewer.
 fn line_left_of(groups: Groups, tau: f64, wanted: u64, leftmost: f64) -> f64 {
     if tau == 0.0 || groups.uncontrolled() {
         return f64::NEG_INFINITY;

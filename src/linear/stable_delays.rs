@@ -1,15 +1,15 @@
 //! All delay intervals on which continuous sliding is stable, in closed form.
 //!
-//! Let U_0 < U_1 < … be the delays at which pairs cross to the right and L_0 < L_1 < … those at which they cross to the left.
-//! The count n₀ + 2 #{U_i < τ} − 2 #{L_i < τ} is zero exactly on
+//! Let U_0 < U_1 < … be the delays at which pairs cross to the right and L_0 < L_1 < … those at
+//! which they cross to the left. The count n₀ + 2 #{U_i < τ} − 2 #{L_i < τ} is zero exactly on
 //!
 //! ```text
 //! n₀ = 2:   (L_i, U_i),                   i = 0, 1, …                                       (1)
 //! n₀ = 0:   (0, U_0)  and  (L_{i−1}, U_i), i = 1, 2, …
 //! ```
 //!
-//! as far as these are not empty. Pairs come in more often than they leave (ω₊ > ω₋), so the lengths shrink by the same
-//! amount from each to the next, and the first empty one ends the list.
+//! as far as these are not empty. Pairs come in more often than they leave (ω₊ > ω₋), so the
+//! lengths shrink by the same amount from each to the next, and the first empty one ends the list.
 
 use super::crossing::{Crossing, Crossings};
 
@@ -48,7 +48,8 @@ fn nth_delay(crossing: &Option<Crossing>, i: u64) -> Option<f64> {
 }
 
 impl Crossings {
-    /// The stable delay intervals of this line. Without control at b = 0 there is none: every delay is marginal.
+    /// The stable delay intervals of this line. Without control at b = 0 there is none: every delay
+    /// is marginal.
     #[must_use]
     pub fn stable_delays(&self) -> StableDelays {
         StableDelays {
@@ -57,8 +58,9 @@ impl Crossings {
         }
     }
 
-    /// Signed distance in τ to the nearest change of stability: positive where stable, negative where not, infinite where
-    /// stability never changes, and 0 at every delay where all of them are marginal. Same time unit as the crossings.
+    /// Signed distance in τ to the nearest change of stability: positive where stable, negative
+    /// where not, infinite where stability never changes, and 0 at every delay where all of them
+    /// are marginal. Same time unit as the crossings.
     #[must_use]
     pub fn delay_margin(&self, tau: f64) -> f64 {
         MarginWalk::new(self).margin_at(tau)
@@ -117,7 +119,8 @@ impl Crossings {
     }
 }
 
-/// Distances to the nearest change of stability on one line. Quick for delays that grow from call to call, right for any.
+/// Distances to the nearest change of stability on one line. Quick for delays that grow from call
+/// to call, right for any.
 #[derive(Debug, Clone)]
 pub struct MarginWalk<'c> {
     crossings: &'c Crossings,
@@ -261,7 +264,8 @@ mod tests {
         }
     }
 
-    /// ω₋ and ω₊ nearly coincide: the intervals are too many to walk through, and the answers come at once all the same.
+    /// ω₋ and ω₊ nearly coincide: the intervals are too many to walk through, and the answers come
+    /// at once all the same.
     #[test]
     fn nearly_tangent_lines_are_no_slower() {
         for (b, a_n) in [

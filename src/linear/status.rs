@@ -23,5 +23,6 @@ pub const FLAGS: [(u8, &str); 6] = [
     (SAMPLED, "sampled"),
 ];
 
-/// The largest count of unstable roots that a map holds; 65535 is the fill value of cells not computed.
+/// The largest count of unstable roots that a map holds; 65535 is the fill value of cells not
+/// computed.
 pub const MOST_COUNTED: u16 = u16::MAX - 1;

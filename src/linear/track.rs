@@ -1,11 +1,12 @@
 //! The rightmost roots along a line: all delays at one setting of the gains and the damping.
 //!
-//! Roots are continued from delay to delay: a predictor of second order from dλ/dτ, then Halley's method, which from there
-//! is at rounding level in one evaluation of D. Besides the roots that are reported, a few behind them are followed, so that
-//! it is known when another becomes the rightmost. Nothing relies on that: in each cell the certificate counts the roots
-//! right of those reported. Where it finds one, where roots run into one another or an iteration does not settle, all are
-//! found anew ([`RootFinder`]). So they are at every [`BLOCK`]-th delay, which makes the values of a cell independent of
-//! where a tile begins.
+//! Roots are continued from delay to delay: a predictor of second order from dλ/dτ, then Halley's
+//! method, which from there is at rounding level in one evaluation of D. Besides the roots that are
+//! reported, a few behind them are followed, so that it is known when another becomes the
+//! rightmost. Nothing relies on that: in each cell the certificate counts the roots right of those
+//! reported. Where it finds one, where roots run into one another or an iteration does not settle,
+//! all are found anew ([`RootFinder`]). So they are at every [`BLOCK`]-th delay, which makes the
+//! values of a cell independent of where a tile begins.
 
 use num_complex::Complex64;
 
@@ -41,9 +42,9 @@ const NEARLY_REAL: f64 = 1e-9;
 /// What was found in one cell.
 #[derive(Debug, Clone, Copy)]
 pub struct Cell<'t> {
-    /// The rightmost roots by falling real part, as many as the tracker was asked for; fewer where there are no more
-    /// (without control or delay) or, in a cell that says it has not converged, where the others were not found.
-    /// Dimensionless.
+    /// The rightmost roots by falling real part, as many as the tracker was asked for; fewer where
+    /// there are no more (without control or delay) or, in a cell that says it has not converged,
+    /// where the others were not found. Dimensionless.
     pub roots: &'t [Root],
     /// No root lies right of Re λ + margin·max(1, |Re λ|), λ being the first of `roots`.
     pub margin: f64,
@@ -123,10 +124,11 @@ impl RootTracker {
 
     /// Visits every cell of a line in order.
     ///
-    /// `delays` increase, in units of which `time_unit` = √(M/κ) makes one dimensionless; `first` is the index of the first
-    /// of them on the whole line, a multiple of [`BLOCK`] for values that do not depend on how the line is cut. `counts`
-    /// are their numbers of unstable roots by the closed form; `status` comes with what that form has to say and gains
-    /// certified, marginal, not converged or disagree.
+    /// `delays` increase, in units of which `time_unit` = √(M/κ) makes one dimensionless; `first`
+    /// is the index of the first of them on the whole line, a multiple of [`BLOCK`] for values that
+    /// do not depend on how the line is cut. `counts` are their numbers of unstable roots by the
+    /// closed form; `status` comes with what that form has to say and gains certified, marginal,
+    /// not converged or disagree.
     pub fn follow(
         &mut self,
         groups: Groups,
@@ -142,7 +144,8 @@ impl RootTracker {
         for (i, ((delay, &count), status)) in
             delays.iter().zip(counts).zip(status.iter_mut()).enumerate()
         {
-            // Without control every delay is as none: e^(−λτ) must not overflow where nothing depends on it.
+            // Without control every delay is as none: e^(−λτ) must not overflow where nothing
+            // depends on it.
             let tau = if controlled { delay / time_unit } else { 0.0 };
             // Where control begins to act there are more roots than before.
             let fresh =
@@ -172,7 +175,8 @@ impl RootTracker {
         }
     }
 
-    /// Continues every track to `tau`; false where the roots to be reported are not among them any more.
+    /// Continues every track to `tau`; false where the roots to be reported are not among them any
+    /// more.
     #[inline]
     fn advance(&mut self, groups: Groups, tau: f64) -> bool {
         let step = tau - self.tau;
@@ -200,7 +204,8 @@ impl RootTracker {
         self.choose()
     }
 
-    /// Fills `roots` with the rightmost tracks. False where there are too few, or two are the same root.
+    /// Fills `roots` with the rightmost tracks. False where there are too few, or two are the same
+    /// root.
     #[inline]
     fn choose(&mut self) -> bool {
         let tracks = &mut self.tracks[..self.followed];
@@ -271,7 +276,8 @@ impl RootTracker {
         Ok(())
     }
 
-    /// Shows that right of each reported root there are no others than those reported. Returns the margin.
+    /// Shows that right of each reported root there are no others than those reported. Returns the
+    /// margin.
     #[inline]
     fn certify(&self, groups: Groups, tau: f64) -> Result<f64, Doubt> {
         let roots = &self.roots[..self.reported];
@@ -299,8 +305,9 @@ impl RootTracker {
         Ok(widest)
     }
 
-    /// The margin and the status of the cell at `tau`: `unstable`, from the certificate, is the number of roots right of
-    /// zero, `count` the closed form's, which comes with what is known of it in `status`.
+    /// The margin and the status of the cell at `tau`: `unstable`, from the certificate, is the
+    /// number of roots right of zero, `count` the closed form's, which comes with what is known of
+    /// it in `status`.
     #[inline]
     fn judge(
         &self,
@@ -347,7 +354,8 @@ impl Doubt {
     }
 }
 
-/// The root near `predicted` at the delay `tau`; none where Halley's method does not settle at once.
+/// The root near `predicted` at the delay `tau`; none where Halley's method does not settle at
+/// once.
 #[inline]
 fn correct(groups: Groups, tau: f64, predicted: Complex64) -> Option<(Track, u32)> {
     let mut lambda = predicted;
@@ -357,7 +365,8 @@ fn correct(groups: Groups, tau: f64, predicted: Complex64) -> Option<(Track, u32
         let bend = jet.second * per_slope;
         let step = halley_step(jet.value * per_slope, bend);
         let next = lambda - step;
-        // What Halley's method leaves is of third order in the step, over the square of the distance at which D bends.
+        // What Halley's method leaves is of third order in the step, over the square of the
+        // distance at which D bends.
         let size = step.l1_norm();
         let turn = size * bend.l1_norm().max(tau);
         if size * turn * turn <= SETTLED * (1.0 + next.l1_norm()) {

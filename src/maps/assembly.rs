@@ -38,11 +38,13 @@ pub struct Assembled {
     pub cells_missing: u64,
 }
 
-/// Writes the map of `plan` from the pieces that `source` gives, in the order of their numbers: equal pieces make equal files.
+/// Writes the map of `plan` from the pieces that `source` gives, in the order of their numbers:
+/// equal pieces make equal files.
 ///
 /// # Errors
-/// When it is to stop, when a piece is damaged, when one is missing and has to be there, or when the system or the library
-/// refuses; nothing then stands under the map's name that was not there before.
+/// When it is to stop, when a piece is damaged, when one is missing and has to be there, or when
+/// the system or the library refuses; nothing then stands under the map's name that was not there
+/// before.
 pub fn assemble(
     plan: &Plan,
     output: Output,

@@ -26,8 +26,8 @@ pub struct Effort {
     pub tiles: u64,
 }
 
-/// Checks a map: its schema against its own sweep, its checksums, and samples of its cells; `program` is the version and revision
-/// of the program that runs.
+/// Checks a map: its schema against its own sweep, its checksums, and samples of its cells;
+/// `program` is the version and revision of the program that runs.
 ///
 /// # Errors
 /// When the map cannot be read at all.

@@ -1,4 +1,5 @@
-//! From a plan to its map: pieces that are not on disk yet are computed, then the map is put together.
+//! From a plan to its map: pieces that are not on disk yet are computed, then the map is put
+//! together.
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -55,7 +56,8 @@ const MOST_REPAIRS: u32 = 3;
 /// Computes what the tiles beside the map lack, puts the map together, and removes the tiles.
 ///
 /// # Errors
-/// See [`RunError`] and [`StoreError`]. Tiles that are finished stay, so that the next call goes on from there.
+/// See [`RunError`] and [`StoreError`]. Tiles that are finished stay, so that the next call goes on
+/// from there.
 pub fn make(
     plan: &Arc<Plan>,
     job: &Job,
@@ -114,14 +116,16 @@ pub struct Merge<'a> {
     pub missing: Missing,
     /// A complete map is replaced by one that lacks pieces.
     pub replace_complete: bool,
-    /// The map beside which the folders are, where they are to be removed once a complete one is written.
+    /// The map beside which the folders are, where they are to be removed once a complete one is
+    /// written.
     pub remove_beside: Option<&'a Path>,
 }
 
 /// Puts a map together from the folders of its shards.
 ///
 /// # Errors
-/// When it is to stop, a piece is missing and has to be there, folders do not belong together, or the system refuses.
+/// When it is to stop, a piece is missing and has to be there, folders do not belong together, or
+/// the system refuses.
 pub fn merge(
     plan: &Plan,
     asked: &Merge,

@@ -1,17 +1,19 @@
 //! Elementary functions whose bits are the same on every processor.
 //!
-//! The methods of `f64` and `Complex64` call the C library, and that picks code by the processor it runs on: their last bits
-//! differ between machines, and a map would depend on where it was made. The crate libm is plain Rust and rounds alike
-//! everywhere. `clippy.toml` refuses those methods in everything from which numbers reach a map.
+//! The methods of `f64` and `Complex64` call the C library, and that picks code by the processor it
+//! runs on: their last bits differ between machines, and a map would depend on where it was made.
+//! The crate libm is plain Rust and rounds alike everywhere. `clippy.toml` refuses those methods in
+//! everything from which numbers reach a map.
 //!
-//! Errors are below one unit in the last place of the result ([`power`]: one half for each of its products).
+//! Errors are below one unit in the last place of the result ([`power`]: one half for each of its
+//! products).
 
 use num_complex::Complex64;
 
 pub use libm::{acos, atan2, cbrt, cos, exp, expm1, hypot, log as ln, pow, sin, sincos};
 
-/// `base` to the power `exponent` by repeated squaring, always in the same order; a negative power is the inverse of the
-/// positive one.
+/// `base` to the power `exponent` by repeated squaring, always in the same order; a negative power
+/// is the inverse of the positive one.
 #[must_use]
 pub fn power(base: f64, exponent: i32) -> f64 {
     let (mut square, mut left, mut product) = (base, exponent.unsigned_abs(), 1.0);

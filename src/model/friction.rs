@@ -70,8 +70,8 @@ impl FrictionLaw {
     /// Stribeck's law with a Gaussian transition, μ_K(v) = μ0 + (μ_S − μ0) exp(−(v/v_s)²):
     /// from μ_S at rest down to the Coulomb level μ0 at speeds well above v_s.
     ///
-    /// Source: H. Olsson et al., *Friction models and friction compensation*, Eur. J. Control 4 (1998), with exponent 2
-    /// and no viscous part.
+    /// Source: H. Olsson et al., *Friction models and friction compensation*, Eur. J. Control 4
+    /// (1998), with exponent 2 and no viscous part.
     ///
     /// # Errors
     /// μ0, v_s and μ_S must be finite and positive, and μ0 ≤ μ_S.
@@ -120,7 +120,8 @@ impl FrictionLaw {
         }
     }
 
-    /// μ_K′(v), time/length, at the sliding speed `speed` ≥ 0 (at 0: the limit 0⁺, the slope at rest).
+    /// μ_K′(v), time/length, at the sliding speed `speed` ≥ 0 (at 0: the limit 0⁺, the slope at
+    /// rest).
     #[must_use]
     pub fn mu_prime(&self, speed: f64) -> f64 {
         match &self.kind {
@@ -137,9 +138,9 @@ impl FrictionLaw {
         }
     }
 
-    /// The change of speed over which μ_K is another function, length/time, at the sliding speed `speed` ≥ 0: steps of a
-    /// method that knows the law by its values have to be small against it. Infinite for Coulomb's law, and for a table, whose
-    /// cubics steps end on.
+    /// The change of speed over which μ_K is another function, length/time, at the sliding speed
+    /// `speed` ≥ 0: steps of a method that knows the law by its values have to be small against it.
+    /// Infinite for Coulomb's law, and for a table, whose cubics steps end on.
     #[must_use]
     pub fn speed_scale(&self, speed: f64) -> f64 {
         match &self.kind {

@@ -9,7 +9,8 @@
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Groups {
-    /// b = μ_K′(v0) N0 / √(κM): damping by the slope of the friction law; negative where friction weakens.
+    /// b = μ_K′(v0) N0 / √(κM): damping by the slope of the friction law; negative where friction
+    /// weakens.
     pub b: f64,
     /// a_v = α_v √(M/κ): gain of velocity control.
     pub a_v: f64,

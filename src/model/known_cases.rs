@@ -1,4 +1,5 @@
-//! Cases with known answers: one constructor gives the problem and its reference, for tests and benches alike.
+//! Cases with known answers: one constructor gives the problem and its reference, for tests and
+//! benches alike.
 
 use super::{Control, FrictionLaw, Groups, Oscillator, SlidingPoint};
 
@@ -15,7 +16,8 @@ pub struct LinearCase {
     pub n_unstable: u64,
 }
 
-/// The parameters of the letter's Fig. 3(a), velocity control, and Fig. 3(b), load control: both stable.
+/// The parameters of the letter's Fig. 3(a), velocity control, and Fig. 3(b), load control: both
+/// stable.
 #[must_use]
 pub fn letter_fig3() -> [LinearCase; 2] {
     let case = |source, v0, alpha_v, alpha_n, tau| {

@@ -102,7 +102,8 @@ impl SlidingPoint {
     /// Value and slope of `law` at the sliding velocity `v0` > 0.
     ///
     /// # Errors
-    /// `v0` must be finite and greater than zero: the model is linear only about steady forward sliding.
+    /// `v0` must be finite and greater than zero: the model is linear only about steady forward
+    /// sliding.
     pub fn of_law(law: &FrictionLaw, v0: f64) -> Result<Self, ModelError> {
         let v0 = ModelError::positive("v0", v0)?;
         Ok(Self {

@@ -14,7 +14,8 @@ const NEAREST: f64 = 1e-6;
 /// Speeds other than 0, and coefficients: far beyond any experiment.
 const SIZES: RangeInclusive<f64> = 1e-12..=1e12;
 
-/// μ_K(v) through given points, by monotone cubics: between two points it is monotone, so it never leaves their range.
+/// μ_K(v) through given points, by monotone cubics: between two points it is monotone, so it never
+/// leaves their range.
 ///
 /// Between points i and i + 1, h apart, with the secant δ_i = Δμ/h and w = (v − v_i)/h,
 ///
@@ -22,12 +23,14 @@ const SIZES: RangeInclusive<f64> = 1e-12..=1e12;
 /// μ_K = μ_i + h d_i w + (3δ_i − 2d_i − d_{i+1}) h w² + (d_i + d_{i+1} − 2δ_i) h w³
 /// ```
 ///
-/// is continuous with its slope. The slope d_i at a point is 0 where the secants change sign, else their harmonic mean with
-/// weights 2h_i + h_{i−1} and h_i + 2h_{i−1}; at the ends it is that of a parabola through three points, limited to keep the
-/// curve monotone. This is PCHIP: SciPy's `PchipInterpolator` and Octave's `pchip` draw the same curve. The error of a smooth
-/// law falls like h³, that of its slope like h².
+/// is continuous with its slope. The slope d_i at a point is 0 where the secants change sign, else
+/// their harmonic mean with weights 2h_i + h_{i−1} and h_i + 2h_{i−1}; at the ends it is that of a
+/// parabola through three points, limited to keep the curve monotone. This is PCHIP: SciPy's
+/// `PchipInterpolator` and Octave's `pchip` draw the same curve. The error of a smooth law falls
+/// like h³, that of its slope like h².
 ///
-/// Below the first and beyond the last point μ_K is constant and its slope 0; at the points themselves the slope is d_i.
+/// Below the first and beyond the last point μ_K is constant and its slope 0; at the points
+/// themselves the slope is d_i.
 ///
 /// Source: F. N. Fritsch and J. Butland, SIAM J. Sci. Stat. Comput. 5 (1984) 300.
 ///
@@ -118,8 +121,8 @@ impl Table {
     /// The curve through the points (`speeds`\[i\], `mu_k`\[i\]): length/time, and dimensionless.
     ///
     /// # Errors
-    /// 2 to [`MOST_POINTS`] points; speeds 0 or between 10⁻¹² and 10¹², increasing, neighbours more than 10⁻⁶ of the larger
-    /// one apart; μ_K between 10⁻¹² and 10¹².
+    /// 2 to [`MOST_POINTS`] points; speeds 0 or between 10⁻¹² and 10¹², increasing, neighbours more
+    /// than 10⁻⁶ of the larger one apart; μ_K between 10⁻¹² and 10¹².
     pub fn new(speeds: Vec<f64>, mu_k: Vec<f64>) -> Result<Self, TableError> {
         let counts = (speeds.len(), mu_k.len());
         if counts.0 != counts.1 || !(2..=MOST_POINTS).contains(&counts.0) {
@@ -175,7 +178,8 @@ impl Table {
         self.0.speeds.binary_search_by(|at| at.total_cmp(&speed))
     }
 
-    /// The cubic between points `region` − 1 and `region`; constants before the first and after the last point.
+    /// The cubic between points `region` − 1 and `region`; constants before the first and after the
+    /// last point.
     #[must_use]
     pub fn piece(&self, region: usize) -> Piece {
         let Points {

@@ -76,7 +76,8 @@ pub enum Entry {
     },
 }
 
-/// Writes the log of one run. A log that cannot be written is missed by nobody but its reader: the run goes on.
+/// Writes the log of one run. A log that cannot be written is missed by nobody but its reader: the
+/// run goes on.
 pub struct Log {
     file: RefCell<Option<File>>,
     shard: Shard,

@@ -15,11 +15,12 @@ const MOST_CELLS: usize = 640;
 
 /// Stable, 2, 4 and more unstable roots, no value: colours of the 256-colour palette.
 const COLOURS: [u8; 5] = [37, 230, 180, 136, 250];
-/// The same without colours.
+/// The characters of a preview without colours.
 const SHADES: [char; 5] = ['█', ' ', '░', '▒', '?'];
 
-/// What the map looks like, in text of at most 19 lines and `width` columns; none where the map tells neither
-/// classes, outcomes nor what is stable, or has fewer than two axes with more than one value. `colour`: with ANSI escapes, two rows of cells in each line.
+/// What the map looks like, in text of at most 19 lines and `width` columns; none where the map
+/// tells neither classes, outcomes nor what is stable, or has fewer than two axes with more than
+/// one value. `colour`: with ANSI escapes, two rows of cells in each line.
 ///
 /// Axes outside the plane are held at their middle value.
 ///
@@ -59,7 +60,8 @@ pub fn preview(map: &MapFile, width: usize, colour: bool) -> Result<Option<Strin
     Ok(Some(captions.around(&picture, columns, colour)))
 }
 
-/// The least number of unstable roots that goes with a value. Outcomes and classes are shown like 0, 2, 4 and 6 roots.
+/// The least number of unstable roots that goes with a value. Outcomes and classes are shown like
+/// 0, 2, 4 and 6 roots.
 fn as_count(field: Field, value: f64) -> f64 {
     if field.storage() == Storage::Kind {
         return if value <= 3.0 { 2.0 * value } else { f64::NAN };
@@ -82,7 +84,8 @@ fn plane_axes(map: &MapFile) -> Option<(usize, usize)> {
     }
 }
 
-/// The kind of the cell at parts of the way from left to right and from bottom to top: an index of [`COLOURS`].
+/// The kind of the cell at parts of the way from left to right and from bottom to top: an index of
+/// [`COLOURS`].
 fn kind(plane: &Plane, across: f64, up: f64) -> usize {
     let (column, row) = (place(&plane.columns, across), place(&plane.rows, up));
     match plane.cells.get(row * plane.columns.len() + column) {

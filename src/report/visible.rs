@@ -1,7 +1,7 @@
 //! Texts from files on their way to a terminal.
 
-/// A text with its control characters, but for tabs and ends of lines, spelled out, and so those that turn the direction of writing
-/// or end a line unseen: none of them reaches the terminal.
+/// A text with its control characters, but for tabs and ends of lines, spelled out, and so those
+/// that turn the direction of writing or end a line unseen: none of them reaches the terminal.
 #[must_use]
 pub fn visible(text: &str) -> String {
     let mut shown = String::with_capacity(text.len());
@@ -18,7 +18,8 @@ pub fn visible(text: &str) -> String {
 /// More characters of a text are in no message.
 const LONGEST: usize = 4000;
 
-/// The same on one line, of which no more is shown than anybody reads.
+/// A text on one line with its control characters spelled out, of which no more is shown than
+/// anybody reads.
 #[must_use]
 pub fn visible_line(text: &str) -> String {
     visible(&shortened(text)).replace('\n', "\\n")
@@ -33,7 +34,8 @@ pub fn shortened(text: &str) -> std::borrow::Cow<'_, str> {
     }
 }
 
-/// JSON with such characters as its escapes: they stand in its strings alone, and all of them have one of four digits.
+/// JSON with such characters as its escapes: they stand in its strings alone, and all of them have
+/// one of four digits.
 #[must_use]
 pub fn visible_json(json: &str) -> String {
     let mut shown = String::with_capacity(json.len());
@@ -46,11 +48,16 @@ pub fn visible_json(json: &str) -> String {
     shown
 }
 
-/// Marks, embeddings, overrides and isolates of direction, separators of lines and paragraphs, the mark of byte order.
+/// Marks, embeddings, overrides and isolates of direction, separators of lines and paragraphs, the
+/// mark of byte order.
 fn is_unseen(c: char) -> bool {
     matches!(
         c,
-        '\u{61c}' | '\u{200b}'..='\u{200f}' | '\u{2028}'..='\u{202e}' | '\u{2060}'..='\u{206f}' | '\u{feff}'
+        '\u{61c}'
+            | '\u{200b}'..='\u{200f}'
+            | '\u{2028}'..='\u{202e}'
+            | '\u{2060}'..='\u{206f}'
+            | '\u{feff}'
     )
 }
 

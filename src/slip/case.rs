@@ -42,7 +42,8 @@ pub enum Start {
         /// Elongation at t = 0 and before.
         a0: f64,
     },
-    /// Just released from stick, after uncontrolled stick-slip. `switch_on` is then a phase: it counts modulo the period.
+    /// Just released from stick, after uncontrolled stick-slip. `switch_on` is then a phase: it
+    /// counts modulo the period.
     AfterRelease,
 }
 
@@ -54,8 +55,10 @@ pub enum CaseError {
     Model(#[from] ModelError),
     /// It has no uncontrolled cycle to start from.
     #[error("{}", match .0 {
-        NoCycle::NoStickSlip => "switch_on_phase needs stick-slip without control, and there is none at this v0",
-        NoCycle::LongDelay => "switch_on_phase: tau is longer than 10000 cycles of stick-slip, or than the past that is kept",
+        NoCycle::NoStickSlip => "switch_on_phase needs stick-slip without control, and there is \
+            none at this v0",
+        NoCycle::LongDelay => "switch_on_phase: tau is longer than 10000 cycles of stick-slip, or \
+            than the past that is kept",
     })]
     NoCycle(NoCycle),
 }
@@ -99,7 +102,8 @@ impl Case {
     /// The block at t = 0.
     ///
     /// # Errors
-    /// When a value is not finite or out of its range, or there is no uncontrolled cycle to start from.
+    /// When a value is not finite or out of its range, or there is no uncontrolled cycle to start
+    /// from.
     pub fn motion(&self) -> Result<Motion, CaseError> {
         self.check()?;
         let p = self.parameters();
@@ -116,7 +120,8 @@ impl Case {
         })
     }
 
-    /// As [`Case::motion`], in the memory of another motion; what that holds after an error means nothing.
+    /// Begins the motion of this case, as [`Case::motion`] does, in the memory of another motion;
+    /// what that holds after an error means nothing.
     ///
     /// # Errors
     /// As [`Case::motion`].
@@ -198,7 +203,8 @@ impl Case {
         Ok(())
     }
 
-    /// Re λ of the rightmost root of sliding under the control that acts in the end, in 1/time, if it is stable.
+    /// Re λ of the rightmost root of sliding under the control that acts in the end, in 1/time, if
+    /// it is stable.
     ///
     /// # Errors
     /// When v0 is out of range.
@@ -230,7 +236,8 @@ impl Case {
         Ok(self.follow(&mut motion, self.stable_abscissa()?, observer))
     }
 
-    /// Follows `motion`, which is at this case's start, as [`Case::run`] does, with what [`Case::stable_abscissa`] says.
+    /// Follows `motion`, which is at this case's start, as [`Case::run`] does, with what
+    /// [`Case::stable_abscissa`] says.
     pub fn follow(
         &self,
         motion: &mut Motion,

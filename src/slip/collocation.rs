@@ -1,10 +1,13 @@
-//! A step by collocation: the rates of ẋ and a at Chebyshev's nodes, from the friction law itself, by Picard's iteration.
+//! A step by collocation: the rates of ẋ and a at Chebyshev's nodes, from the friction law itself,
+//! by Picard's iteration.
 //!
-//! A second method for [`super::motion`], which shares with Taylor series the equations and the events and nothing of how a
-//! step is made: no coefficients of the law, no radius of convergence, and steps from the law's own scale of speed. It is some
-//! ten times slower, and there to contradict the first one.
+//! A second method for [`super::motion`], which shares with Taylor series the equations and the
+//! events and nothing of how a step is made: no coefficients of the law, no radius of convergence,
+//! and steps from the law's own scale of speed. It is some ten times slower, and there to
+//! contradict the first one.
 //!
-//! With M nodes s_i of a step of length h, u̇ and ȧ are the polynomials of degree M − 1 through their values there, and
+//! With M nodes s_i of a step of length h, u̇ and ȧ are the polynomials of degree M − 1 through
+//! their values there, and
 //!
 //! ```text
 //! u(s_i) = u(0) + h Σ_j Q_ij u̇(s_j),     a(s_i) = a(0) + h Σ_j Q_ij ȧ(s_j)
@@ -20,7 +23,8 @@ use super::series::{Coefficients, MOST_ORDER, PER_NEXT, value};
 
 /// The number of nodes, which is the order of the polynomials of u and a.
 pub(super) const NODES: usize = 12;
-/// The most iterations of a step, and the change at which they end, relative to the size of the motion.
+/// The most iterations of a step, and the change at which they end, relative to the size of the
+/// motion.
 const MOST_ITERATIONS: u32 = 60;
 const AT_REST: f64 = 2e-16;
 
@@ -71,7 +75,8 @@ impl Rule {
     }
 }
 
-/// Coefficients of Chebyshev's polynomials on [0, 1]: T₀ = 1, T₁ = 2x − 1, T_{k+1} = 2 (2x − 1) T_k − T_{k−1}.
+/// Coefficients of Chebyshev's polynomials on [0, 1]: T₀ = 1, T₁ = 2x − 1, T_{k+1} = 2 (2x − 1) T_k
+/// − T_{k−1}.
 fn shifted_chebyshev() -> Matrix {
     let mut t = [[0.0; NODES]; NODES];
     t[0][0] = 1.0;
@@ -95,12 +100,14 @@ pub(super) struct Solved {
     /// The coefficients of ẋ and of a, of the time since the step's start.
     pub u: Coefficients,
     pub a: Coefficients,
-    /// The size of the last terms of Chebyshev's series of the rates, times the length: what the polynomials leave out.
+    /// The size of the last terms of Chebyshev's series of the rates, times the length: what the
+    /// polynomials leave out.
     pub rest: f64,
 }
 
-/// The step of `length` from ẋ = `u`, a = `a`. `rates` gives u̇ and ȧ of a state, of which the delayed elongation is the third
-/// number, whose polynomial is `delayed`. None where the iteration does not come to rest.
+/// The step of `length` from ẋ = `u`, a = `a`. `rates` gives u̇ and ȧ of a state, of which the
+/// delayed elongation is the third number, whose polynomial is `delayed`. None where the iteration
+/// does not come to rest.
 pub(super) fn solve(
     (u, a): (f64, f64),
     length: f64,

@@ -1,21 +1,26 @@
-//! The uncontrolled cycle of stick and slip, and motions that begin in it: control is switched on at one of its phases.
+//! The uncontrolled cycle of stick and slip, and motions that begin in it: control is switched on
+//! at one of its phases.
 //!
-//! Every release from uncontrolled stick has the same state, (ẋ, a) = (0, μ_S) in the units of [`super::motion`], and without
-//! control the future depends on nothing else. So if the block sticks once more it goes on periodically, and what it did in
-//! the last delay is known at every phase.
+//! Every release from uncontrolled stick has the same state, (ẋ, a) = (0, μ_S) in the units of
+//! [`super::motion`], and without control the future depends on nothing else. So if the block
+//! sticks once more it goes on periodically, and what it did in the last delay is known at every
+//! phase.
 //!
-//! Whether it sticks again is known before its path in the plane of u = ẋ and a has gone round once. Paths do not cross. In
-//! slip forwards the maxima of u are above v0 and its minima below, whatever the friction law: ü = v0 − u where u̇ = 0. In slip
-//! backwards a grows all the time, so the block comes to rest again, at some a ≥ −μ_S. Two things keep it from sticking:
+//! Whether it sticks again is known before its path in the plane of u = ẋ and a has gone round
+//! once. Paths do not cross. In slip forwards the maxima of u are above v0 and its minima below,
+//! whatever the friction law: ü = v0 − u where u̇ = 0. In slip backwards a grows all the time, so
+//! the block comes to rest again, at some a ≥ −μ_S. Two things keep it from sticking:
 //!
-//! - *u has a minimum above 0 in slip forwards.* The path from the release to there, the line μ_K(u) = a from there to u = 0
-//!   and the axis u = 0 up to a = μ_S enclose a region. The line and the axis are crossed inwards only, so the block never
-//!   leaves it, and does not come to rest again.
-//! - *It slides back and comes to rest at a > μ_S*, so that it slips forwards at once. Its path and the axis u = 0 from
-//!   a = μ_S to there enclose all states in which the block sticks. The axis is crossed outwards only, so it stays outside.
+//! - *u has a minimum above 0 in slip forwards.* The path from the release to there, the line
+//!   μ_K(u) = a from there to u = 0 and the axis u = 0 up to a = μ_S enclose a region. The line and
+//!   the axis are crossed inwards only, so the block never leaves it, and does not come to rest
+//!   again.
+//! - *It slides back and comes to rest at a > μ_S*, so that it slips forwards at once. Its path and
+//!   the axis u = 0 from a = μ_S to there enclose all states in which the block sticks. The axis is
+//!   crossed outwards only, so it stays outside.
 //!
-//! Else it sticks: where it stops at |a| ≤ μ_S, forwards or after it has slid back. A stuck block is always released forwards,
-//! at a = μ_S, since a grows while it sticks.
+//! Else it sticks: where it stops at |a| ≤ μ_S, forwards or after it has slid back. A stuck block
+//! is always released forwards, at a = μ_S, since a grows while it sticks.
 
 use std::f64::consts::TAU;
 
@@ -50,17 +55,20 @@ impl UncontrolledCycle {
 /// Why there is no motion from a phase of the uncontrolled cycle.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum NoCycle {
-    /// Released once, the uncontrolled block does not stick again, or has not done so after 1000 periods of free oscillation.
+    /// Released once, the uncontrolled block does not stick again, or has not done so after 1000
+    /// periods of free oscillation.
     NoStickSlip,
     /// One delay has more than 10⁴ cycles, or two have more steps than are kept.
     LongDelay,
 }
 
-/// A motion in uncontrolled stick-slip that was just released: at t = 0 it has ẋ = 0, a = μ_S and begins to slip, after
-/// cycles that reach back at least one delay. Control acts from t = `phase` on, or never where both gains are 0; `phase` ≥ 0
-/// is taken modulo the period, and `parameters.switch_on` is not looked at.
+/// A motion in uncontrolled stick-slip that was just released: at t = 0 it has ẋ = 0, a = μ_S and
+/// begins to slip, after cycles that reach back at least one delay. Control acts from t = `phase`
+/// on, or never where both gains are 0; `phase` ≥ 0 is taken modulo the period, and
+/// `parameters.switch_on` is not looked at.
 ///
-/// At phase 0 control acts on a block that already slips. Taken as still stuck it could be held back by the jump of v.
+/// At phase 0 control acts on a block that already slips. Taken as still stuck it could be held
+/// back by the jump of v.
 ///
 /// # Errors
 /// See [`NoCycle`].
@@ -74,7 +82,8 @@ pub fn after_release(
     Ok((motion, cycle))
 }
 
-/// As [`after_release`], in the memory of another motion; what that holds after an error means nothing.
+/// Begins a motion a time after a release, as [`after_release`] does, in the memory of another
+/// motion; what that holds after an error means nothing.
 ///
 /// # Errors
 /// See [`NoCycle`].
@@ -117,7 +126,8 @@ pub fn restart_after_release(
     Ok(cycle)
 }
 
-/// Follows an uncontrolled block that was just released to its next release; none where it does not stick again.
+/// Follows an uncontrolled block that was just released to its next release; none where it does not
+/// stick again.
 fn follow_cycle(motion: &mut Motion) -> Option<UncontrolledCycle> {
     let start = motion.t;
     let p = motion.parameters();

@@ -6,13 +6,16 @@ use crate::model::FrictionLaw;
 use crate::model::elementary::{exp, ln, power};
 use crate::model::friction::Kind;
 
-/// Coefficients of the friction μ_K(|ẋ|) n along a motion, grown one by one as those of speed and load become known.
+/// Coefficients of the friction μ_K(|ẋ|) n along a motion, grown one by one as those of speed and
+/// load become known.
 pub(super) trait Series {
-    /// Coefficient `k`; `speed` is coefficient k of |ẋ|, and the smaller ones were given before. `load` is known up to k.
+    /// Coefficient `k`; `speed` is coefficient k of |ẋ|, and the smaller ones were given before.
+    /// `load` is known up to k.
     fn extend(&mut self, k: usize, speed: f64, load: &Coefficients) -> f64;
 }
 
-/// A law's series, with its speeds in the motion's units. One type for each law, so that a step asks only once which it is.
+/// A law's series, with its speeds in the motion's units. One type for each law, so that a step
+/// asks only once which it is.
 #[allow(
     clippy::large_enum_variant,
     reason = "one for each motion, and never moved"
@@ -58,11 +61,12 @@ impl FrictionSeries {
         }
     }
 
-    /// The longest step, at most `length`, in which the series of the law tells the law to `error`, relative to the
-    /// load; `speed` are the coefficients of ẋ.
+    /// The longest step, at most `length`, in which the series of the law tells the law to `error`,
+    /// relative to the load; `speed` are the coefficients of ẋ.
     ///
-    /// Coulomb's law and a cubic of a table are polynomials of the speed, and the pole of velocity weakening makes its
-    /// coefficients grow as fast as its distance asks for. Stribeck's Gaussian alone can hide from them.
+    /// Coulomb's law and a cubic of a table are polynomials of the speed, and the pole of velocity
+    /// weakening makes its coefficients grow as fast as its distance asks for. Stribeck's Gaussian
+    /// alone can hide from them.
     pub fn resolved(&self, speed: &[f64], length: f64, error: f64) -> f64 {
         match self {
             Self::Stribeck(series) => series.resolved(speed, length, error),
@@ -78,7 +82,7 @@ impl FrictionSeries {
     }
 }
 
-/// The same at all speeds.
+/// A law that is the same at all speeds.
 #[derive(Debug, Clone)]
 pub(super) struct Coulomb {
     mu0: f64,
@@ -116,7 +120,8 @@ impl Series for Weakening {
     }
 }
 
-/// m n with m = μ0 + (μ_S − μ0) g and Stribeck's Gaussian g = exp(−y), y = (ẋ/v_s)², which obeys g′ = −y′g.
+/// m n with m = μ0 + (μ_S − μ0) g and Stribeck's Gaussian g = exp(−y), y = (ẋ/v_s)², which obeys g′
+/// = −y′g.
 #[derive(Debug, Clone)]
 pub(super) struct Stribeck {
     mu0: f64,
@@ -147,7 +152,8 @@ impl Series for Stribeck {
     }
 }
 
-/// Radii of the discs on which the Gaussian is bounded, over the length of a step: large ones are for low orders.
+/// Radii of the discs on which the Gaussian is bounded, over the length of a step: large ones are
+/// for low orders.
 const DISCS: [f64; 8] = [1.25, 2.0, 3.0, 4.5, 10.0, 30.0, 100.0, 300.0];
 /// A step on which the series is not known to be the law becomes shorter by this, so often at most.
 const SHORTER: f64 = 0.8;
@@ -156,10 +162,11 @@ const MOST_TIMES: u32 = 60;
 impl Stribeck {
     /// See [`FrictionSeries::resolved`].
     ///
-    /// Coefficient k of the Gaussian about z = ẋ/v_s is a Hermite function. These oscillate, and tell how large those of
-    /// higher order are, up to z² = 2k; beyond that the first ones are as small as exp(−z²) whatever comes after them. There
-    /// Cauchy's estimate tells instead: on a disc of radius ρ the rest of a series of order N is at most
-    /// M(ρ) (s/ρ)^N/(1 − s/ρ), where M is the largest absolute value on that disc.
+    /// Coefficient k of the Gaussian about z = ẋ/v_s is a Hermite function. These oscillate, and
+    /// tell how large those of higher order are, up to z² = 2k; beyond that the first ones are as
+    /// small as exp(−z²) whatever comes after them. There Cauchy's estimate tells instead: on a
+    /// disc of radius ρ the rest of a series of order N is at most M(ρ) (s/ρ)^N/(1 − s/ρ), where M
+    /// is the largest absolute value on that disc.
     fn resolved(&self, speed: &[f64], length: f64, error: f64) -> f64 {
         let order = (speed.len() - 1) as f64;
         let centre = self.scaled[0].abs();
@@ -213,7 +220,8 @@ mod tests {
         }
     }
 
-    /// A speed that falls onto the flank of the Gaussian from far above it: no step is longer than the series holds.
+    /// A speed that falls onto the flank of the Gaussian from far above it: no step is longer than
+    /// the series holds.
     #[test]
     fn no_step_passes_over_the_flank() {
         let (fall, v_s) = (0.6, 0.1);

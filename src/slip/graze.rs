@@ -1,4 +1,5 @@
-//! How near ẋ comes to zero in slip: minima that are passed, and the depth to which a stop would have gone.
+//! How near ẋ comes to zero in slip: minima that are passed, and the depth to which a stop would
+//! have gone.
 
 use super::series::{derivative, first_zero, shifted, value};
 use super::step::Step;
@@ -7,7 +8,8 @@ use super::step::Step;
 const NEWTON_STEPS: usize = 8;
 
 impl Step {
-    /// The first minimum of ẋ inside the step: the time since its start, and the value. None where there is none.
+    /// The first minimum of ẋ inside the step: the time since its start, and the value. None where
+    /// there is none.
     #[must_use]
     pub fn speed_minimum(&self) -> Option<(f64, f64)> {
         let slope = derivative(Self::range(&self.u, self.order), 1.0);
@@ -21,9 +23,10 @@ impl Step {
         Some((s, value(Self::range(&self.u, self.order), s)))
     }
 
-    /// The minimum ẋ < 0 that a slip which stops at the end of this step would have reached, had the friction gone
-    /// on as for ẋ > 0 (minus the maximum, of a slip backwards), with the time from the stop to it: the minimum is a smooth function of the parameters that is zero
-    /// where the stop is a graze.
+    /// The minimum ẋ < 0 that a slip which stops at the end of this step would have reached, had
+    /// the friction gone on as for ẋ > 0 (minus the maximum, of a slip backwards), with the time
+    /// from the stop to it: the minimum is a smooth function of the parameters that is zero where
+    /// the stop is a graze.
     #[must_use]
     pub fn minimum_beyond_stop(&self) -> (f64, f64) {
         let mut about = shifted(Self::range(&self.u, self.order), self.length);

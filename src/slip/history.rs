@@ -10,7 +10,8 @@ use super::series::{Coefficients, MOST_ORDER, shift, shifted, value};
 struct Piece {
     from: f64,
     to: f64,
-    /// How far from `from` the polynomial holds to the tolerance, both ways, as far as no kink is in between.
+    /// How far from `from` the polynomial holds to the tolerance, both ways, as far as no kink is
+    /// in between.
     radius: f64,
     order: usize,
     a: Coefficients,
@@ -36,7 +37,8 @@ const SHARE: f64 = 0.75;
 /// How far it may be from them, in units of the tolerance.
 const NEIGHBOURS_APART: f64 = 4.0;
 
-/// A stretch of time in a past that is extrapolated, and what it corresponds to in the two pasts that it is told from.
+/// A stretch of time in a past that is extrapolated, and what it corresponds to in the two pasts
+/// that it is told from.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Stretch {
     /// Its length, and those in the last past and in the one before.
@@ -46,7 +48,8 @@ pub struct Stretch {
 /// Pasts correspond to one another to this, compared with all of their span.
 const SLIVER: f64 = 1e-7;
 
-/// The most steps that a past is kept of, two delays: 14 MB. A search for a critical velocity has up to ten pasts.
+/// The most steps that a past is kept of, two delays: 14 MB. A search for a critical velocity has
+/// up to ten pasts.
 pub const MOST_KEPT: usize = 1 << 16;
 /// What a step takes in it.
 pub const BYTES_OF_A_STEP: usize = size_of::<Piece>();
@@ -61,12 +64,14 @@ pub(super) struct History {
     felt: u32,
     /// The part of its radius to which the last polynomial stands in for what is yet to come.
     ahead: f64,
-    /// How far a polynomial may be from its neighbour where it stands in for it, relative to the elongation or to 1.
+    /// How far a polynomial may be from its neighbour where it stands in for it, relative to the
+    /// elongation or to 1.
     apart: f64,
 }
 
 impl History {
-    /// Makes it the history a = `a` for all times before `now`; jumps of the order `felt` and higher are not felt.
+    /// Makes it the history a = `a` for all times before `now`; jumps of the order `felt` and
+    /// higher are not felt.
     pub fn restart(&mut self, a: f64, now: f64, felt: u32) {
         let mut coefficients = [0.0; MOST_ORDER + 1];
         coefficients[0] = a;
@@ -93,9 +98,10 @@ impl History {
         piece.a[1] = rate;
     }
 
-    /// The last polynomial stands in for what is yet to come as far as its errors, times a `gain`, stay within the tolerance,
-    /// which at the end of its radius is its last term, of this `order`. It stands in for its neighbours as far as it is them, to some
-    /// times the `tolerance`: errors of its middle terms do not show in the last ones.
+    /// The last polynomial stands in for what is yet to come as far as its errors, times a `gain`,
+    /// stay within the tolerance, which at the end of its radius is its last term, of this `order`.
+    /// It stands in for its neighbours as far as it is them, to some times the `tolerance`: errors
+    /// of its middle terms do not show in the last ones.
     pub fn look_ahead(&mut self, gain: f64, order: usize, tolerance: f64) {
         self.apart = NEIGHBOURS_APART * tolerance;
         self.ahead = SHARE.min(1.0 / rough_root(gain, order));
@@ -119,11 +125,11 @@ impl History {
         (self.ahead, self.apart) = (other.ahead, other.apart);
     }
 
-    /// Becomes, over `span` until time 0, `last` and `share` of the way from `before` to it beyond it, both as of their ends;
-    /// false where that has no room.
+    /// Becomes, over `span` until time 0, `last` and `share` of the way from `before` to it beyond
+    /// it, both as of their ends; false where that has no room.
     ///
-    /// What is alike in the two pasts stands at the same place of stretches of time that follow one another, back and back
-    /// again through `stretches`, the last one first.
+    /// What is alike in the two pasts stands at the same place of stretches of time that follow one
+    /// another, back and back again through `stretches`, the last one first.
     pub fn extrapolate(
         &mut self,
         (last, before): (&mut Self, &mut Self),
@@ -206,8 +212,8 @@ impl History {
         }
     }
 
-    /// Adds the step from the end of the last one to `to`; its polynomial holds there, and for `radius` from its start, both ways.
-    /// False where there is no room for it.
+    /// Adds the step from the end of the last one to `to`; its polynomial holds there, and for
+    /// `radius` from its start, both ways. False where there is no room for it.
     #[must_use]
     pub fn push(&mut self, to: f64, radius: f64, a: &[f64], kink: u32) -> bool {
         let from = self.pieces.back().map_or(to, |p| p.to);
@@ -244,10 +250,11 @@ impl History {
         }
     }
 
-    /// Writes the polynomial of a from `time` on, as one of the time since then, to `out`; zero beyond its order. `latest` is
-    /// the order of the kink at the end of the last step.
+    /// Writes the polynomial of a from `time` on, as one of the time since then, to `out`; zero
+    /// beyond its order. `latest` is the order of the kink at the end of the last step.
     pub fn read(&mut self, time: f64, latest: u32, out: &mut Coefficients) -> Reach {
-        // `time` is rounded as the present is, one delay later: with less than that a step could be too short to move on.
+        // `time` is rounded as the present is, one delay later: with less than that a step could be
+        // too short to move on.
         let now = self.pieces.back().map_or(0.0, |p| p.to.abs());
         let close = 8.0 * f64::EPSILON * time.abs().max(now).max(1.0);
         while self.at + 1 < self.pieces.len() && time >= self.pieces[self.at].to - close {
@@ -267,7 +274,8 @@ impl History {
         reach
     }
 
-    /// Whether the polynomial of a piece is that of the others at `from`, which is in the present one, and at `until`.
+    /// Whether the polynomial of a piece is that of the others at `from`, which is in the present
+    /// one, and at `until`.
     fn stands_in(&self, index: usize, from: f64, until: f64) -> bool {
         let at = |piece: &Piece, time: f64| value(&piece.a[..=piece.order], time - piece.from);
         let agree = |one: &Piece, other: &Piece, time: f64| {
@@ -289,12 +297,14 @@ impl History {
         })
     }
 
-    /// The piece that may be used longest from `time` on, and until when. Over a boundary that is no more than a step's end
-    /// a polynomial may be used as far as it holds, forwards and backwards.
+    /// The piece that may be used longest from `time` on, and until when. Over a boundary that is
+    /// no more than a step's end a polynomial may be used as far as it holds, forwards and
+    /// backwards.
     fn farthest(&self, time: f64, latest: u32) -> (usize, Reach) {
         let mut best = (self.at, self.pieces[self.at].to);
         let mut kink = if latest < self.felt { latest } else { SMOOTH };
-        // Where nothing happens at the end of the last step, its polynomial goes on to be the motion.
+        // Where nothing happens at the end of the last step, its polynomial goes on to be the
+        // motion.
         let smooth_end = kink == SMOOTH && self.felt > 0;
         let mut end = f64::INFINITY;
         for (index, piece) in self.pieces.iter().enumerate().skip(self.at) {
@@ -367,8 +377,8 @@ mod tests {
         assert_eq!(history.pieces.len(), 2);
     }
 
-    /// Two pasts of a slope and a rest each, whose stretches differ: what lies beyond the second one has the lengths and values
-    /// that go on evenly, with a kink where the stretches meet.
+    /// Two pasts of a slope and a rest each, whose stretches differ: what lies beyond the second
+    /// one has the lengths and values that go on evenly, with a kink where the stretches meet.
     #[test]
     fn pasts_are_extrapolated_with_their_stretches_aligned() {
         let past = |slip: f64, stick: f64, start: f64| {

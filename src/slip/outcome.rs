@@ -8,8 +8,8 @@ use super::step::Step;
 /// How a motion ends up.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Outcome {
-    /// It settles to sliding at v0: sliding is linearly stable, the deviation stayed below 10⁻³ v0 for a whole delay and has
-    /// decayed since as the abscissa says, for one relaxation time.
+    /// It settles to sliding at v0: sliding is linearly stable, the deviation stayed below 10⁻³ v0
+    /// for a whole delay and has decayed since as the abscissa says, for one relaxation time.
     Sliding,
     /// Stick and slip follow one another periodically.
     StickSlip,
@@ -19,7 +19,7 @@ pub enum Outcome {
     LiftOff,
     /// It grows beyond all bounds.
     Diverged,
-    /// None of these was reached before the horizon, or within the steps allowed.
+    /// No other outcome was reached before the horizon, or within the steps allowed.
     Undecided,
     /// There is no motion: no uncontrolled stick-slip at whose phase control could be switched on.
     NoCycle,
@@ -78,7 +78,8 @@ pub struct Summary {
     pub settle_time: f64,
     /// The smallest load since switch-on.
     pub n_min: f64,
-    /// The largest spring force |κa| since switch-on; of a motion that grows beyond all bounds, until that was known.
+    /// The largest spring force |κa| since switch-on; of a motion that grows beyond all bounds,
+    /// until that was known.
     pub peak: f64,
     /// Period of stick-slip, and how long it sticks and slips in one; NaN else.
     pub period: f64,
@@ -95,7 +96,8 @@ pub struct Summary {
 }
 
 impl Summary {
-    /// Its numbers but the steps, by the names that files and messages have for them; NaN where there is none.
+    /// Its numbers but the steps, by the names that files and messages have for them; NaN where
+    /// there is none.
     #[must_use]
     pub const fn numbers(&self) -> [(&'static str, f64); 8] {
         [
@@ -116,7 +118,8 @@ pub trait Observer {
     /// After each step, with the event that ended it.
     fn step(&mut self, motion: &Motion, event: Option<Event>);
 
-    /// Whether it has seen enough: then the motion is followed no further, and its outcome is undecided.
+    /// Whether it has seen enough: then the motion is followed no further, and its outcome is
+    /// undecided.
     fn enough(&self) -> bool {
         false
     }
@@ -274,7 +277,8 @@ impl Watch {
 
     fn see(&mut self, motion: &Motion, event: Option<Event>) {
         let step = motion.last_step();
-        // The time itself, not the end less the length: rounding would put the first step under control before it.
+        // The time itself, not the end less the length: rounding would put the first step under
+        // control before it.
         let start = std::mem::replace(&mut self.seen, motion.t);
         let size = motion.a.abs().max(motion.u.abs());
         let finite = (motion.a + motion.u).is_finite();
@@ -305,7 +309,8 @@ impl Watch {
         }
     }
 
-    /// Adds the cycle that ends with this release, and looks whether cycles repeat over more than a delay.
+    /// Adds the cycle that ends with this release, and looks whether cycles repeat over more than a
+    /// delay.
     fn see_release(&mut self, motion: &Motion) {
         let began = std::mem::replace(&mut self.last_release, motion.t);
         // Before switch-on, or across it, no cycle says what comes after.
@@ -556,7 +561,8 @@ mod tests {
         assert_eq!(s.outcome, Outcome::StickSlip, "{s:?}");
     }
 
-    /// Two delays of more steps than are kept: the motion is not followed with a past that is not its own.
+    /// Two delays of more steps than are kept: the motion is not followed with a past that is not
+    /// its own.
     #[test]
     fn what_outgrows_its_past_is_undecided() {
         let p = Parameters {
@@ -646,8 +652,9 @@ mod tests {
         assert_eq!(s.outcome, Outcome::Oscillation, "{s:?}");
     }
 
-    /// Over the first delay the delayed elongation is constant, and Coulomb friction leaves a linear equation: on its growing
-    /// direction the elongation is one exponential, and the load falls with it.
+    /// Over the first delay the delayed elongation is constant, and Coulomb friction leaves a
+    /// linear equation: on its growing direction the elongation is one exponential, and the load
+    /// falls with it.
     #[test]
     fn the_last_step_of_a_diverged_motion_counts() {
         let (mu, alpha_v, alpha_n, v0, a0) = (0.5, 2.5_f64, -1e-8, 3.0, 1.5);

@@ -34,7 +34,8 @@ const BINOMIAL: [Coefficients; MOST_ORDER + 1] = {
     rows
 };
 
-/// Σ f(c_k) s^k, by Horner's scheme for every fourth power: a quarter as long a chain of operations.
+/// Σ f(c_k) s^k, by Horner's scheme for every fourth power: a quarter as long a chain of
+/// operations.
 #[inline(always)]
 fn sum(c: &[f64], s: f64, f: impl Fn(f64) -> f64) -> f64 {
     let square = s * s;
@@ -92,7 +93,8 @@ pub fn shifted(c: &[f64], by: f64) -> Coefficients {
     about
 }
 
-/// Writes the coefficients about s = `by` of those in `c` to `about`: Σ_m (j + m over j) c_{j+m} by^m, and zero beyond.
+/// Writes the coefficients about s = `by` of those in `c` to `about`: Σ_m (j + m over j) c_{j+m}
+/// by^m, and zero beyond.
 ///
 /// Horner's scheme takes as many operations, but each waits for the one before.
 #[inline]
@@ -110,7 +112,8 @@ pub fn shift(c: &[f64], by: f64, about: &mut Coefficients) {
     }
 }
 
-/// Coefficient k of the product of `p` and `q`, from the middle to both ends: what was found last is waited for last.
+/// Coefficient k of the product of `p` and `q`, from the middle to both ends: what was found last
+/// is waited for last.
 #[inline(always)]
 #[must_use]
 pub fn product(p: &Coefficients, q: &Coefficients, k: usize) -> f64 {
@@ -136,10 +139,12 @@ pub fn derivative(c: &[f64], factor: f64) -> Coefficients {
     slope
 }
 
-/// The first zero in (0, `end`] of a polynomial that is positive just after 0; none if it stays positive.
+/// The first zero in (0, `end`] of a polynomial that is positive just after 0; none if it stays
+/// positive.
 ///
-/// No zero is stepped over: a parabola below the polynomial says how far it stays positive at least. Near a simple zero the
-/// steps are Newton's; a minimum within rounding of zero counts as one. Zeros at s = 0 itself are divided out.
+/// No zero is stepped over: a parabola below the polynomial says how far it stays positive at
+/// least. Near a simple zero the steps are Newton's; a minimum within rounding of zero counts as
+/// one. Zeros at s = 0 itself are divided out.
 #[must_use]
 pub fn first_zero(c: &[f64], end: f64) -> Option<f64> {
     let multiplicity = c.iter().position(|&c| c != 0.0)?;
@@ -227,7 +232,8 @@ pub fn largest(c: &[f64], end: f64, known: f64) -> f64 {
     found
 }
 
-/// Where the slope changes its sign, by Newton's method kept between `from`, where it is positive, and `to`.
+/// Where the slope changes its sign, by Newton's method kept between `from`, where it is positive,
+/// and `to`.
 fn top(slopes: &[f64], bends: &[f64], (mut from, mut to): (f64, f64)) -> f64 {
     let near = 1e-9 * (to - from);
     let mut s = 0.5 * (from + to);
@@ -284,7 +290,10 @@ mod tests {
     proptest! {
         /// Of a polynomial made of its zeros, the first one is found.
         #[test]
-        fn the_first_zero_is_found(zeros in prop::collection::vec(0.05..3.0_f64, 1..7), end in 0.5..2.0_f64) {
+        fn the_first_zero_is_found(
+            zeros in prop::collection::vec(0.05..3.0_f64, 1..7),
+            end in 0.5..2.0_f64,
+        ) {
             let mut c = vec![1.0];
             for zero in &zeros {
                 let mut next = vec![0.0; c.len() + 1];
@@ -296,13 +305,20 @@ mod tests {
             }
             let first = zeros.iter().copied().fold(f64::INFINITY, f64::min);
             match first_zero(&c, end) {
-                Some(s) => prop_assert!((s - first).abs() < 1e-3 && value(&c, s).abs() < 1e-11, "{s} {first}"),
+                Some(s) => prop_assert!(
+                    (s - first).abs() < 1e-3 && value(&c, s).abs() < 1e-11,
+                    "{s} {first}"
+                ),
                 None => prop_assert!(first > end - 1e-3),
             }
         }
 
         #[test]
-        fn products_are_those_of_the_polynomials(p in prop::collection::vec(-1.0..1.0_f64, 9), q in prop::collection::vec(-1.0..1.0_f64, 9), s in -0.5..0.5_f64) {
+        fn products_are_those_of_the_polynomials(
+            p in prop::collection::vec(-1.0..1.0_f64, 9),
+            q in prop::collection::vec(-1.0..1.0_f64, 9),
+            s in -0.5..0.5_f64,
+        ) {
             let (mut long_p, mut long_q) = ([0.0; MOST_ORDER + 1], [0.0; MOST_ORDER + 1]);
             long_p[..9].copy_from_slice(&p);
             long_q[..9].copy_from_slice(&q);
@@ -311,7 +327,11 @@ mod tests {
         }
 
         #[test]
-        fn shifting_changes_nothing(c in prop::collection::vec(-1.0..1.0_f64, 1..20), by in -0.5..0.5_f64, s in -0.5..0.5_f64) {
+        fn shifting_changes_nothing(
+            c in prop::collection::vec(-1.0..1.0_f64, 1..20),
+            by in -0.5..0.5_f64,
+            s in -0.5..0.5_f64,
+        ) {
             prop_assert!((value(&shifted(&c, by), s) - value(&c, s + by)).abs() < 1e-12);
         }
     }

@@ -1,5 +1,5 @@
-//! One step of a motion: polynomials in the time since its start, how they follow from the equations, and what can be read
-//! off them.
+//! One step of a motion: polynomials in the time since its start, how they follow from the
+//! equations, and what can be read off them.
 
 use super::friction_series::Series;
 use super::series::{

@@ -1,10 +1,12 @@
-//! The series of a friction law from a table: one cubic in the speed at a time, and where the speed leaves it.
+//! The series of a friction law from a table: one cubic in the speed at a time, and where the speed
+//! leaves it.
 //!
-//! At a point of the table the second derivative of μ_K jumps, and with it the fourth derivative of the elongation; at the first
-//! and the last point it is the slope, and the third derivative. Steps end there. A cubic stays in use until the speed is
-//! beyond its end by a little more than noise, so that a motion that rests on a point, or grazes it, does not go back and
-//! forth between two cubics: after each crossing the speed has to come back by more than rounding before the next one. What
-//! the cubics differ by so near their common end is below the tolerance.
+//! At a point of the table the second derivative of μ_K jumps, and with it the fourth derivative of
+//! the elongation; at the first and the last point it is the slope, and the third derivative. Steps
+//! end there. A cubic stays in use until the speed is beyond its end by a little more than noise,
+//! so that a motion that rests on a point, or grazes it, does not go back and forth between two
+//! cubics: after each crossing the speed has to come back by more than rounding before the next
+//! one. What the cubics differ by so near their common end is below the tolerance.
 
 use super::friction_series::Series;
 use super::series::{Coefficients, MOST_ORDER, first_zero, product};
@@ -16,7 +18,8 @@ use crate::model::table::Piece;
 pub(super) struct TableSeries {
     table: Table,
     velocity_unit: f64,
-    /// The number of points below the cubic in use, and the cubic, with speeds in the motion's units.
+    /// The number of points below the cubic in use, and the cubic, with speeds in the motion's
+    /// units.
     region: usize,
     piece: Piece,
     w: Coefficients,

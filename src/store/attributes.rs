@@ -15,14 +15,16 @@ use super::values::{Number, is_of};
 
 /// Writes a text attribute as a null-terminated string of fixed length.
 ///
-/// The binding writes null-padded strings only, which netCDF readers pass over on dimension scales without a word.
+/// The binding writes null-padded strings only, which netCDF readers pass over on dimension scales
+/// without a word.
 pub(super) fn put_text(at: &Location, name: &str, text: &str) -> hdf5::Result<()> {
     let bytes = CString::new(text.replace('\0', " ")).map_err(|e| e.to_string())?;
     let name = CString::new(name).map_err(|e| e.to_string())?;
     let length = bytes.as_bytes_with_nul().len();
     hdf5::sync::sync(|| {
-        // SAFETY: `at` is an open object, both strings end in a null byte and outlive the calls, `length` counts the
-        // terminator, and every identifier is closed whatever happened; the calls run under the library's lock.
+        // SAFETY: `at` is an open object, both strings end in a null byte and outlive the calls,
+        // `length` counts the terminator, and every identifier is closed whatever happened; the
+        // calls run under the library's lock.
         unsafe {
             let kind = H5Tcreate(H5T_class_t::H5T_STRING, length);
             H5Tset_cset(kind, H5T_cset_t::H5T_CSET_UTF8);
@@ -70,7 +72,8 @@ pub(super) fn put_flags(at: &Location, long_name: &str, names: &[&str]) -> hdf5:
 /// More bytes than this are in no attribute of slipmap's.
 const MOST_BYTES: usize = 64 << 20;
 
-/// Reads a text attribute. slipmap's have a fixed length; of others the library believes the length that the file claims.
+/// Reads a text attribute. slipmap's have a fixed length; of others the library believes the length
+/// that the file claims.
 pub(super) fn text(at: &Location, name: &str) -> hdf5::Result<String> {
     let attribute = at.attr(name)?;
     let kind = attribute.dtype()?;

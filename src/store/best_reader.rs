@@ -35,13 +35,15 @@ pub struct MapBest {
 }
 
 impl MapFile {
-    /// The axes (gain, delay) of the planes whose best settings the map holds; none where it holds none.
+    /// The axes (gain, delay) of the planes whose best settings the map holds; none where it holds
+    /// none.
     #[must_use]
     pub fn best_plane(&self) -> Option<(usize, usize)> {
         self.plane_of(BEST)
     }
 
-    /// The best setting of every plane, in the order of the axes outside of it. Empty where the map holds none.
+    /// The best setting of every plane, in the order of the axes outside of it. Empty where the map
+    /// holds none.
     ///
     /// # Errors
     /// When the file is damaged.

@@ -1,7 +1,7 @@
 //! The best settings in a map: one value per plane (gain, delay), over the axes outside of it.
 //!
-//! The group shares the dimensions of the map. The axes outside the planes stand in it once more, as variables of the same
-//! names, so that readers which open one group alone have coordinates.
+//! The group shares the dimensions of the map. The axes outside the planes stand in it once more,
+//! as variables of the same names, so that readers which open one group alone have coordinates.
 
 use hdf5::plist::group_create::LinkCreationOrder;
 use hdf5::types::OwnedDynValue;
@@ -17,7 +17,8 @@ use crate::linear::best::Kind;
 use crate::sweep::cells::best::BestSettings;
 use crate::sweep::{Parameter, Plan};
 
-/// The best setting of one plane as the values of the group's variables, in their order; fill values where there is none.
+/// The best setting of one plane as the values of the group's variables, in their order; fill
+/// values where there is none.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub(crate) struct BestRow {
     numbers: [f64; 5],
@@ -159,7 +160,8 @@ impl Variables<'_> {
 }
 
 impl BestWriter {
-    /// Creates the group, for the planes of `plan` spanned by the axes `gain` and delay; `axes` are the map's dimensions.
+    /// Creates the group, for the planes of `plan` spanned by the axes `gain` and delay; `axes` are
+    /// the map's dimensions.
     pub fn create(
         parent: &Group,
         dimensions: &mut Dimensions,

@@ -1,7 +1,8 @@
-//! Crossing curves in a map, and curves of degrees of stability: CF contiguous ragged arrays, appended plane by plane.
+//! Crossing curves in a map, and curves of degrees of stability: CF contiguous ragged arrays,
+//! appended plane by plane.
 //!
-//! Dimensions of the group: `curve` (one piece of a curve), `vertex` (all vertices of all pieces, one piece after the
-//! other) and `corner` (points where two curves cross).
+//! Dimensions of the group: `curve` (one piece of a curve), `vertex` (all vertices of all pieces,
+//! one piece after the other) and `corner` (points where two curves cross).
 
 use hdf5::plist::group_create::LinkCreationOrder;
 use hdf5::{Dataset, Group, H5Type};
@@ -117,7 +118,8 @@ impl BoundaryWriter {
         put_text(
             &group,
             "title",
-            "exact crossing curves: where characteristic roots lie on the imaginary axis; and boundaries of degrees of stability",
+            "exact crossing curves: where characteristic roots lie on the imaginary axis; and \
+            boundaries of degrees of stability",
         )?;
         let curve = dimensions.add_bare(&group, "curve")?;
         let vertex = dimensions.add_bare(&group, "vertex")?;
@@ -239,7 +241,8 @@ impl BoundaryWriter {
         })
     }
 
-    /// Appends the curves of the next plane, which lies at the values `outer` of the axes outside of it.
+    /// Appends the curves of the next plane, which lies at the values `outer` of the axes outside
+    /// of it.
     pub fn append(&mut self, rows: &CurveRows, outer: &[f64]) -> hdf5::Result<()> {
         self.vertex_count.waiting.extend(&rows.vertex_count);
         self.branch.waiting.extend(&rows.branch);

@@ -1,6 +1,7 @@
 //! HDF5's own shuffle and deflate filters, applied on the computing threads.
 //!
-//! The library would apply them behind its one lock; here every thread does, and whole chunks are handed to it.
+//! The library would apply them behind its one lock; here every thread does, and whole chunks are
+//! handed to it.
 
 use std::collections::HashMap;
 use std::sync::Arc;
@@ -32,8 +33,8 @@ pub(super) struct ChunkCodec {
 pub(super) trait Element: Copy + PartialEq {
     /// Size in bytes.
     const SIZE: usize;
-    /// How deflate looks for repetitions: counts and flags come in long runs, and looking only for those is several times
-    /// faster and finds more.
+    /// How deflate looks for repetitions: counts and flags come in long runs, and looking only for
+    /// those is several times faster and finds more.
     const STRATEGY: Strategy;
     /// The bits, for telling constant chunks apart.
     fn bits(self) -> u64;

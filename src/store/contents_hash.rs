@@ -1,4 +1,5 @@
-//! A hash of everything in a map besides the cells themselves: axes, scalars, curves, best settings, and what describes them.
+//! A hash of everything in a map besides the cells themselves: axes, scalars, curves, best
+//! settings, and what describes them.
 
 use std::collections::BTreeMap;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -12,7 +13,8 @@ use super::schema::{BEST, BOUNDARIES, CHUNKS_SHA256, CONTENTS_SHA256, root};
 use super::values::{for_each_part, is_of};
 use crate::sweep::plan::in_hexadecimal;
 
-/// Attributes that are no part of it: references to places in the file, the checksums, and when the map was made.
+/// Attributes that are no part of it: references to places in the file, the checksums, and when the
+/// map was made.
 const LEFT_OUT: [&str; 5] = [
     "DIMENSION_LIST",
     "REFERENCE_LIST",
@@ -24,12 +26,12 @@ const LEFT_OUT: [&str; 5] = [
 /// More attributes than this are on nothing in a map.
 const MOST_ATTRIBUTES: usize = 64;
 
-/// SHA-256, in hexadecimal, over every group and dataset, sorted by name: name, attributes, and for datasets that are not
-/// `cells` shape and values.
+/// SHA-256, in hexadecimal, over every group and dataset, sorted by name: name, attributes, and for
+/// datasets that are not `cells` shape and values.
 ///
 /// # Errors
-/// When something cannot be read, or is something that no map holds: other groups than slipmap's, groups in these, links;
-/// soon after `stop` is set.
+/// When something cannot be read, or is something that no map holds: other groups than slipmap's,
+/// groups in these, links; soon after `stop` is set.
 pub(super) fn contents_hash(
     file: &File,
     cells: &[&str],

@@ -18,7 +18,8 @@ use crate::linear::curves::{CurvePiece, StableSide, Vertex};
 pub struct MapCurve {
     /// Values of the axes outside the plane, in the order of the map's axes.
     pub outer: Vec<f64>,
-    /// Degree of stability σ, 1/time: roots on the curve have Re λ = −σ. 0 for crossings of the imaginary axis.
+    /// Degree of stability σ, 1/time: roots on the curve have Re λ = −σ. 0 for crossings of the
+    /// imaginary axis.
     pub degree_of_stability: f64,
     /// The curve.
     pub piece: CurvePiece,
@@ -31,7 +32,8 @@ const VERTICES_AT_ONCE: usize = 1 << 17;
 const MOST_VERTICES: usize = 1 << 20;
 
 impl MapFile {
-    /// Hands over all curves of the map, one by one, in order; few of them are in memory at once. None where it holds none.
+    /// Hands over all curves of the map, one by one, in order; few of them are in memory at once.
+    /// None where it holds none.
     ///
     /// # Errors
     /// When the file is damaged; some curves may have been handed over then.
@@ -126,8 +128,9 @@ impl CurveColumns {
         self.vertices[0].size()
     }
 
-    /// The rows of the curves from `first` on, a number of curves and of vertices, with the values of the axes outside their planes,
-    /// but no corners; at least one curve. None where the columns do not fit together.
+    /// The rows of the curves from `first` on, a number of curves and of vertices, with the values
+    /// of the axes outside their planes, but no corners; at least one curve. None where the columns
+    /// do not fit together.
     fn read(&self, first: (usize, usize)) -> hdf5::Result<Option<(CurveRows, Vec<Vec<f64>>)>> {
         let most = self.curves().min(first.0 + CURVES_AT_ONCE);
         let mut vertex_count: Vec<i32> = part(&self.vertex_count, first.0..most)?;
@@ -190,8 +193,8 @@ fn part<T: Number>(column: &Dataset, rows: Range<usize>) -> hdf5::Result<Vec<T>>
     values::read(column, &[slab])
 }
 
-/// The curves that rows describe, with the values of the axes outside their planes column by column; none where the columns do not
-/// fit together.
+/// The curves that rows describe, with the values of the axes outside their planes column by
+/// column; none where the columns do not fit together.
 pub fn curves_of(rows: &CurveRows, outer: &[Vec<f64>]) -> Option<Vec<MapCurve>> {
     let curves = rows.curves();
     if !rows.is_consistent() || outer.iter().any(|column| column.len() != curves) {

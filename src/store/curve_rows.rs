@@ -1,4 +1,5 @@
-//! The curves of a plane as rows of numbers: as they are kept between the computing and the map, and as they stand in it.
+//! The curves of a plane as rows of numbers: as they are kept between the computing and the map,
+//! and as they stand in it.
 
 use serde::{Deserialize, Serialize};
 
@@ -111,7 +112,8 @@ impl CurveRows {
     }
 }
 
-/// The values of the axes outside the planes of curves, at the plane of number `number`; empty where no curves are traced.
+/// The values of the axes outside the planes of curves, at the plane of number `number`; empty
+/// where no curves are traced.
 pub(super) fn outer_values(plan: &Plan, index: &[usize]) -> Vec<f64> {
     let (p, tau) = plan.boundary_plane.unwrap_or((usize::MAX, usize::MAX));
     let axes = plan.spec.axes.iter().zip(index).enumerate();

@@ -6,7 +6,8 @@ use std::path::Path;
 
 use super::error::StoreError;
 
-/// Writes a new file and makes it durable. What stands at `path`, a link that was planted there for instance, is not written to.
+/// Writes a new file and makes it durable. What stands at `path`, a link that was planted there for
+/// instance, is not written to.
 pub(super) fn write_synced(
     path: &Path,
     write: impl FnOnce(&mut BufWriter<File>) -> std::io::Result<()>,
@@ -28,7 +29,8 @@ pub(super) fn write_synced(
     })
 }
 
-/// All bytes of a regular file. A pipe or a device in its place is not opened: reading it might never end.
+/// All bytes of a regular file. A pipe or a device in its place is not opened: reading it might
+/// never end.
 pub(super) fn read_regular(path: &Path, most: u64) -> Result<Vec<u8>, NotRead> {
     let found = fs::metadata(path).map_err(NotRead::Refused)?;
     if !found.is_file() {
@@ -63,7 +65,8 @@ pub(super) fn rename_synced(part: &Path, path: &Path) -> Result<(), StoreError> 
     sync_name(path)
 }
 
-/// Makes the name of a file or a folder durable: without it, what is in a folder is lost however often that was synced.
+/// Makes the name of a file or a folder durable: without it, what is in a folder is lost however
+/// often that was synced.
 pub(super) fn sync_name(path: &Path) -> Result<(), StoreError> {
     match path.parent() {
         Some(folder) if !folder.as_os_str().is_empty() => sync(folder),

@@ -99,7 +99,8 @@ pub enum StoreError {
         why: String,
     },
     /// A map with missing cells would take the place of a complete one.
-    #[error("{} is complete, and {pieces} pieces of what would replace it are missing", path.display())]
+    #[error("{} is complete, and {pieces} pieces of what would replace it are \
+        missing", path.display())]
     WouldLose {
         /// The map.
         path: PathBuf,
@@ -151,7 +152,8 @@ impl StoreError {
     }
 }
 
-/// The system's own words where the library's error stack holds them, else its innermost description.
+/// The system's own words where the library's error stack holds them, else its innermost
+/// description.
 fn cause(error: &hdf5::Error) -> String {
     let Some(stack) = error.stack() else {
         return error.to_string();

@@ -53,7 +53,8 @@ impl MapFile {
     /// Opens a map for reading.
     ///
     /// # Errors
-    /// When the file is missing, in use by a program that writes it, no HDF5 file, no map, of another format version, or damaged.
+    /// When the file is missing, in use by a program that writes it, no HDF5 file, no map, of
+    /// another format version, or damaged.
     pub fn open(path: &Path) -> Result<Self, StoreError> {
         let file = open::to_read(path, StoreError::not_a_map)?;
         let version: i32 = one_number(&file, root::FORMAT_VERSION).ok_or_else(|| {
@@ -223,8 +224,9 @@ impl MapFile {
             .map_err(StoreError::hdf5(format!("read {name} of"), &self.path))
     }
 
-    /// The plane of `field` spanned by the axes `row_axis` and `column_axis` at `index` along the others, thinned evenly to
-    /// at most `most` cells each way. Where both are the same axis: the line along it, as one row.
+    /// The plane of `field` spanned by the axes `row_axis` and `column_axis` at `index` along the
+    /// others, thinned evenly to at most `most` cells each way. Where both are the same axis: the
+    /// line along it, as one row.
     ///
     /// # Errors
     /// When the file is damaged there.
@@ -277,7 +279,8 @@ impl MapFile {
         })
     }
 
-    /// The bytes of a dataset's chunk whose first cell is at `offset`, as they stand in the file; none where there is none.
+    /// The bytes of a dataset's chunk whose first cell is at `offset`, as they stand in the file;
+    /// none where there is none.
     pub(crate) fn stored_chunk(
         &self,
         name: &str,
@@ -325,7 +328,8 @@ impl MapFile {
         read(dataset, &slab).map_err(StoreError::hdf5("read", &self.path))
     }
 
-    /// The axes of the planes in which the map holds crossing curves; none where it holds no curves.
+    /// The axes of the planes in which the map holds crossing curves; none where it holds no
+    /// curves.
     #[must_use]
     pub fn boundary_plane(&self) -> Option<(usize, usize)> {
         self.plane_of(BOUNDARIES)

@@ -78,8 +78,8 @@ impl MapFile {
         Ok(summary)
     }
 
-    /// Number of cells with each kind of a field that has kinds, in the order of [`Field::kinds`], read piece by piece.
-    /// Empty for other fields.
+    /// Number of cells with each kind of a field that has kinds, in the order of [`Field::kinds`],
+    /// read piece by piece. Empty for other fields.
     ///
     /// # Errors
     /// When the map does not hold the field, or is damaged.
@@ -118,7 +118,8 @@ impl MapFile {
 /// Cells that are read at once, at most.
 const MOST_AT_ONCE: usize = 1 << 22;
 
-/// The shape of the pieces in which to read a dataset: its chunks, or parts of them where they are huge.
+/// The shape of the pieces in which to read a dataset: its chunks, or parts of them where they are
+/// huge.
 fn piece_shape(dataset: &Dataset) -> Vec<usize> {
     let shape = dataset.shape();
     let chunk = dataset.chunk().filter(|c| c.len() == shape.len());

@@ -44,7 +44,8 @@ pub struct Provenance {
     pub history: String,
 }
 
-/// A map on its way to disk: under its final name after [`MapWriter::finish`], gone if dropped before.
+/// A map on its way to disk: under its final name after [`MapWriter::finish`], gone if dropped
+/// before.
 pub struct MapWriter<'p> {
     plan: &'p Plan,
     // Before `output`: the file is closed before its temporary name is removed.
@@ -119,7 +120,8 @@ impl<'p> MapWriter<'p> {
         }
     }
 
-    /// Puts the compressed chunks of a tile, in the order of the datasets. Tiles come in their order.
+    /// Puts the compressed chunks of a tile, in the order of the datasets. Tiles come in their
+    /// order.
     pub(crate) fn put_tile(&mut self, tile: &Tile, chunks: &[&[u8]]) -> Result<(), StoreError> {
         let offset: Vec<u64> = tile.offset.iter().map(|&o| o as u64).collect();
         for (variable, chunk) in self.cells.iter_mut().zip(chunks) {
@@ -141,10 +143,12 @@ impl<'p> MapWriter<'p> {
             .map_err(StoreError::hdf5("write", self.output.path()))
     }
 
-    /// Closes the file, reads it back to see that it holds what was written, makes it durable and gives it its final name.
+    /// Closes the file, reads it back to see that it holds what was written, makes it durable and
+    /// gives it its final name.
     ///
     /// # Errors
-    /// When it is to stop, or the system or the library refuses; nothing then stands under the final name that was not there before.
+    /// When it is to stop, or the system or the library refuses; nothing then stands under the
+    /// final name that was not there before.
     pub fn finish(mut self, stop: &AtomicBool) -> Result<(), StoreError> {
         let path = self.output.path().to_owned();
         let mut close = || -> hdf5::Result<()> {
@@ -191,8 +195,9 @@ impl<'p> MapWriter<'p> {
 
 /// A new file, with all orders kept. Nothing may stand at `path`.
 ///
-/// Without a sieve buffer every write of values is one of the system's, whose errors are told at once: what a buffer holds when its dataset
-/// is closed is lost without a word where the system refuses it.
+/// Without a sieve buffer every write of values is one of the system's, whose errors are told at
+/// once: what a buffer holds when its dataset is closed is lost without a word where the system
+/// refuses it.
 pub(super) fn create_file(path: &Path) -> hdf5::Result<File> {
     hdf5::FileBuilder::new()
         .with_fapl(|fapl| {
@@ -303,7 +308,8 @@ pub(super) fn put_friction(file: &File, setting: &Setting) -> hdf5::Result<()> {
     Ok(())
 }
 
-/// The values in `setting` of the parameters that are `scalar`, as scalar coordinates. Returns their names.
+/// The values in `setting` of the parameters that are `scalar`, as scalar coordinates. Returns
+/// their names.
 pub(super) fn put_scalars(
     file: &File,
     setting: &Setting,
@@ -420,8 +426,8 @@ impl Variables<'_> {
 /// Hands a whole compressed chunk to the library.
 fn write_chunk(dataset: &Dataset, offset: &[u64], chunk: &[u8]) -> hdf5::Result<()> {
     let written = hdf5::sync::sync(|| {
-        // SAFETY: the dataset is open, `offset` has one entry per dimension of it and lies on a chunk's first cell, and
-        // the pointer and length are those of a live slice.
+        // SAFETY: the dataset is open, `offset` has one entry per dimension of it and lies on a
+        // chunk's first cell, and the pointer and length are those of a live slice.
         unsafe {
             H5Dwrite_chunk(
                 dataset.id(),

@@ -1,4 +1,5 @@
-//! Maps and traces on disk: HDF5 files that netCDF-4 readers open with named coordinates. The only place that knows HDF5.
+//! Maps and traces on disk: HDF5 files that netCDF-4 readers open with named coordinates. The only
+//! place that knows HDF5.
 //!
 //! - [`schema`]: names, meanings and format version
 //! - [`tiles`]: finished pieces of a sweep in files of their own, checked when they are read

@@ -33,7 +33,8 @@ pub(super) struct Dimensions {
 pub(super) struct DimensionId(usize);
 
 impl Dimensions {
-    /// Makes `scale`, a one-dimensional dataset, the scale of a new dimension. `name` none: one with coordinates.
+    /// Makes `scale`, a one-dimensional dataset, the scale of a new dimension. `name` none: one
+    /// with coordinates.
     pub fn add(&mut self, scale: Dataset, name: Option<&str>) -> hdf5::Result<DimensionId> {
         put_text(&scale, "CLASS", "DIMENSION_SCALE")?;
         let path = scale.name();
@@ -96,7 +97,8 @@ impl Dimensions {
     }
 }
 
-/// A builder with what every dataset needs: the order of its attributes kept (netCDF asks for it), no time stamps.
+/// A builder with what every dataset needs: the order of its attributes kept (netCDF asks for it),
+/// no time stamps.
 pub(super) fn named(builder: DatasetBuilder) -> DatasetBuilder {
     builder
         .attr_creation_order(AttrCreationOrder::Indexed)

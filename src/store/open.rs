@@ -1,5 +1,5 @@
-//! Opens HDF5 files to read them, and says why not. What it lets through leads to no other file, loads no code, and asks for
-//! no more memory than slipmap's own files do.
+//! Opens HDF5 files to read them, and says why not. What it lets through leads to no other file,
+//! loads no code, and asks for no more memory than slipmap's own files do.
 
 use std::ffi::{CStr, CString, c_char, c_int, c_uint, c_void};
 use std::mem::MaybeUninit;
@@ -24,7 +24,7 @@ const MOST_OF_CHUNK: usize = 8 << 20;
 const MOST_NAMES: usize = 1000;
 /// HDF5's number of its filter that puts bytes of like places together.
 pub(super) const SHUFFLE: c_int = H5Z_FILTER_SHUFFLE;
-/// And of the one that deflates.
+/// The number of the filter that deflates.
 pub(super) const DEFLATE: c_int = H5Z_FILTER_DEFLATE;
 
 unsafe extern "C" {
@@ -32,7 +32,8 @@ unsafe extern "C" {
     fn H5PLset_loading_state(kinds: c_uint) -> i32;
 }
 
-/// Filters are never looked for in other files, and links to other files are not followed, by whatever call.
+/// Filters are never looked for in other files, and links to other files are not followed, by
+/// whatever call.
 static CONFINED: LazyLock<bool> = LazyLock::new(|| {
     hdf5::sync::sync(|| {
         // SAFETY: both take numbers alone; the calls run under the library's lock.
@@ -122,8 +123,9 @@ fn refuse_links(group: &Group, name: &str) -> hdf5::Result<()> {
 pub(super) fn names(group: &Group) -> hdf5::Result<Vec<String>> {
     let mut names: Vec<Option<String>> = Vec::new();
     let told = hdf5::sync::sync(|| {
-        // SAFETY: the group is open, and `add_name` gets the vector that it expects. In another than the native order the
-        // library gathers all links first, and frees what it never had where one of them is damaged.
+        // SAFETY: the group is open, and `add_name` gets the vector that it expects. In another
+        // than the native order the library gathers all links first, and frees what it never had
+        // where one of them is damaged.
         unsafe {
             H5Literate(
                 group.id(),
@@ -152,7 +154,8 @@ unsafe extern "C" fn add_name(
     _: *const H5L_info_t,
     names: *mut c_void,
 ) -> c_int {
-    // SAFETY: the library gives a string that ends in a null byte, and the pointer that it was given, to a vector that lives.
+    // SAFETY: the library gives a string that ends in a null byte, and the pointer that it was
+    // given, to a vector that lives.
     let (name, names) = unsafe {
         let names = names.cast::<Vec<Option<String>>>().as_mut();
         (CStr::from_ptr(name), names)
@@ -176,7 +179,8 @@ fn is_hard(group: &Group, name: &str) -> bool {
         // SAFETY: the group is open, the name ends in a null byte, and the library fills in `link`.
         unsafe { H5Lget_info1(group.id(), name.as_ptr(), link.as_mut_ptr(), H5P_DEFAULT) }
     });
-    // SAFETY: the kind comes first. A file may hold kinds that the binding's enum does not, so it is read as a number.
+    // SAFETY: the kind comes first. A file may hold kinds that the binding's enum does not, so it
+    // is read as a number.
     let kind = unsafe { link.as_ptr().cast::<c_int>().read() };
     asked >= 0 && kind == H5L_type_t::H5L_TYPE_HARD as c_int
 }
@@ -189,7 +193,8 @@ pub(super) fn filters_of(dataset: &Dataset) -> hdf5::Result<Vec<c_int>> {
 /// The filters that a property list names.
 fn filters(plist: hid_t) -> Vec<c_int> {
     hdf5::sync::sync(|| {
-        // SAFETY: the property list is open, and all that is not asked for is null or has the length 0.
+        // SAFETY: the property list is open, and all that is not asked for is null or has the
+        // length 0.
         unsafe {
             let count = H5Pget_nfilters(plist).max(0);
             let filter = |number: c_int| {

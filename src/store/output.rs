@@ -8,7 +8,8 @@ use super::durable::{rename_synced, sync};
 use super::error::StoreError;
 use super::lock;
 
-/// The place of a map that is being written. Dropped before [`Output::commit`], it leaves nothing behind.
+/// The place of a map that is being written. Dropped before [`Output::commit`], it leaves nothing
+/// behind.
 #[derive(Debug)]
 pub struct Output {
     path: PathBuf,
@@ -24,10 +25,12 @@ fn beside(path: &Path, purpose: &str) -> PathBuf {
 }
 
 impl Output {
-    /// Claims the final name `path` for this process. A lock left by a run that died does not block.
+    /// Claims the final name `path` for this process. A lock left by a run that died does not
+    /// block.
     ///
     /// # Errors
-    /// When the folder is missing or not writable, `path` is a folder, or another run holds the claim.
+    /// When the folder is missing or not writable, `path` is a folder, or another run holds the
+    /// claim.
     pub fn claim(path: &Path) -> Result<Self, StoreError> {
         if path.is_dir() {
             let source = std::io::Error::from(std::io::ErrorKind::IsADirectory);
@@ -68,7 +71,8 @@ impl Output {
         &self.part
     }
 
-    /// Makes the written file durable and gives it its final name, and the permissions of what stood there, which it replaces.
+    /// Makes the written file durable and gives it its final name, and the permissions of what
+    /// stood there, which it replaces.
     ///
     /// # Errors
     /// When the system cannot sync or rename; the temporary file is then removed.
@@ -84,7 +88,8 @@ impl Output {
 
 impl Drop for Output {
     fn drop(&mut self) {
-        // Neither removal can fail in a way that matters here: a leftover is overwritten by the next run.
+        // Neither removal can fail in a way that matters here: a leftover is overwritten by the
+        // next run.
         let _ = fs::remove_file(&self.part);
         let _ = fs::remove_file(&self.lock_path);
         self.lock = None;

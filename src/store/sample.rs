@@ -1,5 +1,5 @@
-//! Which cells of a map second methods look at: spread over the map, and as many of every outcome by every method as of the
-//! others, however rare they are.
+//! Which cells of a map second methods look at: spread over the map, and as many of every outcome
+//! by every method as of the others, however rare they are.
 
 use std::collections::{BTreeMap, BTreeSet};
 

@@ -1,7 +1,8 @@
-//! Names in a map or trace file that are not those of a parameter or field, and the version of its format.
+//! Names in a map or trace file that are not those of a parameter or field, and the version of its
+//! format.
 
-/// Version of the layout described here, which is written. 2: [`DEGREE_OF_STABILITY`] of every curve. 3: indexes with checksums, and
-/// a seal behind the file.
+/// Version of the layout described here, which is written. 2: [`DEGREE_OF_STABILITY`] of every
+/// curve. 3: indexes with checksums, and a seal behind the file.
 pub const FORMAT_VERSION: i32 = 3;
 /// The first version with a seal.
 pub const SEALED_SINCE: i32 = 3;
@@ -62,10 +63,12 @@ pub mod root {
     pub const FRICTION_MU_K: &str = "friction_mu_k";
 }
 
-/// Attribute of datasets of cells: SHA-256 of the stored bytes of all chunks, one after the other, last dimension fastest.
+/// Attribute of datasets of cells: SHA-256 of the stored bytes of all chunks, one after the other,
+/// last dimension fastest.
 pub const CHUNKS_SHA256: &str = "chunks_sha256";
 
-/// Root attribute: SHA-256 over everything in the map besides the cells, the references between datasets and the history.
+/// Root attribute: SHA-256 over everything in the map besides the cells, the references between
+/// datasets and the history.
 pub const CONTENTS_SHA256: &str = "contents_sha256";
 
 /// Name of the status of each cell.

@@ -16,7 +16,8 @@ use super::values::Chunks;
 use crate::sweep::cells::second_look::Question;
 use crate::sweep::plan::{Plan, in_hexadecimal};
 
-/// A child that is being started shares the library's lock on a file until it runs its own program: no longer than this.
+/// A child that is being started shares the library's lock on a file until it runs its own program:
+/// no longer than this.
 const FORKED: Duration = Duration::from_secs(2);
 
 /// What was found out about a map.
@@ -38,8 +39,8 @@ pub struct Report {
     pub tiles_equal: u64,
 }
 
-/// Whether a file without a seal is the sound map of `plan`, whose cells need not all be there; else what is wrong first. Once
-/// `stop` is set, no more is read, and the answer means nothing.
+/// Whether a file without a seal is the sound map of `plan`, whose cells need not all be there;
+/// else what is wrong first. Once `stop` is set, no more is read, and the answer means nothing.
 pub(super) fn as_written(path: &Path, plan: &Plan, stop: &AtomicBool) -> Result<(), String> {
     let map = opened(path).map_err(|error| error.to_string())?;
     let mut report = Report::default();
@@ -184,7 +185,8 @@ pub(crate) fn check_checksums(map: &MapFile, plan: &Plan, report: &mut Report, s
         }
         (Some(expected), Ok(found)) if found == expected => report.checksums += 1,
         (_, Ok(_)) => {
-            let fault = "the checksum of what is no cell does not fit: an axis, a curve, a best setting or a description has changed";
+            let fault = "the checksum of what is no cell does not fit: an axis, a curve, a best \
+                setting or a description has changed";
             report.faults.push(fault.to_owned());
         }
         (_, Err(error)) => report

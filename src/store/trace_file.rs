@@ -1,4 +1,5 @@
-//! Traces: a motion over time, its events in a group of their own, its outcome and parameters as attributes and scalars.
+//! Traces: a motion over time, its events in a group of their own, its outcome and parameters as
+//! attributes and scalars.
 
 use std::path::Path;
 
@@ -88,7 +89,8 @@ pub const QUANTITIES: [Quantity; 5] = [
 /// Writes a trace under a temporary name and gives it its final one.
 ///
 /// # Errors
-/// When the system or the library refuses; nothing then stands under the final name that was not there before.
+/// When the system or the library refuses; nothing then stands under the final name that was not
+/// there before.
 pub fn write(
     spec: &CaseSpec,
     trace: &Trace,
@@ -226,7 +228,8 @@ impl Columns<'_> {
             .create(name)?;
         if !values.is_empty() {
             dataset.write_raw(values)?;
-            // What is still in the cache when the dataset is closed is lost without a word where the system refuses it.
+            // What is still in the cache when the dataset is closed is lost without a word where
+            // the system refuses it.
             self.group.file()?.flush()?;
         }
         put_numbers(&dataset, "_FillValue", &[fill])?;

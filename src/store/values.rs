@@ -1,7 +1,7 @@
 //! Reads values of a dataset that [`super::open`] has let through.
 //!
-//! Chunks are inflated here: the library inflates whatever a chunk holds, a thousand times its bytes, before it compares that with
-//! the chunk's own size.
+//! Chunks are inflated here: the library inflates whatever a chunk holds, a thousand times its
+//! bytes, before it compares that with the chunk's own size.
 
 use std::ops::Range;
 
@@ -130,7 +130,8 @@ impl<'d> Chunks<'d> {
     fn size(&self, offset: &[u64]) -> hdf5::Result<Option<u64>> {
         let (dataset, mut size) = (self.dataset.id(), 0);
         let found = hdf5::sync::sync(|| {
-            // SAFETY: the dataset is open and chunked, and `offset` has one entry per dimension of it.
+            // SAFETY: the dataset is open and chunked, and `offset` has one entry per dimension of
+            // it.
             let found =
                 unsafe { H5Dget_chunk_storage_size(dataset, offset.as_ptr(), &raw mut size) };
             // It fails where there is no chunk, too, and then says so.
@@ -160,10 +161,12 @@ impl<'d> Chunks<'d> {
         }
     }
 
-    /// The bytes of the chunk whose first value is at `offset`, as they stand in the file; none where there is no chunk.
+    /// The bytes of the chunk whose first value is at `offset`, as they stand in the file; none
+    /// where there is no chunk.
     ///
     /// # Errors
-    /// Where they cannot be read, are more than a chunk can have, or readers are told to skip filters of this chunk.
+    /// Where they cannot be read, are more than a chunk can have, or readers are told to skip
+    /// filters of this chunk.
     pub fn stored(&self, offset: &[usize]) -> hdf5::Result<Option<Vec<u8>>> {
         let offset: Vec<u64> = offset.iter().map(|&o| o as u64).collect();
         let Some(size) = self.size(&offset)? else {
@@ -218,7 +221,8 @@ impl<'d> Chunks<'d> {
         Ok(Some(bytes))
     }
 
-    /// The values of a hyperslab, row by row; those of chunks that are not there have the fill value.
+    /// The values of a hyperslab, row by row; those of chunks that are not there have the fill
+    /// value.
     pub fn read<T: Number>(&self, slab: &[SliceOrIndex]) -> hdf5::Result<Vec<T>> {
         let picked: Option<Vec<Picked>> = slab.iter().map(Picked::of).collect();
         let picked = picked.filter(|picked| {
@@ -294,7 +298,8 @@ struct Picker<'a> {
 }
 
 impl Picker<'_> {
-    /// The values from `axis` on, where `from` counts the values of the chunk and `to` those picked, before this axis.
+    /// The values from `axis` on, where `from` counts the values of the chunk and `to` those
+    /// picked, before this axis.
     fn along<T: Number>(
         &self,
         axis: usize,
@@ -350,8 +355,8 @@ const MOST_DEFLATED: u64 = 1032;
 /// Bytes of values that are read at once, those of the longest axis.
 const MOST_AT_ONCE: u64 = 8 * MOST_POINTS;
 
-/// The number of values of a dataset that is no dataset of cells: what claims more than its bytes in the file can hold is refused
-/// before memory is asked for, or time spent on it.
+/// The number of values of a dataset that is no dataset of cells: what claims more than its bytes
+/// in the file can hold is refused before memory is asked for, or time spent on it.
 fn count<T: Number>(dataset: &Dataset) -> hdf5::Result<usize> {
     if !is_of::<T>(&dataset.dtype()) {
         return Err("its values are of another type".into());

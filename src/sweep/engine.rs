@@ -23,7 +23,8 @@ const PAUSE: Duration = Duration::from_millis(200);
 /// How long pieces in hand may take to end once a stop is asked for; what takes longer is dropped.
 const GRACE: Duration = Duration::from_millis(1200);
 
-/// Where pieces go. Encoding happens on the computing threads, writing on the one that called [`run`].
+/// Where pieces go. Encoding happens on the computing threads, writing on the one that called
+/// [`run`].
 pub trait Sink {
     /// Turns pieces into what is written; one per thread.
     type Encoder: Encode;
@@ -105,8 +106,8 @@ pub enum RunError<E> {
     ThreadLost,
 }
 
-/// Computes the pieces of `plan` that `todo` lists on `threads` threads and hands them to `sink`. `stop` ends it: within
-/// 1.2 s, since what takes longer than that to end is dropped.
+/// Computes the pieces of `plan` that `todo` lists on `threads` threads and hands them to `sink`.
+/// `stop` ends it: within 1.2 s, since what takes longer than that to end is dropped.
 ///
 /// What a piece holds depends on the plan alone.
 ///
@@ -153,7 +154,8 @@ type Sent<E> = Result<(Piece, E), ModelError>;
 /// Where the pieces for a sink arrive.
 type Arrivals<S> = Receiver<Sent<<<S as Sink>::Encoder as Encode>::Encoded>>;
 
-/// Starts the threads. They hold what they need, so that nobody has to wait for one that is slow to stop.
+/// Starts the threads. They hold what they need, so that nobody has to wait for one that is slow to
+/// stop.
 fn start<S: Sink>(
     plan: &Arc<Plan>,
     todo: Todo,
@@ -211,7 +213,8 @@ fn work<C: Encode>(
     }
 }
 
-/// Hands pieces to the sink as they come, and says how many. After a stop only those that come in time.
+/// Hands pieces to the sink as they come, and says how many. After a stop only those that come in
+/// time.
 fn receive<S: Sink>(
     plan: &Plan,
     receiver: Arrivals<S>,

@@ -5,7 +5,8 @@ use std::path::PathBuf;
 /// A step of a running sweep.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Event {
-    /// A file beside finished tiles, or of them, is not as it was written. What of it is lost is made again.
+    /// A file beside finished tiles, or of them, is not as it was written. What of it is lost is
+    /// made again.
     Damaged {
         /// The file.
         file: PathBuf,

@@ -1,16 +1,16 @@
 //! From a sweep file to the cells of a map.
 //!
 //! ```text
-//! TOML text → [input] what the user wrote → [plan] axes, tiles, pieces → [cells] one thread's work on a tile
-//!           → [engine] pieces over threads → a sink
+//! TOML text → [input] what the user wrote → [plan] axes, tiles, pieces
+//!           → [cells] one thread's work on a tile → [engine] pieces over threads → a sink
 //! ```
 //!
-//! Each room uses only those before it. A case file is one motion of the block: [`input::case_file`] reads it,
-//! [`cells::trace`] follows and samples it.
+//! Each room uses only those before it. A case file is one motion of the block:
+//! [`input::case_file`] reads it, [`cells::trace`] follows and samples it.
 //!
-//! A **line** is all delays at fixed other parameters: the closed form gives all crossings of a line at once. A **tile** is
-//! a block of lines: the unit of parallel work and of storing. Nothing passes from tile to tile, so a map does not depend
-//! on the number of threads.
+//! A **line** is all delays at fixed other parameters: the closed form gives all crossings of a
+//! line at once. A **tile** is a block of lines: the unit of parallel work and of storing. Nothing
+//! passes from tile to tile, so a map does not depend on the number of threads.
 
 pub mod cells;
 pub mod engine;

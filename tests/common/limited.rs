@@ -65,7 +65,8 @@ pub fn run(folder: &Path, args: &[&str], variables: &[(&str, &str)]) -> Ended {
     }
 }
 
-/// Waits for a child, which is not waited for otherwise, and tells how it ended and its memory in bytes.
+/// Waits for a child, which is not waited for otherwise, and tells how it ended and its memory in
+/// bytes.
 pub fn wait(child: libc::pid_t, patience: Duration) -> (End, u64) {
     let begun = Instant::now();
     let mut pause = Duration::from_millis(1);

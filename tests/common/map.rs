@@ -27,7 +27,8 @@ pub fn edit<T>(path: &Path, change: impl FnOnce(&hdf5::File) -> T) -> T {
     done
 }
 
-/// Waits until a file that was open can be opened again: a child that another test started meanwhile holds its lock too.
+/// Waits until a file that was open can be opened again: a child that another test started
+/// meanwhile holds its lock too.
 pub fn settle(path: &Path) {
     let file = std::fs::File::open(path).unwrap();
     file.lock().unwrap();

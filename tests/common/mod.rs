@@ -1,3 +1,4 @@
 //! Helpers that several test programs share.
 
+pub mod cases;
 pub mod winding;

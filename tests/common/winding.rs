@@ -1,7 +1,7 @@
 //! An independent count of roots: the argument principle along a vertical line, in small steps.
 //!
-//! It shares nothing with the crate but the definition of D, written out here once more. D has no poles and, far out right
-//! of the line, behaves like (λ − σ)²; so with R beyond every root there,
+//! It shares nothing with the crate but the definition of D, written out here once more. D has no
+//! poles and, far out right of the line, behaves like (λ − σ)²; so with R beyond every root there,
 //!
 //! ```text
 //! n = (2 arg D(σ + R e^{iφ})|_{φ: 0 → π/2} − 2 arg D(σ + iω)|_{ω: 0 → R}) / 2π.
@@ -11,7 +11,8 @@
 
 use num_complex::Complex64;
 
-/// The number of roots with positive real part, or none where D comes too near to zero on the imaginary axis.
+/// The number of roots with positive real part, or none where D comes too near to zero on the
+/// imaginary axis.
 #[allow(dead_code, reason = "not every test binary uses it")]
 pub fn unstable_roots(b: f64, a_v: f64, a_n: f64, tau: f64) -> Option<u64> {
     roots_right_of(b, a_v, a_n, tau, 0.0)
@@ -57,7 +58,8 @@ fn turn(f: impl Fn(f64) -> Complex64, end: f64, slope: impl Fn(f64) -> f64) -> O
         if size < 1e-7 {
             return None;
         }
-        // Over the step the change of f is at most 0.9 of |f|: the argument turns by less than a right angle.
+        // Over the step the change of f is at most 0.9 of |f|: the argument turns by less than a
+        // right angle.
         let guess = (s + 0.9 * size / slope(s)).min(end);
         let step = 0.9 * size / slope(guess);
         let next_s = (s + step).min(end);

@@ -1,8 +1,9 @@
 //! Files and folders, and what a loss of power can leave of changes to them.
 //!
-//! What was synced is there: the bytes of a file that was, the entries of a folder that was. Of everything else any part may be,
-//! in any order: a new name before the bytes of its file, a removal before a rename, blocks of a write without the others, a
-//! length without its bytes. This is more than any file system does; what stands this stands ext4, xfs and btrfs.
+//! What was synced is there: the bytes of a file that was, the entries of a folder that was. Of
+//! everything else any part may be, in any order: a new name before the bytes of its file, a
+//! removal before a rename, blocks of a write without the others, a length without its bytes. This
+//! is more than any file system does; what stands this stands ext4, xfs and btrfs.
 
 use std::collections::BTreeMap;
 use std::fs::File;
@@ -123,7 +124,8 @@ impl Disk {
         self.0.len()
     }
 
-    /// The same files and folders with those that `other` has besides, as they are when they are new.
+    /// The same files and folders with those that `other` has besides, as they are when they are
+    /// new.
     pub fn with_nodes_of(&self, other: &Self) -> Self {
         let mut nodes = self.0.clone();
         for node in &other.0[nodes.len()..] {

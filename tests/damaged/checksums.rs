@@ -1,4 +1,5 @@
-//! The checksums of HDF5's newer metadata, so that damage gets past them: Jenkins' lookup3, 4 bytes behind each block.
+//! The checksums of HDF5's newer metadata, so that damage gets past them: Jenkins' lookup3, 4 bytes
+//! behind each block.
 
 use std::ops::Range;
 

@@ -52,7 +52,8 @@ fn module(path: &Path) -> Module {
     names
 }
 
-/// What stands between `use` and the semicolon, without re-exports, which name what is inside, and without tests.
+/// What stands between `use` and the semicolon, without re-exports, which name what is inside, and
+/// without tests.
 fn use_trees(code: &str) -> Vec<String> {
     let code = code.split("#[cfg(test)]\nmod tests {").next().unwrap();
     let lines: Vec<&str> = code

@@ -1,13 +1,14 @@
 //! What holds at a setting of fastest decay, as two equations for gain and delay.
 //!
-//! The abscissa is the largest real part of a root, a maximum of functions that are smooth but where roots meet. At its
-//! minimum either several roots share the real part, or a root is double or triple, or the gradient vanishes along what is
-//! left free. With D the characteristic function, a prime for d/dλ and indices for derivatives with respect to the gain and
-//! the delay:
+//! The abscissa is the largest real part of a root, a maximum of functions that are smooth but
+//! where roots meet. At its minimum either several roots share the real part, or a root is double
+//! or triple, or the gradient vanishes along what is left free. With D the characteristic function,
+//! a prime for d/dλ and indices for derivatives with respect to the gain and the delay:
 //!
 //! - a double pair: D(μ) = 0 where D′(μ) = 0, a complex equation
 //! - a triple real root: D(ν) = D′(ν) = 0 where D″(ν) = 0
-//! - a double real root at rest: D(μ) = 0, and D_g D′_τ − D_τ D′_g = 0, by which μ does not move along the curve D = D′ = 0
+//! - a double real root at rest: D(μ) = 0, and D_g D′_τ − D_τ D′_g = 0, by which μ does not move
+//!   along the curve D = D′ = 0
 //! - roots with equal real parts; where there are only two, ∇Re λ₁ × ∇Re λ₂ = 0 as well
 //! - one root at rest: ∇Re λ = 0
 
@@ -38,7 +39,7 @@ pub(super) enum Followed {
 }
 
 impl Followed {
-    /// The same at a place nearby; none where it is lost.
+    /// The roots at a place nearby; none where one is lost.
     fn moved(self, search: &Search, place: Place) -> Option<Self> {
         let at = |lambda| derivatives(search, place, lambda);
         match self {
@@ -77,7 +78,8 @@ impl Followed {
         }
     }
 
-    /// How far rounding of D can move its real part: |m! ε/D^(m)|^(1/m) at a root of multiplicity m.
+    /// How far rounding of D can move its real part: |m! ε/D^(m)|^(1/m) at a root of multiplicity
+    /// m.
     pub fn blur(self, search: &Search, place: Place) -> f64 {
         let lambda = self.lambda();
         let groups = search.groups(place.gain);
@@ -98,7 +100,7 @@ pub(super) struct Condition {
 }
 
 impl Condition {
-    /// The same at a place nearby.
+    /// What is active at a place nearby.
     pub fn moved(&self, search: &Search, place: Place) -> Option<Self> {
         let followed = self.followed.iter().map(|f| f.moved(search, place));
         Some(Self {
@@ -141,7 +143,8 @@ impl Condition {
         })
     }
 
-    /// What vanishes at an optimum on an edge of the box, where only the gain (`along_gain`) or only the delay is free.
+    /// What vanishes at an optimum on an edge of the box, where only the gain (`along_gain`) or
+    /// only the delay is free.
     pub fn on_edge(&self, search: &Search, place: Place, along_gain: bool) -> Option<f64> {
         let first = self.followed[0];
         Some(match (first, self.followed.len()) {
@@ -207,9 +210,10 @@ fn by_parameters(search: &Search, Place { gain, tau }: Place, lambda: Complex64)
     }
 }
 
-/// The place next to `from` where D has a double real root, as it has at `from` with the root `mu`: the gain moved by
-/// `step`.0 and the delay as it comes out, or the delay moved by `step`.1 where the gain is to come out (`step`.0 is zero).
-/// None where the curve of such places does not reach that far.
+/// The place next to `from` where D has a double real root, as it has at `from` with the root `mu`:
+/// the gain moved by `step`.0 and the delay as it comes out, or the delay moved by `step`.1 where
+/// the gain is to come out (`step`.0 is zero). None where the curve of such places does not reach
+/// that far.
 pub(super) fn along_double_roots(
     search: &Search,
     from: (Place, f64),
@@ -268,7 +272,8 @@ fn gradient(search: &Search, place: Place, lambda: Complex64) -> [f64; 2] {
     [by_gain.re, by.tau.re]
 }
 
-/// A zero of an analytic function near `start`, by Newton's method; `at` gives value and derivative.
+/// A zero of an analytic function near `start`, by Newton's method; `at` gives value and
+/// derivative.
 fn newton(start: Complex64, at: impl Fn(Complex64) -> (Complex64, Complex64)) -> Option<Complex64> {
     let mut lambda = start;
     for _ in 0..MOST_STEPS {

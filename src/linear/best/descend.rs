@@ -3,8 +3,9 @@
 use super::search::{Evaluator, Place, Search};
 use crate::model::elementary::{hypot, sincos};
 
-/// Directions tried at a time, evenly over the circle and turned by the golden angle from one try to the next: the
-/// directions tried become dense, so no valley between two kinks is too narrow in the end.
+/// Directions tried at a time, evenly over the circle and turned by the golden angle from one try
+/// to the next: the directions tried become dense, so no valley between two kinks is too narrow in
+/// the end.
 const DIRECTIONS: u32 = 8;
 const GOLDEN_ANGLE: f64 = 2.399_963_229_728_653;
 /// Growth and shrinkage of the radius on success and failure.
@@ -13,8 +14,8 @@ const SHRINK: f64 = 0.55;
 /// Tries after which it ends anyhow.
 const MOST_TRIES: u32 = 600;
 
-/// The length scales around a start: a step in the gain, with the change of delay that goes along with it, and a step in
-/// the delay.
+/// The length scales around a start: a step in the gain, with the change of delay that goes along
+/// with it, and a step in the delay.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Frame {
     pub gain: f64,
@@ -41,8 +42,8 @@ impl Frame {
     }
 }
 
-/// Goes down from `start` by steps from `largest` to `smallest` times the frame's size; the place reached and the abscissa
-/// there.
+/// Goes down from `start` by steps from `largest` to `smallest` times the frame's size; the place
+/// reached and the abscissa there.
 pub(super) fn descend(
     evaluator: &mut Evaluator,
     search: &Search,
@@ -87,8 +88,9 @@ const HALVINGS: u32 = 40;
 /// Steps along a valley.
 const MOST_STEPS: u32 = 120;
 
-/// Goes along the valley floor, the best delay of each gain, from `start`: where a real root is double all along it, the walls
-/// rise like a square root, the floor hardly falls, and [`descend`] gets stuck.
+/// Goes along the valley floor, the best delay of each gain, from `start`: where a real root is
+/// double all along it, the walls rise like a square root, the floor hardly falls, and [`descend`]
+/// gets stuck.
 pub(super) fn follow_valley(
     evaluator: &mut Evaluator,
     search: &Search,

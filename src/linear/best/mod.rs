@@ -1,14 +1,18 @@
-//! Settings of fastest decay: the gain and the delay with the smallest spectral abscissa, for every stable region.
+//! Settings of fastest decay: the gain and the delay with the smallest spectral abscissa, for every
+//! stable region.
 //!
-//! Three stages. **Regions**: the stable regions of a box are found from the closed form of the stable delays; only the
-//! gain is sampled. **Descent**: from the best places of a lattice in each region a direct search goes down; the abscissa
-//! has kinks where roots trade places and cusps where they meet, so no gradient is used. **Polish**: near an optimum, what
-//! makes it one is a pair of smooth equations ([`Kind`]), solved by Newton's method; the result is accepted where the
-//! argument principle confirms that no root lies farther right, and where no place around it is better.
+//! Three stages. **Regions**: the stable regions of a box are found from the closed form of the
+//! stable delays; only the gain is sampled. **Descent**: from the best places of a lattice in each
+//! region a direct search goes down; the abscissa has kinks where roots trade places and cusps
+//! where they meet, so no gradient is used. **Polish**: near an optimum, what makes it one is a
+//! pair of smooth equations ([`Kind`]), solved by Newton's method; the result is accepted where the
+//! argument principle confirms that no root lies farther right, and where no place around it is
+//! better.
 //!
-//! A region is a connected set of stable settings *inside the box*, at the resolution of the gains sampled: 193 evenly over
-//! the box, and ever more densely towards gains at which the crossings change their number. A lobe between two neighbouring
-//! samples is missed; lobes that end in a point at such a gain are not, however small, down to 1e-16 of the box.
+//! A region is a connected set of stable settings *inside the box*, at the resolution of the gains
+//! sampled: 193 evenly over the box, and ever more densely towards gains at which the crossings
+//! change their number. A lobe between two neighbouring samples is missed; lobes that end in a
+//! point at such a gain are not, however small, down to 1e-16 of the box.
 
 mod condition;
 mod descend;
@@ -33,10 +37,12 @@ const LATTICE_PLACES: usize = 10;
 const STARTS: usize = 3;
 /// Cells each way of the grid over a box without stable regions.
 const GRID: usize = 48;
-/// Radii around a polished optimum at which nothing may be better, in units of the frame, and directions.
+/// Radii around a polished optimum at which nothing may be better, in units of the frame, and
+/// directions.
 const CHECK_RADII: [f64; 4] = [0.3, 0.03, 3e-3, 3e-4];
 const CHECK_DIRECTIONS: u32 = 16;
-/// Radii, in units of the frame, to which the descent goes before what it found is polished, and where that fails.
+/// Radii, in units of the frame, to which the descent goes before what it found is polished, and
+/// where that fails.
 const COARSE: f64 = 1e-4;
 const FINE: f64 = 1e-9;
 /// How often the search goes on from a better place found by that check.
@@ -65,7 +71,7 @@ pub enum Kind {
     OneRoot,
     /// The optimum lies on an edge of the box: beyond it there is a better one.
     Edge,
-    /// None of these could be confirmed; the place is as good as the direct search found it.
+    /// No condition could be confirmed; the place is as good as the direct search found it.
     Descent,
 }
 
@@ -113,14 +119,16 @@ pub struct Optimum {
     pub tau: f64,
     /// The spectral abscissa max Re λ; negative where sliding is stable.
     pub abscissa: f64,
-    /// |Im λ| of the roots that share this real part, rising; 0 for a real one. A double root stands once.
+    /// |Im λ| of the roots that share this real part, rising; 0 for a real one. A double root
+    /// stands once.
     pub frequencies: Vec<f64>,
     /// What makes it an optimum.
     pub kind: Kind,
-    /// The argument principle confirms that no root lies right of `abscissa` + `margin`: to the right of a line a little
-    /// farther left there are no roots but those of `kind`.
+    /// The argument principle confirms that no root lies right of `abscissa` + `margin`: to the
+    /// right of a line a little farther left there are no roots but those of `kind`.
     pub certified: bool,
-    /// What rounding can do to the abscissa: about 1e-15 at simple roots, 1e-7 at double and 1e-4 at triple ones.
+    /// What rounding can do to the abscissa: about 1e-15 at simple roots, 1e-7 at double and 1e-4
+    /// at triple ones.
     pub margin: f64,
 }
 
@@ -206,7 +214,8 @@ fn region(evaluator: &mut Evaluator, search: &Search, stretches: &Stretches) -> 
     }
 }
 
-/// The abscissa on a lattice of the region: over its gains as [`chosen_gains`] has them, evenly over the stable delays of each.
+/// The abscissa on a lattice of the region: over its gains as [`chosen_gains`] has them, evenly
+/// over the stable delays of each.
 fn lattice(
     evaluator: &mut Evaluator,
     search: &Search,
@@ -244,8 +253,9 @@ fn lattice(
     starts
 }
 
-/// Gains of a region, rising: about [`LATTICE_LINES`] evenly over it, and as many evenly among those that were sampled, which
-/// are denser towards its ends. With the number of each among the sampled ones.
+/// Gains of a region, rising: about [`LATTICE_LINES`] evenly over it, and as many evenly among
+/// those that were sampled, which are denser towards its ends. With the number of each among the
+/// sampled ones.
 fn chosen_gains(stretches: &Stretches, (low, high): (f64, f64)) -> Vec<(f64, usize)> {
     let mut sampled: Vec<f64> = stretches.iter().map(|s| s.gain).collect();
     sampled.dedup();
@@ -297,7 +307,8 @@ fn lowest(evaluator: &mut Evaluator, search: &Search, mut starts: Vec<Start>) ->
     best.expect("a region or a grid has at least one place")
 }
 
-/// The optimum to which the descent from `start` leads: polished, and with nothing better around it.
+/// The optimum to which the descent from `start` leads: polished, and with nothing better around
+/// it.
 fn optimum_near(
     evaluator: &mut Evaluator,
     search: &Search,
@@ -346,7 +357,8 @@ fn better_nearby(
             .map(|i| f64::from(i) * std::f64::consts::TAU / f64::from(CHECK_DIRECTIONS))
             .map(move |angle| search.clamp(frame.around(centre, radius, angle)))
     };
-    // A valley of double real roots has walls that rise like a square root; no direction but its own is a way down.
+    // A valley of double real roots has walls that rise like a square root; no direction but its
+    // own is a way down.
     let valley = |radius: f64| {
         let (gain, tau) = (radius * frame.gain, radius * frame.tau);
         [(gain, 0.0), (-gain, 0.0), (0.0, tau), (0.0, -tau)]

@@ -1,4 +1,5 @@
-//! From a place near an optimum to the optimum itself: Newton's method on the conditions that can hold there.
+//! From a place near an optimum to the optimum itself: Newton's method on the conditions that can
+//! hold there.
 
 use super::condition::{Condition, Followed};
 use super::descend::Frame;
@@ -10,21 +11,22 @@ use crate::model::elementary::{hypot, power};
 
 /// Steps of Newton's method.
 const MOST_STEPS: u32 = 30;
-/// Step of a difference quotient, in units of the frame; what it is taken of is known nearly to rounding.
+/// Step of a difference quotient, in units of the frame; what it is taken of is known nearly to
+/// rounding.
 const DIFFERENCE: f64 = 1e-4;
 /// A polished place farther away than this many frames belongs to something else.
 const FARTHEST: f64 = 4.0;
 /// Roots among which those that share the largest real part are looked for.
 const CANDIDATES: u64 = 12;
-/// Distances from the abscissa at which the certificate is asked for: this many, each four times the one before, from four
-/// times what rounding can do to the abscissa. Near a multiple root the argument principle needs a line farther away than
-/// the root is blurred.
+/// Distances from the abscissa at which the certificate is asked for: this many, each four times
+/// the one before, from four times what rounding can do to the abscissa. Near a multiple root the
+/// argument principle needs a line farther away than the root is blurred.
 const DISTANCES: i32 = 9;
 /// What is left undecided of an abscissa that the descent alone has found.
 const DESCENT_ERROR: f64 = 1e-8;
 
-/// The optimum near `place`, where the descent came to `abscissa`: the first condition that can be satisfied there with an
-/// abscissa that is certified and no worse.
+/// The optimum near `place`, where the descent came to `abscissa`: the first condition that can be
+/// satisfied there with an abscissa that is certified and no worse.
 pub(super) fn polished(
     evaluator: &mut Evaluator,
     search: &Search,
@@ -62,8 +64,8 @@ pub(super) fn unpolished(
     }
 }
 
-/// The number of roots right of `abscissa` + distance times `side`, at growing distances until one decides: those at which
-/// it is `expected`. The smallest such distance.
+/// The number of roots right of `abscissa` + distance times `side`, at growing distances until one
+/// decides: those at which it is `expected`. The smallest such distance.
 fn decided(
     search: &Search,
     place: Place,
@@ -83,7 +85,8 @@ fn optimum(condition: &Condition, search: &Search, place: Place, edge: (bool, bo
     let imaginary = condition.followed.iter().map(|f| f.lambda().im.abs());
     let mut frequencies: Vec<f64> = imaginary.collect();
     frequencies.sort_by(f64::total_cmp);
-    // All roots right of a line to the left are those that are followed: none of them lies farther right than rounding puts it.
+    // All roots right of a line to the left are those that are followed: none of them lies farther
+    // right than rounding puts it.
     let blur = condition.blur(search, place);
     let alone = decided(search, place, abscissa, blur, (-1.0, condition.roots()));
     Optimum {
@@ -115,7 +118,8 @@ fn kind(followed: &[Followed]) -> Kind {
     }
 }
 
-/// The conditions to try, those on more roots first: where one of them holds, one on fewer roots may be singular.
+/// The conditions to try, those on more roots first: where one of them holds, one on fewer roots
+/// may be singular.
 fn conditions(roots: &[Root], edge: (bool, bool)) -> Vec<Condition> {
     let simple: Vec<Followed> = roots
         .iter()
@@ -192,7 +196,8 @@ fn solve(
     None
 }
 
-/// The step of Newton's method, with derivatives by central differences; zero along what an edge holds.
+/// The step of Newton's method, with derivatives by central differences; zero along what an edge
+/// holds.
 fn newton_step(
     state: &Condition,
     search: &Search,

@@ -1,8 +1,9 @@
 //! The stable regions of a box in the plane of gain and delay: lobes.
 //!
-//! The stable delays of a gain are known in closed form ([`Crossings::stable_delays`]), so only the gain is sampled: evenly,
-//! and ever more densely towards each gain at which the crossings change their number, where lobes end in a point. Stretches
-//! of neighbouring gains belong to the same region where they overlap or lie between the same two crossing curves.
+//! The stable delays of a gain are known in closed form ([`Crossings::stable_delays`]), so only the
+//! gain is sampled: evenly, and ever more densely towards each gain at which the crossings change
+//! their number, where lobes end in a point. Stretches of neighbouring gains belong to the same
+//! region where they overlap or lie between the same two crossing curves.
 
 use super::search::{Place, Search};
 use crate::linear::Crossings;

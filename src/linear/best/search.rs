@@ -72,7 +72,8 @@ impl Search {
         }
     }
 
-    /// `place` moved onto the edges of the box from which it is no farther than a hundredth of `lengths`.
+    /// `place` moved onto the edges of the box from which it is no farther than a hundredth of
+    /// `lengths`.
     pub(super) fn nearest_edge(&self, place: Place, lengths: (f64, f64)) -> Place {
         let snapped = |value: f64, (from, to): (f64, f64), length: f64| {
             let near = |edge: &f64| (value - edge).abs() <= 0.01 * length;
@@ -98,15 +99,15 @@ pub(super) struct Evaluator {
 }
 
 impl Evaluator {
-    /// The largest real part of a root, right of which none is missed; infinite where roots could not be found, so that no
-    /// search goes there.
+    /// The largest real part of a root, right of which none is missed; infinite where roots could
+    /// not be found, so that no search goes there.
     pub fn abscissa(&mut self, search: &Search, place: Place) -> f64 {
         let roots = self.roots(search, place, 1);
         roots.first().map_or(f64::INFINITY, |r| r.lambda.re)
     }
 
-    /// The rightmost roots, at least `wanted` counted with their pairs where there are so many; empty where they could not
-    /// be found.
+    /// The rightmost roots, at least `wanted` counted with their pairs where there are so many;
+    /// empty where they could not be found.
     pub fn roots(&mut self, search: &Search, place: Place, wanted: u64) -> &[Root] {
         let groups = search.groups(place.gain);
         self.finder

@@ -91,14 +91,16 @@ fn zoomed(search: &Search, region: &Region) -> (f64, f64, f64) {
     centre
 }
 
-/// The first region, whose optimum is that of the whole box, against a search that shares nothing with it.
+/// The first region, whose optimum is that of the whole box, against a search that shares nothing
+/// with it.
 #[test]
 fn optima_agree_with_a_zoom_by_brute_force() {
     for search in searches() {
         let region = &best(&search).regions[0];
         let (gain, tau, abscissa) = zoomed(&search, region);
         let found = &region.best;
-        // At a root of multiplicity m the abscissa rises like the distance to the power 1/m, and the zoom sees no deeper.
+        // At a root of multiplicity m the abscissa rises like the distance to the power 1/m, and
+        // the zoom sees no deeper.
         let (value, place) = match found.kind {
             Kind::TripleReal => (0.05, 0.3),
             _ => (2e-3, 1e-3),
@@ -136,7 +138,8 @@ fn optima_are_at_least_as_good_as_a_fine_grid() {
     }
 }
 
-/// What the kinds say holds: derivatives of D vanish to rounding, and the certificate finds nothing to the right.
+/// What the kinds say holds: derivatives of D vanish to rounding, and the certificate finds nothing
+/// to the right.
 #[test]
 fn kinds_are_what_they_say() {
     for search in searches() {
@@ -164,8 +167,8 @@ fn kinds_are_what_they_say() {
     }
 }
 
-/// D = D′ = D″ = 0 for load control, solved by hand: λ = −b/2 − 1/τ, a_n E = −2/τ², and D = 0 gives a_n; what is left is one
-/// equation for τ.
+/// D = D′ = D″ = 0 for load control, solved by hand: λ = −b/2 − 1/τ, a_n E = −2/τ², and D = 0 gives
+/// a_n; what is left is one equation for τ.
 #[test]
 fn the_triple_root_of_load_control_is_that_of_a_scalar_equation() {
     for b in SLOPES {
@@ -189,8 +192,10 @@ fn the_triple_root_of_load_control_is_that_of_a_scalar_equation() {
     }
 }
 
-/// The letter: "stable regions at larger τ relax more slowly". In numbers, at b = −0.05 and velocity control, relaxation times
-/// 3.033, 8.875, 16.269, 25.592 (double pairs, D = D′ = 0 by mpmath); lobes of positive and of negative load gain each keep this order, and so do all together.
+/// The letter: "stable regions at larger τ relax more slowly". In numbers, at b = −0.05 and
+/// velocity control, relaxation times 3.033, 8.875, 16.269, 25.592 (double pairs, D = D′ = 0 by
+/// mpmath); lobes of positive and of negative load gain each keep this order, and so do all
+/// together.
 #[test]
 fn lobes_relax_more_slowly_at_larger_delays() {
     for search in searches() {
@@ -305,7 +310,8 @@ fn degenerate_boxes() {
     assert!((no_delay.abscissa + 0.1).abs() < 1e-12, "{no_delay:?}");
 }
 
-/// Without weakening, and at its edge, sliding is stable without control; the best setting is still a multiple root.
+/// Without weakening, and at its edge, sliding is stable without control; the best setting is still
+/// a multiple root.
 #[test]
 fn friction_that_does_not_weaken() {
     for search in [velocity(0.0), load(0.0), velocity(0.2), load(0.2)] {
@@ -343,8 +349,8 @@ fn the_other_gain_may_act_too() {
     }
 }
 
-/// Strong velocity control beside load control: a real root is double along a valley that falls slowly all the way to the
-/// edge, and along which a search without knowledge of it gets stuck.
+/// Strong velocity control beside load control: a real root is double along a valley that falls
+/// slowly all the way to the edge, and along which a search without knowledge of it gets stuck.
 #[test]
 fn a_valley_of_double_roots_is_followed_to_the_edge() {
     let search = Search {
@@ -361,8 +367,9 @@ fn a_valley_of_double_roots_is_followed_to_the_edge() {
     );
 }
 
-/// The smallest abscissa of a box by two nested searches in one dimension each: over the delay, from every lowest place among
-/// many, and over the gain. Walls of valleys are crossed, not followed, so it does not matter what makes an optimum.
+/// The smallest abscissa of a box by two nested searches in one dimension each: over the delay,
+/// from every lowest place among many, and over the gain. Walls of valleys are crossed, not
+/// followed, so it does not matter what makes an optimum.
 fn nested(search: &Search, gains: usize, delays: usize) -> (f64, f64, f64) {
     let spread =
         |(from, to): (f64, f64), i: usize, n: usize| from + (to - from) * (i as f64 / n as f64);
@@ -507,8 +514,8 @@ fn optima_of_boxes_by_chance_agree_with_nested_searches() {
     }
 }
 
-/// A box in which the curve of double real roots has a place at rest that is no optimum: there the search used to end. The
-/// abscissa by a program that shares nothing with this one.
+/// A box in which the curve of double real roots has a place at rest that is no optimum: there the
+/// search used to end. The abscissa by a program that shares nothing with this one.
 #[test]
 fn a_place_at_rest_is_no_optimum_where_the_valley_falls_from_it() {
     let search = Search {

@@ -5,7 +5,8 @@ use crate::linear::curves::Vertex;
 use crate::model::elementary::hypot;
 
 const MOST_ITERATIONS: u32 = 40;
-/// Frequency, over that of the oscillator, at which the curve of a pair starts that leaves a double real root.
+/// Frequency, over that of the oscillator, at which the curve of a pair starts that leaves a double
+/// real root.
 const FIRST_FREQUENCY: f64 = 1e-3;
 
 /// A corner of the decaying region: the point, and the curve on which its boundary goes on.
@@ -22,7 +23,8 @@ pub(super) struct Turn {
 }
 
 impl DecayPlane<'_> {
-    /// The corner near `v`, a point of a curve of `family` where another root than its own has come to the line.
+    /// The corner near `v`, a point of a curve of `family` where another root than its own has come
+    /// to the line.
     pub(super) fn corner(&self, v: Vertex, family: Family) -> Option<Turn> {
         let own = |omega: &f64| (omega - v.omega).abs();
         let mut others = self.candidates(v.p, v.tau);
@@ -93,10 +95,12 @@ impl DecayPlane<'_> {
         })
     }
 
-    /// The point near `v` with a double real root −σ, where the curve of a pair ends on that of a real root.
+    /// The point near `v` with a double real root −σ, where the curve of a pair ends on that of a
+    /// real root.
     ///
-    /// There D = D′ = 0. The boundary of the decaying region goes over from one curve to the other; the real root that
-    /// bounds it is the rightmost one, so dD/dλ has the sign of d²D/dλ² along its curve.
+    /// There D = D′ = 0. The boundary of the decaying region goes over from one curve to the other;
+    /// the real root that bounds it is the rightmost one, so dD/dλ has the sign of d²D/dλ² along
+    /// its curve.
     pub(super) fn end_of_pair(&self, v: Vertex, family: Family, sense: f64) -> Option<Turn> {
         let mut at = Vertex { omega: 0.0, ..v };
         let scales = self.scales(at);
@@ -141,7 +145,8 @@ impl DecayPlane<'_> {
         })
     }
 
-    /// The first point of the pair's curve that begins at the double real root `at`, if the boundary leaves along it.
+    /// The first point of the pair's curve that begins at the double real root `at`, if the
+    /// boundary leaves along it.
     fn start_of_pair(&self, at: Vertex, sense: f64) -> Option<Vertex> {
         let omega = FIRST_FREQUENCY / self.groups(at.p).1;
         let next = self.correct(Vertex { omega, ..at }, Family::Pair, [0.0, 0.0, 1.0])?;

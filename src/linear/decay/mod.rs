@@ -1,21 +1,27 @@
-//! Curves of a given degree of stability: the boundary, in a plane (p, τ), of the region where every root has Re λ < −σ.
+//! Curves of a given degree of stability: the boundary, in a plane (p, τ), of the region where
+//! every root has Re λ < −σ.
 //!
-//! On it a root lies on the line, D(−σ + iω; p, τ) = 0. With D = P + Q e^(−λτ) and κ = e^(στ) that takes |P| = κ|Q|, a
-//! quadratic in ω² at every (p, τ), so at most two pairs and a real root lie on the line at once.
+//! On it a root lies on the line, D(−σ + iω; p, τ) = 0. With D = P + Q e^(−λτ) and κ = e^(στ) that
+//! takes |P| = κ|Q|, a quadratic in ω² at every (p, τ), so at most two pairs and a real root lie on
+//! the line at once.
 //!
-//! **Finding.** The number of roots right of the line is known at every point ([`certificate`](super::certificate)). Along
-//! 257 columns of constant p, and along the window's edges of shortest and longest delay, every change of "none is" is
-//! enclosed. A column is looked at in steps of at most 1/16 of the period 2π/ω₊ of the fastest root that can lie on the line,
-//! and of 1/256 of the window (but at most 16384 steps). It ends where (ω₊ − ω₋)τ > 6π: by Eqs. (2) and (3) of the
-//! certificate, in which arg P and arg Q vary by at most π each, n ≥ 2(ω₊ − ω₋)τ/2π − 5 there, and ω₊ − ω₋ grows with τ.
+//! **Finding.** The number of roots right of the line is known at every point
+//! ([`certificate`](super::certificate)). Along 257 columns of constant p, and along the window's
+//! edges of shortest and longest delay, every change of "none is" is enclosed. A column is looked
+//! at in steps of at most 1/16 of the period 2π/ω₊ of the fastest root that can lie on the line,
+//! and of 1/256 of the window (but at most 16384 steps). It ends where (ω₊ − ω₋)τ > 6π: by Eqs. (2)
+//! and (3) of the certificate, in which arg P and arg Q vary by at most π each, n ≥ 2(ω₊ − ω₋)τ/2π
+//! − 5 there, and ω₊ − ω₋ grows with τ.
 //!
-//! **Following.** From each change the boundary is followed by predictor and corrector in (p, τ, ω), where curves are smooth
-//! at folds ω₋ = ω₊ as well. It goes over to another curve where a second root comes to the line: a corner, solved for with
-//! both roots, or a double real root −σ, from which the curve of a pair starts. Every vertex is exact to rounding.
+//! **Following.** From each change the boundary is followed by predictor and corrector in (p, τ,
+//! ω), where curves are smooth at folds ω₋ = ω₊ as well. It goes over to another curve where a
+//! second root comes to the line: a corner, solved for with both roots, or a double real root −σ,
+//! from which the curve of a pair starts. Every vertex is exact to rounding.
 //!
-//! **Limits.** A part of the region, or a hole in it, is missed if it lies between two neighbouring columns (1/256 of the
-//! window in p), or if every column passes it in one step of its delays. Smaller windows show smaller parts. A boundary that
-//! leaves the delay free (no control at all) is no curve over p and left out.
+//! **Limits.** A part of the region, or a hole in it, is missed if it lies between two neighbouring
+//! columns (1/256 of the window in p), or if every column passes it in one step of its delays.
+//! Smaller windows show smaller parts. A boundary that leaves the delay free (no control at all) is
+//! no curve over p and left out.
 
 mod corner;
 mod plane;
@@ -40,10 +46,11 @@ const MOST_STEPS: usize = 1 << 20;
 
 /// Traces the boundary of the region in `window` where every root has Re λ < −`sigma`.
 ///
-/// `groups_at` gives the groups and the unit of time √(M/κ) at a value of p inside the window; p, τ, ω and `sigma` > 0 are in
-/// the units of that time. Every piece bounds the region: `stable_side` is the side on which all roots are left of the line.
-/// `direction` says how the root on the line moves as the delay grows, `branch` is the number of whole turns of ωτ at the
-/// middle of the piece. Along a piece p only grows or only falls. What may be missed: see the module.
+/// `groups_at` gives the groups and the unit of time √(M/κ) at a value of p inside the window; p,
+/// τ, ω and `sigma` > 0 are in the units of that time. Every piece bounds the region: `stable_side`
+/// is the side on which all roots are left of the line. `direction` says how the root on the line
+/// moves as the delay grows, `branch` is the number of whole turns of ωτ at the middle of the
+/// piece. Along a piece p only grows or only falls. What may be missed: see the module.
 ///
 /// # Errors
 /// When there are more curves in the window than can be traced.
@@ -226,7 +233,8 @@ impl Tracer<'_> {
     }
 }
 
-/// The vertices of an arc from end to end, without those that rounding has put on the wrong side of a neighbour in p.
+/// The vertices of an arc from end to end, without those that rounding has put on the wrong side of
+/// a neighbour in p.
 fn monotone(vertices: &[Vertex], rising: bool) -> Vec<Vertex> {
     let mut kept: Vec<Vertex> = Vec::with_capacity(vertices.len());
     let follows = |v: &Vertex, w: &Vertex| if rising { w.p > v.p } else { w.p < v.p };

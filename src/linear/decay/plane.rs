@@ -14,7 +14,8 @@ const MOST_ITERATIONS: u32 = 24;
 const ROUNDINGS: f64 = 64.0;
 /// Step of the central difference in p, over the width of the window.
 const DIFFERENCE: f64 = 1e-6;
-/// Distance right of the line, in 1/√(M/κ), from which a root counts as another one than those on the line.
+/// Distance right of the line, in 1/√(M/κ), from which a root counts as another one than those on
+/// the line.
 const BESIDE: f64 = 1e-9;
 
 /// Which root lies on the line along a curve.
@@ -22,7 +23,8 @@ const BESIDE: f64 = 1e-9;
 pub(super) enum Family {
     /// A complex pair −σ ± iω, ω > 0.
     Pair,
-    /// A real root −σ. `slope` is the sign of dD/dλ there, which changes where another real root joins it.
+    /// A real root −σ. `slope` is the sign of dD/dλ there, which changes where another real root
+    /// joins it.
     Real {
         /// ±1.
         slope: f64,
@@ -85,7 +87,8 @@ impl DecayPlane<'_> {
         (jet, jet.rounding(groups, tau / unit, lambda), unit)
     }
 
-    /// D and its derivatives at `v`. Beyond the window, where the model may not be valid, D is continued linearly in p.
+    /// D and its derivatives at `v`. Beyond the window, where the model may not be valid, D is
+    /// continued linearly in p.
     pub fn local(&self, v: Vertex) -> Local {
         let (jet, rounding, unit) = self.jet(v.p, v.tau, v.omega);
         let h = DIFFERENCE * self.window.p_width();
@@ -104,7 +107,8 @@ impl DecayPlane<'_> {
         }
     }
 
-    /// The point of the curve that Newton's method reaches from `start` with `row` · (p, τ, ω) kept as it is.
+    /// The point of the curve that Newton's method reaches from `start` with `row` · (p, τ, ω) kept
+    /// as it is.
     pub fn correct(&self, start: Vertex, family: Family, row: [f64; 3]) -> Option<Vertex> {
         let mut v = start;
         let mut last = f64::INFINITY;
@@ -134,7 +138,8 @@ impl DecayPlane<'_> {
         self.local(v).vanishes().then_some(v)
     }
 
-    /// Lengths along (p, τ, ω) over which a curve may bend: widths of the window, and what makes a turn of ωτ.
+    /// Lengths along (p, τ, ω) over which a curve may bend: widths of the window, and what makes a
+    /// turn of ωτ.
     pub fn scales(&self, v: Vertex) -> [f64; 3] {
         let unit = self.groups(v.p).1;
         let frequency = v.omega.abs() + 1.0 / unit;
@@ -146,8 +151,8 @@ impl DecayPlane<'_> {
         ]
     }
 
-    /// The unit tangent (p, τ, ω) of a curve in units of [`DecayPlane::scales`], with the decaying side on its left where p
-    /// points right and τ up.
+    /// The unit tangent (p, τ, ω) of a curve in units of [`DecayPlane::scales`], with the decaying
+    /// side on its left where p points right and τ up.
     ///
     /// It is the null vector of [`Local::rows`], whose sign is such that Re λ falls to the left.
     pub fn tangent(&self, v: Vertex, family: Family) -> [f64; 3] {
@@ -190,8 +195,9 @@ impl DecayPlane<'_> {
         within(v.p, ends(&self.window.p)) && within(v.tau, ends(&self.window.tau))
     }
 
-    /// The frequencies ω₋ ≤ ω₊ at which a root may lie on the line: the zeros of |P|² − κ²|Q|², with D = P + Q e^(−λτ) and
-    /// κ = e^(στ), a quadratic in ω². |P| < κ|Q| between them; none where that holds nowhere, ω₋ = 0 where it holds at ω = 0.
+    /// The frequencies ω₋ ≤ ω₊ at which a root may lie on the line: the zeros of |P|² − κ²|Q|²,
+    /// with D = P + Q e^(−λτ) and κ = e^(στ), a quadratic in ω². |P| < κ|Q| between them; none
+    /// where that holds nowhere, ω₋ = 0 where it holds at ω = 0.
     pub fn band(&self, p: f64, tau: f64) -> Option<(f64, f64)> {
         let (Groups { b, a_v, a_n }, unit) = self.groups(p);
         let line = -self.sigma * unit;
@@ -242,7 +248,8 @@ pub(super) fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
     a.iter().zip(b).map(|(x, y)| x * y).sum()
 }
 
-/// The solution of `rows` · x = `right` by Gaussian elimination with pivoting; none where the rows are dependent.
+/// The solution of `rows` · x = `right` by Gaussian elimination with pivoting; none where the rows
+/// are dependent.
 pub(super) fn solve<const N: usize>(
     mut rows: [[f64; N]; N],
     mut right: [f64; N],

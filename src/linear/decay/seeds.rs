@@ -13,7 +13,8 @@ const ROWS: f64 = 256.0;
 const STEPS_PER_PERIOD: f64 = 16.0;
 /// Steps along one column at most.
 const MOST_STEPS: f64 = 16384.0;
-/// Turns of (ω₊ − ω₋)τ beyond which some root is right of the line, whatever the phases are (see the module).
+/// Turns of (ω₊ − ω₋)τ beyond which some root is right of the line, whatever the phases are (see
+/// the module).
 const TURNS_ENOUGH: f64 = 3.0;
 /// Relative width to which a change is enclosed before Newton's method takes over.
 const ENCLOSED: f64 = 1e-9;

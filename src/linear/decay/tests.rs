@@ -172,7 +172,8 @@ fn no_boundary_is_missing() {
     assert!(changes > 1000, "{changes}");
 }
 
-/// Every vertex is near the crossing curves of the imaginary axis when σ is small, and they are all there.
+/// Every vertex is near the crossing curves of the imaginary axis when σ is small, and they are all
+/// there.
 #[test]
 fn small_degrees_of_stability_tend_to_the_crossing_curves() {
     let window = Window {
@@ -222,7 +223,8 @@ fn corners_have_both_roots_on_the_line() {
     }
 }
 
-/// The boundary ends nowhere inside the window: every end of a piece is the end of another one. Those that are not.
+/// The boundary ends nowhere inside the window: every end of a piece is the end of another one.
+/// Those that are not.
 fn loose_ends(curves: &PlaneCurves, window: &Window) -> Vec<Vertex> {
     let ends: Vec<Vertex> = curves
         .pieces
@@ -251,7 +253,7 @@ fn boundaries_end_only_at_the_window() {
     }
 }
 
-/// The same in planes across the groups in any direction.
+/// Boundaries end only at the window in planes across the groups in any direction, too.
 #[test]
 fn boundaries_end_only_at_the_window_of_random_planes() {
     let mut random = 0.5_f64;

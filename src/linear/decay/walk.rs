@@ -51,8 +51,8 @@ enum End {
 }
 
 impl DecayPlane<'_> {
-    /// Goes along the boundary from `start`, with the decaying side on the left (`sense` = 1) or on the right (−1), for at
-    /// most `most_steps`.
+    /// Goes along the boundary from `start`, with the decaying side on the left (`sense` = 1) or on
+    /// the right (−1), for at most `most_steps`.
     pub(super) fn walk(&self, start: Vertex, family: Family, sense: f64, most_steps: usize) -> Way {
         let origin = self.place(start, family, sense);
         let (mut way, mut place) = (Way::default(), origin);
@@ -152,7 +152,8 @@ impl DecayPlane<'_> {
             && dot(from.tangent, origin.tangent) > 0.5
     }
 
-    /// The boundary of the decaying region runs through `place`, a step on from a place where it does.
+    /// The boundary of the decaying region runs through `place`, a step on from a place where it
+    /// does.
     fn bounds(&self, place: &Place) -> bool {
         let of_family = match place.family {
             Family::Pair => place.v.omega > 0.0,

@@ -151,7 +151,8 @@ fn shade(
     Ok(())
 }
 
-/// Whether the column of cells nearest to `p`, in which no curve lies, is stable: most of its cells say so.
+/// Whether the column of cells nearest to `p`, in which no curve lies, is stable: most of its cells
+/// say so.
 fn stable_throughout(plane: &Plane, field: Field, p: f64) -> bool {
     let distances = plane.columns.iter().map(|c| (c - p).abs()).enumerate();
     let Some((column, _)) = distances.min_by(|a, b| a.1.total_cmp(&b.1)) else {

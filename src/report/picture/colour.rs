@@ -26,9 +26,9 @@ pub const UNSTABLE: [Rgb; 4] = [
     Rgb(0x7a, 0x46, 0x08),
 ];
 
-/// Motions that slide, stick and slip, oscillate, lift off, diverge; undecided ones; where there is none. The first ones are
-/// as far apart for the colour-blind as in colours. Then ends of stick-slip: grazing, fold, period doubling, irregular,
-/// persists, never, lost.
+/// Motions that slide, stick and slip, oscillate, lift off, diverge; undecided ones; where there is
+/// none. The first ones are as far apart for the colour-blind as in colours. Then ends of
+/// stick-slip: grazing, fold, period doubling, irregular, persists, never, lost.
 const OUTCOMES: [Rgb; 14] = [
     STABLE,
     Rgb(0xdf, 0xc2, 0x7d),
@@ -92,7 +92,8 @@ const BROWN_TEAL: [Rgb; 9] = [
     Rgb(0x01, 0x66, 0x5e),
 ];
 
-/// Steps of [`diverging`] on each side of zero: finer than the eye tells apart, coarse enough for cells to merge.
+/// Steps of [`diverging`] on each side of zero: finer than the eye tells apart, coarse enough for
+/// cells to merge.
 const STEPS: f64 = 32.0;
 
 /// The weakest colour of [`diverging`] on either side of zero, as a part of the strongest.
@@ -134,8 +135,8 @@ pub fn of_kind(field: Field, number: f64) -> Rgb {
 
 /// The colour of `value` where ±`range` are the ends: brown below zero, teal above.
 ///
-/// Colours go with the square root, and both sides begin with a tint: stable cells with little to spare are the most common
-/// ones, and must not look like unstable ones.
+/// Colours go with the square root, and both sides begin with a tint: stable cells with little to
+/// spare are the most common ones, and must not look like unstable ones.
 pub fn diverging(value: f64, range: f64) -> Rgb {
     if value.is_nan() {
         return NO_VALUE;

@@ -17,14 +17,16 @@ pub type Curves = Vec<Vec<Point>>;
 
 /// Distance of a text beside its curve.
 const BESIDE: f64 = 9.0;
-/// What room a place on the curve may lack, compared with one beside it, where it is less clear to what the text belongs.
+/// What room a place on the curve may lack, compared with one beside it, where it is less clear to
+/// what the text belongs.
 const ON_CURVE: f64 = 35.0;
 /// What room a place at the longest curve may lack, compared with one at a tiny lobe.
 const LONG_CURVE: f64 = 50.0;
 /// A text nearer to another curve than this could be taken for that one's.
 const APART: f64 = 3.0;
 
-/// For each set of curves a place on one of them, or beside it, for the middle of a text of this size; none where there is no room.
+/// For each set of curves a place on one of them, or beside it, for the middle of a text of this
+/// size; none where there is no room.
 pub fn places(sets: &[(Curves, (f64, f64))], area: Area) -> Vec<Option<Point>> {
     let points = Points::of(sets);
     let mut taken: Vec<(Point, (f64, f64))> = Vec::new();
@@ -103,9 +105,9 @@ impl Points {
         Self(squares)
     }
 
-    /// How good a text at `at` is: how far the curves of other sets stay away, up to [`ENOUGH_ROOM`], with a preference for
-    /// places on its own curve where it hides little of it; none where another curve is too near, or where it hides more than a
-    /// stretch of its own.
+    /// How good a text at `at` is: how far the curves of other sets stay away, up to
+    /// [`ENOUGH_ROOM`], with a preference for places on its own curve where it hides little of it;
+    /// none where another curve is too near, or where it hides more than a stretch of its own.
     fn room(&self, own: usize, at: Point, (width, height): (f64, f64)) -> Option<f64> {
         let reach = (0.5 * width + ENOUGH_ROOM, 0.5 * height + ENOUGH_ROOM);
         let (low, high) = (

@@ -1,10 +1,12 @@
-//! The font of all pictures: DejaVu Sans, inside the program, so that a picture is the same on every machine.
+//! The font of all pictures: DejaVu Sans, inside the program, so that a picture is the same on
+//! every machine.
 
 use std::sync::OnceLock;
 
 use plotters::style::{FontDesc, FontFamily, FontStyle, register_font};
 
-/// A list of families as CSS writes it: where an SVG picture is opened without DejaVu Sans, its sister is taken.
+/// A list of families as CSS writes it: where an SVG picture is opened without DejaVu Sans, its
+/// sister is taken.
 const FAMILY: &str = "DejaVu Sans, Verdana, sans-serif";
 /// Texts are measured at this size, since the measure comes in whole pixels.
 const MEASURED_AT: f64 = 1000.0;

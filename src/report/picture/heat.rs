@@ -18,8 +18,8 @@ use crate::sweep::Field;
 /// Space for the colours' meanings, to begin with.
 const GAP: f64 = 34.0;
 
-/// Draws a heat map of `field` with at most `most` cells each way in all panels together, and the curves of `curves` that
-/// bound the stable region.
+/// Draws a heat map of `field` with at most `most` cells each way in all panels together, and the
+/// curves of `curves` that bound the stable region.
 pub fn draw(
     map: &MapFile,
     view: &View,

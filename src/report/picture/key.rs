@@ -1,4 +1,5 @@
-//! What the colours of a heat map mean: the colour of every value of a field, and the bar or list that says so.
+//! What the colours of a heat map mean: the colour of every value of a field, and the bar or list
+//! that says so.
 
 use super::colour::{self, INK, NO_VALUE, Rgb, STABLE, UNSTABLE};
 use super::legend::{Bar, Legend, Swatch};
@@ -12,10 +13,11 @@ use crate::sweep::input::field::Storage;
 
 /// Width of boundary lines.
 pub const BOUNDARY_WIDTH: f64 = 1.8;
-/// The part of all slopes and further roots that the colours tell apart. Near double roots some slopes are beyond any scale,
-/// and as the delay vanishes all roots but the rightmost go to −∞.
+/// The part of all slopes and further roots that the colours tell apart. Near double roots some
+/// slopes are beyond any scale, and as the delay vanishes all roots but the rightmost go to −∞.
 const TOLD_APART: f64 = 0.96;
-/// Decades of a velocity whose colours differ, and that a line shows: it falls to zero faster than any power.
+/// Decades of a velocity whose colours differ, and that a line shows: it falls to zero faster than
+/// any power.
 pub const DECADES: i32 = 5;
 /// The longest relaxation time that has a colour of its own, in units of the shortest one.
 const LONGEST_RELAXATION: f64 = 100.0;
@@ -30,7 +32,8 @@ enum Paint {
     Counts,
     /// A colour for each kind of this field, or each of its small counts.
     Kinds(Field),
-    /// Two colours that meet at zero and are full at ±`range`; `stable` is the sign of the values on the stable side.
+    /// Two colours that meet at zero and are full at ±`range`; `stable` is the sign of the values
+    /// on the stable side.
     Signed { range: f64, stable: f64 },
     /// From dark to light along a scale; infinite values are those of unstable cells.
     Sized(Scale),
@@ -278,8 +281,9 @@ fn kinds(field: Field, values: &[f64]) -> Legend {
     }
 }
 
-/// The range of colours: the largest finite value of a stable cell, stable being positive, since far outside the stable
-/// region the distance to it matters less; but not so small that most of the others lie beyond. 1 where there is no value.
+/// The range of colours: the largest finite value of a stable cell, stable being positive, since
+/// far outside the stable region the distance to it matters less; but not so small that most of the
+/// others lie beyond. 1 where there is no value.
 fn symmetric_range(values: impl Iterator<Item = f64>) -> f64 {
     let (mut stable, mut largest) = (0.0, 0.0);
     for value in values {

@@ -32,8 +32,8 @@ struct Line {
     name: Rich,
 }
 
-/// Draws `fields` along the axis `view.x` at no more than `most` cells: a single one at every panel's values of the other axes,
-/// several ones, of the same unit, at those of the first.
+/// Draws `fields` along the axis `view.x` at no more than `most` cells: a single one at every
+/// panel's values of the other axes, several ones, of the same unit, at those of the first.
 pub fn draw(
     map: &MapFile,
     view: &View,
@@ -180,7 +180,8 @@ fn draw_line(panel: &Panel, line: &Line, scene: &mut Scene) {
     }
 }
 
-/// The line in pixels, broken where there is no value on the scale: steps for counts, straight lines otherwise.
+/// The line in pixels, broken where there is no value on the scale: steps for counts, straight
+/// lines otherwise.
 fn stretches(panel: &Panel, line: &Line) -> Vec<Vec<Point>> {
     let edges = panel.x.filling_edges(&line.at);
     let mut done = Vec::new();

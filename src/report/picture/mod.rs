@@ -1,7 +1,8 @@
 //! Pictures of maps and traces.
 //!
 //! ```text
-//! map → [view] what is shown → [boundaries], [heat] or [line] → [scene] marks in pixels → [render] PNG or SVG
+//! map → [view] what is shown → [boundaries], [heat] or [line]
+//!     → [scene] marks in pixels → [render] PNG or SVG
 //! ```
 //!
 //! - `key`: which colour a value of a field has in a heat map
@@ -59,7 +60,8 @@ const BYTES_TO_SIGNATURE: u64 = 512;
 /// What kind of picture.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum PictureKind {
-    /// The boundaries of stability as curves, one colour per value of the axis outside their plane, like Fig. 2 of the letter.
+    /// The boundaries of stability as curves, one colour per value of the axis outside their plane,
+    /// like Fig. 2 of the letter.
     Boundaries,
     /// A heat map of a field, one panel per value of the axis outside the plane.
     Heat,
@@ -68,13 +70,15 @@ pub enum PictureKind {
 /// How a map is drawn.
 #[derive(Debug, Clone, PartialEq)]
 pub struct PictureOptions {
-    /// The field to show; by default the class of v0 where the map holds it, else the critical velocity, the outcome, the
-    /// spectral abscissa, the number of unstable roots.
+    /// The field to show; by default the class of v0 where the map holds it, else the critical
+    /// velocity, the outcome, the spectral abscissa, the number of unstable roots.
     pub field: Option<Field>,
-    /// The kind; by default boundaries where the map holds them for 2 to 12 values of one axis outside their plane, holds none
-    /// of the first four and no field is asked for, otherwise a heat map.
+    /// The kind; by default boundaries where the map holds them for 2 to 12 values of one axis
+    /// outside their plane, holds none of the first four and no field is asked for, otherwise a
+    /// heat map.
     pub kind: Option<PictureKind>,
-    /// Values at which axes are held: the nearest on the axis. Several for one axis make as many panels or colours.
+    /// Values at which axes are held: the nearest on the axis. Several for one axis make as many
+    /// panels or colours.
     pub at: Vec<(Parameter, f64)>,
     /// Width and height in pixels, 300 to 5000 each.
     pub size: (u32, u32),
@@ -127,8 +131,9 @@ impl Picture {
     }
 }
 
-/// Draws a map for the file `path`, PNG or SVG by its extension, and changes no file. The same map and options give the same bytes.
-/// Where only one axis has more than one value the picture is a line, whatever the kind.
+/// Draws a map for the file `path`, PNG or SVG by its extension, and changes no file. The same map
+/// and options give the same bytes. Where only one axis has more than one value the picture is a
+/// line, whatever the kind.
 ///
 /// # Errors
 /// When the options do not fit the map, there is nothing to draw, or the map cannot be read.
@@ -146,8 +151,8 @@ pub fn draw(map: &MapFile, path: &Path, options: &PictureOptions) -> Result<Pict
     Picture::of(&compose(map, options, most)?, &format, path)
 }
 
-/// Draws a trace for the file `path`, as [`draw`] does a map: velocities, elongation and the quantity that is controlled over
-/// time, and the velocity over the elongation.
+/// Draws a trace for the file `path`, as [`draw`] does a map: velocities, elongation and the
+/// quantity that is controlled over time, and the velocity over the elongation.
 ///
 /// # Errors
 /// When the name of the file is no picture's.
@@ -164,7 +169,8 @@ pub fn is_name(path: &Path) -> bool {
     Format::of(path).is_ok()
 }
 
-/// True if `path` is free, or holds a PNG picture of slipmap's: nobody's work is lost by drawing there unasked.
+/// True if `path` is free, or holds a PNG picture of slipmap's: nobody's work is lost by drawing
+/// there unasked.
 #[must_use]
 pub fn may_replace(path: &Path) -> bool {
     // A pipe would be waited for.
@@ -261,8 +267,8 @@ fn compose(map: &MapFile, options: &PictureOptions, most: usize) -> Result<Scene
     Ok(scene)
 }
 
-/// A field of the map that says more than where sliding is stable: what v0 is good for, the critical velocity, what becomes
-/// of motions, or the rate at which disturbances decay.
+/// A field of the map that says more than where sliding is stable: what v0 is good for, the
+/// critical velocity, what becomes of motions, or the rate at which disturbances decay.
 fn says_more(map: &MapFile) -> Option<Field> {
     let more = [Field::Class, Field::Vc, Field::Outcome, Field::ABSCISSA];
     more.into_iter().find(|field| map.fields().contains(field))
@@ -276,7 +282,8 @@ fn default_field(map: &MapFile) -> Field {
         .unwrap_or(Field::NUnstable)
 }
 
-/// The fields that one line picture shows where none is asked for: the default one `field`, and those that it is compared with.
+/// The fields that one line picture shows where none is asked for: the default one `field`, and
+/// those that it is compared with.
 fn shown_together(map: &MapFile, view: &View, field: Field) -> Vec<Field> {
     if view.along.is_some() || !field.of_limit() {
         return vec![field];
@@ -432,8 +439,10 @@ mod tests {
             "mu_prime = [-0.5, -0.1]\n tau = [0.0, 1.0, 2.0, 5.0]",
             "mu_prime = [-0.1]\n tau = { from = 0, to = 30, points = 3001 }",
             "mu_prime = [-0.2, -0.1]\n tau = [1.0]",
-            "tau = { from = 0.001, to = 1000, points = 31, spacing = \"log\" }\n mu_prime = [-0.2, -0.1]",
-            "mu_prime = [0.1, 0.2]\n alpha_n = [-1.0, 0.0]\n alpha_v = [-0.2, -0.1]\n tau = [1.0, 2.0]",
+            "tau = { from = 0.001, to = 1000, points = 31, spacing = \"log\" }\n mu_prime = [-0.2, \
+            -0.1]",
+            "mu_prime = [0.1, 0.2]\n alpha_n = [-1.0, 0.0]\n alpha_v = [-0.2, -0.1]\n tau = [1.0, \
+            2.0]",
         ] {
             let case = Case::new(&format!("[axes]\n{axes}"));
             for name in ["map.png", "map.svg"] {
@@ -442,13 +451,14 @@ mod tests {
         }
     }
 
-    /// As a heat map and along a line, with cells without delay or control among them.
+    /// Every field as a heat map and along a line, with cells without delay or control among them.
     #[test]
     fn every_field_is_drawn() {
         let linear = || Field::ALL.into_iter().filter(|f| f.of_sliding());
         let names: Vec<String> = linear().map(|f| format!("{:?}", f.name())).collect();
         let case = Case::new(&format!(
-            "fields = [{}]\n[axes]\nalpha_n = [-1.5, -1.0, -0.5, 0.0]\ntau = [0.0, 0.3, 0.6, 0.9, 6.0]\n[fixed]\nmu_prime = -0.1",
+            "fields = [{}]\n[axes]\nalpha_n = [-1.5, -1.0, -0.5, 0.0]\ntau = [0.0, 0.3, 0.6, 0.9, \
+            6.0]\n[fixed]\nmu_prime = -0.1",
             names.join(", ")
         ));
         let mut pictures = HashSet::new();
@@ -473,7 +483,7 @@ mod tests {
         assert!(text.contains("spectral abscissa") && text.contains("stable below 0"));
     }
 
-    /// As heat maps, and along a line at a value of one axis.
+    /// Draws every field as heat maps, and along a line at a value of one axis.
     fn draw_every_field(case: &Case, line: (Parameter, f64)) {
         for &field in case.map.fields() {
             for at in [vec![], vec![line]] {
@@ -490,8 +500,10 @@ mod tests {
     #[test]
     fn fields_of_motions_are_drawn() {
         let case = Case::new(
-            "fields = [\"outcome\", \"settle_time\", \"n_min\", \"peak_force\"]\n[axes]\na0 = [-0.4, 0.6, 1]\nx_dot0 = [0.1, 0.7]\n\
-             [fixed]\nv0 = 0.118\nalpha_n = -7\ntau = 1\n[friction]\nlaw = \"weakening\"\nmu0 = 0.5\nv_s = 0.5\n",
+            "fields = [\"outcome\", \"settle_time\", \"n_min\", \"peak_force\"]\n[axes]\na0 = \
+            [-0.4, 0.6, 1]\nx_dot0 = [0.1, 0.7]\n\
+             [fixed]\nv0 = 0.118\nalpha_n = -7\ntau = 1\n[friction]\nlaw = \"weakening\"\nmu0 = \
+             0.5\nv_s = 0.5\n",
         );
         draw_every_field(&case, (Parameter::XDot0, 0.1));
         let bytes = case.draw("map.svg", &PictureOptions::default()).unwrap();
@@ -504,8 +516,10 @@ mod tests {
     #[test]
     fn fields_of_the_critical_velocity_are_drawn() {
         let case = Case::new(
-            "fields = [\"n_unstable\", \"vc\", \"outcome\", \"method\", \"class\", \"windows\", \"v_liftoff\", \"stick_time\", \"v_smooth\"]\n\
-             [axes]\nmu_prime_rest = [-1, -0.5]\nalpha_n = [-9, 0, 2]\ntau = [0.4, 1]\n[fixed]\nv0 = 0.1\n\
+            "fields = [\"n_unstable\", \"vc\", \"outcome\", \"method\", \"class\", \"windows\", \
+            \"v_liftoff\", \"stick_time\", \"v_smooth\"]\n\
+             [axes]\nmu_prime_rest = [-1, -0.5]\nalpha_n = [-9, 0, 2]\ntau = [0.4, 1]\n[fixed]\nv0 \
+             = 0.1\n\
              [friction]\nlaw = \"weakening\"\nmu0 = 0.5\n",
         );
         draw_every_field(&case, (Parameter::Tau, 1.0));

@@ -83,7 +83,8 @@ pub fn head(scene: &mut Scene, title: &str, notes: &[Rich]) -> Area {
     }
 }
 
-/// A text in lines of at most `width`; what does not fit into the lines allowed ends in an ellipsis.
+/// A text in lines of at most `width`; what does not fit into the lines allowed ends in an
+/// ellipsis.
 fn wrapped(text: &str, size: f64, width: f64) -> Vec<String> {
     let fits = |line: &str| Rich::plain(line).width(size) <= width;
     let mut lines: Vec<String> = Vec::new();

@@ -1,4 +1,5 @@
-//! From a scene to the bytes of a PNG or SVG file. With [`super::font`] the only place that knows plotters.
+//! From a scene to the bytes of a PNG or SVG file. With [`super::font`] the only place that knows
+//! plotters.
 
 use std::collections::HashMap;
 
@@ -78,7 +79,8 @@ pub fn svg(scene: &Scene) -> Result<Vec<u8>, PictureError> {
         return Err(PictureError::Render("the SVG is empty".into()));
     };
     let head = format!(
-        "<svg width=\"{}\" height=\"{}\" viewBox=\"0 0 {width} {height}\" stroke-linejoin=\"round\" \
+        "<svg width=\"{}\" height=\"{}\" viewBox=\"0 0 {width} {height}\" \
+        stroke-linejoin=\"round\" \
          stroke-linecap=\"round\" xmlns=\"http://www.w3.org/2000/svg\">\n",
         scene.size.0, scene.size.1,
     );
@@ -185,7 +187,8 @@ impl<B: DrawingBackend> Pen<B> {
         self.backend.draw_path(places, &style).map_err(refused)
     }
 
-    /// A line as a row of discs: even width and round joints, which the backend's own wide lines lack.
+    /// A line as a row of discs: even width and round joints, which the backend's own wide lines
+    /// lack.
     fn brush(&mut self, points: &[Point], colour: Rgb, width: f64) -> Drawn {
         let radius = 0.5 * width * self.units;
         for pair in points.windows(2) {
@@ -246,7 +249,8 @@ impl<B: DrawingBackend> Pen<B> {
         Ok(())
     }
 
-    /// Cells as few rectangles: neighbours of one colour are joined along rows, then equal stretches of rows.
+    /// Cells as few rectangles: neighbours of one colour are joined along rows, then equal
+    /// stretches of rows.
     fn cells(&mut self, columns: &[f64], rows: &[f64], colours: &[Rgb]) -> Drawn {
         let width = columns.len().saturating_sub(1).max(1);
         let mut open: HashMap<(usize, usize, Rgb), usize> = HashMap::new();
@@ -267,7 +271,8 @@ impl<B: DrawingBackend> Pen<B> {
         for (top, bottom, (from, to, colour)) in done {
             let [(x0, y0), (x1, y1)] =
                 [(from, top), (to, bottom)].map(|(c, r)| self.units((columns[c], rows[r])));
-            // In SVG, where neighbours only touch, viewers let the paper shine through: each reaches below the next.
+            // In SVG, where neighbours only touch, viewers let the paper shine through: each
+            // reaches below the next.
             let overlap = |here: i32, next: i32, last: bool| match last || self.bitmap {
                 true => next,
                 false => next + (next - here).signum() * (self.units / 2.0) as i32,
@@ -327,7 +332,8 @@ fn ink(Rgb(r, g, b): Rgb, opacity: f64) -> RGBAColor {
     RGBColor(r, g, b).mix(opacity)
 }
 
-/// `text` with the spaces that an SVG viewer would drop, at the ends and beside others, made unbreakable.
+/// `text` with the spaces that an SVG viewer would drop, at the ends and beside others, made
+/// unbreakable.
 fn with_kept_spaces(text: &str) -> String {
     let space = |c: Option<char>| c.is_none_or(|c| c == ' ');
     let characters: Vec<char> = text.chars().collect();

@@ -17,7 +17,8 @@ pub struct Scale {
 }
 
 impl Scale {
-    /// The scale from the smallest to the largest of `values`, logarithmic if they are spaced so, on either side of 0.
+    /// The scale from the smallest to the largest of `values`, logarithmic if they are spaced so,
+    /// on either side of 0.
     pub fn between(values: &[f64]) -> Self {
         let (from, to) = ends(values);
         Self {
@@ -54,8 +55,8 @@ impl Scale {
         }
     }
 
-    /// A logarithmic scale over all positive `values`, or over the uppermost `decades` and a part of one where they are spread
-    /// wider; none where there is no positive one.
+    /// A logarithmic scale over all positive `values`, or over the uppermost `decades` and a part
+    /// of one where they are spread wider; none where there is no positive one.
     pub fn over_decades(values: impl Iterator<Item = f64>, decades: i32) -> Option<Self> {
         let positive = values.filter(|v| v.is_finite() && *v > 0.0);
         let (low, high) = positive.fold((f64::INFINITY, 0.0), |(low, high), v| {
@@ -70,7 +71,7 @@ impl Scale {
         self.log
     }
 
-    /// The same scale with ticks at least this far apart.
+    /// This scale with ticks at least this far apart.
     pub fn with_smallest_step(self, smallest_step: f64) -> Self {
         Self {
             smallest_step,
@@ -113,7 +114,8 @@ impl Scale {
         }
     }
 
-    /// The edges of the cells of `values`, one more than there are: midpoints on the scale, and as far beyond the ends.
+    /// The edges of the cells of `values`, one more than there are: midpoints on the scale, and as
+    /// far beyond the ends.
     pub fn edges(&self, values: &[f64]) -> Vec<f64> {
         let middle = |a: f64, b: f64| {
             if self.log {

@@ -91,7 +91,8 @@ impl Scene {
         }
     }
 
-    /// The size of a pixel of a picture of 1600 × 1100 in this one: all fonts and gaps grow with it.
+    /// The size of a pixel of a picture of 1600 × 1100 in this one: all fonts and gaps grow with
+    /// it.
     pub fn unit(&self) -> f64 {
         (f64::from(self.size.0) / 1600.0).min(f64::from(self.size.1) / 1100.0)
     }
@@ -181,7 +182,8 @@ impl Scene {
         }
     }
 
-    /// Adds a text that reads upwards, its middle at `at`, its baseline to the right of the letters.
+    /// Adds a text that reads upwards, its middle at `at`, its baseline to the right of the
+    /// letters.
     pub fn upward_text(&mut self, at: Point, text: &Rich, size: f64, colour: Rgb) {
         let bottom = at.1 + 0.5 * text.width(size);
         for (offset, drop, size, run) in text.placed(size) {

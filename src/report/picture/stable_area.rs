@@ -6,10 +6,11 @@ use crate::linear::curves::{CurvePiece, StableSide, Vertex};
 /// Slices of a region: (x, y of its lower end, y of its upper end) in pixels, by growing x.
 pub type Region = Vec<(f64, f64, f64)>;
 
-/// The stable regions of one plane within a panel, cut into parts that each are one interval at every x.
+/// The stable regions of one plane within a panel, cut into parts that each are one interval at
+/// every x.
 ///
-/// `pieces` are those that bound the stable region. `without_crossing` says whether sliding is stable at the values of the
-/// panel's x axis where no piece lies.
+/// `pieces` are those that bound the stable region. `without_crossing` says whether sliding is
+/// stable at the values of the panel's x axis where no piece lies.
 pub fn regions(
     panel: &Panel,
     pieces: &[&CurvePiece],
@@ -84,7 +85,8 @@ fn intervals(
     intervals
 }
 
-/// The delay of a curve at `p`; none where it does not reach. A curve is a function of p between its folds.
+/// The delay of a curve at `p`; none where it does not reach. A curve is a function of p between
+/// its folds.
 fn delay_at(vertices: &[Vertex], p: f64) -> Option<f64> {
     let first = vertices.first()?.p;
     let last = vertices.last()?.p;

@@ -8,7 +8,8 @@ use crate::sweep::{Field, Parameter};
 const SUBSCRIPT_SIZE: f64 = 0.72;
 const SUBSCRIPT_DROP: f64 = 0.18;
 
-/// More characters than this are not drawn: a map may come from anywhere, and a picture has no room for them.
+/// More characters than this are not drawn: a map may come from anywhere, and a picture has no room
+/// for them.
 const MOST_CHARACTERS: usize = 500;
 
 /// A line of text in which a letter may be a subscript.
@@ -185,7 +186,8 @@ pub fn number(value: f64) -> String {
     with_power(trimmed(mantissa), exponent)
 }
 
-/// A number with `decimals` digits behind the point, divided by a power of ten that is written behind it.
+/// A number with `decimals` digits behind the point, divided by a power of ten that is written
+/// behind it.
 pub fn tick_number(value: f64, decimals: usize, exponent: Option<i32>) -> String {
     match exponent {
         None => with_minus(&format!("{value:.decimals$}")),

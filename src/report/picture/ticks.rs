@@ -24,7 +24,8 @@ impl Tick {
 /// Decades within which numbers are written without a power of ten.
 const PLAIN: std::ops::Range<i32> = -4..6;
 
-/// Ticks from `from` to `to` at steps of 1, 2 or 5 times a power of ten, at most `most` and no nearer than `smallest_step`.
+/// Ticks from `from` to `to` at steps of 1, 2 or 5 times a power of ten, at most `most` and no
+/// nearer than `smallest_step`.
 pub fn linear(from: f64, to: f64, most: usize, smallest_step: f64) -> Vec<Tick> {
     let rough = ((to - from) / most.max(1) as f64).max(smallest_step);
     let step = round_step(rough);
@@ -61,7 +62,8 @@ fn round_step(rough: f64) -> f64 {
     factor.unwrap_or(10.0) * power
 }
 
-/// Ticks at 1 to 9 times powers of ten; labels at the powers, and at 2 and 5 times them over a short range.
+/// Ticks at 1 to 9 times powers of ten; labels at the powers, and at 2 and 5 times them over a
+/// short range.
 pub fn logarithmic(from: f64, to: f64, most: usize) -> Vec<Tick> {
     let (low, high) = (from.log10().floor() as i32, to.log10().ceil() as i32);
     let decades = (to / from).log10();

@@ -244,7 +244,8 @@ fn scale(of: impl Iterator<Item = Value>, samples: &[Sample]) -> Scale {
     Scale::linear(low - room, high + room)
 }
 
-/// A curve over growing x with no more points than can be seen: of each column of pixels the first, the extremes, the last.
+/// A curve over growing x with no more points than can be seen: of each column of pixels the first,
+/// the extremes, the last.
 fn by_columns(points: impl Iterator<Item = Point>) -> Vec<Point> {
     let mut kept = Vec::new();
     let mut column: Vec<Point> = Vec::new();

@@ -134,7 +134,8 @@ impl View {
             }
         }
         let units = units(map);
-        // Only what differs from the default, and the gains, since a gain of 0 means no such control.
+        // Only what differs from the default, and the gains, since a gain of 0 means no such
+        // control.
         for (parameter, value) in map.scalars() {
             let gain = matches!(parameter, Parameter::AlphaV | Parameter::AlphaN);
             if gain || parameter.default_value() != Some(value) {

@@ -9,14 +9,16 @@ use crate::slip::friction_series::FrictionSeries;
 const LONGEST: f64 = 0.5;
 /// The change of speed in a step, over the law's own scale of it.
 const SHARE: f64 = 0.25;
-/// Beyond a stop within a step velocity weakening goes on to negative speeds, down to this share of v_s.
+/// Beyond a stop within a step velocity weakening goes on to negative speeds, down to this share of
+/// v_s.
 const BEYOND: f64 = 0.5;
 /// Steps that are not solved to the tolerance become shorter by this, so often at most.
 const SHORTER: f64 = 0.5;
 const MOST_TIMES: u32 = 40;
 
 impl Motion {
-    /// Solves a step of `limit` at most from here on, its polynomials with it; its length. The delayed polynomial is there.
+    /// Solves a step of `limit` at most from here on, its polynomials with it; its length. The
+    /// delayed polynomial is there.
     pub(super) fn collocate(&mut self, controlled: bool, limit: f64) -> f64 {
         let control = self.control(controlled);
         let load = 1.0 + control.alpha_n * (self.a - self.step.delayed[0]);

@@ -19,7 +19,7 @@ use crate::sweep::plan::pieces::{Piece, Pieces};
 
 /// A file is written that often, unless asked for otherwise.
 pub const BETWEEN_FILES: Duration = Duration::from_secs(2);
-/// And when so many bytes wait.
+/// Bytes that wait at most before a file is written.
 const BYTES_OF_A_FILE: usize = 16 << 20;
 
 const LOCK: &str = "lock";
@@ -45,11 +45,13 @@ pub struct TileFolder {
 }
 
 impl TileFolder {
-    /// Claims `path` for the tiles that `manifest` describes, checks what is there, and says what of it was damaged. Damaged
-    /// pieces are no longer in the folder afterwards; sound ones are kept. A lock left by a run that died does not block.
+    /// Claims `path` for the tiles that `manifest` describes, checks what is there, and says what
+    /// of it was damaged. Damaged pieces are no longer in the folder afterwards; sound ones are
+    /// kept. A lock left by a run that died does not block.
     ///
     /// # Errors
-    /// When it is to stop, another run works there, the folder or its manifest belong to something else, or the system refuses.
+    /// When it is to stop, another run works there, the folder or its manifest belong to something
+    /// else, or the system refuses.
     pub fn claim(
         path: &Path,
         manifest: &Manifest,
@@ -189,8 +191,8 @@ pub(super) fn is_bare(folder: &Path) -> bool {
     !folder.join(manifest::NAME).exists() && !is_claimed(folder)
 }
 
-/// Writes the manifest where there is none; else compares. One that is damaged is written anew, and told, unless a tile file says
-/// that the folder belongs to something else.
+/// Writes the manifest where there is none; else compares. One that is damaged is written anew, and
+/// told, unless a tile file says that the folder belongs to something else.
 fn check_manifest(folder: &Path, asked: &Manifest) -> Result<Option<Damaged>, StoreError> {
     let path = folder.join(manifest::NAME);
     if !path.exists() {
@@ -318,12 +320,13 @@ pub(super) fn clear(folder: &Path) -> Result<(), StoreError> {
     Ok(())
 }
 
-/// The same of a folder that this process has claimed.
+/// Removes what a folder holds that this process has claimed.
 fn clear_claimed(folder: &Path) -> Result<(), StoreError> {
     refuse_foreign(folder)?;
     let manifest = folder.join(manifest::NAME);
     if manifest.exists() {
-        // Without its manifest the folder is on its way out, and nobody takes what is left for half a map.
+        // Without its manifest the folder is on its way out, and nobody takes what is left for half
+        // a map.
         let part = folder.join(format!(".{}{PART}", manifest::NAME));
         rename_synced(&manifest, &part)?;
     }

@@ -7,7 +7,8 @@
 //! the records' bytes, one after the other
 //! ```
 //!
-//! Numbers are unsigned, little-endian. `layout` is a hash of all that has to be equal for records to belong together.
+//! Numbers are unsigned, little-endian. `layout` is a hash of all that has to be equal for records
+//! to belong together.
 
 use std::io::{self, Write};
 use std::ops::Range;
@@ -217,7 +218,10 @@ mod tests {
 
     proptest! {
         #[test]
-        fn any_bytes_are_answered(bytes in proptest::collection::vec(any::<u8>(), 0..300), head in any::<bool>()) {
+        fn any_bytes_are_answered(
+            bytes in proptest::collection::vec(any::<u8>(), 0..300),
+            head in any::<bool>(),
+        ) {
             let mut all = if head { MAGIC.to_vec() } else { Vec::new() };
             all.extend(bytes);
             prop_assert!(index(&all, &LAYOUT).is_err());

@@ -1,6 +1,8 @@
-//! What a folder of tiles belongs to, as JSON under a checksum; and where that differs from what is asked for.
+//! What a folder of tiles belongs to, as JSON under a checksum; and where that differs from what is
+//! asked for.
 //!
-//! The file is the object of [`Manifest`] with a first field more, `sha256`: that of the text without it.
+//! The file is the object of [`Manifest`] with a first field more, `sha256`: that of the text
+//! without it.
 
 use std::path::Path;
 
@@ -27,7 +29,7 @@ const MOST_BYTES: u64 = 64 << 20;
 const OPENING: &str = "{\n";
 /// What stands before the checksum in its place.
 const SEAL: &str = "{\n  \"sha256\": \"";
-/// And what behind it.
+/// What stands behind the checksum.
 const SEALED: &str = "\",\n";
 
 fn checksum(text: &str) -> String {
@@ -75,7 +77,7 @@ impl Manifest {
         }
     }
 
-    /// The same of another shard.
+    /// The manifest of another shard.
     pub(super) fn of_shard(&self, shard: &str) -> Self {
         Self {
             shard: shard.to_owned(),
@@ -143,7 +145,8 @@ impl Manifest {
         Self::unseal(&text).map_err(damaged)
     }
 
-    /// A hash of all that has to be equal for tiles to belong together: everything but the shard and the sweep's wording.
+    /// A hash of all that has to be equal for tiles to belong together: everything but the shard
+    /// and the sweep's wording.
     #[must_use]
     pub fn layout(&self) -> Digest {
         let all = (
@@ -167,14 +170,16 @@ impl Manifest {
         Ok(plan)
     }
 
-    /// The first thing in which tiles differ from what is asked for, in words; none where they belong together.
+    /// The first thing in which tiles differ from what is asked for, in words; none where they
+    /// belong together.
     #[must_use]
     pub fn difference(&self, asked: &Self) -> Option<String> {
         let versions = |m: &Self| (m.tiles_format_version, m.map_format_version);
         if versions(self) != versions(asked) {
             let ((t, m), (tiles, map)) = (versions(self), versions(asked));
             return Some(format!(
-                "the tiles have format version {t} (maps {m}), this program writes {tiles} (maps {map})"
+                "the tiles have format version {t} (maps {m}), this program writes {tiles} (maps \
+                {map})"
             ));
         }
         let program = |m: &Self| format!("slipmap {} ({})", m.program_version, m.git_revision);

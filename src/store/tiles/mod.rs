@@ -1,8 +1,9 @@
 //! Finished pieces of a sweep on disk, until the map is put together.
 //!
-//! Beside a map `MAP.h5` stands a folder `MAP.h5.tiles`, with a folder `I-of-N` in it for every shard (`1-of-1`: the whole
-//! sweep). It holds a [`manifest`], a lock, and tile files ([`mod@format`]), each closed, synced and renamed before the next one
-//! is begun: whatever ends a run, what they hold is kept. A file holds the pieces of about two seconds.
+//! Beside a map `MAP.h5` stands a folder `MAP.h5.tiles`, with a folder `I-of-N` in it for every
+//! shard (`1-of-1`: the whole sweep). It holds a [`manifest`], a lock, and tile files
+//! ([`mod@format`]), each closed, synced and renamed before the next one is begun: whatever ends a
+//! run, what they hold is kept. A file holds the pieces of about two seconds.
 
 pub mod folder;
 pub mod format;

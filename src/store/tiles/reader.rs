@@ -108,7 +108,8 @@ pub struct TileReader {
 }
 
 impl TileReader {
-    /// Reads every byte in the folder `path`, and says which files are damaged. The sound pieces of these are there too.
+    /// Reads every byte in the folder `path`, and says which files are damaged. The sound pieces of
+    /// these are there too.
     ///
     /// # Errors
     /// When it is to stop, or the system refuses.

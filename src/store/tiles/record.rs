@@ -63,7 +63,8 @@ impl<'a> Content<'a> {
     }
 }
 
-/// Whether bytes are the payload of such a piece; of a tile, whose chunks have `status_cells` statuses in the last one.
+/// Whether bytes are the payload of such a piece; of a tile, whose chunks have `status_cells`
+/// statuses in the last one.
 #[must_use]
 pub fn is_readable(piece: Piece, payload: &[u8], status_cells: usize) -> bool {
     match Content::read(piece, payload) {

@@ -31,7 +31,8 @@ pub fn folder_of(map: &Path, shard: Shard) -> PathBuf {
     root(map).join(format!("{number}-of-{of}"))
 }
 
-/// In the folder of shards: the map of all of them is complete, and they are being removed. Holds the hash of its plan.
+/// In the folder of shards: the map of all of them is complete, and they are being removed. Holds
+/// the hash of its plan.
 const MERGED: &str = "merged";
 /// More bytes are in no such file.
 const MOST_OF_MARK: u64 = 1024;
@@ -53,11 +54,13 @@ pub fn mark_merged(map: &Path, plan_hash: &str) -> Result<(), StoreError> {
     sync_name(&path)
 }
 
-/// Goes on with a removal of shards that was stopped midway, and says whether there was one. `is_complete` is asked whether the
-/// map of a plan's hash is; where it is not, it has gone since, and the shards that are left count as any.
+/// Goes on with a removal of shards that was stopped midway, and says whether there was one.
+/// `is_complete` is asked whether the map of a plan's hash is; where it is not, it has gone since,
+/// and the shards that are left count as any.
 ///
 /// # Errors
-/// As [`clear`], and those of `is_complete`: the shards are then neither removed nor taken for half a map.
+/// As [`clear`], and those of `is_complete`: the shards are then neither removed nor taken for half
+/// a map.
 pub fn settle(
     map: &Path,
     is_complete: impl FnOnce(&str) -> Result<bool, StoreError>,
@@ -160,8 +163,8 @@ pub fn hold(map: &Path, asked: &Manifest) -> bool {
         .any(|(_, folder)| holds(folder))
 }
 
-/// The manifest that a folder has to have if it belongs to `expected`, and whether its own is sound. Where it is not, the folder's
-/// name says which shard it is of.
+/// The manifest that a folder has to have if it belongs to `expected`, and whether its own is
+/// sound. Where it is not, the folder's name says which shard it is of.
 ///
 /// # Errors
 /// When the system refuses, or nothing says which shard it is.
@@ -197,7 +200,8 @@ pub fn manifest(folder: &Path) -> Result<Manifest, StoreError> {
 /// Removes the tiles of every shard of `map`.
 ///
 /// # Errors
-/// When a run works on one of them, something that is not slipmap's is there, or the system refuses.
+/// When a run works on one of them, something that is not slipmap's is there, or the system
+/// refuses.
 pub fn clear(map: &Path) -> Result<(), StoreError> {
     let shards = all(map)?;
     if let Some((_, path)) = shards.iter().find(|(_, path)| is_running(path)) {

@@ -1,4 +1,5 @@
-//! Settings of fastest decay in physical units, for a point of parameter space and for the planes of a sweep.
+//! Settings of fastest decay in physical units, for a point of parameter space and for the planes
+//! of a sweep.
 
 use super::boundaries::plane_spanned;
 use crate::linear::best::{self, Optimum, Search, SearchedGain};
@@ -13,11 +14,11 @@ const STEEPEST: f64 = 1e4;
 
 /// Delays searched unless others are asked for: so many periods 2π√(M/κ) of the free oscillator.
 const PERIODS: f64 = 4.0;
-/// Gains of velocity control searched unless others are asked for: so far in units of the larger of 1 and |b|. Its best
-/// settings are far inside, at −0.16 to −0.32 for −0.73 < b < 0.
+/// Gains of velocity control searched unless others are asked for: so far in units of the larger of
+/// 1 and |b|. Its best settings are far inside, at −0.16 to −0.32 for −0.73 < b < 0.
 const FARTHEST_VELOCITY: f64 = 2.0;
-/// Load gains searched unless others are asked for: so far beyond 0 and the weakest negative gain that stabilises, in units of
-/// 1 + |b|. The triple real root is at half of that or less.
+/// Load gains searched unless others are asked for: so far beyond 0 and the weakest negative gain
+/// that stabilises, in units of 1 + |b|. The triple real root is at half of that or less.
 const BEYOND_FOLD: f64 = 4.0;
 
 /// What [`best_settings`] searches.
@@ -86,9 +87,9 @@ fn scaled((from, to): (f64, f64), by: f64) -> (f64, f64) {
     (from * by, to * by)
 }
 
-/// The ranges that are searched at `setting` where none are given. Delays: up to four periods of the free oscillator.
-/// Dimensionless gains: for velocity control ±2 max(1, |b|); for load control from 4(1 + |b|) below the weakest negative gain
-/// that stabilises, −(b²/2 + |b|), to 4(1 + |b|).
+/// The ranges that are searched at `setting` where none are given. Delays: up to four periods of
+/// the free oscillator. Dimensionless gains: for velocity control ±2 max(1, |b|); for load control
+/// from 4(1 + |b|) below the weakest negative gain that stabilises, −(b²/2 + |b|), to 4(1 + |b|).
 ///
 /// # Errors
 /// When a parameter of `setting` is outside the model's range.
@@ -111,7 +112,8 @@ pub fn default_ranges(setting: &Setting, gain: SearchedGain) -> Result<Ranges, M
     })
 }
 
-/// The groups of `setting`, if |b| is not so large that its optima lie at delays which no search resolves.
+/// The groups of `setting`, if |b| is not so large that its optima lie at delays which no search
+/// resolves.
 fn moderate_slope(setting: &Setting) -> Result<Groups, ModelError> {
     let (groups, _) = setting.groups()?;
     let mu_prime = setting.sliding_point()?.mu_prime;
@@ -124,8 +126,8 @@ fn moderate_slope(setting: &Setting) -> Result<Groups, ModelError> {
     Ok(groups)
 }
 
-/// The settings of fastest decay for every stable region within `ranges`, all parameters but `gain` and the delay being those
-/// of `setting`.
+/// The settings of fastest decay for every stable region within `ranges`, all parameters but `gain`
+/// and the delay being those of `setting`.
 ///
 /// # Errors
 /// When a parameter of `setting` is outside the model's range.
@@ -159,13 +161,15 @@ pub fn best_settings(
     })
 }
 
-/// Where the plane of number `number` whose best settings are looked for lies, as indices along every axis.
+/// Where the plane of number `number` whose best settings are looked for lies, as indices along
+/// every axis.
 #[must_use]
 pub fn best_plane(plan: &Plan, number: u64) -> Vec<usize> {
     plane_spanned(plan, plan.best_plane(), number)
 }
 
-/// The best settings of the plane of a plan that lies at `index`; none where a parameter is outside the model's range.
+/// The best settings of the plane of a plan that lies at `index`; none where a parameter is outside
+/// the model's range.
 #[must_use]
 pub fn best_of_plane(plan: &Plan, index: &[usize]) -> Option<BestSettings> {
     let (p, tau) = plan.best_plane()?;

@@ -1,5 +1,5 @@
-//! Crossing curves of a whole sweep, and those of its degrees of stability: one plane (parameter, delay) for each setting of
-//! the other axes.
+//! Crossing curves of a whole sweep, and those of its degrees of stability: one plane (parameter,
+//! delay) for each setting of the other axes.
 
 use crate::linear::Crossings;
 use crate::linear::curves::{PlaneCurves, TooManyCurves, Window, scan_breakpoints, trace};
@@ -26,19 +26,22 @@ pub struct BoundaryPlane {
 /// The curves of one degree of stability in one plane.
 #[derive(Debug, Clone)]
 pub struct DegreeCurves {
-    /// σ in 1/time: the curves are where a root has Re λ = −σ. 0 for crossings of the imaginary axis.
+    /// σ in 1/time: the curves are where a root has Re λ = −σ. 0 for crossings of the imaginary
+    /// axis.
     pub degree_of_stability: f64,
     /// The curves; an error where there are too many.
     pub curves: Result<PlaneCurves, TooManyCurves>,
 }
 
-/// Where the plane of curves of number `number` lies, as indices along every axis; 0 along its own two.
+/// Where the plane of curves of number `number` lies, as indices along every axis; 0 along its own
+/// two.
 #[must_use]
 pub fn plane(plan: &Plan, number: u64) -> Vec<usize> {
     plane_spanned(plan, plan.boundary_plane, number)
 }
 
-/// The setting of that number of the axes outside a plane, the last one fastest, as indices along every axis.
+/// The setting of that number of the axes outside a plane, the last one fastest, as indices along
+/// every axis.
 pub(super) fn plane_spanned(plan: &Plan, plane: Option<(usize, usize)>, number: u64) -> Vec<usize> {
     let mut shape = plan.shape().to_vec();
     if let Some((p, tau)) = plane {
@@ -117,8 +120,8 @@ fn trace_window(
     std::iter::once(0.0).chain(degrees).map(traced).collect()
 }
 
-/// Values of `parameter` at which the number of crossing curves changes, `start` being the groups at one of them and the unit of
-/// time; `scanned` where they have no closed form.
+/// Values of `parameter` at which the number of crossing curves changes, `start` being the groups
+/// at one of them and the unit of time; `scanned` where they have no closed form.
 fn breakpoints(
     setting: &Setting,
     parameter: Parameter,
@@ -141,8 +144,9 @@ fn breakpoints(
     })
 }
 
-/// The last value of `parameter` below a jump of the groups, and the first one above it. The slope of a table jumps at its first
-/// and at its last speed, which themselves belong to the curve between them.
+/// The last value of `parameter` below a jump of the groups, and the first one above it. The slope
+/// of a table jumps at its first and at its last speed, which themselves belong to the curve
+/// between them.
 fn jumps(setting: &Setting, parameter: Parameter) -> Result<Vec<[f64; 2]>, ModelError> {
     let law = setting.friction_law()?;
     let (Parameter::V0, Some(Kind::Table(table))) = (parameter, law.as_ref().map(|l| l.kind()))
@@ -154,7 +158,8 @@ fn jumps(setting: &Setting, parameter: Parameter) -> Result<Vec<[f64; 2]>, Model
     Ok(vec![[first.next_down(), first], [last, last.next_up()]])
 }
 
-/// The parts of a window between jumps. Nothing crosses the imaginary axis at a jump itself, so no curve runs along it.
+/// The parts of a window between jumps. Nothing crosses the imaginary axis at a jump itself, so no
+/// curve runs along it.
 fn split(window: &Window, jumps: &[[f64; 2]]) -> Vec<Window> {
     let (mut start, end) = (*window.p.start(), *window.p.end());
     let mut parts = Vec::new();
@@ -199,7 +204,8 @@ mod tests {
         Plan::new(text.parse::<SweepSpec>().unwrap()).unwrap()
     }
 
-    /// The number of unstable roots by the argument principle changes, along every column of the plane, where a curve is, and only there.
+    /// The number of unstable roots by the argument principle changes, along every column of the
+    /// plane, where a curve is, and only there.
     #[test]
     fn curves_bound_the_counts_on_both_sides_of_the_ends_of_a_table() {
         let (mut changes, mut beyond) = (0, 0);

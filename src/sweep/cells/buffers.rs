@@ -3,7 +3,8 @@
 use crate::sweep::input::field::{Field, Storage};
 use crate::sweep::plan::Plan;
 
-/// The cells of one tile, in memory in the order of its strides. Cells beyond the map hold fill values.
+/// The cells of one tile, in memory in the order of its strides. Cells beyond the map hold fill
+/// values.
 #[derive(Debug, Clone)]
 pub struct TileBuffers {
     /// Status of each cell, see [`crate::linear::status`].
@@ -77,7 +78,8 @@ fn columns<T: Clone>(
     stored.map(column).collect()
 }
 
-/// Leaves one zero and one NaN: of 0/0, of the larger of both zeros and the like processors choose the sign themselves.
+/// Leaves one zero and one NaN: of 0/0, of the larger of both zeros and the like processors choose
+/// the sign themselves.
 pub(super) fn one_zero_and_one_nan(cells: &mut [f64]) {
     for cell in cells {
         *cell = if cell.is_nan() { f64::NAN } else { *cell + 0.0 };

@@ -1,4 +1,5 @@
-//! The fields of the limit of a short delay: v_c in closed form, and the letter's approximations of it.
+//! The fields of the limit of a short delay: v_c in closed form, and the letter's approximations of
+//! it.
 
 use super::buffers::TileBuffers;
 use crate::critical::limit::{CoulombLimit, strong, weak};

@@ -1,4 +1,5 @@
-//! The fields that come from characteristic roots: from the dimensionless roots of a cell to physical values.
+//! The fields that come from characteristic roots: from the dimensionless roots of a cell to
+//! physical values.
 
 use super::buffers::Column;
 use crate::linear::sensitivity::Sensitivity;
@@ -36,9 +37,11 @@ impl RootColumns {
         })
     }
 
-    /// Computes the cells of a line into `columns`, from place `at` on with `stride` places from delay to delay.
+    /// Computes the cells of a line into `columns`, from place `at` on with `stride` places from
+    /// delay to delay.
     ///
-    /// `counts` are the numbers of unstable roots; `status` gains what following the roots has to say.
+    /// `counts` are the numbers of unstable roots; `status` gains what following the roots has to
+    /// say.
     pub fn fill(
         &mut self,
         line: &Line,
@@ -57,7 +60,8 @@ impl RootColumns {
                 }
                 _ => [f64::NAN; 4],
             };
-            // Without control or delay there is one pair; else a root that is not there was not found.
+            // Without control or delay there is one pair; else a root that is not there was not
+            // found.
             let beyond = if line.groups.uncontrolled() || line.delays[i] == 0.0 {
                 f64::NEG_INFINITY
             } else {
@@ -76,7 +80,8 @@ impl RootColumns {
     }
 }
 
-/// The value of a field in a cell, in units of the sweep; none for fields that do not come from roots.
+/// The value of a field in a cell, in units of the sweep; none for fields that do not come from
+/// roots.
 ///
 /// NaN where nothing converged; a root beyond the last one has the real part `beyond`.
 #[inline]
@@ -116,8 +121,8 @@ pub fn relaxation_time(abscissa: f64) -> f64 {
     }
 }
 
-/// The derivatives of the abscissa in units of the sweep, in the order of [`Slope`]: Re λ/T with T = √(M/κ), by the chain
-/// rule over τ/T and the groups, each proportional to its parameter.
+/// The derivatives of the abscissa in units of the sweep, in the order of [`Slope`]: Re λ/T with T
+/// = √(M/κ), by the chain rule over τ/T and the groups, each proportional to its parameter.
 #[inline]
 fn slopes(line: &Line, sensitivity: &Sensitivity) -> [f64; 4] {
     let (unit, per) = (line.time_unit, line.per_parameter);

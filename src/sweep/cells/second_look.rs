@@ -33,7 +33,8 @@ pub enum Question {
     Outcome,
     /// The critical velocity, by simulation with collocation and steps of v0 of its own.
     CriticalVelocity,
-    /// The critical velocity by switching on: what becomes of stick-slip just below and just above it, by collocation.
+    /// The critical velocity by switching on: what becomes of stick-slip just below and just above
+    /// it, by collocation.
     SwitchOn,
 }
 
@@ -67,7 +68,8 @@ pub enum Answer {
     Agrees,
     /// It found something else.
     Differs,
-    /// The cell says itself that it is marginal, not converged or in dispute, or the method cannot tell there.
+    /// The cell says itself that it is marginal, not converged or in dispute, or the method cannot
+    /// tell there.
     Open,
 }
 
@@ -220,8 +222,8 @@ fn critical_velocity(
 /// How far from an edge stick-slip is switched on, relative.
 const BESIDE: f64 = 1e-4;
 
-/// Whether stick-slip survives switching on just below the critical velocity and not just above it. The worst of many phases
-/// is left open: it would take as many motions.
+/// Whether stick-slip survives switching on just below the critical velocity and not just above it.
+/// The worst of many phases is left open: it would take as many motions.
 fn switched_on(setting: &Setting, stored: &Stored, phase: Phase) -> Result<Answer, ModelError> {
     let vc = (stored.value)(Field::Vc);
     let lost = f64::from(number_of_end(End::Lost));

@@ -22,8 +22,8 @@ pub(super) struct SlipColumns<'p> {
     sliding: Sliding,
 }
 
-/// What is known of sliding in the cells of the line followed last. Lines that differ in nothing but the motions' start
-/// share it.
+/// What is known of sliding in the cells of the line followed last. Lines that differ in nothing
+/// but the motions' start share it.
 #[derive(Default)]
 struct Sliding(Vec<Option<Known>>);
 
@@ -88,9 +88,10 @@ impl<'p> SlipColumns<'p> {
         })
     }
 
-    /// Follows the motions of a line at `setting`, with its groups, and at `delays`, into `buffers` from place `at` on with
-    /// `stride` places from delay to delay. The status gains [`NOT_CONVERGED`] where a motion stays undecided. After `stop`
-    /// is set nothing more is followed.
+    /// Follows the motions of a line at `setting`, with its groups, and at `delays`, into `buffers`
+    /// from place `at` on with `stride` places from delay to delay. The status gains
+    /// [`NOT_CONVERGED`] where a motion stays undecided. After `stop` is set nothing more is
+    /// followed.
     pub fn fill(
         &mut self,
         (setting, groups): (&Setting, Groups),

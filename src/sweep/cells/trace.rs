@@ -1,4 +1,5 @@
-//! A motion sampled over time, with its events: a case followed to its outcome and to the end of its trace.
+//! A motion sampled over time, with its events: a case followed to its outcome and to the end of
+//! its trace.
 
 use crate::slip::case::{Case, CaseError, CaseUnits};
 use crate::slip::motion::{Event, MOST_KEPT, Mode, Motion};
@@ -80,8 +81,8 @@ impl TraceEvent {
 /// A motion with what became of it.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Trace {
-    /// Samples at strictly growing times, from 0 to the end of the trace. Every event has one; where v or N jump, at
-    /// switch-on, the one before it is next to it.
+    /// Samples at strictly growing times, from 0 to the end of the trace. Every event has one;
+    /// where v or N jump, at switch-on, the one before it is next to it.
     pub samples: Vec<Sample>,
     /// All events until the outcome was known and to the end of the trace.
     pub events: Vec<TraceEvent>,
@@ -111,7 +112,8 @@ impl Trace {
         };
         let mut recorder = Recorder::new(case, spec.sampling)?;
         recorder.record(until)?;
-        // One motion twice, to rounding: a step that goes on to the end of what is asked for ends elsewhere. Events of samples first.
+        // One motion twice, to rounding: a step that goes on to the end of what is asked for ends
+        // elsewhere. Events of samples first.
         let mut events = recorder.events;
         let both = events.len();
         events.extend(listed.events.into_iter().skip(both));
@@ -263,7 +265,8 @@ impl Recorder {
         }
     }
 
-    /// Samples the end of the last step; `before`: next to it, because the next step begins with other values.
+    /// Samples the end of the last step; `before`: next to it, because the next step begins with
+    /// other values.
     fn sample_end(&mut self, begun: Begun, before: bool) {
         let length = self.motion.last_step().length;
         let mut sample = self.sample(begun, length);

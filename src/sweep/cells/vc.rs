@@ -23,15 +23,17 @@ pub const MORE_STEPS: u64 = 100;
 pub struct Found {
     /// v_c and what there is at it, in units of the setting.
     pub critical: Critical,
-    /// Where stick-slip survives, up to the largest v0 at which it is looked for: v0 from and to, increasing, in units of the
-    /// setting. The last one may end at v_c, where N ≤ 0 occurs, or with the range.
+    /// Where stick-slip survives, up to the largest v0 at which it is looked for: v0 from and to,
+    /// increasing, in units of the setting. The last one may end at v_c, where N ≤ 0 occurs, or
+    /// with the range.
     pub windows: Vec<[f64; 2]>,
 }
 
 /// What is asked of a setting: its problem in the units of a motion, and those units.
 ///
 /// # Errors
-/// When the setting has no friction law, or a value is out of the model's range: a gain needs a delay τ > 0.
+/// When the setting has no friction law, or a value is out of the model's range: a gain needs a
+/// delay τ > 0.
 pub fn problem(setting: &Setting) -> Result<(Problem, CaseUnits), ModelError> {
     let oscillator = setting.oscillator()?;
     let units = CaseUnits::of(&oscillator);
@@ -86,8 +88,8 @@ pub fn find_in(problem: &Problem, units: &CaseUnits, protocol: Protocol) -> Foun
     }
 }
 
-/// What becomes of stick-slip that is switched on at `phase`, in units of the setting, at velocities beside `vc`: lower and higher by
-/// this share of it.
+/// What becomes of stick-slip that is switched on at `phase`, in units of the setting, at
+/// velocities beside `vc`: lower and higher by this share of it.
 #[must_use]
 pub fn survives_beside(
     problem: &Problem,
@@ -107,7 +109,8 @@ pub fn survives_beside(
     [1.0 - beside, 1.0 + beside].map(|share| trials.at(share * speed))
 }
 
-/// The critical velocities of a block of a line by the protocol `follow`, see [`line::critical_velocities`].
+/// The critical velocities of a block of a line by the protocol `follow`, see
+/// [`line::critical_velocities`].
 #[must_use]
 pub fn find_in_line(
     problems: &[Problem],
@@ -137,8 +140,8 @@ fn followed(found: &Critical, problem: &Problem, units: &CaseUnits) -> Found {
     }
 }
 
-/// v_c is the topmost edge of the windows; there is none where the topmost window ends at `v_max` only, or not all v0 were
-/// tried.
+/// v_c is the topmost edge of the windows; there is none where the topmost window ends at `v_max`
+/// only, or not all v0 were tried.
 fn switched_on(found: Windows, v_max: f64, velocity: f64) -> Found {
     let top = found.top();
     let (vc, end) = match top {
@@ -185,8 +188,9 @@ fn in_motion_units(phase: Phase, units: &CaseUnits) -> Phase {
     }
 }
 
-/// First steps of v0, relative, and those through what ends by chance, where a cell is recomputed: other ones than where it was
-/// computed; and small ones, which throw stick-slip from one kind to another least, where these lead elsewhere.
+/// First steps of v0, relative, and those through what ends by chance, where a cell is recomputed:
+/// other ones than where it was computed; and small ones, which throw stick-slip from one kind to
+/// another least, where these lead elsewhere.
 const SAMPLE_STEPS: [[f64; 2]; 3] = [[0.35, 0.1], [0.05, 0.02], [0.02, 0.005]];
 /// Larger ones may throw stick-slip to where it ends elsewhere: they contradict nothing.
 const TOO_LARGE: f64 = 0.1;
@@ -200,10 +204,11 @@ const fn sample_tolerances(integrator: Integrator) -> [f64; 3] {
     }
 }
 
-/// Whether simulation alone, with steps of v0 of its own by this `integrator`, agrees with `found`, the answer for
-/// `problem` by the protocol `follow`, in `units`: it has to see stick-slip end at the same velocity, see
-/// [`Critical::ends_like`]. None where it cannot tell: small steps do not decide, and large ones, which may throw
-/// stick-slip from one kind to another, end elsewhere; or where the cell is not decided and claims nothing.
+/// Whether simulation alone, with steps of v0 of its own by this `integrator`, agrees with `found`,
+/// the answer for `problem` by the protocol `follow`, in `units`: it has to see stick-slip end at
+/// the same velocity, see [`Critical::ends_like`]. None where it cannot tell: small steps do not
+/// decide, and large ones, which may throw stick-slip from one kind to another, end elsewhere; or
+/// where the cell is not decided and claims nothing.
 #[must_use]
 pub fn simulation_agrees(
     problem: &Problem,
@@ -240,7 +245,8 @@ pub fn simulation_agrees(
     differs
 }
 
-/// The class of `v0`, in units of the setting, where the critical velocity is `found` by `protocol`.
+/// The class of `v0`, in units of the setting, where the critical velocity is `found` by
+/// `protocol`.
 #[must_use]
 pub fn class_at(
     v0: f64,
@@ -275,7 +281,8 @@ pub fn class_at(
     }
 }
 
-/// The same by the protocol `follow`, up to `v_max`, where sliding at `v0` is linearly stable.
+/// The class of `v0` by the protocol `follow`, up to `v_max`, where sliding at `v0` is linearly
+/// stable.
 fn beside_sliding(v0: f64, critical: &Critical, v_max: f64) -> Class {
     match critical.end {
         _ if !critical.decided => Class::Undecided,
@@ -294,9 +301,9 @@ const COUNTS_PER_DECADE: f64 = 64.0;
 /// The smallest velocity at which it is, in units of μ_S N0/√(κM).
 const SMALLEST_COUNTED: f64 = 1e-6;
 
-/// The velocity above which, up to `v_max` (in units of μ_S N0/√(κM)), sliding is linearly stable and free of stick-slip,
-/// whose critical velocity is `vc`; in units of the setting, as `vc`. NaN where sliding is not stable at `v_max`, or there is
-/// no `vc`.
+/// The velocity above which, up to `v_max` (in units of μ_S N0/√(κM)), sliding is linearly stable
+/// and free of stick-slip, whose critical velocity is `vc`; in units of the setting, as `vc`. NaN
+/// where sliding is not stable at `v_max`, or there is no `vc`.
 #[must_use]
 pub fn v_smooth((problem, units): (&Problem, &CaseUnits), vc: f64, v_max: f64) -> f64 {
     let unit = problem.law.mu_s();
@@ -368,7 +375,8 @@ mod tests {
         }
     }
 
-    /// Where a block lifts off that did not stick at lower velocities, nothing is beside sliding below.
+    /// Where a block lifts off that did not stick at lower velocities, nothing is beside sliding
+    /// below.
     #[test]
     fn lift_off_without_stick_slip_below() {
         let mut lifted = critical(End::LiftOff, f64::NAN, 0.2);
@@ -378,7 +386,8 @@ mod tests {
         }
     }
 
-    /// By the protocol `follow` a window goes from rest to whatever ends stick-slip: v_c, lift-off, or the range.
+    /// By the protocol `follow` a window goes from rest to whatever ends stick-slip: v_c, lift-off,
+    /// or the range.
     #[test]
     fn whatever_ends_a_window_it_counts() {
         let problem = Problem {

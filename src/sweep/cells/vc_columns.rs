@@ -1,4 +1,5 @@
-//! The fields of the critical velocity: every cell's v_c is looked for, and a sample of them a second time.
+//! The fields of the critical velocity: every cell's v_c is looked for, and a sample of them a
+//! second time.
 
 use std::ops::Range;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -99,8 +100,9 @@ impl VcColumns {
         })
     }
 
-    /// Looks for the critical velocities of a line at `setting` and at `delays`, into `buffers`. The status gains
-    /// [`NOT_CONVERGED`] where it stays unknown, [`SAMPLED`] and [`DISAGREE`]. After `stop` is set nothing more is looked for.
+    /// Looks for the critical velocities of a line at `setting` and at `delays`, into `buffers`.
+    /// The status gains [`NOT_CONVERGED`] where it stays unknown, [`SAMPLED`] and [`DISAGREE`].
+    /// After `stop` is set nothing more is looked for.
     pub fn fill(
         &mut self,
         setting: &Setting,
@@ -125,13 +127,15 @@ impl VcColumns {
             let number = cells.first + i as u64 * cells.step;
             match self.cell(&setting, i, number) {
                 Ok(cell) => store(&cell, buffers, place),
-                // The sweep's values were checked: what is refused here is beyond what can be followed.
+                // The sweep's values were checked: what is refused here is beyond what can be
+                // followed.
                 Err(_) => store_nothing(buffers, place),
             }
         }
     }
 
-    /// Looks for the answers in a block of a line, which starts where blocks of the whole line do, unless they are known.
+    /// Looks for the answers in a block of a line, which starts where blocks of the whole line do,
+    /// unless they are known.
     fn find_block(
         &mut self,
         setting: &mut Setting,

@@ -51,7 +51,8 @@ pub struct Worker<'p> {
     slides: bool,
 }
 
-/// The groups of one line after the other. What does not change from line to line is not computed again.
+/// The groups of one line after the other. What does not change from line to line is not computed
+/// again.
 struct Lines<'p> {
     plan: &'p Plan,
     setting: Setting,
@@ -103,7 +104,8 @@ impl<'p> Lines<'p> {
         Ok((groups, oscillator.time_unit()))
     }
 
-    /// How much each group grows with its parameter on the current line: b per μ_K′, a_v per α_v, a_n per α_N.
+    /// How much each group grows with its parameter on the current line: b per μ_K′, a_v per α_v,
+    /// a_n per α_N.
     fn groups_per_parameter(&self) -> Groups {
         match &self.uncontrolled {
             Some(Ok((oscillator, sliding))) => {
@@ -164,7 +166,8 @@ impl<'p> Worker<'p> {
         self.compute_until(tile, &AtomicBool::new(false));
     }
 
-    /// As [`Worker::compute`], but no further motion is followed once `stop` is set. False if the tile is not complete.
+    /// Computes the cells of `tile`, as [`Worker::compute`] does, but no further motion is followed
+    /// once `stop` is set. False if the tile is not complete.
     pub fn compute_until(&mut self, tile: &Tile, stop: &AtomicBool) -> bool {
         let complete = self.fill_until(tile, stop);
         for column in &mut self.buffers.columns {
@@ -332,7 +335,8 @@ impl<'p> Worker<'p> {
         self.unflagged = false;
     }
 
-    /// A line outside the model's range: its cells keep fill values and say that nothing converged there.
+    /// A line outside the model's range: its cells keep fill values and say that nothing converged
+    /// there.
     fn refuse_line(&mut self, at: usize) {
         let len = self.delays.values().len();
         self.unflagged = false;

@@ -25,8 +25,9 @@ pub struct Axis {
     pub values: Vec<f64>,
 }
 
-/// The axes of the planes in which curves can be traced, (parameter, delay): the last gain axis, else the last other axis on
-/// which linear stability depends, and the delay. None where there are no two such axes with two values or more.
+/// The axes of the planes in which curves can be traced, (parameter, delay): the last gain axis,
+/// else the last other axis on which linear stability depends, and the delay. None where there are
+/// no two such axes with two values or more.
 #[must_use]
 pub fn plane_of_curves(axes: &[Axis]) -> Option<(usize, usize)> {
     let several =
@@ -49,13 +50,14 @@ pub struct AxisError(pub String);
 /// `points` values from `from` to `to`, each computed from its index alone; both ends exact.
 ///
 /// # Errors
-/// When the ends are reversed or equal, the number of points is out of range, a logarithmic axis reaches zero, or
-/// neighbouring values coincide in double precision.
+/// When the ends are reversed or equal, the number of points is out of range, a logarithmic axis
+/// reaches zero, or neighbouring values coincide in double precision.
 pub fn spaced(from: f64, to: f64, points: u64, spacing: Spacing) -> Result<Vec<f64>, AxisError> {
     let refuse = |message: String| Err(AxisError(message));
     if !(2..=MOST_POINTS).contains(&points) {
         return refuse(format!(
-            "points = {points} is outside its range: 2 to {MOST_POINTS} (for one value write a list of one)"
+            "points = {points} is outside its range: 2 to {MOST_POINTS} (for one value write a \
+            list of one)"
         ));
     }
     if from.partial_cmp(&to) != Some(std::cmp::Ordering::Less) {
@@ -97,7 +99,8 @@ impl Axis {
     /// An axis with these values.
     ///
     /// # Errors
-    /// When a value is outside the parameter's range, or the values are not strictly monotonic. Delays must increase.
+    /// When a value is outside the parameter's range, or the values are not strictly monotonic.
+    /// Delays must increase.
     pub fn new(parameter: Parameter, values: Vec<f64>) -> Result<Self, AxisError> {
         if values.is_empty() {
             return Err(AxisError("the list is empty".into()));

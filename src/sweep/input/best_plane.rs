@@ -14,8 +14,8 @@ pub fn searched_gain(parameter: Parameter) -> Option<SearchedGain> {
     }
 }
 
-/// The axes (gain, delay) of the planes whose best settings are looked for: the last gain axis and the delay, if both have
-/// more points than one.
+/// The axes (gain, delay) of the planes whose best settings are looked for: the last gain axis and
+/// the delay, if both have more points than one.
 #[must_use]
 pub fn gain_plane(axes: &[Axis]) -> Option<(usize, usize)> {
     let gain = axes

@@ -3,7 +3,8 @@
 //! ```toml
 //! title = "Velocity control"      # optional
 //! switch_on = 70.0                # when control begins to act, 0 by default; false: never
-//! horizon = 1000.0                # until when the outcome is looked for; by default 1000 √(M/κ) after switch-on
+//! # until when the outcome is looked for; by default 1000 √(M/κ) after switch-on
+//! horizon = 1000.0
 //! tolerance = 1e-12               # error allowed in a step, relative; 1e-15 to 1e-3
 //! steps = 1000000                 # the most steps
 //!
@@ -20,8 +21,8 @@
 //! [start]                         # optional: at t = 0, and the elongation before
 //! x_dot0 = 0.3535                 # v0 by default
 //! a0 = 0.294                      # that of sliding at v0 by default, μ_K(v0) N0/κ
-//!                                 # or, with switch_on left out: switch_on_phase = 0.2, the time from a release of
-//!                                 # uncontrolled stick-slip, which is t = 0, to switch-on, modulo the period
+//! # or, with switch_on left out: switch_on_phase = 0.2, the time from a release of
+//! # uncontrolled stick-slip, which is t = 0, to switch-on, modulo the period
 //!
 //! [trace]                         # optional
 //! until = 150.0                   # end of the trace; by default when the outcome is known
@@ -47,7 +48,7 @@ const MOST_SAMPLES: u64 = 64;
 /// How densely a motion is sampled between its events.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Sampling {
-    /// So many samples in each step of the integrator, 1 to 64.
+    /// A number of samples in each step of the integrator, 1 to 64.
     PerStep(u32),
     /// At all multiples of this time.
     Interval(f64),

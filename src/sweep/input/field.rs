@@ -7,7 +7,8 @@ use crate::critical::{Critical, End, Method};
 use crate::linear::track::MOST_ROOTS;
 use crate::slip::outcome::Outcome;
 
-/// Names of the real and imaginary parts of the roots, by their rank from the right, and the rank in words.
+/// Names of the real and imaginary parts of the roots, by their rank from the right, and the rank
+/// in words.
 const ABSCISSAE: [&str; MOST_ROOTS] = [
     "abscissa",
     "abscissa_2",
@@ -86,19 +87,20 @@ impl Slope {
 pub enum Field {
     /// Number of unstable roots.
     NUnstable,
-    /// What becomes of the motion or, beside fields of the critical velocity, of stick-slip there: a number of
-    /// [`OUTCOMES`].
+    /// What becomes of the motion or, beside fields of the critical velocity, of stick-slip there:
+    /// a number of [`OUTCOMES`].
     Outcome,
     /// Number of the [`Method`] that gave the critical velocity.
     Method,
     /// Number of the [`Class`] of v0.
     Class,
-    /// Number of windows of v0, up to the largest one at which it is looked for, in which stick-slip survives, whatever ends
-    /// it there: v_c, N ≤ 0 or the range.
+    /// Number of windows of v0, up to the largest one at which it is looked for, in which
+    /// stick-slip survives, whatever ends it there: v_c, N ≤ 0 or the range.
     Windows,
     /// Signed distance in τ to the nearest change of stability.
     DelayMargin,
-    /// Re λ of the root of that rank; −∞ where there are fewer roots. Of the first: the spectral abscissa.
+    /// Re λ of the root of that rank; −∞ where there are fewer roots. Of the first: the spectral
+    /// abscissa.
     Abscissa(Rank),
     /// |Im λ| of the root of that rank, 0 for a real one; NaN where there are fewer roots.
     Frequency(Rank),
@@ -128,8 +130,8 @@ pub enum Field {
     Limit(LimitField),
 }
 
-/// Names of all that a motion or stick-slip can come to, in the order of their numbers in maps: those of [`Outcome`], then
-/// those of [`End`] that are no outcome as well.
+/// Names of all that a motion or stick-slip can come to, in the order of their numbers in maps:
+/// those of [`Outcome`], then those of [`End`] that are no outcome as well.
 pub const OUTCOMES: [&str; Outcome::ALL.len() + End::ALL.len() - 1] = {
     let mut names = [""; Outcome::ALL.len() + End::ALL.len() - 1];
     let mut i = 0;
@@ -148,7 +150,8 @@ pub const OUTCOMES: [&str; Outcome::ALL.len() + End::ALL.len() - 1] = {
     names
 };
 
-/// The place in [`OUTCOMES`] of what is told of stick-slip: undecided where none was found, but not everywhere.
+/// The place in [`OUTCOMES`] of what is told of stick-slip: undecided where none was found, but not
+/// everywhere.
 #[must_use]
 pub fn number_of_outcome(critical: &Critical) -> u8 {
     match critical.end {
@@ -280,7 +283,8 @@ impl Field {
                 "angular frequency of the rightmost characteristic root".into()
             }
             Self::Frequency(rank) => format!(
-                "angular frequency of the {} characteristic root from the right, pairs counted once",
+                "angular frequency of the {} characteristic root from the right, pairs counted \
+                once",
                 ORDINALS[rank.0]
             ),
             Self::RelaxationTime => "time in which a small disturbance decays by a factor e".into(),
@@ -350,8 +354,10 @@ impl Field {
     pub const fn comment(self) -> Option<&'static str> {
         match self {
             Self::ABSCISSA => Some(
-                "certified in status: the argument principle, which shares nothing with the computation of the roots, \
-                 finds no root with Re lambda > abscissa + certificate_margin * max(1/t, |abscissa|), \
+                "certified in status: the argument principle, which shares nothing with the \
+                computation of the roots, \
+                 finds no root with Re lambda > abscissa + certificate_margin * max(1/t, \
+                 |abscissa|), \
                  t = sqrt(mass/stiffness)",
             ),
             Self::Abscissa(_) => Some("-infinity where there are fewer roots"),
@@ -363,7 +369,8 @@ impl Field {
                 Some("in units of max(1/t, |abscissa|), t = sqrt(mass/stiffness)")
             }
             Self::Outcome => Some(
-                "undecided: none of the others before the horizon or within the steps allowed, not_converged in status; \
+                "undecided: none of the others before the horizon or within the steps allowed, \
+                not_converged in status; \
                  no-cycle: no uncontrolled stick-slip at whose phase control could be switched on",
             ),
             Self::SettleTime => Some("no value where the motion does not come to slide"),
@@ -372,14 +379,18 @@ impl Field {
                 Some("until the outcome was known; where control never acts, since t = 0")
             }
             Self::Vc => Some(
-                "0 where stick-slip is not sustained at any v0; no value where N <= 0 ends it or it survives at v_max",
+                "0 where stick-slip is not sustained at any v0; no value where N <= 0 ends it or \
+                it survives at v_max",
             ),
             Self::Class => Some(
-                "stable: sliding is linearly stable, without stick-slip beside it; bistable: stick-slip persists beside it; \
-                 lift-off: linearly stable, but stick-slip leads to N <= 0 at v0 or below; undecided: marginal, or not known",
+                "stable: sliding is linearly stable, without stick-slip beside it; bistable: \
+                stick-slip persists beside it; \
+                 lift-off: linearly stable, but stick-slip leads to N <= 0 at v0 or below; \
+                 undecided: marginal, or not known",
             ),
             Self::Windows => Some(
-                "those that end where N <= 0 or reach v_max count; follow: one, from 0, or none; switch-on: windows between \
+                "those that end where N <= 0 or reach v_max count; follow: one, from 0, or none; \
+                switch-on: windows between \
                  the velocities that are tried may be missed",
             ),
             Self::StickTime | Self::SlipTime => Some("no value for the protocol switch-on"),
@@ -390,14 +401,16 @@ impl Field {
         }
     }
 
-    /// What there is of it to know beside fields of the critical velocity: its long name and comment.
+    /// What there is of it to know beside fields of the critical velocity: its long name and
+    /// comment.
     #[must_use]
     pub fn described_at_vc(self) -> (String, Option<&'static str>) {
         match self {
             Self::Outcome => (
                 "how stick-slip ends at the critical velocity".into(),
                 Some(
-                    "lost: above it does not survive switching on, or there is none to switch on in; persists: it survives at \
+                    "lost: above it does not survive switching on, or there is none to switch on \
+                    in; persists: it survives at \
                      v_max; undecided: it was not found, but it is not known everywhere",
                 ),
             ),
@@ -405,7 +418,8 @@ impl Field {
         }
     }
 
-    /// The names of its kinds, in the order of their numbers; none where it is no [`Storage::Kind`].
+    /// The names of its kinds, in the order of their numbers; none where it is no
+    /// [`Storage::Kind`].
     #[must_use]
     pub fn kinds(self) -> Option<Vec<&'static str>> {
         match self {
@@ -448,7 +462,8 @@ impl Field {
         }
     }
 
-    /// True for fields of the critical velocity, which need a friction law; [`Field::Outcome`] is one beside them only.
+    /// True for fields of the critical velocity, which need a friction law; [`Field::Outcome`] is
+    /// one beside them only.
     #[must_use]
     pub const fn of_vc(self) -> bool {
         matches!(
@@ -470,7 +485,8 @@ impl Field {
         !self.of_motion() && !self.of_vc() && !self.of_limit()
     }
 
-    /// True for fields of the motion of the block, which need a friction law and depend on its start.
+    /// True for fields of the motion of the block, which need a friction law and depend on its
+    /// start.
     #[must_use]
     pub const fn of_motion(self) -> bool {
         matches!(
@@ -479,13 +495,15 @@ impl Field {
         )
     }
 
-    /// True for fields of the limit of a short delay, which need [`Protocol::Limit`](super::Protocol::Limit).
+    /// True for fields of the limit of a short delay, which need
+    /// [`Protocol::Limit`](super::protocol::Protocol::Limit).
     #[must_use]
     pub const fn of_limit(self) -> bool {
         matches!(self, Self::Limit(_))
     }
 
-    /// Number of roots from the right, pairs counted once, that the field needs; 0 if the closed form gives it.
+    /// Number of roots from the right, pairs counted once, that the field needs; 0 if the closed
+    /// form gives it.
     #[must_use]
     pub const fn roots_needed(self) -> usize {
         match self {
@@ -589,11 +607,14 @@ mod tests {
     fn numbered_names_are_listed_as_ranges() {
         assert_eq!(
             known_fields(),
-            "n_unstable, outcome, method, class, windows, delay_margin, abscissa, abscissa_2 … abscissa_8, frequency, \
+            "n_unstable, outcome, method, class, windows, delay_margin, abscissa, abscissa_2 … \
+            abscissa_8, frequency, \
              frequency_2 … frequency_8, relaxation_time, d_abscissa_d_tau, d_abscissa_d_alpha_v, \
-             d_abscissa_d_alpha_n, d_abscissa_d_mu_prime, certificate_margin, settle_time, n_min, peak_force, \
+             d_abscissa_d_alpha_n, d_abscissa_d_mu_prime, certificate_margin, settle_time, n_min, \
+             peak_force, \
              vc, v_liftoff, stick_time, slip_time, v_smooth, \
-             vc_over_vtilde, omega0_T, liftoff_over_vtilde, vc_weak_control, vc_strong_control, weak_control_error, \
+             vc_over_vtilde, omega0_T, liftoff_over_vtilde, vc_weak_control, vc_strong_control, \
+             weak_control_error, \
              strong_control_error"
         );
     }

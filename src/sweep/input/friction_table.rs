@@ -85,8 +85,9 @@ fn built(speeds: &Numbers, mu_k: &Numbers, place: &Range<usize>) -> Result<Table
     })
 }
 
-/// Reads a table from a text with a line for each point: the speed and μ_K, separated by a comma, a semicolon or blanks.
-/// Empty lines, lines that begin with `#`, and one line of titles before the first point are passed over.
+/// Reads a table from a text with a line for each point: the speed and μ_K, separated by a comma, a
+/// semicolon or blanks. Empty lines, lines that begin with `#`, and one line of titles before the
+/// first point are passed over.
 ///
 /// # Errors
 /// Points at the first line or number that is not understood or out of range, see [`Table::new`].

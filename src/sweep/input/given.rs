@@ -1,4 +1,5 @@
-//! The parameters that a file gives a value: its tables `[fixed]` and `[friction]`, with the place of every key.
+//! The parameters that a file gives a value: its tables `[fixed]` and `[friction]`, with the place
+//! of every key.
 
 use std::ops::Range;
 
@@ -44,7 +45,8 @@ impl GivenParameters {
         Ok(())
     }
 
-    /// Reads the table `[start]`: where a motion starts. The same parameters may stand in `[fixed]`.
+    /// Reads the table `[start]`: where a motion starts. The same parameters may stand in
+    /// `[fixed]`.
     pub fn read_start(&mut self, start: &Entry) -> Result<(), SpecError> {
         for entry in start.table()? {
             let known = Parameter::from_name(entry.key).filter(|p| p.of_start());
@@ -63,7 +65,8 @@ impl GivenParameters {
             (Some(place), Some(state)) => {
                 let message = format!("switch_on_phase: {} is given as well", state.name());
                 Err(SpecError::at(place.clone(), message).help(
-                    "a motion starts in a state (x_dot0, a0) or in uncontrolled stick-slip (switch_on_phase), not both",
+                    "a motion starts in a state (x_dot0, a0) or in uncontrolled stick-slip \
+                    (switch_on_phase), not both",
                 ))
             }
             _ => Ok(()),
@@ -159,8 +162,8 @@ impl GivenParameters {
         setting
     }
 
-    /// Every parameter that is needed is there, none that would be ignored. `optional` can be left out; what is missing is
-    /// told at the friction law, or at `place`.
+    /// Every parameter that is needed is there, none that would be ignored. `optional` can be left
+    /// out; what is missing is told at the friction law, or at `place`.
     pub fn check(
         &self,
         optional: Option<Parameter>,

@@ -88,7 +88,8 @@ impl LimitField {
     pub const fn comment(self) -> Option<&'static str> {
         match self {
             Self::VcOverVtilde => Some(
-                "vtilde = (mu_s - mu_k) normal_load / sqrt(stiffness mass), gamma = -mu_k alpha_n tau / (2 sqrt(stiffness mass)), \
+                "vtilde = (mu_s - mu_k) normal_load / sqrt(stiffness mass), gamma = -mu_k alpha_n \
+                tau / (2 sqrt(stiffness mass)), \
                  mu_ratio = mu_k/mu_s; 0 from gamma = 1 on",
             ),
             Self::Omega0T => Some("infinity from gamma = 1 on"),

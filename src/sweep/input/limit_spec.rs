@@ -76,8 +76,10 @@ impl LimitDraft {
         match self.fields.iter().find(|(field, _)| field.of_limit()) {
             Some((field, place)) => {
                 let message = format!("{} is a field of protocol = \"limit\"", field.name());
-                Err(SpecError::at(place.clone(), message)
-                    .help("protocol = \"limit\" asks for v_c as the delay vanishes; its parameters are gamma and mu_ratio"))
+                Err(SpecError::at(place.clone(), message).help(
+                    "protocol = \"limit\" asks for v_c as the delay vanishes; its parameters \
+                        are gamma and mu_ratio",
+                ))
             }
             None => Ok(()),
         }
@@ -92,7 +94,8 @@ fn no_meaning(name: &str, place: &Range<usize>) -> SpecError {
         format!("{name} has no meaning with protocol = \"{protocol}\""),
     )
     .help(format!(
-        "the limit is Coulomb friction under load control as the delay vanishes; all it takes is gamma, mu_ratio and the \
+        "the limit is Coulomb friction under load control as the delay vanishes; all it takes is \
+        gamma, mu_ratio and the \
          fields {fields}"
     ))
 }

@@ -1,11 +1,12 @@
-//! Every parameter of a sweep: its one name in flags, sweep files and maps, its meaning, unit and range.
+//! Every parameter of a sweep: its one name in flags, sweep files and maps, its meaning, unit and
+//! range.
 
 use std::cmp::Ordering;
 
 use crate::model::{Control, FrictionLaw, Groups, ModelError, Oscillator, SlidingPoint, Table};
 
-/// The largest size of any parameter, and one over the smallest of those that must be positive: far beyond any
-/// experiment, and small enough that no dimensionless group overflows.
+/// The largest size of any parameter, and one over the smallest of those that must be positive: far
+/// beyond any experiment, and small enough that no dimensionless group overflows.
 pub(super) const LARGEST: f64 = 1e12;
 
 /// A parameter of the model, of the friction law or of the control.
@@ -43,7 +44,7 @@ pub enum Parameter {
     A0,
     /// Time from a release of uncontrolled stick-slip to switch-on.
     SwitchOnPhase,
-    /// γ = −μ_K α_N τ/(2√(κM)) of [`Protocol::Limit`](super::Protocol::Limit).
+    /// γ = −μ_K α_N τ/(2√(κM)) of [`Protocol::Limit`](super::protocol::Protocol::Limit).
     Gamma,
     /// μ_K/μ_S of the same.
     MuRatio,
@@ -375,7 +376,8 @@ impl LawKind {
         }
     }
 
-    /// How many of [`LawKind::parameters`] have to be given: what one of them is follows from the others, if it is not all.
+    /// How many of [`LawKind::parameters`] have to be given: what one of them is follows from the
+    /// others, if it is not all.
     #[must_use]
     pub const fn needed(&self) -> usize {
         match self {
@@ -397,8 +399,8 @@ pub enum GivenError {
 }
 
 impl GivenError {
-    /// What is wrong, in words, for a setting with the friction law `law`; `name` is how parameters are called where they are
-    /// given.
+    /// What is wrong, in words, for a setting with the friction law `law`; `name` is how parameters
+    /// are called where they are given.
     #[must_use]
     pub fn message(self, law: Option<&LawKind>, name: fn(Parameter) -> String) -> String {
         match (self, law) {
@@ -435,10 +437,15 @@ impl GivenError {
         match self {
             Self::Missing(p) => format!("{}: {}, {}", name(p), p.long_name(), p.allowed()),
             Self::Unused(p) if p.of_limit() => {
-                "protocol = \"limit\" in a sweep file asks for v_c as the delay vanishes; its parameters are gamma and mu_ratio".into()
+                "protocol = \"limit\" in a sweep file asks for v_c as the delay vanishes; its \
+                parameters are gamma and mu_ratio"
+                    .into()
             }
             Self::Follows(_) => {
-                format!("give two of {}", [Mu0, VS, MuPrimeRest].map(name).join(", "))
+                format!(
+                    "give two of {}",
+                    [Mu0, VS, MuPrimeRest].map(name).join(", ")
+                )
             }
             Self::Unused(MuPrimeRest) => {
                 let slope = name(MuPrimeRest);
@@ -446,7 +453,10 @@ impl GivenError {
             }
             Self::Unused(_) => {
                 let [mu_prime, mu_k, v0] = [MuPrime, MuK, V0].map(name);
-                format!("give either {mu_prime} (with {mu_k}) or a friction law with {v0}, not both")
+                format!(
+                    "give either {mu_prime} (with {mu_k}) or a friction law with {v0}, not \
+                    both"
+                )
             }
         }
     }
@@ -460,7 +470,8 @@ pub struct Setting {
 }
 
 impl Setting {
-    /// The default values; those without a default are NaN until they are set. `law`: where μ_K and μ_K′ come from.
+    /// The default values; those without a default are NaN until they are set. `law`: where μ_K and
+    /// μ_K′ come from.
     #[must_use]
     pub fn new(law: Option<LawKind>) -> Self {
         let values = Parameter::ALL.map(|p| p.default_value().unwrap_or(f64::NAN));
@@ -486,8 +497,9 @@ impl Setting {
         self.law.as_ref()
     }
 
-    /// True for the parameters on which a cell of this setting depends: those that it takes and has a value of. Not asked of
-    /// the limit of a short delay, see [`SweepSpec::uses`](super::SweepSpec::uses).
+    /// True for the parameters on which a cell of this setting depends: those that it takes and has
+    /// a value of. Not asked of the limit of a short delay, see
+    /// [`SweepSpec::uses`](super::spec::SweepSpec::uses).
     #[must_use]
     pub fn uses(&self, parameter: Parameter) -> bool {
         let taken = parameter.of_start() || Self::takes(self.law.as_ref(), parameter);
@@ -507,8 +519,8 @@ impl Setting {
         }
     }
 
-    /// Every parameter that a setting with this law needs is given, and none that would be ignored. The start of a motion
-    /// is another matter: linear stability knows none.
+    /// Every parameter that a setting with this law needs is given, and none that would be ignored.
+    /// The start of a motion is another matter: linear stability knows none.
     ///
     /// # Errors
     /// Names the first parameter that is missing or unused.
@@ -530,7 +542,7 @@ impl Setting {
         law.map_or(Ok(()), |law| Self::check_law_given(law, given))
     }
 
-    /// As many parameters of the law as it needs.
+    /// Checks that as many parameters of the law are given as it needs.
     fn check_law_given(law: &LawKind, given: impl Fn(Parameter) -> bool) -> Result<(), GivenError> {
         let parameters = law.parameters();
         let there = parameters.iter().filter(|p| given(**p)).count();

@@ -1,4 +1,5 @@
-//! The protocol of a sweep that stands for itself; those of motions are in [`crate::sweep::cells::vc`].
+//! The protocol of a sweep that stands for itself; those of motions are in
+//! [`crate::sweep::cells::vc`].
 
 /// What a critical velocity is the answer to.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -13,7 +13,8 @@ pub const PHASES: u32 = 32;
 pub enum Protocol {
     /// From controlled stick-slip at low v0, raised until stick-slip ends.
     Follow,
-    /// Control is switched on at a phase of uncontrolled stick-slip; the phase is in units of the setting.
+    /// Control is switched on at a phase of uncontrolled stick-slip; the phase is in units of the
+    /// setting.
     SwitchOn(Phase),
 }
 

@@ -1,4 +1,5 @@
-//! How far and how exactly motions are followed, and the motion of a setting: what sweep and case files share.
+//! How far and how exactly motions are followed, and the motion of a setting: what sweep and case
+//! files share.
 
 use std::ops::{Range, RangeInclusive};
 
@@ -17,7 +18,8 @@ const MOST_STEPS: u64 = 1_000_000_000;
 /// Times and lengths that are greater than zero.
 pub(super) const POSITIVE: RangeInclusive<f64> = 1.0 / LARGEST..=LARGEST;
 
-/// The keys `horizon`, `tolerance` and `steps`: of a case file, and of the table `[simulation]` of a sweep file.
+/// The keys `horizon`, `tolerance` and `steps`: of a case file, and of the table `[simulation]` of
+/// a sweep file.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Simulation {
     /// Until when the outcome is looked for, in time; none: 1000 √(M/κ) after switch-on.
@@ -88,8 +90,9 @@ impl Simulation {
         }
     }
 
-    /// The motion of `setting`, with control acting from `switch_on` on unless the setting has a phase for that. Where it
-    /// has no start the block slides at v0. None where it has no friction law.
+    /// The motion of `setting`, with control acting from `switch_on` on unless the setting has a
+    /// phase for that. Where it has no start the block slides at v0. None where it has no friction
+    /// law.
     ///
     /// # Errors
     /// When a parameter is outside the model's range.

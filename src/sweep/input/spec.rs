@@ -2,14 +2,21 @@
 //!
 //! ```toml
 //! title = "Velocity control"              # optional
-//! protocol = "limit"                      # optional: v_c as the delay vanishes, over gamma and mu_ratio and nothing else
-//! fields = ["n_unstable", "abscissa"]     # optional, n_unstable by default; status is always there
+//! # optional: v_c as the delay vanishes, over gamma and mu_ratio and nothing else
+//! protocol = "limit"
+//! # optional, n_unstable by default; status is always there
+//! fields = ["n_unstable", "abscissa"]
 //! boundaries = true                       # optional: the exact crossing curves as polylines
-//! degree_of_stability = [0.05, 0.1]       # optional: also the curves max Re λ = −σ for these σ, in 1/time
-//! best = true                             # optional: the gain and delay of fastest decay in every plane of the two
-//! protocol = "follow"                     # optional, for fields of the critical velocity: or "switch-on"
-//! phase = "worst"                         # optional, with "switch-on": the worst phase; else switch_on_phase, 0 by default
-//! verify = 0.004                          # optional, with "follow": the share of cells that are recomputed by simulation
+//! # optional: also the curves max Re λ = −σ for these σ, in 1/time
+//! degree_of_stability = [0.05, 0.1]
+//! # optional: the gain and delay of fastest decay in every plane of the two
+//! best = true
+//! # optional, for fields of the critical velocity: or "switch-on"
+//! protocol = "follow"
+//! # optional, with "switch-on": the worst phase; else switch_on_phase, 0 by default
+//! phase = "worst"
+//! # optional, with "follow": the share of cells that are recomputed by simulation
+//! verify = 0.004
 //!
 //! [axes]                                  # in this order they are the dimensions of the map
 //! mu_prime = [-0.1, -0.2, -0.5]
@@ -20,11 +27,14 @@
 //! alpha_n = 0.0
 //!
 //! [friction]                              # optional, with v0 instead of mu_prime and mu_k
-//! law = "weakening"                       # or coulomb, stribeck; or table, with speeds and mu_k at them as lists
+//! # or coulomb, stribeck; or table, with speeds and mu_k at them as lists
+//! law = "weakening"
 //! mu0 = 0.5
-//! v_s = 0.5                               # with "weakening" also two of mu0, v_s and mu_prime_rest, here or as axes
+//! # with "weakening" also two of mu0, v_s and mu_prime_rest, here or as axes
+//! v_s = 0.5
 //!
-//! [start]                                 # optional, for fields of motions: where they start, if no axis says so
+//! # optional, for fields of motions: where they start, if no axis says so
+//! [start]
 //! x_dot0 = 0.1                            # and a0; or switch_on_phase, as in case files
 //!
 //! [simulation]                            # optional, for fields of motions: as in case files
@@ -61,7 +71,8 @@ use crate::linear::MarginalTolerance;
 use crate::model::Shown;
 use vc_keys::VcKeys;
 
-/// More points than this on all axes but the last are refused: their product would be too many cells.
+/// More points than this on all axes but the last are refused: their product would be too many
+/// cells.
 const MOST_POINTS_TOGETHER: u64 = 2 * MOST_POINTS;
 /// More degrees of stability than this are refused.
 const MOST_DEGREES: usize = 16;
@@ -83,7 +94,8 @@ pub struct SweepSpec {
     pub fields: Vec<Field>,
     /// Whether to trace crossing curves; none: where that is cheap.
     pub boundaries: Option<bool>,
-    /// Degrees of stability σ > 0, in 1/time and increasing, whose curves max Re λ = −σ are traced beside the boundaries.
+    /// Degrees of stability σ > 0, in 1/time and increasing, whose curves max Re λ = −σ are traced
+    /// beside the boundaries.
     pub degrees_of_stability: Vec<f64>,
     /// Whether to look for the best setting of every plane (gain, delay).
     pub best: bool,
@@ -109,7 +121,8 @@ impl SweepSpec {
         }
     }
 
-    /// Whether there is a sliding state in each cell whose linear stability can be asked for: a friction law needs a v0.
+    /// Whether there is a sliding state in each cell whose linear stability can be asked for: a
+    /// friction law needs a v0.
     #[must_use]
     pub fn has_sliding(&self) -> bool {
         let on_axis = self.axes.iter().any(|a| a.parameter == Parameter::V0);
@@ -250,7 +263,8 @@ impl Draft {
             let points: u64 = self.axes.iter().map(|axis| axis.len() as u64).sum();
             if points > MOST_POINTS_TOGETHER {
                 let message = format!(
-                    "the axes before it have {points} points together; at most {MOST_POINTS_TOGETHER} are allowed"
+                    "the axes before it have {points} points together; at most \
+                    {MOST_POINTS_TOGETHER} are allowed"
                 );
                 return Err(entry.error(message));
             }
@@ -302,8 +316,8 @@ impl Draft {
         })
     }
 
-    /// Everything fits together in a sweep of sliding or of motions; gives the parameters that are no axes, and what is looked
-    /// for of the critical velocity.
+    /// Everything fits together in a sweep of sliding or of motions; gives the parameters that are
+    /// no axes, and what is looked for of the critical velocity.
     fn check(&self) -> Result<(Setting, Option<Search>), SpecError> {
         self.limit.check_absent()?;
         let without_v0 = self.given.law_place().is_some() && !self.needs_v0();
@@ -346,8 +360,10 @@ impl Draft {
             Some(place) if gain_plane(&self.axes).is_none() => {
                 let message =
                     "best needs an axis of a gain and one of the delay, with two points or more";
-                Err(SpecError::at(place.clone(), message)
-                    .help("alpha_v or alpha_n, and tau, in [axes]; the best setting is looked for within their ranges"))
+                Err(SpecError::at(place.clone(), message).help(
+                    "alpha_v or alpha_n, and tau, in [axes]; the best setting is looked for \
+                        within their ranges",
+                ))
             }
             _ => Ok(()),
         }
@@ -411,7 +427,8 @@ impl Draft {
         let mut gains = gains.into_iter().flat_map(|p| self.values(fixed, p));
         let acts = gains.any(|gain| gain != 0.0);
         if acts && self.values(fixed, Parameter::Tau).contains(&0.0) {
-            let message = "tau = 0 is outside its range: greater than 0 where gains act and motions are followed";
+            let message = "tau = 0 is outside its range: greater than 0 where gains act and \
+                motions are followed";
             let place = self.given.place(Parameter::Tau).unwrap_or(place);
             return Err(SpecError::at(place.clone(), message));
         }
@@ -436,7 +453,8 @@ impl Draft {
             Some((name, place)) => {
                 let message = format!("{name} has no effect on the fields that are asked for");
                 Err(SpecError::at(place.clone(), message).help(
-                    "motions are followed for the fields outcome, settle_time, n_min and peak_force",
+                    "motions are followed for the fields outcome, settle_time, n_min and \
+                    peak_force",
                 ))
             }
             None => Ok(()),
@@ -531,7 +549,8 @@ fn read_fields(entry: &Entry) -> Result<Vec<Field>, SpecError> {
             .error("the list is empty")
             .help(format!("known: {}", known_fields())));
     }
-    // An abscissa without the distance that its certificate leaves open would say less than it seems to.
+    // An abscissa without the distance that its certificate leaves open would say less than it
+    // seems to.
     if fields.contains(&Field::ABSCISSA) && !fields.contains(&Field::CertificateMargin) {
         fields.push(Field::CertificateMargin);
     }

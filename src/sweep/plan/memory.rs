@@ -1,4 +1,5 @@
-//! How much memory a run takes, before it begins: bounds from the plan alone, to which `--memory` fits the threads.
+//! How much memory a run takes, before it begins: bounds from the plan alone, to which `--memory`
+//! fits the threads.
 
 use super::Plan;
 use crate::slip::motion::{BYTES_OF_A_STEP, MOST_KEPT};
@@ -16,11 +17,12 @@ const COPIES_OF_AXES: u64 = 4;
 const PER_THREAD: u64 = 2 << 20;
 /// A tile in a thread: as numbers, as it is compressed, and those that wait for the disk.
 const COPIES_OF_TILES: u64 = 4;
-/// A plane with as many curves as are traced, with its copies on the way to the disk; and one more degree of stability, of
-/// whose curves only those are traced that bound a region.
+/// A plane with as many curves as are traced, with its copies on the way to the disk; and one more
+/// degree of stability, of whose curves only those are traced that bound a region.
 const PLANE_OF_CURVES: u64 = 24 << 20;
 const CURVES_OF_A_DEGREE: u64 = 1 << 20;
-/// Pasts of motions that a thread has at once, where outcomes are looked for, and where critical velocities are.
+/// Pasts of motions that a thread has at once, where outcomes are looked for, and where critical
+/// velocities are.
 const PASTS_OF_OUTCOMES: u64 = 1;
 const PASTS_OF_CRITICAL: u64 = 10;
 /// Steps in a unit of time √(M/κ), more than are ever seen on average; and those of a short delay.
@@ -130,7 +132,8 @@ mod tests {
         assert!(m.on(m.threads_within(200, 9).unwrap()) <= 200);
     }
 
-    /// Longer delays, a smaller mass, and more pasts take more; never more than what a motion may keep.
+    /// Longer delays, a smaller mass, and more pasts take more; never more than what a motion may
+    /// keep.
     #[test]
     fn pasts_grow_with_the_delay_up_to_what_is_kept() {
         let past = (MOST_KEPT * BYTES_OF_A_STEP) as u64;

@@ -18,25 +18,30 @@ use crate::sweep::input::parameter::{LawKind, Parameter, Setting};
 use crate::sweep::input::search::Protocol;
 use crate::sweep::input::spec::{SpecError, SweepSpec};
 
-/// Cells in a tile, about: small enough for a processor's cache, large enough to compress and write well.
+/// Cells in a tile, about: small enough for a processor's cache, large enough to compress and write
+/// well.
 const CELLS_PER_TILE: usize = 1 << 18;
-/// The same where roots are followed from cell to cell: each cell costs thousands of times as much, and tiles of about the
-/// same time keep all threads busy to the end and a run quick to stop.
+/// Cells in a tile where roots are followed from cell to cell: each cell costs thousands of times
+/// as much, and tiles of about the same time keep all threads busy to the end and a run quick to
+/// stop.
 const CELLS_PER_ROOT_TILE: usize = 1 << 14;
-/// The same where motions are followed, which takes about a millisecond a cell.
+/// Cells in a tile where motions are followed, which takes about a millisecond a cell.
 const CELLS_PER_MOTION_TILE: usize = 1 << 8;
-/// The same where critical velocities are looked for, which takes up to a second a cell.
+/// Cells in a tile where critical velocities are looked for, which takes up to a second a cell.
 const CELLS_PER_CRITICAL_TILE: usize = 1 << 6;
 /// Delays in a tile at most, so that memory stays bounded on the longest line.
 const DELAYS_PER_TILE: usize = 1 << 17;
-/// Lines of delays are cut at multiples of this only: there tracking starts anew, and no value depends on the tiles.
+/// Lines of delays are cut at multiples of this only: there tracking starts anew, and no value
+/// depends on the tiles.
 pub const BLOCK_OF_DELAYS: usize = crate::linear::track::BLOCK;
-/// The same where critical velocities start from their neighbours; divides the one of roots.
+/// Lines are cut at multiples of this where critical velocities start from their neighbours;
+/// divides the one of roots.
 const BLOCK_OF_VC: usize = crate::critical::line::BLOCK;
 const _: () = assert!(BLOCK_OF_DELAYS.is_multiple_of(BLOCK_OF_VC));
 /// More cells than this are refused.
 pub const MOST_CELLS: u64 = 10_000_000_000_000;
-/// More tiles than this are refused: the list of what is done, and of where it is, takes a quarter of a gigabyte.
+/// More tiles than this are refused: the list of what is done, and of where it is, takes a quarter
+/// of a gigabyte.
 const MOST_TILES: usize = 1 << 21;
 /// More planes of curves and best settings than this are refused.
 const MOST_PLANES: u64 = 1_000_000;
@@ -100,7 +105,8 @@ impl Plan {
         let tiles = TileGrid::new(shape, tile_shape);
         if tiles.len() > MOST_TILES {
             return Err(SpecError::whole(format!(
-                "the map would be cut into {} tiles of {} cells; at most {MOST_TILES} are allowed: split the sweep",
+                "the map would be cut into {} tiles of {} cells; at most {MOST_TILES} are allowed: \
+                split the sweep",
                 tiles.len(),
                 tiles.tile_cells(),
             )));
@@ -114,7 +120,8 @@ impl Plan {
         let planes = plan.boundary_planes() + plan.best_planes();
         if planes > MOST_PLANES {
             return Err(SpecError::whole(format!(
-                "curves or best settings in {planes} planes; at most {MOST_PLANES} are allowed: leave out boundaries, \
+                "curves or best settings in {planes} planes; at most {MOST_PLANES} are allowed: \
+                leave out boundaries, \
                  degree_of_stability and best, or split the sweep"
             )));
         }
@@ -220,7 +227,8 @@ impl Plan {
         }
     }
 
-    /// Everything on which the cells depend, by name, with numbers where there are any; equal plans have equal cells.
+    /// Everything on which the cells depend, by name, with numbers where there are any; equal plans
+    /// have equal cells.
     fn facts(&self) -> Vec<(&str, Cow<'_, [f64]>)> {
         let spec = &self.spec;
         let fixed = &spec.fixed;
@@ -268,7 +276,8 @@ impl Plan {
         facts
     }
 
-    /// A hash of everything on which the cells depend, in hexadecimal: equal plans have equal cells.
+    /// A hash of everything on which the cells depend, in hexadecimal: equal plans have equal
+    /// cells.
     #[must_use]
     pub fn hash(&self) -> String {
         let mut hash = Sha256::new();
@@ -280,7 +289,8 @@ impl Plan {
         in_hexadecimal(&hash.finalize())
     }
 
-    /// The same in words, to tell where two plans differ: every name with its numbers, long lists by their ends and a hash.
+    /// What the hash is made of in words, to tell where two plans differ: every name with its
+    /// numbers, long lists by their ends and a hash.
     #[must_use]
     pub fn description(&self) -> Vec<(String, String)> {
         let described = |values: &[f64]| match values {
@@ -317,8 +327,8 @@ pub fn in_hexadecimal(bytes: &[u8]) -> String {
     bytes.iter().map(|b| format!("{b:02x}")).collect()
 }
 
-/// Lines are cut at multiples of so many delays. What starts from the delay before goes on in its block only; motions, and
-/// stick-slip that control is switched on in, know nothing of it.
+/// Lines are cut at multiples of so many delays. What starts from the delay before goes on in its
+/// block only; motions, and stick-slip that control is switched on in, know nothing of it.
 fn block(spec: &SweepSpec) -> usize {
     let critical = spec.critical.map(|search| search.protocol);
     match critical {
@@ -334,7 +344,8 @@ fn follows_roots(spec: &SweepSpec) -> bool {
     spec.fields.iter().any(|f| f.roots_needed() > 0)
 }
 
-/// Whole lines as far as they go, else whole blocks of so many delays; then as many neighbouring lines as fit into `cells`.
+/// Whole lines as far as they go, else whole blocks of so many delays; then as many neighbouring
+/// lines as fit into `cells`.
 fn tile_shape(
     shape: &[usize],
     (tau_axis, block): (Option<usize>, usize),
@@ -383,7 +394,8 @@ mod tests {
     use proptest::prelude::*;
 
     proptest! {
-        /// However long the axes and small the tiles, lines are cut between blocks only, and tiles stay within their room.
+        /// However long the axes and small the tiles, lines are cut between blocks only, and tiles
+        /// stay within their room.
         #[test]
         fn delays_are_cut_between_blocks(
             delays in prop_oneof![1_usize..10_000, 1_usize..10_000_000],

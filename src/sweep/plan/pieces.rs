@@ -1,4 +1,5 @@
-//! What a sweep is made of: planes of curves, planes of best settings, tiles; and which of them a run has to compute.
+//! What a sweep is made of: planes of curves, planes of best settings, tiles; and which of them a
+//! run has to compute.
 
 use std::fmt;
 use std::str::FromStr;
@@ -203,7 +204,8 @@ impl Todo {
     }
 }
 
-/// A number in [0, 1) for each sample: multiples of the golden section fall evenly, wherever the sampling ends.
+/// A number in [0, 1) for each sample: multiples of the golden section fall evenly, wherever the
+/// sampling ends.
 #[must_use]
 pub fn spread(sample: u64) -> f64 {
     (sample as f64 * GOLDEN).fract()
@@ -220,7 +222,8 @@ pub fn mixed(number: u64) -> u64 {
     z ^ (z >> 31)
 }
 
-/// A number without common factor with `total`, near its golden section: its multiples visit every place once.
+/// A number without common factor with `total`, near its golden section: its multiples visit every
+/// place once.
 fn stride(total: u64) -> u64 {
     let golden = (total as f64 * GOLDEN) as u64;
     (golden.max(1)..).find(|&n| gcd(n, total) == 1).unwrap_or(1)
@@ -243,7 +246,11 @@ mod tests {
         /// Whatever the order and the shards, every piece that is not done is handed out once.
         #[test]
         fn every_piece_once(
-            curves in 0_u64..20, best in 0_u64..5, tiles in 1_u64..300, of in 1_u64..9, done in 0_u64..300,
+            curves in 0_u64..20,
+            best in 0_u64..5,
+            tiles in 1_u64..300,
+            of in 1_u64..9,
+            done in 0_u64..300,
         ) {
             let pieces = Pieces { curves, best, tiles };
             for order in [Order::Forward, Order::Backward, Order::Spread] {

@@ -83,7 +83,8 @@ impl TileGrid {
         Tile { offset, extent }
     }
 
-    /// Cells between neighbours along each axis in a tile's memory: last axis fastest, full tile shape.
+    /// Cells between neighbours along each axis in a tile's memory: last axis fastest, full tile
+    /// shape.
     #[must_use]
     pub fn strides(&self) -> Vec<usize> {
         let mut strides = vec![1; self.tile_shape.len()];

@@ -1,6 +1,8 @@
-//! Maps that are sound HDF5 files and odd as maps: other types, shapes, attributes, lengths and numbers than slipmap writes.
+//! Maps that are sound HDF5 files and odd as maps: other types, shapes, attributes, lengths and
+//! numbers than slipmap writes.
 //!
-//! The bytes are read as choices, one after the other; 0, also after the last one, chooses what slipmap writes.
+//! The bytes are read as choices, one after the other; 0, also after the last one, chooses what
+//! slipmap writes.
 
 use std::path::{Path, PathBuf};
 use std::sync::LazyLock;

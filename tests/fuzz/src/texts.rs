@@ -5,7 +5,8 @@ use slipmap::store::tiles::Manifest;
 use slipmap::sweep::input::friction_table::table_of_columns;
 use slipmap::sweep::{CaseSpec, Plan, Shard, SpecError, SweepSpec, Todo};
 
-/// Axes of more points than this are passed over: they cost time and nothing else. Long ones stand among the regressions.
+/// Axes of more points than this are passed over: they cost time and nothing else. Long ones stand
+/// among the regressions.
 const LONG: usize = 20_000;
 
 /// A sweep file, and its plan.
@@ -35,7 +36,8 @@ pub fn case(data: &[u8]) {
     }
 }
 
-/// A manifest, what it says differs from its own plan, and the same with the hash that its sweep has.
+/// A manifest, what it says differs from its own plan, and the same with the hash that its sweep
+/// has.
 pub fn manifest(data: &[u8]) {
     let Ok(text) = std::str::from_utf8(data) else {
         return;

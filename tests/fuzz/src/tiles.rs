@@ -45,8 +45,8 @@ fn file(bytes: &[u8]) {
     }
 }
 
-/// A file whose checksums fit whatever `plan` says: a byte with the number of records, three for each of them (kind, number, what
-/// is said of its length), and their bytes.
+/// A file whose checksums fit whatever `plan` says: a byte with the number of records, three for
+/// each of them (kind, number, what is said of its length), and their bytes.
 fn sealed(plan: &[u8]) -> Vec<u8> {
     let (&count, rest) = plan.split_first().unwrap_or((&0, &[]));
     let count = usize::from(count % 8).min(rest.len() / 3);

@@ -126,7 +126,8 @@ impl Draft {
         if let Some((name, place)) = &self.start_place {
             let message = format!("{name} cannot stand beside fields of the critical velocity");
             return Err(SpecError::at(place.clone(), message).help(
-                "it is about a motion from one start: make a sweep of its own for it; outcome can stand in both",
+                "it is about a motion from one start: make a sweep of its own for it; outcome can \
+                stand in both",
             ));
         }
         self.check_no_effect_on_vc()?;
@@ -143,10 +144,12 @@ impl Draft {
         let simulation = self.simulation_place.as_ref().map(|s| ("simulation", s));
         let help = match v0 {
             Some(_) => {
-                "v0 is what is looked for; the field class, fields of linear stability and boundaries = true are about one"
+                "v0 is what is looked for; the field class, fields of linear stability and \
+                boundaries = true are about one"
             }
             None => {
-                "the critical velocity does not depend on where a motion starts, and has accuracies of its own"
+                "the critical velocity does not depend on where a motion starts, and has \
+                accuracies of its own"
             }
         };
         match v0.or(start).or(simulation) {
