@@ -1,10 +1,11 @@
 //! Time of a critical velocity by each of its roads, one core.
 //!
-//! `cargo bench --bench critical`. Random problems (seed fixed): weakening and Coulomb friction under load, velocity and mixed
-//! control; `SLIPMAP_CELLS` asks for more than 300. Each cell is done from scratch as `slipmap vc` does it, and by simulation
-//! alone right after, which waits for every outcome; medians, means and the slowest cell of every road. Then lines of 256 delays as a map does
-//! them, where cells start from their neighbours; every block is timed three times, and the least counts: per cell, everything
-//! included, and each single visit to a cell.
+//! `cargo bench --bench critical`. Random problems (seed fixed): weakening and Coulomb friction
+//! under load, velocity and mixed control; `SLIPMAP_CELLS` asks for more than 300. Each cell is
+//! done from scratch as `slipmap vc` does it, and by simulation alone right after, which waits for
+//! every outcome; medians, means and the slowest cell of every road. Then lines of 256 delays as a
+//! map does them, where cells start from their neighbours; every block is timed three times, and
+//! the least counts: per cell, everything included, and each single visit to a cell.
 
 use std::cell::RefCell;
 use std::time::Instant;

@@ -1,13 +1,16 @@
-//! Time per unit of simulated time, and error, of the integrator on the three problems on which other programs were measured.
+//! Time per unit of simulated time, and error, of the integrator on the three problems on which
+//! other programs were measured.
 //!
-//! `cargo bench --bench motion`. Smooth: the letter's Fig. 3 (a) parameters, sliding with control from the start at t = 0,
-//! ẋ = v0 + 0.05. Hybrid: Fig. 3 (a) and (b) from rest at a = 0, control from t = 70 on. All until t = 200. Errors are the
-//! largest ones of a (and of ẋ) at multiples of 0.1, and of event times, against this integrator at its tightest. Medians of
-//! rounds; a round is repeated until it takes some milliseconds.
+//! `cargo bench --bench motion`. Smooth: the letter's Fig. 3 (a) parameters, sliding with control
+//! from the start at t = 0, ẋ = v0 + 0.05. Hybrid: Fig. 3 (a) and (b) from rest at a = 0, control
+//! from t = 70 on. All until t = 200. Errors are the largest ones of a (and of ẋ) at multiples of
+//! 0.1, and of event times, against this integrator at its tightest. Medians of rounds; a round is
+//! repeated until it takes some milliseconds.
 //!
-//! `-- --write-reference FOLDER` writes what it gives at its tightest: `smooth.csv`, `hybrid-3a.csv`, `hybrid-3b.csv` with a
-//! and ẋ in a line, and the times of events in `…-events.csv`. `-- --reference FOLDER` measures errors against such files
-//! and prints one line for each problem and tolerance, `program problem setting µs-per-unit error-of-a`: for
+//! `-- --write-reference FOLDER` writes what it gives at its tightest: `smooth.csv`,
+//! `hybrid-3a.csv`, `hybrid-3b.csv` with a and ẋ in a line, and the times of events in
+//! `…-events.csv`. `-- --reference FOLDER` measures errors against such files and prints one line
+//! for each problem and tolerance, `program problem setting µs-per-unit error-of-a`: for
 //! `benches/peers/run.sh`, which compares other programs.
 
 use std::hint::black_box;

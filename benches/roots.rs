@@ -1,9 +1,10 @@
-//! The rightmost root of every cell of two maps, one thread: tracking with its certificate against this project's own
-//! collocation run cell by cell.
+//! The rightmost root of every cell of two maps, one thread: tracking with its certificate against
+//! this project's own collocation run cell by cell.
 //!
-//! `cargo bench --bench roots`. Both ways take turns, five rounds; medians are shown. The maps are those on which other
-//! programs were measured: pure load control b = −0.3, a_n in [−3, 1], τ in [0.01, 10], and pure velocity control b = −0.3,
-//! a_v in [−1.5, 1], τ in [0.01, 12], each of 1000 × 1000 cells. Collocation takes every tenth line and every tenth delay.
+//! `cargo bench --bench roots`. Both ways take turns, five rounds; medians are shown. The maps are
+//! those on which other programs were measured: pure load control b = −0.3, a_n in [−3, 1], τ in
+//! [0.01, 10], and pure velocity control b = −0.3, a_v in [−1.5, 1], τ in [0.01, 12], each of 1000
+//! × 1000 cells. Collocation takes every tenth line and every tenth delay.
 
 use std::time::Instant;
 

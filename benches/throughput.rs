@@ -1,13 +1,18 @@
-//! How far counting and storing are from the limits of the machine. Run with `cargo bench --bench throughput`.
+//! How far counting and storing are from the limits of the machine. Run with `cargo bench --bench
+//! throughput`.
 //!
-//! 1. Counting a 1000×1000×1000 grid into reused tile buffers, against filling the same buffers with a constant (they fit
-//!    a processor's cache), and against filling memory beyond the cache with as many bytes.
+//! 1. Counting a 1000×1000×1000 grid into reused tile buffers, against filling the same buffers
+//!    with a constant (they fit a processor's cache), and against filling memory beyond the cache
+//!    with as many bytes.
 //! 2. The same on one thread and on all.
-//! 3. A whole `run` of a 10⁹-cell count map, against writing the same bytes uncompressed to the same disk, both synced.
+//! 3. A whole `run` of a 10⁹-cell count map, against writing the same bytes uncompressed to the
+//!    same disk, both synced.
 //!
-//! 4. Tiles on disk, checked and put together, against pieces in memory: for the count map and for a map of decay rates.
+//! 4. Tiles on disk, checked and put together, against pieces in memory: for the count map and for
+//!    a map of decay rates.
 //!
-//! Alternatives take turns, and medians are printed: machines drift. `SLIPMAP_BENCH_CELLS=100` makes a 100³ grid.
+//! Alternatives take turns, and medians are printed: machines drift. `SLIPMAP_BENCH_CELLS=100`
+//! makes a 100³ grid.
 
 use std::fs::File;
 use std::io::Write;
@@ -129,7 +134,8 @@ fn store(plan: &Arc<Plan>, folder: &Path, threads: usize) -> f64 {
     start.elapsed().as_secs_f64()
 }
 
-/// Seconds of the same with the pieces in memory: what tiles, their checksums and resuming cost is the difference.
+/// Seconds of the same with the pieces in memory: what tiles, their checksums and resuming cost is
+/// the difference.
 fn store_from_memory(plan: &Arc<Plan>, folder: &Path, threads: usize) -> f64 {
     let map = folder.join("map.h5");
     let start = Instant::now();

@@ -152,6 +152,7 @@ if cargo clippy --version >/dev/null 2>&1; then
 else
     warnings+=("lints are not checked, clippy is not installed (rustup component add clippy)")
 fi
+step scripts/features.sh
 RUSTDOCFLAGS="-D warnings" step cargo doc --locked --no-deps "${features[@]}"
 check_licences
 step cargo test --release --locked "${features[@]}" -- ${left_out[@]+"${left_out[@]}"}

@@ -7,16 +7,19 @@
 //!
 //! Source of the model: F.-J. Elmer, *Controlling friction* (1997), "the letter".
 //!
-//! | module | what it holds |
-//! |---|---|
-//! | [`model`] | the oscillator, friction laws, dimensionless groups |
-//! | [`linear`] | linear stability of continuous sliding at a point, along a line, in a plane |
-//! | [`slip`] | the nonlinear oscillator: stick, slip, lift-off, delayed feedback |
-//! | [`critical`] | the critical velocity below which stick-slip survives |
-//! | [`sweep`] | sweep files, plans, the engine that computes maps |
-//! | [`store`] | maps on disk: their files |
-//! | [`maps`] | from a plan to its map; whether a map is true |
-//! | [`report`] | progress, pictures |
+//! | module | what it holds | feature |
+//! |---|---|---|
+//! | [`model`] | the oscillator, friction laws, dimensionless groups | |
+//! | [`linear`] | linear stability of continuous sliding at a point, along a line, in a plane | |
+//! | [`slip`] | the nonlinear oscillator: stick, slip, lift-off, delayed feedback | |
+//! | [`critical`] | the critical velocity below which stick-slip survives | |
+//! | [`sweep`] | sweep files, plans, the engine that computes maps | `sweep` |
+//! | [`store`] | maps on disk: their files | `store` |
+//! | [`maps`] | from a plan to its map; whether a map is true | `store` |
+//! | [`report`] | progress, pictures | `store`, `picture`, `cli` |
+//!
+//! `cli`, the default, has everything. With `default-features = false` the rest stands alone, without
+//! libhdf5 and without a C compiler.
 //!
 //! # Example
 //!
@@ -44,16 +47,20 @@
 pub mod critical;
 #[cfg_attr(not(test), warn(clippy::disallowed_methods))]
 pub mod linear;
+#[cfg(feature = "store")]
 #[cfg_attr(not(test), warn(clippy::disallowed_methods))]
 pub mod maps;
 #[cfg_attr(not(test), warn(clippy::disallowed_methods))]
 pub mod model;
+#[cfg(feature = "store")]
 pub mod report;
 #[cfg(test)]
 mod revision;
 #[cfg_attr(not(test), warn(clippy::disallowed_methods))]
 pub mod slip;
+#[cfg(feature = "store")]
 #[cfg_attr(not(test), warn(clippy::disallowed_methods))]
 pub mod store;
+#[cfg(feature = "sweep")]
 #[cfg_attr(not(test), warn(clippy::disallowed_methods))]
 pub mod sweep;

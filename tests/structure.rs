@@ -9,7 +9,7 @@ const LAYERS: [&str; 9] = [
     "model", "linear", "slip", "critical", "sweep", "store", "maps", "report", "cli",
 ];
 /// The rooms of a sweep, each above those before it; beside them stands what a sweep tells.
-const ROOMS: [&str; 5] = ["events", "input", "plan", "cells", "engine"];
+const ROOMS: [&str; 6] = ["events", "input", "plan", "cells", "engine", "grid"];
 
 fn sources(folder: &Path) -> Vec<PathBuf> {
     let mut files = Vec::new();

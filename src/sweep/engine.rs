@@ -129,7 +129,9 @@ pub fn run<S: Sink>(
         left: left.1,
         threads,
     });
-    let received = if left.0 > 0 {
+    let received = if left.0 > 0 && cfg!(target_family = "wasm") {
+        here(plan, &todo, sink, observer, stop)
+    } else if left.0 > 0 {
         let receiver = start(plan, todo, threads, sink, stop)?;
         receive(plan, receiver, sink, observer, stop)
     } else {
@@ -191,26 +193,71 @@ fn work<C: Encode>(
     stop: &AtomicBool,
 ) {
     let mut worker = Worker::new(plan);
-    while !stop.load(Ordering::Relaxed) {
-        let Some(piece) = todo.next() else { break };
-        let encoded = match piece {
-            Piece::Curves(n) => trace_plane(plan, &plane(plan, n))
-                .map(|plane| encoder.encode(piece, Computed::Curves(&plane))),
-            Piece::Best(n) => {
-                let found = best_of_plane(plan, &best_plane(plan, n));
-                Ok(encoder.encode(piece, Computed::Best(found.as_ref())))
-            }
-            Piece::Tile(n) => {
-                if !worker.compute_until(&plan.tiles.tile(n as usize), stop) {
-                    break;
-                }
-                Ok(encoder.encode(piece, Computed::Tile(&worker.buffers)))
-            }
-        };
-        if sender.send(encoded.map(|e| (piece, e))).is_err() {
+    while let Some(sent) = next(plan, todo, &mut worker, &mut encoder, stop) {
+        if sender.send(sent).is_err() {
             break;
         }
     }
+}
+
+/// Computes the next piece; none where nothing is left or a stop is asked for.
+fn next<C: Encode>(
+    plan: &Plan,
+    todo: &Todo,
+    worker: &mut Worker,
+    encoder: &mut C,
+    stop: &AtomicBool,
+) -> Option<Sent<C::Encoded>> {
+    if stop.load(Ordering::Relaxed) {
+        return None;
+    }
+    let piece = todo.next()?;
+    let encoded = match piece {
+        Piece::Curves(n) => trace_plane(plan, &plane(plan, n))
+            .map(|plane| encoder.encode(piece, Computed::Curves(&plane))),
+        Piece::Best(n) => {
+            let found = best_of_plane(plan, &best_plane(plan, n));
+            Ok(encoder.encode(piece, Computed::Best(found.as_ref())))
+        }
+        Piece::Tile(n) => {
+            if !worker.compute_until(&plan.tiles.tile(n as usize), stop) {
+                return None;
+            }
+            Ok(encoder.encode(piece, Computed::Tile(&worker.buffers)))
+        }
+    };
+    Some(encoded.map(|encoded| (piece, encoded)))
+}
+
+/// Computes all pieces on this thread, where there can be no others, and says how many.
+fn here<S: Sink>(
+    plan: &Plan,
+    todo: &Todo,
+    sink: &mut S,
+    observer: &dyn Observer,
+    stop: &AtomicBool,
+) -> Result<u64, RunError<S::Error>> {
+    let (mut worker, mut encoder, mut received) = (Worker::new(plan), sink.encoder(), 0);
+    while let Some(sent) = next(plan, todo, &mut worker, &mut encoder, stop) {
+        take(plan, sent, sink, observer)?;
+        received += 1;
+    }
+    Ok(received)
+}
+
+/// Hands a piece to the sink.
+fn take<S: Sink>(
+    plan: &Plan,
+    sent: Sent<<S::Encoder as Encode>::Encoded>,
+    sink: &mut S,
+    observer: &dyn Observer,
+) -> Result<(), RunError<S::Error>> {
+    let (piece, encoded) = sent?;
+    sink.write(piece, encoded).map_err(RunError::Sink)?;
+    observer.event(&Event::PieceDone {
+        cells: plan.cells_of(piece),
+    });
+    Ok(())
 }
 
 /// Hands pieces to the sink as they come, and says how many. After a stop only those that come in
@@ -227,12 +274,8 @@ fn receive<S: Sink>(
     loop {
         match receiver.recv_timeout(PAUSE) {
             Ok(sent) => {
-                let (piece, encoded) = sent?;
-                sink.write(piece, encoded).map_err(RunError::Sink)?;
+                take(plan, sent, sink, observer)?;
                 received += 1;
-                observer.event(&Event::PieceDone {
-                    cells: plan.cells_of(piece),
-                });
             }
             Err(RecvTimeoutError::Timeout) => sink.pause().map_err(RunError::Sink)?,
             Err(RecvTimeoutError::Disconnected) => return Ok(received),

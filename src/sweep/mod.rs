@@ -15,6 +15,7 @@
 pub mod cells;
 pub mod engine;
 pub mod events;
+pub mod grid;
 pub mod input;
 pub mod plan;
 

@@ -1,4 +1,5 @@
-//! The past as the crate's dense output gave it: eight values in each accepted step, and the polynomial through them.
+//! The past as the crate's dense output gave it: eight values in each accepted step, and the
+//! polynomial through them.
 
 use crate::problem::State;
 

@@ -1,9 +1,10 @@
 //! The crate differential-equations on the problems of slipmap's `benches/motion.rs`.
 //!
-//! `slipmap-peers FOLDER` prints one line for every problem, method and tolerance, `program problem setting µs-per-unit
-//! error-of-a`; `FOLDER` holds the reference that `cargo bench --bench motion -- --write-reference FOLDER` writes. The smooth
-//! problem is one call of the crate's solver; the hybrid ones use a driver around it, since the crate knows neither kinks
-//! nor what comes after an event.
+//! `slipmap-peers FOLDER` prints one line for every problem, method and tolerance, `program problem
+//! setting µs-per-unit error-of-a`; `FOLDER` holds the reference that `cargo bench --bench motion
+//! -- --write-reference FOLDER` writes. The smooth problem is one call of the crate's solver; the
+//! hybrid ones use a driver around it, since the crate knows neither kinks nor what comes after an
+//! event.
 
 mod history;
 mod hybrid;
@@ -110,8 +111,8 @@ fn largest_difference(values: &[f64], reference: &[f64]) -> f64 {
     pairs.map(|(v, r)| (v - r).abs()).fold(0.0, f64::max)
 }
 
-/// Microseconds of the processor per unit of simulated time, the median of runs: on a busy machine a long run is set aside
-/// more often than a short one.
+/// Microseconds of the processor per unit of simulated time, the median of runs: on a busy machine
+/// a long run is set aside more often than a short one.
 fn time(run: &dyn Fn()) -> f64 {
     let begin = Instant::now();
     let mut times = Vec::new();

@@ -1,4 +1,5 @@
-//! The three problems, as slipmap's `benches/motion.rs` has them, and the equations in the form the crate wants.
+//! The three problems, as slipmap's `benches/motion.rs` has them, and the equations in the form the
+//! crate wants.
 
 use differential_equations::prelude::DDE;
 use nalgebra::Vector2;

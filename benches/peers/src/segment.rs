@@ -1,6 +1,8 @@
-//! One stretch between two kinks: the crate integrates, this records its dense output and looks for the event.
+//! One stretch between two kinks: the crate integrates, this records its dense output and looks for
+//! the event.
 //!
-//! The crate's own events give several of these motions wrong events, or wrong event times: hence the search here.
+//! The crate's own events give several of these motions wrong events, or wrong event times: hence
+//! the search here.
 
 use differential_equations::control::ControlFlag;
 use differential_equations::interpolate::Interpolation;

@@ -37,7 +37,11 @@ impl TileBuffers {
     /// Buffers for tiles of `plan`, all fill values.
     #[must_use]
     pub fn new(plan: &Plan) -> Self {
-        let cells = plan.tiles.tile_cells();
+        Self::of_cells(plan, plan.tiles.tile_cells())
+    }
+
+    /// Buffers for so many cells of `plan`, all fill values.
+    pub(in crate::sweep) fn of_cells(plan: &Plan, cells: usize) -> Self {
         let fields = &plan.spec.fields;
         Self {
             status: vec![STATUS_FILL; cells],
@@ -46,6 +50,20 @@ impl TileBuffers {
                 .then(|| vec![N_UNSTABLE_FILL; cells]),
             kinds: columns(fields, &[Storage::Kind, Storage::Few], FEW_FILL, cells),
             columns: columns(fields, &[Storage::Real], f64::NAN, cells),
+        }
+    }
+
+    /// Takes the cell at the place `there` of other buffers of the same plan to the place `at`.
+    pub(in crate::sweep) fn take_cell(&mut self, at: usize, from: &Self, there: usize) {
+        self.status[at] = from.status[there];
+        if let (Some(to), Some(from)) = (&mut self.n_unstable, &from.n_unstable) {
+            to[at] = from[there];
+        }
+        for (to, from) in self.kinds.iter_mut().zip(&from.kinds) {
+            to.cells[at] = from.cells[there];
+        }
+        for (to, from) in self.columns.iter_mut().zip(&from.columns) {
+            to.cells[at] = from.cells[there];
         }
     }
 
