@@ -241,9 +241,10 @@ fn stopped_soon(
     args: &[&str],
     (name, code): (&str, i32),
     (slow_once, when): (&str, &dyn Fn() -> bool),
+    after: u64,
 ) {
     let mut child = interposed(folder, args)
-        .env("FAULTS_DELAY", "150")
+        .env("FAULTS_DELAY", "20")
         .env("FAULTS_DELAY_ONCE", slow_once)
         .stdout(Stdio::piped())
         .stderr(Stdio::piped())
@@ -255,15 +256,17 @@ fn stopped_soon(
         assert!(begun.elapsed() < Duration::from_secs(30), "{args:?}");
         std::thread::sleep(Duration::from_millis(5));
     }
-    // The work that is under way is slow, and has just begun.
-    std::thread::sleep(Duration::from_millis(100));
+    // The work that is under way is slow.
+    std::thread::sleep(Duration::from_millis(after));
+    assert!(child.try_wait().unwrap().is_none(), "{args:?} is over");
     let kill = format!("kill -{name} {}", child.id());
     let sent = Instant::now();
     Command::new("sh").args(["-c", &kill]).status().unwrap();
     let ended = child.wait_with_output().unwrap();
     let took = sent.elapsed();
     println!("{args:?}: {name}, ended after {took:?}");
-    assert!(took < Duration::from_secs(1), "{args:?}: {took:?}");
+    // Opening a map is some fifty looks, after which a signal is heeded.
+    assert!(took < Duration::from_secs(2), "{args:?}: {took:?}");
     expect(&ended, code, "interrupted: ");
     let hidden = |name: &String| name.starts_with('.');
     let left: Vec<String> = folder.files().into_iter().filter(hidden).collect();
@@ -280,15 +283,14 @@ fn signals_end_merging_and_drawing_soon() {
         assert!(done.status.success(), "{}", err(&done));
     }
     let merge = ["merge", "map.h5"];
-    stopped_soon(
-        &folder,
-        &merge,
-        ("INT", 130),
-        ("map.toml", &|| part.exists()),
-    );
+    // While tiles are put together, and while the map is hashed and read back.
+    for after in [100, 900, 1500, 2100, 2900] {
+        let begun = || part.exists();
+        stopped_soon(&folder, &merge, ("INT", 130), ("map.toml", &begun), after);
+    }
     assert!(!map.exists() && tiles.join("1-of-2/manifest.json").exists());
     let drawing = || map.exists() && !tiles.exists();
-    stopped_soon(&folder, &merge, ("HUP", 129), ("map.h5", &drawing));
+    stopped_soon(&folder, &merge, ("HUP", 129), ("map.h5", &drawing), 100);
     assert!(map.exists() && !picture.exists());
     // The same command draws what was not drawn.
     let whole = datasets(&map);
@@ -296,11 +298,11 @@ fn signals_end_merging_and_drawing_soon() {
     assert!(picture.exists());
     std::fs::remove_file(&map).unwrap();
     let run = ["run", "map.toml", "-q"];
-    stopped_soon(&folder, &run, ("TERM", 143), ("map.h5", &drawing));
+    stopped_soon(&folder, &run, ("TERM", 143), ("map.h5", &drawing), 100);
     assert!(datasets(&map) == whole);
     for (signal, name) in [(("INT", 130), "drawn.png"), (("TERM", 143), "drawn.svg")] {
         let plot = ["plot", "map.h5", "-o", name];
-        stopped_soon(&folder, &plot, signal, ("map.h5", &|| true));
+        stopped_soon(&folder, &plot, signal, ("map.h5", &|| true), 100);
         assert!(!folder.path().join(name).exists());
         expect(&folder.run(&plot), 0, name);
     }

@@ -37,8 +37,9 @@ pub fn check(map: &MapFile, program: (&str, &str), effort: Effort) -> Result<Rep
         return Ok(report);
     };
     check_seal(map, &mut report);
-    check_schema(map, &plan, &mut report);
-    check_checksums(map, &plan, &mut report, &AtomicBool::new(false));
+    let never = AtomicBool::new(false);
+    check_schema(map, &plan, &mut report, &never);
+    check_checksums(map, &plan, &mut report, &never);
     if map.is_partial() {
         let missing = map.cells_missing();
         report

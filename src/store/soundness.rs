@@ -44,7 +44,7 @@ pub struct Report {
 pub(super) fn as_written(path: &Path, plan: &Plan, stop: &AtomicBool) -> Result<(), String> {
     let map = opened(path).map_err(|error| error.to_string())?;
     let mut report = Report::default();
-    check_schema(&map, plan, &mut report);
+    check_schema(&map, plan, &mut report, stop);
     check_checksums(&map, plan, &mut report, stop);
     match report.faults.into_iter().next() {
         None => Ok(()),
@@ -65,7 +65,8 @@ fn opened(path: &Path) -> Result<MapFile, StoreError> {
     }
 }
 
-pub(crate) fn check_schema(map: &MapFile, plan: &Plan, report: &mut Report) {
+/// Whether axes, fields, dimensions and curves are those of `plan`; after `stop` is set, some of it.
+pub(crate) fn check_schema(map: &MapFile, plan: &Plan, report: &mut Report, stop: &AtomicBool) {
     let faults = &mut report.faults;
     let axes = &plan.spec.axes;
     if map.axes().len() != axes.len() {
@@ -100,6 +101,9 @@ pub(crate) fn check_schema(map: &MapFile, plan: &Plan, report: &mut Report) {
         faults.push(format!("the field {} is missing", field.name()));
     }
     for name in names(map) {
+        if stop.load(Ordering::Relaxed) {
+            return;
+        }
         match map
             .dataset(name)
             .map(|dataset| (dataset.chunk(), text(&dataset, "units")))
@@ -112,6 +116,9 @@ pub(crate) fn check_schema(map: &MapFile, plan: &Plan, report: &mut Report) {
             Ok((_, Err(_))) => faults.push(format!("{name} has no units")),
             Err(error) => faults.push(error.to_string()),
         }
+    }
+    if stop.load(Ordering::Relaxed) {
+        return;
     }
     if let Err(error) = map.for_each_curve(drop) {
         faults.push(error.to_string());
@@ -150,6 +157,9 @@ pub(crate) fn check_seal(map: &MapFile, report: &mut Report) {
 pub(crate) fn check_checksums(map: &MapFile, plan: &Plan, report: &mut Report, stop: &AtomicBool) {
     let mut without = 0;
     for name in names(map) {
+        if stop.load(Ordering::Relaxed) {
+            return;
+        }
         let Ok(dataset) = map.dataset(name) else {
             continue;
         };
