@@ -14,6 +14,7 @@ mod map;
 #[path = "common/program.rs"]
 mod program;
 
+use std::os::unix::process::CommandExt;
 use std::path::Path;
 use std::process::{Command, Output, Stdio};
 use std::time::{Duration, Instant};
@@ -243,7 +244,15 @@ fn stopped_soon(
     (slow_once, when): (&str, &dyn Fn() -> bool),
     after: u64,
 ) {
-    let mut child = interposed(folder, args)
+    let mut command = interposed(folder, args);
+    // SAFETY: between fork and exec only the action of a signal is set. Under nohup it is ignored.
+    unsafe {
+        command.pre_exec(|| {
+            libc::signal(libc::SIGHUP, libc::SIG_DFL);
+            Ok(())
+        });
+    }
+    let mut child = command
         .env("FAULTS_DELAY", "20")
         .env("FAULTS_DELAY_ONCE", slow_once)
         .stdout(Stdio::piped())
