@@ -12,7 +12,7 @@ use slipmap::sweep::Field;
 
 use super::failure::Failure;
 use super::open::open;
-use super::say::{visible, visible_line};
+use super::say::{Rows, visible};
 use super::signals::Signals;
 
 /// What a signal leaves.
@@ -35,17 +35,29 @@ pub fn main(args: &Args) -> Result<(), Failure> {
 }
 
 fn tell(map: &MapFile, args: &Args) -> Result<(), Failure> {
-    let mut out = std::io::stdout().lock();
     if args.sweep {
-        let sweep = map.root_text(root::SWEEP).unwrap_or_default();
-        // Elsewhere than on a terminal it is the file, byte by byte.
-        match out.is_terminal() {
-            true => write!(out, "{}", visible(&sweep))?,
-            false => write!(out, "{sweep}")?,
-        }
-        return Ok(());
+        return tell_sweep(map);
     }
-    let mut row = |name: &str, text: String| writeln!(out, "{name:<12} {}", visible_line(&text));
+    let mut rows = Rows::begin();
+    tell_origin(map, &mut rows)?;
+    tell_parameters(map, &mut rows)?;
+    tell_cells(map, &mut rows)?;
+    tell_curves(map, &mut rows)?;
+    tell_best(map, &mut rows)
+}
+
+fn tell_sweep(map: &MapFile) -> Result<(), Failure> {
+    let mut out = std::io::stdout().lock();
+    let sweep = map.root_text(root::SWEEP).unwrap_or_default();
+    // Elsewhere than on a terminal it is the file, byte by byte.
+    match out.is_terminal() {
+        true => write!(out, "{}", visible(&sweep))?,
+        false => write!(out, "{sweep}")?,
+    }
+    Ok(())
+}
+
+fn tell_origin(map: &MapFile, rows: &mut Rows) -> Result<(), Failure> {
     for (name, attribute) in [
         ("title", root::TITLE),
         ("made by", root::SOURCE),
@@ -56,23 +68,29 @@ fn tell(map: &MapFile, args: &Args) -> Result<(), Failure> {
         ("friction", root::FRICTION_LAW),
     ] {
         if let Some(text) = map.root_text(attribute).filter(|t| !t.is_empty()) {
-            row(name, text)?;
+            rows.row(name, text)?;
         }
     }
+    Ok(())
+}
+
+fn tell_parameters(map: &MapFile, rows: &mut Rows) -> Result<(), Failure> {
     for axis in map.axes() {
         let (first, last) = (axis.values[0], axis.values[axis.values.len() - 1]);
         let (name, points) = (axis.parameter.name(), grouped(axis.values.len() as u64));
-        row(
-            "axis",
-            format!("{name:<12} {points:>10} points, {first} to {last}"),
-        )?;
+        let text = format!("{name:<12} {points:>10} points, {first} to {last}");
+        rows.row("axis", text)?;
     }
     for (parameter, value) in map.scalars() {
-        row("fixed", format!("{:<12} {value}", parameter.name()))?;
+        rows.row("fixed", format!("{:<12} {value}", parameter.name()))?;
     }
-    row("cells", grouped(map.cells()))?;
+    Ok(())
+}
+
+fn tell_cells(map: &MapFile, rows: &mut Rows) -> Result<(), Failure> {
+    rows.row("cells", grouped(map.cells()))?;
     if map.is_partial() {
-        row("missing", format!("{} cells", grouped(map.cells_missing())))?;
+        rows.row("missing", format!("{} cells", grouped(map.cells_missing())))?;
     }
     for (name, size, on_disk) in map.sizes()? {
         let values = match Field::from_name(name) {
@@ -80,50 +98,48 @@ fn tell(map: &MapFile, args: &Args) -> Result<(), Failure> {
             None => String::new(),
         };
         let sizes = format!("{}, {} on disk", bytes(size), bytes(on_disk));
-        row("field", format!("{name:<22} {sizes}{values}"))?;
+        rows.row("field", format!("{name:<22} {sizes}{values}"))?;
     }
     for ((_, name), count) in FLAGS.iter().zip(map.status_counts()?.flagged) {
         if count > 0 {
-            row("status", format!("{name:<14} {} cells", grouped(count)))?;
+            rows.row("status", format!("{name:<14} {} cells", grouped(count)))?;
         }
-    }
-    if map.boundary_plane().is_some() {
-        let (mut crossing, mut bounding, mut decaying) = (0, 0, 0);
-        map.for_each_curve(|curve| match curve.degree_of_stability {
-            0.0 => {
-                crossing += 1;
-                bounding += u64::from(curve.piece.stable_side != StableSide::Neither);
-            }
-            _ => decaying += 1,
-        })?;
-        let of_crossing =
-            format!("{crossing} crossing curves, {bounding} of them bound a stable region");
-        row("boundaries", of_crossing)?;
-        if decaying > 0 {
-            row("", format!("{decaying} curves of degrees of stability"))?;
-        }
-    }
-    let best = map.best()?;
-    if let Some(fastest) = best
-        .iter()
-        .filter_map(|b| b.relaxation_time)
-        .min_by(f64::total_cmp)
-    {
-        row(
-            "best",
-            format!(
-                "settings of {} planes, the shortest relaxation time is {fastest:.4}",
-                grouped(best.len() as u64)
-            ),
-        )?;
-    } else if map.best_plane().is_some() {
-        let planes = grouped(best.len() as u64);
-        row(
-            "best",
-            format!("settings of {planes} planes, none of them stable"),
-        )?;
     }
     Ok(())
+}
+
+fn tell_curves(map: &MapFile, rows: &mut Rows) -> Result<(), Failure> {
+    if map.boundary_plane().is_none() {
+        return Ok(());
+    }
+    let (mut crossing, mut bounding, mut decaying) = (0, 0, 0);
+    map.for_each_curve(|curve| match curve.degree_of_stability {
+        0.0 => {
+            crossing += 1;
+            bounding += u64::from(curve.piece.stable_side != StableSide::Neither);
+        }
+        _ => decaying += 1,
+    })?;
+    let text = format!("{crossing} crossing curves, {bounding} of them bound a stable region");
+    rows.row("boundaries", text)?;
+    if decaying > 0 {
+        rows.row("", format!("{decaying} curves of degrees of stability"))?;
+    }
+    Ok(())
+}
+
+fn tell_best(map: &MapFile, rows: &mut Rows) -> Result<(), Failure> {
+    if map.best_plane().is_none() {
+        return Ok(());
+    }
+    let best = map.best()?;
+    let times = best.iter().filter_map(|b| b.relaxation_time);
+    let fastest = match times.min_by(f64::total_cmp) {
+        Some(fastest) => format!("the shortest relaxation time is {fastest:.4}"),
+        None => "none of them stable".to_owned(),
+    };
+    let planes = grouped(best.len() as u64);
+    rows.row("best", format!("settings of {planes} planes, {fastest}"))
 }
 
 /// ", −0.3 to 1.2, 12 infinite, 3 without a value", or ", 12 sliding, 3 lift-off".

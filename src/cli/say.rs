@@ -2,7 +2,7 @@
 //! reason to fail or to panic.
 
 use std::fmt::Display;
-use std::io::Write;
+use std::io::{StdoutLock, Write};
 
 use serde::Serialize;
 pub use slipmap::report::visible::{shortened, visible, visible_line};
@@ -16,6 +16,22 @@ pub fn result(line: impl Display) -> Result<(), Failure> {
         "{}",
         visible(&line.to_string())
     )?)
+}
+
+/// Lines of a name and a text on standard output, one below the other.
+pub struct Rows<'o>(StdoutLock<'o>);
+
+impl Rows<'_> {
+    /// Nothing else is written to standard output meanwhile.
+    pub fn begin() -> Self {
+        Self(std::io::stdout().lock())
+    }
+
+    /// Tells one of them. Fails where it cannot be written.
+    pub fn row(&mut self, name: &str, text: impl AsRef<str>) -> Result<(), Failure> {
+        let text = visible_line(text.as_ref());
+        Ok(writeln!(self.0, "{name:<12} {text}")?)
+    }
 }
 
 /// One JSON object on standard output.

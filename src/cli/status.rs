@@ -1,7 +1,7 @@
 //! `slipmap status`: how far a map is, from another terminal.
 
 use std::fs::File;
-use std::io::{BufRead, BufReader, Read, Write};
+use std::io::{BufRead, BufReader, Read};
 use std::path::{Path, PathBuf};
 use std::time::SystemTime;
 
@@ -14,7 +14,7 @@ use slipmap::store::tiles::survey::ShardSurvey;
 use slipmap::store::{MapFile, StatusCounts};
 
 use super::failure::Failure;
-use super::say::{self, visible_line};
+use super::say::{self, Rows};
 
 /// A run tells its rate from so many bytes of its log at most.
 const MOST_OF_LOG: u64 = 64 << 20;
@@ -172,10 +172,39 @@ impl Status {
     }
 
     fn print(&self, map: &Path) -> Result<(), Failure> {
-        let mut out = std::io::stdout().lock();
-        let mut row =
-            |name: &str, text: String| writeln!(out, "{name:<12} {}", visible_line(&text));
-        let state = match (self.complete, self.running()) {
+        let mut rows = Rows::begin();
+        rows.row("map", format!("{}: {}", map.display(), self.state()))?;
+        let share = 100.0 * self.cells_done as f64 / self.cells.max(1) as f64;
+        let (done, cells) = (grouped(self.cells_done), grouped(self.cells));
+        let done = format!("{done} of {cells} are done ({share:.1} %)");
+        rows.row("cells", done)?;
+        if let Some(rate) = self.rate() {
+            let left = self.seconds_left().map_or("unknown".to_owned(), seconds);
+            rows.row("rate", format!("{} cells/s, {left} left", prefixed(rate)))?;
+        }
+        let flagged = FLAGS.iter().map(|(_, name)| *name);
+        let flagged = flagged.zip(self.statuses.flagged);
+        for (name, count) in flagged.filter(|(_, count)| *count > 0) {
+            rows.row("status", format!("{name:<14} {} cells", grouped(count)))?;
+        }
+        let unflagged = grouped(self.statuses.unflagged);
+        rows.row("status", format!("{:<14} {unflagged} cells", "unflagged"))?;
+        for s in self.shards.iter().filter(|_| self.shards.len() > 1) {
+            let state = if s.running { ", running" } else { "" };
+            let (done, pieces) = (grouped(s.pieces_done), grouped(s.pieces));
+            let text = format!("{:<8} {done} of {pieces} pieces{state}", s.shard);
+            rows.row("shard", text)?;
+        }
+        for s in self.shards.iter().filter(|s| s.damaged_files > 0) {
+            let (files, shard) = (grouped(s.damaged_files), &s.shard);
+            let text = format!("{files} files of shard {shard}: the next run mends them");
+            rows.row("damaged", text)?;
+        }
+        Ok(())
+    }
+
+    fn state(&self) -> &'static str {
+        match (self.complete, self.running()) {
             (true, _) if self.shards.is_empty() => "complete",
             (true, true) => "complete, and being computed again",
             (true, false) => "complete; what is computed of another one is told here",
@@ -186,51 +215,6 @@ impl Status {
             (false, false) => {
                 "not complete, and no run works on it; the command that began it goes on"
             }
-        };
-        row("map", format!("{}: {state}", map.display()))?;
-        let share = 100.0 * self.cells_done as f64 / self.cells.max(1) as f64;
-        let (done, cells) = (grouped(self.cells_done), grouped(self.cells));
-        row(
-            "cells",
-            format!("{done} of {cells} are done ({share:.1} %)"),
-        )?;
-        if let Some(rate) = self.rate() {
-            let left = self.seconds_left().map_or("unknown".to_owned(), seconds);
-            row("rate", format!("{} cells/s, {left} left", prefixed(rate)))?;
         }
-        for ((_, name), count) in FLAGS
-            .iter()
-            .zip(self.statuses.flagged)
-            .filter(|(_, count)| *count > 0)
-        {
-            row("status", format!("{name:<14} {} cells", grouped(count)))?;
-        }
-        row(
-            "status",
-            format!(
-                "{:<14} {} cells",
-                "unflagged",
-                grouped(self.statuses.unflagged)
-            ),
-        )?;
-        for s in self.shards.iter().filter(|_| self.shards.len() > 1) {
-            let state = if s.running { ", running" } else { "" };
-            let (done, pieces) = (grouped(s.pieces_done), grouped(s.pieces));
-            row(
-                "shard",
-                format!("{:<8} {done} of {pieces} pieces{state}", s.shard),
-            )?;
-        }
-        for s in self.shards.iter().filter(|s| s.damaged_files > 0) {
-            let files = grouped(s.damaged_files);
-            row(
-                "damaged",
-                format!(
-                    "{files} files of shard {}: the next run mends them",
-                    s.shard
-                ),
-            )?;
-        }
-        Ok(())
     }
 }

@@ -1,7 +1,6 @@
 //! `slipmap verify`: whether a map is as it was written, and what other methods say of a sample of
 //! its cells.
 
-use std::io::Write;
 use std::path::PathBuf;
 
 use serde_json::{Value, json};
@@ -10,7 +9,7 @@ use slipmap::report::numbers::grouped;
 use slipmap::store::MapFile;
 
 use super::failure::Failure;
-use super::say::{self, visible_line};
+use super::say::{self, Rows};
 
 /// More cells or tiles than this are not computed again.
 const MOST: u64 = 100_000_000;
@@ -72,30 +71,29 @@ fn to_json(report: &Report) -> Value {
 }
 
 fn print(report: &Report) -> Result<(), Failure> {
-    let mut out = std::io::stdout().lock();
-    let mut row = |name: &str, text: String| writeln!(out, "{name:<12} {}", visible_line(&text));
+    let mut rows = Rows::begin();
     let checksums = report.checksums;
-    row("checksums", format!("{checksums} fit"))?;
+    rows.row("checksums", format!("{checksums} fit"))?;
     if report.cells > 0 {
         let cells = grouped(report.cells);
-        row("cells", format!("{cells} looked at by second methods"))?;
+        rows.row("cells", format!("{cells} looked at by second methods"))?;
     }
     for (question, [agree, differ, open]) in &report.answers {
         let counts = format!("{agree} agree, {differ} differ, {open} open");
-        row("", format!("{:<38} {counts}", question.name()))?;
+        rows.row("", format!("{:<38} {counts}", question.name()))?;
     }
     if report.tiles > 0 {
         let (equal, of) = (report.tiles_equal, report.tiles);
-        row(
+        rows.row(
             "tiles",
             format!("{equal} of {of} computed again are the same, bit by bit"),
         )?;
     }
     for remark in &report.remarks {
-        row("remark", remark.clone())?;
+        rows.row("remark", remark)?;
     }
     for fault in &report.faults {
-        row("fault", fault.clone())?;
+        rows.row("fault", fault)?;
     }
     Ok(())
 }
