@@ -18,8 +18,8 @@
 //! | [`maps`] | from a plan to its map; whether a map is true | `store` |
 //! | [`report`] | progress, pictures | `store`, `picture`, `cli` |
 //!
-//! `cli`, the default, has everything. With `default-features = false` the rest stands alone, without
-//! libhdf5 and without a C compiler.
+//! `cli`, the default, has everything. With `default-features = false` the rest stands alone,
+//! without libhdf5 and without a C compiler.
 //!
 //! # Example
 //!
