@@ -1,4 +1,5 @@
-//! Sweeps computed into memory, against the closed form cell by cell, and against the map of the same sweep.
+//! Sweeps computed into memory, against the closed form cell by cell, and against the map of the
+//! same sweep.
 
 #[path = "common/map.rs"]
 mod map;

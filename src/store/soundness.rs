@@ -65,7 +65,8 @@ fn opened(path: &Path) -> Result<MapFile, StoreError> {
     }
 }
 
-/// Whether axes, fields, dimensions and curves are those of `plan`; after `stop` is set, some of it.
+/// Whether axes, fields, dimensions and curves are those of `plan`; after `stop` is set, some of
+/// it.
 pub(crate) fn check_schema(map: &MapFile, plan: &Plan, report: &mut Report, stop: &AtomicBool) {
     let faults = &mut report.faults;
     let axes = &plan.spec.axes;
