@@ -51,11 +51,11 @@ fn it_holds_what_the_map_holds() {
     let map = MapFile::open(&path).unwrap();
     let grid = Grid::compute(&plan, 1).unwrap();
     let abscissa = &grid.cells.columns[0];
-    assert_eq!(abscissa.field, Field::ABSCISSA);
+    assert_eq!(abscissa.field, Field::Abscissa);
     let lengths = [61, 431];
     for i in 0..2 {
         let plane = map
-            .plane(Field::ABSCISSA, &[i, 0, 0], (1, 2), usize::MAX)
+            .plane(Field::Abscissa, &[i, 0, 0], (1, 2), usize::MAX)
             .unwrap();
         let there = &abscissa.cells[i * lengths[0] * lengths[1]..];
         for (cell, there) in plane.cells.iter().zip(there) {

@@ -6,7 +6,6 @@ mod program;
 
 use program::{Folder, err, expect, out};
 use serde_json::Value;
-use slipmap::sweep::input::limit_field::LimitField;
 use slipmap::sweep::{Field, Plan, SweepSpec};
 
 /// μ_K/μ_S, γ, v_c/ṽ, ω0 T, lift-off.
@@ -21,7 +20,7 @@ fn reference() -> Vec<[f64; 5]> {
 
 fn columns(folder: &Folder, map: &str) -> Vec<(&'static str, Vec<f64>)> {
     let file = hdf5::File::open(folder.path().join(map)).unwrap();
-    let names = LimitField::ALL.into_iter().map(LimitField::name);
+    let names = Field::all_of_limit().map(Field::name);
     let column = |name| (name, file.dataset(name).unwrap().read_raw().unwrap());
     names.map(column).collect()
 }
@@ -93,14 +92,14 @@ fn lift_off_lies_above_the_critical_velocity() {
             worker.compute(&tile);
             let of = |field| {
                 let mut columns = worker.buffers.columns.iter();
-                let column = columns.find(|c| c.field == Field::Limit(field));
+                let column = columns.find(|c| c.field == field);
                 &column.unwrap().cells
             };
             let [vc, liftoff, weak, error] = [
-                LimitField::VcOverVtilde,
-                LimitField::LiftoffOverVtilde,
-                LimitField::VcWeakControl,
-                LimitField::WeakControlError,
+                Field::VcOverVtilde,
+                Field::LiftoffOverVtilde,
+                Field::VcWeakControl,
+                Field::WeakControlError,
             ]
             .map(of);
             for (i, _) in vc.iter().enumerate().filter(|(_, vc)| !vc.is_nan()) {
@@ -207,7 +206,7 @@ fn the_figure_is_drawn() {
     assert!(single.contains("duration") && !single.contains("lift-off"));
     let family = svg(&["plane.h5", "--at", "mu_ratio=0.5", "--at", "mu_ratio=1"]);
     assert!(!family.contains("lift-off"));
-    for field in LimitField::ALL {
+    for field in Field::all_of_limit() {
         let heat = svg(&["plane.h5", "--field", field.name()]);
         assert!(!heat.contains("unstable"), "{}", field.name());
     }

@@ -244,5 +244,5 @@ fn the_summary_of_a_field_tells_infinite_and_missing_values() {
     // No control in one of three lines, no delay in one of three columns.
     assert_eq!(summary("abscissa_2").infinite, 5);
     assert_eq!(summary("frequency_2").missing, 5);
-    assert_eq!(map.stability_field(), Some(Field::ABSCISSA));
+    assert_eq!(map.stability_field(), Some(Field::Abscissa));
 }

@@ -1,7 +1,7 @@
 //! Sweep files: what is understood, and that every mistake is pointed at.
 
 use slipmap::linear::MarginalTolerance;
-use slipmap::sweep::input::parameter::LawKind;
+use slipmap::sweep::input::law_kind::{Formula, LawKind};
 use slipmap::sweep::{CaseSpec, Field, Parameter, Plan, SweepSpec};
 
 const GOOD: &str = "\
@@ -45,7 +45,10 @@ fn everything_is_understood() {
     assert_eq!(order, [Parameter::V0, Parameter::Tau, Parameter::AlphaN]);
     assert_eq!(spec.axes[1].values, [0.0, 0.5, 2.0]);
     assert_eq!(spec.axes[2].values.len(), 10);
-    assert_eq!(spec.fixed.law(), Some(&LawKind::Weakening));
+    assert_eq!(
+        spec.fixed.law(),
+        Some(&LawKind::Formula(Formula::Weakening))
+    );
     assert_eq!(spec.fixed.get(Parameter::Mass), 2.0);
     assert_eq!(spec.fixed.get(Parameter::MuS), 1.0);
     assert_eq!(spec.units.of_parameter(Parameter::AlphaN), "N mm-1");

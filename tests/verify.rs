@@ -249,7 +249,7 @@ fn wrong_values_are_seen_by_second_methods() {
         (DECAY, Field::NUnstable, 4.0, Question::Count, MARGINAL),
         (
             DECAY,
-            Field::ABSCISSA,
+            Field::Abscissa,
             0.19,
             Question::Abscissa,
             NOT_CONVERGED,

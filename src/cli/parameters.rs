@@ -2,75 +2,155 @@
 
 use std::path::PathBuf;
 
-use clap::{Args, ValueEnum};
+use clap::builder::{PossibleValue, PossibleValuesParser};
+use clap::{Arg, ArgMatches, Args, Command, FromArgMatches, value_parser};
 use slipmap::model::{ModelError, Shown};
 use slipmap::sweep::Parameter;
-use slipmap::sweep::input::parameter::{LawKind, Setting};
+use slipmap::sweep::input::law_kind::{Formula, LawKind};
+use slipmap::sweep::input::parameter::Group;
+use slipmap::sweep::input::setting::Setting;
 
 use super::failure::Failure;
 use super::sweep_file::read_table;
 
-/// Friction laws by name.
-#[derive(Debug, Clone, Copy, ValueEnum)]
-pub enum Law {
-    /// μ_K = μ0
-    Coulomb,
-    /// μ_K = μ0/(1 + v/v_s)
-    Weakening,
-    /// μ_K = μ0 + (μ_S − μ0) exp(−(v/v_s)²)
-    Stribeck,
-    /// The points in the file --table, joined by monotone cubics
-    Table,
+/// The values that flags give to parameters, each by the flag of its row.
+#[derive(Debug, Clone)]
+struct Values([Option<f64>; Parameter::ALL.len()]);
+
+impl Values {
+    /// The flags of the parameters that are `wanted`.
+    fn flags(wanted: impl Fn(Group) -> bool) -> impl Iterator<Item = Arg> {
+        let wanted = Parameter::ALL
+            .into_iter()
+            .filter(move |p| wanted(p.group()));
+        wanted.filter_map(|parameter| {
+            let flag = parameter.flag()?;
+            let arg = Arg::new(parameter.name())
+                .long(parameter.name().replace('_', "-"))
+                .value_name(flag.value)
+                .help(flag.help)
+                .value_parser(value_parser!(f64))
+                .allow_hyphen_values(true);
+            Some(arg)
+        })
+    }
+
+    fn of(matches: &ArgMatches, wanted: impl Fn(Group) -> bool) -> Self {
+        Self(Parameter::ALL.map(|parameter| {
+            let asked = wanted(parameter.group()) && parameter.flag().is_some();
+            let value = || matches.get_one::<f64>(parameter.name()).copied();
+            asked.then(value).flatten()
+        }))
+    }
+
+    const fn get(&self, parameter: Parameter) -> Option<f64> {
+        self.0[parameter as usize]
+    }
 }
 
-/// A point of parameter space.
+/// The flags of a friction law besides its parameters.
 #[derive(Debug, Args)]
-pub struct ParameterArgs {
-    /// μ_K′(v0), slope of the friction coefficient at the sliding velocity
-    #[arg(long, allow_hyphen_values = true, value_name = "B")]
-    mu_prime: Option<f64>,
-    /// α_v, gain of velocity control [default: 0]
-    #[arg(long, allow_hyphen_values = true, value_name = "A")]
-    alpha_v: Option<f64>,
-    /// α_N, gain of load control [default: 0]
-    #[arg(long, allow_hyphen_values = true, value_name = "A")]
-    alpha_n: Option<f64>,
-    /// τ, delay of the feedback
-    #[arg(long, allow_hyphen_values = true, value_name = "T")]
-    tau: Option<f64>,
-    /// μ_K(v0), kinetic friction coefficient at the sliding velocity [default: 1]
-    #[arg(long, allow_hyphen_values = true, value_name = "M")]
-    mu_k: Option<f64>,
-    /// M, mass [default: 1]
-    #[arg(long, allow_hyphen_values = true)]
-    mass: Option<f64>,
-    /// κ, stiffness [default: 1]
-    #[arg(long, allow_hyphen_values = true)]
-    stiffness: Option<f64>,
-    /// N0, normal load [default: 1]
-    #[arg(long, allow_hyphen_values = true)]
-    normal_load: Option<f64>,
+struct LawArgs {
     /// Friction law, instead of --mu-prime and --mu-k
-    #[arg(long)]
-    friction: Option<Law>,
+    #[arg(long, value_parser = law_names())]
+    friction: Option<String>,
     /// Points of a measured friction law, for --friction table: two columns, speed and μ_K
     #[arg(long, value_name = "FILE.csv")]
     table: Option<PathBuf>,
-    /// v0, pulling velocity (with --friction)
-    #[arg(long, allow_hyphen_values = true)]
-    v0: Option<f64>,
-    /// μ0 of the friction law
-    #[arg(long, allow_hyphen_values = true)]
-    mu0: Option<f64>,
-    /// v_s of the friction law
-    #[arg(long, allow_hyphen_values = true)]
-    v_s: Option<f64>,
-    /// Slope of the weakening law at rest, −μ0/v_s, instead of --mu0 or --v-s
-    #[arg(long, allow_hyphen_values = true, value_name = "B")]
-    mu_prime_rest: Option<f64>,
-    /// μ_S, static friction coefficient [default: 1]
-    #[arg(long, allow_hyphen_values = true)]
-    mu_s: Option<f64>,
+}
+
+/// Friction laws by name, with their formulas.
+fn law_names() -> PossibleValuesParser {
+    let formulas = Formula::ALL.into_iter();
+    let formulas = formulas.map(|law| PossibleValue::new(law.name()).help(law.formula()));
+    let table = PossibleValue::new(LawKind::TABLE)
+        .help("The points in the file --table, joined by monotone cubics");
+    PossibleValuesParser::new(formulas.chain([table]))
+}
+
+/// A point of parameter space.
+#[derive(Debug)]
+pub struct ParameterArgs {
+    values: Values,
+    law: LawArgs,
+}
+
+impl ParameterArgs {
+    /// Whether a parameter is one without a friction law as well.
+    const fn without_law(group: Group) -> bool {
+        matches!(group, Group::Model | Group::Sliding)
+    }
+
+    const fn of_law(group: Group) -> bool {
+        matches!(group, Group::Pull | Group::Law)
+    }
+}
+
+impl Args for ParameterArgs {
+    fn augment_args(command: Command) -> Command {
+        let command = command.args(Values::flags(Self::without_law));
+        LawArgs::augment_args(command).args(Values::flags(Self::of_law))
+    }
+
+    fn augment_args_for_update(command: Command) -> Command {
+        Self::augment_args(command)
+    }
+}
+
+impl FromArgMatches for ParameterArgs {
+    fn from_arg_matches(matches: &ArgMatches) -> Result<Self, clap::Error> {
+        let wanted = |group| Self::without_law(group) || Self::of_law(group);
+        Ok(Self {
+            values: Values::of(matches, wanted),
+            law: LawArgs::from_arg_matches(matches)?,
+        })
+    }
+
+    fn update_from_arg_matches(&mut self, matches: &ArgMatches) -> Result<(), clap::Error> {
+        *self = Self::from_arg_matches(matches)?;
+        Ok(())
+    }
+}
+
+/// A point of the limit of a short delay.
+#[derive(Debug)]
+pub struct LimitArgs(Values);
+
+impl LimitArgs {
+    const fn of_limit(group: Group) -> bool {
+        matches!(group, Group::Limit)
+    }
+
+    /// The value given to a parameter.
+    pub const fn get(&self, parameter: Parameter) -> Option<f64> {
+        self.0.get(parameter)
+    }
+
+    /// The first parameter that is given.
+    pub fn any_given(&self) -> Option<Parameter> {
+        Parameter::ALL.into_iter().find(|p| self.get(*p).is_some())
+    }
+}
+
+impl Args for LimitArgs {
+    fn augment_args(command: Command) -> Command {
+        command.args(Values::flags(Self::of_limit))
+    }
+
+    fn augment_args_for_update(command: Command) -> Command {
+        Self::augment_args(command)
+    }
+}
+
+impl FromArgMatches for LimitArgs {
+    fn from_arg_matches(matches: &ArgMatches) -> Result<Self, clap::Error> {
+        Ok(Self(Values::of(matches, Self::of_limit)))
+    }
+
+    fn update_from_arg_matches(&mut self, matches: &ArgMatches) -> Result<(), clap::Error> {
+        *self = Self::from_arg_matches(matches)?;
+        Ok(())
+    }
 }
 
 /// The flag that gives a parameter.
@@ -79,33 +159,17 @@ pub fn flag(parameter: Parameter) -> String {
 }
 
 impl ParameterArgs {
-    fn given(&self, parameter: Parameter) -> Option<f64> {
-        match parameter {
-            Parameter::MuPrime => self.mu_prime,
-            Parameter::AlphaV => self.alpha_v,
-            Parameter::AlphaN => self.alpha_n,
-            Parameter::Tau => self.tau,
-            Parameter::V0 => self.v0,
-            Parameter::MuK => self.mu_k,
-            Parameter::Mass => self.mass,
-            Parameter::Stiffness => self.stiffness,
-            Parameter::NormalLoad => self.normal_load,
-            Parameter::Mu0 => self.mu0,
-            Parameter::VS => self.v_s,
-            Parameter::MuPrimeRest => self.mu_prime_rest,
-            Parameter::MuS => self.mu_s,
-            Parameter::XDot0 | Parameter::A0 | Parameter::SwitchOnPhase => None,
-            Parameter::Gamma | Parameter::MuRatio => None,
-        }
+    const fn given(&self, parameter: Parameter) -> Option<f64> {
+        self.values.get(parameter)
     }
 
     /// The friction law that the flags name, with the points of its file.
     fn law(&self) -> Result<Option<LawKind>, Failure> {
         let help =
             "--friction table --table FILE.csv, with a speed and a value of mu_k in each line";
-        match (self.friction, &self.table) {
-            (Some(Law::Table), Some(path)) => Ok(Some(LawKind::Table(read_table(path)?))),
-            (Some(Law::Table), None) => Err(Failure::bad_input_with_help(
+        match (self.law.friction.as_deref(), &self.law.table) {
+            (Some(LawKind::TABLE), Some(path)) => Ok(Some(LawKind::Table(read_table(path)?))),
+            (Some(LawKind::TABLE), None) => Err(Failure::bad_input_with_help(
                 "--table is not given: the table law goes through the points of a file",
                 help,
             )),
@@ -113,10 +177,8 @@ impl ParameterArgs {
                 "--table has a meaning with --friction table only",
                 help,
             )),
-            (Some(Law::Coulomb), None) => Ok(Some(LawKind::Coulomb)),
-            (Some(Law::Weakening), None) => Ok(Some(LawKind::Weakening)),
-            (Some(Law::Stribeck), None) => Ok(Some(LawKind::Stribeck)),
-            (None, None) => Ok(None),
+            // The flag takes the names of laws alone.
+            (name, None) => Ok(name.and_then(Formula::from_name).map(LawKind::Formula)),
         }
     }
 
@@ -130,14 +192,14 @@ impl ParameterArgs {
     /// The setting of a critical velocity: a friction law, no v0, and a delay only where control
     /// acts.
     pub fn setting_without_v0(&self) -> Result<Setting, Failure> {
-        if self.friction.is_none() {
+        if self.law.friction.is_none() {
             return Err(Failure::bad_input_with_help(
                 "--friction is not given: the critical velocity depends on the whole friction law",
                 "for example: --friction weakening --mu0 0.5 --v-s 0.5",
             ));
         }
-        let unneeded = match (self.alpha_v, self.alpha_n) {
-            (None | Some(0.0), None | Some(0.0)) => Some((Parameter::Tau, 0.0)),
+        let unneeded = match [Parameter::AlphaV, Parameter::AlphaN].map(|p| self.given(p)) {
+            [None | Some(0.0), None | Some(0.0)] => Some((Parameter::Tau, 0.0)),
             _ => None,
         };
         let help = "leave it out: v0 is what is looked for";
@@ -148,7 +210,7 @@ impl ParameterArgs {
 
     /// Whether any parameter is given.
     pub fn any_given(&self) -> bool {
-        let flags = self.friction.is_some() || self.table.is_some();
+        let flags = self.law.friction.is_some() || self.law.table.is_some();
         flags || Parameter::ALL.into_iter().any(|p| self.given(p).is_some())
     }
 
@@ -204,7 +266,7 @@ impl ParameterArgs {
             return Failure::out_of_range(&flag(parameter), error);
         }
         let follows = matches!(parameter, Parameter::Mu0 | Parameter::VS);
-        let from = match (follows, self.mu_prime_rest) {
+        let from = match (follows, self.given(Parameter::MuPrimeRest)) {
             (true, Some(_)) => format!(", which follows from {},", flag(Parameter::MuPrimeRest)),
             _ => String::new(),
         };

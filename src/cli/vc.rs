@@ -5,16 +5,17 @@ use std::io::Write;
 
 use clap::ValueEnum;
 use serde::Serialize;
+use slipmap::critical::CriticalWindows;
+use slipmap::critical::limit::LimitCell;
 use slipmap::critical::switch_on::Phase;
 use slipmap::sweep::Parameter;
-use slipmap::sweep::cells::limit_columns::LimitCell;
 use slipmap::sweep::cells::vc;
-use slipmap::sweep::input::field::{OUTCOMES, number_of_outcome};
-use slipmap::sweep::input::limit_field::LimitField;
+use slipmap::sweep::input::field::{Field, OUTCOMES, number_of_outcome};
 use slipmap::sweep::input::search::{self, PHASES};
+use slipmap::sweep::input::source::Source;
 
 use super::failure::Failure;
-use super::parameters::{ParameterArgs, flag};
+use super::parameters::{LimitArgs, ParameterArgs, flag};
 
 #[derive(Debug, clap::Args)]
 #[command(after_help = "Examples:
@@ -32,12 +33,8 @@ pub struct Args {
     /// switch-on) [default: 0]
     #[arg(long, value_name = "T", allow_hyphen_values = true)]
     phase: Option<String>,
-    /// γ = −μ_K α_N τ/(2√(κM)) (with --protocol limit)
-    #[arg(long, allow_hyphen_values = true)]
-    gamma: Option<f64>,
-    /// μ_K/μ_S (with --protocol limit)
-    #[arg(long, allow_hyphen_values = true)]
-    mu_ratio: Option<f64>,
+    #[command(flatten)]
+    limit: LimitArgs,
     /// One JSON object on standard output; what there is not is null
     #[arg(long)]
     json: bool,
@@ -121,7 +118,7 @@ fn finite(value: f64) -> Option<f64> {
 }
 
 /// What is found by a protocol of motions.
-fn told(found: vc::Found, protocol: search::Protocol) -> Found {
+fn told(found: CriticalWindows, protocol: search::Protocol) -> Found {
     let critical = found.critical;
     Found {
         vc: finite(critical.vc),
@@ -150,11 +147,8 @@ impl Args {
             return refuse("--phase", "switch-on");
         }
         if self.protocol != Protocol::Limit {
-            if self.gamma.is_some() {
-                return refuse("--gamma", "limit");
-            }
-            if self.mu_ratio.is_some() {
-                return refuse("--mu-ratio", "limit");
+            if let Some(parameter) = self.limit.any_given() {
+                return refuse(&flag(parameter), "limit");
             }
         } else if self.parameters.any_given() {
             return Err(Failure::bad_input_with_help(
@@ -166,16 +160,16 @@ impl Args {
     }
 
     fn limit(&self) -> Result<Limit, Failure> {
-        let needed = |value: Option<f64>, flag: &str| {
-            value.ok_or_else(|| {
+        let needed = |parameter| {
+            self.limit.get(parameter).ok_or_else(|| {
                 Failure::bad_input_with_help(
-                    format!("{flag} is missing"),
+                    format!("{} is missing", flag(parameter)),
                     "the limit needs --gamma and --mu-ratio",
                 )
             })
         };
-        let gamma = needed(self.gamma, "--gamma")?;
-        let mu_ratio = needed(self.mu_ratio, "--mu-ratio")?;
+        let gamma = needed(Parameter::Gamma)?;
+        let mu_ratio = needed(Parameter::MuRatio)?;
         let found = LimitCell::at(gamma, mu_ratio).map_err(|e| {
             let given = [Parameter::Gamma, Parameter::MuRatio];
             let of = given.into_iter().find(|p| p.name() == e.parameter);
@@ -184,12 +178,17 @@ impl Args {
                 |p| Failure::out_of_range(&flag(p), &e),
             )
         })?;
-        let field = |field: LimitField| (field.name(), finite(found.value(field)));
+        let fields = Field::ALL
+            .into_iter()
+            .filter_map(|field| match field.source() {
+                Source::Limit(value) => Some((field.name(), finite(value(&found)))),
+                _ => None,
+            });
         Ok(Limit {
             protocol: Protocol::Limit,
             gamma,
             mu_ratio,
-            fields: LimitField::ALL.map(field).into(),
+            fields: fields.collect(),
         })
     }
 

@@ -26,6 +26,40 @@ pub struct CoulombLimit {
     pub liftoff_over_vtilde: f64,
 }
 
+/// The limit at one γ and μ_K/μ_S, and the letter's approximations of it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct LimitCell {
+    /// The closed form.
+    pub exact: CoulombLimit,
+    /// v_c/ṽ by [`weak`].
+    pub weak: f64,
+    /// v_c/ṽ by [`strong`].
+    pub strong: f64,
+}
+
+impl LimitCell {
+    /// At γ > 0 and μ_K/μ_S in (0, 1].
+    ///
+    /// # Errors
+    /// As [`CoulombLimit::at`].
+    pub fn at(gamma: f64, mu_ratio: f64) -> Result<Self, ModelError> {
+        Ok(Self {
+            exact: CoulombLimit::at(gamma, mu_ratio)?,
+            weak: weak(gamma),
+            strong: strong(gamma),
+        })
+    }
+
+    /// The relative error of an approximation of v_c/ṽ; NaN where that is 0.
+    #[must_use]
+    pub fn error(&self, approximation: f64) -> f64 {
+        match self.exact.vc_over_vtilde {
+            0.0 => f64::NAN,
+            vc => approximation / vc - 1.0,
+        }
+    }
+}
+
 /// The letter's approximation for γ → 0: 1/(2√(πγ)).
 #[must_use]
 pub fn weak(gamma: f64) -> f64 {
@@ -137,6 +171,16 @@ mod tests {
                 );
             }
         }
+    }
+
+    #[test]
+    fn errors_are_relative_and_have_no_value_without_stick_slip() {
+        let cell = LimitCell::at(0.25, 0.5).unwrap();
+        let [vc, error] = [cell.exact.vc_over_vtilde, cell.error(cell.weak)];
+        assert!((vc * (1.0 + error) / weak(0.25) - 1.0).abs() < 1e-14);
+        let beyond = LimitCell::at(1.5, 0.5).unwrap();
+        assert!(beyond.error(beyond.strong).is_nan());
+        assert_eq!(beyond.exact.omega0_t, f64::INFINITY);
     }
 
     #[test]

@@ -231,6 +231,16 @@ impl Critical {
     }
 }
 
+/// The critical velocity with all windows of v0 in which stick-slip survives.
+#[derive(Debug, Clone, PartialEq)]
+pub struct CriticalWindows {
+    /// v_c and what there is at it.
+    pub critical: Critical,
+    /// Where stick-slip survives, up to the largest v0 at which it is looked for: v0 from and to,
+    /// increasing. The last one may end at v_c, where N ≤ 0 occurs, or with the range.
+    pub windows: Vec<[f64; 2]>,
+}
+
 /// v_c by a graze is known to about this, relative.
 pub const GRAZE_PRECISION: f64 = 1e-4;
 /// Error allowed in a step on the way to a graze.

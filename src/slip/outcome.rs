@@ -96,6 +96,24 @@ pub struct Summary {
 }
 
 impl Summary {
+    /// Where there is no motion to follow: all numbers are NaN.
+    #[must_use]
+    pub const fn without(outcome: Outcome) -> Self {
+        Self {
+            outcome,
+            decided: f64::NAN,
+            settle_time: f64::NAN,
+            n_min: f64::NAN,
+            peak: f64::NAN,
+            period: f64::NAN,
+            stick_time: f64::NAN,
+            slip_time: f64::NAN,
+            last_release: f64::NAN,
+            slips: 0,
+            steps: 0,
+        }
+    }
+
     /// Its numbers but the steps, by the names that files and messages have for them; NaN where
     /// there is none.
     #[must_use]

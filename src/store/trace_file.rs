@@ -16,7 +16,7 @@ use super::open;
 use super::output::Output;
 use super::schema::{self, trace};
 use crate::sweep::cells::trace::{EVENTS, MODES, Sample, TraceEvent};
-use crate::sweep::input::parameter::Units;
+use crate::sweep::input::units::Units;
 use crate::sweep::{CaseSpec, Trace};
 
 /// Elements in a chunk.

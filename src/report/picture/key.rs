@@ -9,7 +9,8 @@ use super::scene::Scene;
 use super::text::{Rich, decimal_exponent, field_name, number, suffix};
 use crate::store::map_file::Plane;
 use crate::sweep::Field;
-use crate::sweep::input::field::Storage;
+use crate::sweep::input::field::{Spread, Storage};
+use crate::sweep::input::source::{OfRoots, Source};
 
 /// Width of boundary lines.
 pub const BOUNDARY_WIDTH: f64 = 1.8;
@@ -43,22 +44,18 @@ impl Paint {
     fn of(field: Field, values: &[f64]) -> Self {
         let finite = || values.iter().copied().filter(|v| v.is_finite());
         let largest = finite().fold(0.0, f64::max);
-        match field {
-            Field::NUnstable => Self::Counts,
+        match field.spread() {
             _ if matches!(field.storage(), Storage::Kind | Storage::Few) => Self::Kinds(field),
-            Field::DelayMargin => Self::Signed {
-                range: symmetric_range(finite()),
-                stable: 1.0,
+            Spread::Counts => Self::Counts,
+            Spread::AboutZero { stable } => Self::Signed {
+                range: symmetric_range(finite().map(|v| stable * v)),
+                stable,
             },
-            Field::ABSCISSA => Self::Signed {
-                range: symmetric_range(finite().map(|v| -v)),
-                stable: -1.0,
-            },
-            Field::Abscissa(_) | Field::AbscissaSlope(_) => Self::Signed {
+            Spread::BetterBelow => Self::Signed {
                 range: rounded_up(quantile(finite().map(f64::abs), TOLD_APART)),
                 stable: -1.0,
             },
-            Field::RelaxationTime => {
+            Spread::Relaxation => {
                 let positive = finite().filter(|v| *v > 0.0);
                 let shortest = positive.fold(f64::INFINITY, f64::min);
                 if !shortest.is_finite() {
@@ -67,19 +64,19 @@ impl Paint {
                 let longest = largest.clamp(1.5 * shortest, LONGEST_RELAXATION * shortest);
                 Self::Sized(Scale::logarithmic(shortest, rounded_up(longest)))
             }
-            Field::SettleTime => {
+            Spread::LongTail => {
                 let longest = rounded_up(quantile(finite(), TOLD_APART));
                 Self::Sized(Scale::linear(0.0, longest))
             }
-            Field::Limit(of) if of.is_velocity() => {
+            Spread::Decades => {
                 let scale = Scale::over_decades(finite(), DECADES);
                 Self::Sized(scale.unwrap_or(Scale::linear(0.0, 1.0)))
             }
-            Field::Limit(of) if of.is_error() => Self::Signed {
+            Spread::RelativeError => Self::Signed {
                 range: 1.0,
                 stable: 1.0,
             },
-            Field::Vc | Field::VLiftoff | Field::VSmooth | Field::StickTime => {
+            Spread::Magnitudes => {
                 let positive = || finite().filter(|v| *v > 0.0);
                 let smallest = positive().fold(f64::INFINITY, f64::min);
                 let most = rounded_up(quantile(positive(), TOLD_APART));
@@ -88,7 +85,7 @@ impl Paint {
                     _ => Scale::linear(0.0, most),
                 })
             }
-            _ => Self::Sized(Scale::linear(0.0, rounded_up(largest))),
+            Spread::FromZero => Self::Sized(Scale::linear(0.0, rounded_up(largest))),
         }
     }
 
@@ -227,8 +224,8 @@ impl Key {
 /// The field's name and, where it has two sides, which of them is the stable one.
 fn heading(field: Field, unit: &str) -> Vec<Rich> {
     let mut lines = vec![field_name(field).and(&suffix(unit, " (", ")"))];
-    let side = match field {
-        Field::AbscissaSlope(_) => Some("faster decay below 0"),
+    let side = match field.source() {
+        Source::Roots(OfRoots::Derivative(_)) => Some("faster decay below 0"),
         _ if field.tells_stable(1.0) == Some(false) => Some("stable below 0"),
         _ if field.tells_stable(-1.0) == Some(false) => Some("stable above 0"),
         _ => None,
@@ -270,7 +267,7 @@ fn kinds(field: Field, values: &[f64]) -> Legend {
             .map_or(number.to_string(), |n| (*n).into())
     };
     Legend {
-        heading: vec![Rich::plain(&field.short_name())],
+        heading: vec![Rich::plain(field.short_name())],
         entries: (0..=most)
             .filter(|number| values.contains(&(*number as f64)))
             .map(|number| {
@@ -344,7 +341,7 @@ mod tests {
         let expected = ["0, stable", "2", "4", "no value", "boundary"];
         assert_eq!(texts(key), expected.map(Rich::plain));
         let cells = [-0.1, 0.9, f64::NEG_INFINITY];
-        let key = Key::new(Field::ABSCISSA, "1", &[plane(&cells)], false);
+        let key = Key::new(Field::Abscissa, "1", &[plane(&cells)], false);
         assert_eq!(texts(key), ["0.45 or more", "−∞"].map(Rich::plain));
         let cells = [2.0, 900.0, f64::INFINITY];
         let key = Key::new(Field::RelaxationTime, "s", &[plane(&cells)], false);
@@ -361,7 +358,7 @@ mod tests {
     #[test]
     fn every_field_has_its_stable_colour() {
         let stable = colour::diverging(1.0, 1.0);
-        for (field, value) in [(Field::DelayMargin, 1.0), (Field::ABSCISSA, -1.0)] {
+        for (field, value) in [(Field::DelayMargin, 1.0), (Field::Abscissa, -1.0)] {
             let key = Key::new(field, "1", &[plane(&[value])], false);
             assert_eq!(key.colour(value), stable);
             assert_ne!(key.colour(-value), stable);

@@ -13,7 +13,7 @@ use super::view::View;
 use crate::store::map_file::MapAxis;
 use crate::store::{MapFile, StoreError};
 use crate::sweep::Field;
-use crate::sweep::input::field::Storage;
+use crate::sweep::input::field::{Spread, Storage};
 
 const WIDTH: f64 = 3.2;
 /// Dashes of approximations, (length, gap).
@@ -119,7 +119,7 @@ fn read_lines(
 /// Approximations are dashed.
 fn swatch(field: Field, colour: Rgb) -> Swatch {
     match field {
-        Field::Limit(of) if of.approximates() => Swatch::Dashed(colour, WIDTH, DASH),
+        Field::VcWeakControl | Field::VcStrongControl => Swatch::Dashed(colour, WIDTH, DASH),
         _ => Swatch::Line(colour, WIDTH, None),
     }
 }
@@ -127,7 +127,9 @@ fn swatch(field: Field, colour: Rgb) -> Swatch {
 /// The title of the axis of values.
 fn ordinate(map: &MapFile, fields: &[Field]) -> Rich {
     match fields {
-        [Field::Limit(_), _, ..] => Rich::default().and_formula("pulling velocity  v_0/ṽ"),
+        [first, _, ..] if first.of_limit() => {
+            Rich::default().and_formula("pulling velocity  v_0/ṽ")
+        }
         [field, ..] => field_title(*field, &map.field_unit(*field)),
         [] => Rich::default(),
     }
@@ -139,13 +141,13 @@ fn value_scale(field: Field, lines: &[Line]) -> Scale {
         values.filter(|v| v.is_finite())
     };
     let (mut low, mut high) = (finite().fold(0.0, f64::min), finite().fold(0.0, f64::max));
-    match field {
-        Field::Limit(of) if of.is_velocity() => {
+    match field.spread() {
+        Spread::Decades => {
             if let Some(scale) = Scale::over_decades(finite(), DECADES) {
                 return scale;
             }
         }
-        Field::Limit(of) if of.is_error() => {
+        Spread::RelativeError => {
             (low, high) = (low.max(-LARGEST_ERROR), high.min(LARGEST_ERROR));
         }
         _ => {}

@@ -42,7 +42,6 @@ use std::path::{Path, PathBuf};
 use crate::report::visible::visible_line;
 use crate::store::schema::root;
 use crate::store::{MapFile, Output, StoreError};
-use crate::sweep::input::limit_field::LimitField;
 use crate::sweep::{CaseSpec, Field, Parameter, Trace};
 pub use error::PictureError;
 use scene::Scene;
@@ -270,7 +269,7 @@ fn compose(map: &MapFile, options: &PictureOptions, most: usize) -> Result<Scene
 /// A field of the map that says more than where sliding is stable: what v0 is good for, the
 /// critical velocity, what becomes of motions, or the rate at which disturbances decay.
 fn says_more(map: &MapFile) -> Option<Field> {
-    let more = [Field::Class, Field::Vc, Field::Outcome, Field::ABSCISSA];
+    let more = [Field::Class, Field::Vc, Field::Outcome, Field::Abscissa];
     more.into_iter().find(|field| map.fields().contains(field))
 }
 
@@ -288,7 +287,7 @@ fn shown_together(map: &MapFile, view: &View, field: Field) -> Vec<Field> {
     if view.along.is_some() || !field.of_limit() {
         return vec![field];
     }
-    let velocities = LimitField::VELOCITIES.map(Field::Limit).into_iter();
+    let velocities = Field::LIMIT_VELOCITIES.into_iter();
     let held: Vec<Field> = velocities.filter(|f| map.fields().contains(f)).collect();
     if held.is_empty() { vec![field] } else { held }
 }

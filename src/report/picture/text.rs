@@ -2,6 +2,7 @@
 
 use super::font;
 use crate::store::map_file::MapAxis;
+use crate::sweep::input::source::{OfRoots, Source};
 use crate::sweep::{Field, Parameter};
 
 /// Subscripts relative to the text.
@@ -119,7 +120,7 @@ pub fn axis_title(axis: &MapAxis) -> Rich {
 
 /// What a field is, in full.
 pub fn field_note(field: Field, unit: &str) -> Rich {
-    Rich::plain(&field.long_name()).and(&suffix(unit, "  (", ")"))
+    Rich::plain(field.long_name()).and(&suffix(unit, "  (", ")"))
 }
 
 /// What a field is, in short.
@@ -130,13 +131,13 @@ pub fn field_title(field: Field, unit: &str) -> Rich {
 /// The short name of a field.
 pub fn field_name(field: Field) -> Rich {
     let name = field.short_name();
-    match field {
-        Field::AbscissaSlope(slope) => {
+    match field.source() {
+        Source::Roots(OfRoots::Derivative(slope)) => {
             let parameter = slope.parameter();
             Rich::plain(name.trim_end_matches(parameter.symbol())).and_symbol(parameter)
         }
-        Field::Limit(_) => Rich::default().and_formula(&name),
-        _ => Rich::plain(&name),
+        Source::Limit(_) => Rich::default().and_formula(name),
+        _ => Rich::plain(name),
     }
 }
 

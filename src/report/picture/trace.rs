@@ -11,7 +11,7 @@ use super::text::{Rich, assignment, number, suffix};
 use crate::slip::motion::Event;
 use crate::slip::outcome::Outcome;
 use crate::sweep::cells::trace::{Sample, TraceEvent};
-use crate::sweep::input::parameter::Units;
+use crate::sweep::input::units::Units;
 use crate::sweep::{CaseSpec, Parameter, Trace};
 
 const WIDTH: f64 = 2.6;

@@ -5,7 +5,7 @@ use super::text::{Rich, assignment};
 use crate::store::MapFile;
 use crate::store::map_file::MapAxis;
 use crate::store::schema::root;
-use crate::sweep::input::parameter::Units;
+use crate::sweep::input::units::Units;
 use crate::sweep::{Parameter, SweepSpec};
 
 /// More panels, or more colours, than this are not told apart.

@@ -6,7 +6,7 @@ use crate::linear::best::{self, Optimum, Search, SearchedGain};
 use crate::linear::lobes::minimal_negative_load_gain;
 use crate::model::{Groups, ModelError};
 use crate::sweep::input::best_plane::searched_gain;
-use crate::sweep::input::parameter::Setting;
+use crate::sweep::input::setting::Setting;
 use crate::sweep::plan::Plan;
 
 /// Largest |b| for which best settings are searched.

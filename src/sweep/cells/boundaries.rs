@@ -7,7 +7,8 @@ use crate::linear::decay;
 use crate::linear::gains::{load_gain_breakpoints, velocity_gain_breakpoints};
 use crate::model::friction::Kind;
 use crate::model::{Groups, ModelError};
-use crate::sweep::input::parameter::{Parameter, Setting};
+use crate::sweep::input::parameter::Parameter;
+use crate::sweep::input::setting::Setting;
 use crate::sweep::plan::Plan;
 use crate::sweep::plan::tile::index_of;
 

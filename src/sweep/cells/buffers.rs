@@ -67,6 +67,20 @@ impl TileBuffers {
         }
     }
 
+    /// Stores what `value` gives for each field but counts in the cell at `place`; NaN is no value.
+    pub(super) fn put(&mut self, place: usize, value: impl Fn(Field) -> Option<f64>) {
+        for column in &mut self.kinds {
+            if let Some(value) = value(column.field) {
+                column.cells[place] = few(value);
+            }
+        }
+        for column in &mut self.columns {
+            if let Some(value) = value(column.field) {
+                column.cells[place] = value;
+            }
+        }
+    }
+
     pub(super) fn clear(&mut self) {
         self.status.fill(STATUS_FILL);
         if let Some(n) = &mut self.n_unstable {
@@ -78,6 +92,15 @@ impl TileBuffers {
         for column in &mut self.columns {
             column.cells.fill(f64::NAN);
         }
+    }
+}
+
+/// A kind or a small count, saturating below [`FEW_FILL`]; that for NaN.
+fn few(value: f64) -> u8 {
+    if value.is_nan() {
+        FEW_FILL
+    } else {
+        value.min(f64::from(FEW_FILL - 1)) as u8
     }
 }
 

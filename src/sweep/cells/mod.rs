@@ -3,7 +3,7 @@
 pub mod best;
 pub mod boundaries;
 pub mod buffers;
-pub mod limit_columns;
+mod limit_columns;
 pub mod root_columns;
 pub mod second_look;
 mod slip_columns;

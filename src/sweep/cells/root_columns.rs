@@ -5,7 +5,8 @@ use super::buffers::Column;
 use crate::linear::sensitivity::Sensitivity;
 use crate::linear::track::{Cell, RootTracker};
 use crate::model::Groups;
-use crate::sweep::input::field::{Field, Slope};
+use crate::sweep::input::field::Field;
+use crate::sweep::input::source::{OfRoots, Slope, Source};
 
 /// A line of cells, or a part of it.
 pub(super) struct Line<'a> {
@@ -30,7 +31,7 @@ impl RootColumns {
     /// For these fields; none where none of them needs roots.
     pub fn new(fields: &[Field]) -> Option<Self> {
         let wanted = fields.iter().map(|f| f.roots_needed()).max()?;
-        let slope = |f: &Field| matches!(f, Field::AbscissaSlope(_));
+        let slope = |f: &Field| matches!(f.source(), Source::Roots(OfRoots::Derivative(_)));
         (wanted > 0).then(|| Self {
             tracker: RootTracker::new(wanted),
             sensitive: fields.iter().any(slope),
@@ -97,17 +98,19 @@ fn value(
         None if converged => beyond,
         None => f64::NAN,
     };
-    Some(match field {
-        Field::Abscissa(rank) => real_part(rank.index()),
-        Field::Frequency(rank) => match cell.roots.get(rank.index()) {
+    let Source::Roots(wanted) = field.source() else {
+        return None;
+    };
+    Some(match wanted {
+        OfRoots::RealPart(rank) => real_part(rank),
+        OfRoots::Frequency(rank) => match cell.roots.get(rank) {
             Some(root) => root.lambda.im / time_unit,
             None => f64::NAN,
         },
-        Field::RelaxationTime if !converged => f64::NAN,
-        Field::RelaxationTime => relaxation_time(real_part(0)),
-        Field::AbscissaSlope(slope) => slopes[slope as usize],
-        Field::CertificateMargin => cell.margin,
-        _ => return None,
+        OfRoots::RelaxationTime if !converged => f64::NAN,
+        OfRoots::RelaxationTime => relaxation_time(real_part(0)),
+        OfRoots::Derivative(slope) => slopes[slope as usize],
+        OfRoots::CertificateMargin => cell.margin,
     })
 }
 

@@ -10,8 +10,8 @@ use crate::slip::case::Case;
 use crate::slip::motion::{Accuracy, Integrator};
 use crate::slip::outcome::Outcome;
 use crate::sweep::input::field::{Field, number_of_end};
-use crate::sweep::input::parameter::Setting;
 use crate::sweep::input::search::Protocol;
+use crate::sweep::input::setting::Setting;
 use crate::sweep::plan::Plan;
 
 /// What a map holds of one cell.
@@ -85,13 +85,13 @@ pub fn second_look(
     let setting = plan.setting(index);
     let mut answers = Vec::new();
     let holds = |field| plan.spec.fields.contains(&field);
-    if plan.spec.has_sliding() && (holds(Field::NUnstable) || holds(Field::ABSCISSA)) {
+    if plan.spec.has_sliding() && (holds(Field::NUnstable) || holds(Field::Abscissa)) {
         let (groups, unit) = setting.groups()?;
         let tau = plan.delay(index) / unit;
         if holds(Field::NUnstable) {
             answers.push((Question::Count, count(groups, tau, stored)));
         }
-        if holds(Field::ABSCISSA) {
+        if holds(Field::Abscissa) {
             answers.push((Question::Abscissa, abscissa(groups, (tau, unit), stored)));
         }
     }
@@ -137,7 +137,7 @@ fn count(groups: Groups, tau: f64, stored: &Stored) -> Answer {
 }
 
 fn abscissa(groups: Groups, (tau, unit): (f64, f64), stored: &Stored) -> Answer {
-    let abscissa = (stored.value)(Field::ABSCISSA) * unit;
+    let abscissa = (stored.value)(Field::Abscissa) * unit;
     if stored.status & (NOT_CONVERGED | DISAGREE) != 0 || abscissa == f64::NEG_INFINITY {
         return Answer::Open;
     }

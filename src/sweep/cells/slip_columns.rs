@@ -9,9 +9,10 @@ use crate::slip::case::{Case, CaseError};
 use crate::slip::cycle::NoCycle;
 use crate::slip::motion::Motion;
 use crate::slip::outcome::{Outcome, Summary};
-use crate::sweep::input::field::Field;
-use crate::sweep::input::parameter::{Parameter, Setting};
+use crate::sweep::input::parameter::Parameter;
+use crate::sweep::input::setting::Setting;
 use crate::sweep::input::simulation::Simulation;
+use crate::sweep::input::source::Source;
 use crate::sweep::input::spec::SweepSpec;
 
 /// Fills the columns of one thread's tiles.
@@ -33,49 +34,6 @@ struct Known {
     /// The groups, the delay and the unit of time.
     of: (Groups, f64, f64),
     abscissa: Option<f64>,
-}
-
-/// What is stored of a motion; NaN where there is no value.
-struct Cell {
-    outcome: Outcome,
-    settle_time: f64,
-    n_min: f64,
-    peak_force: f64,
-}
-
-impl Cell {
-    /// There is no motion.
-    const fn without(outcome: Outcome) -> Self {
-        Self {
-            outcome,
-            settle_time: f64::NAN,
-            n_min: f64::NAN,
-            peak_force: f64::NAN,
-        }
-    }
-
-    fn of(summary: &Summary) -> Self {
-        Self {
-            outcome: summary.outcome,
-            settle_time: summary.settle_time,
-            // Infinite where control never acted; not −0.
-            n_min: if summary.n_min.is_finite() {
-                summary.n_min + 0.0
-            } else {
-                f64::NAN
-            },
-            peak_force: summary.peak,
-        }
-    }
-
-    fn value(&self, field: Field) -> Option<f64> {
-        match field {
-            Field::SettleTime => Some(self.settle_time),
-            Field::NMin => Some(self.n_min),
-            Field::PeakForce => Some(self.peak_force),
-            _ => None,
-        }
-    }
 }
 
 impl<'p> SlipColumns<'p> {
@@ -106,31 +64,25 @@ impl<'p> SlipColumns<'p> {
                 return;
             }
             setting.set(Parameter::Tau, *tau);
-            let cell = self.cell((&setting, groups), i);
+            let motion = self.motion_at((&setting, groups), i);
             let place = at + i * stride;
-            if cell.outcome == Outcome::Undecided {
+            if motion.outcome == Outcome::Undecided {
                 buffers.status[place] |= NOT_CONVERGED;
             }
-            for column in &mut buffers.kinds {
-                if column.field == Field::Outcome {
-                    column.cells[place] = cell.outcome as u8;
-                }
-            }
-            for column in &mut buffers.columns {
-                if let Some(value) = cell.value(column.field) {
-                    column.cells[place] = value;
-                }
-            }
+            buffers.put(place, |field| match field.source() {
+                Source::Motion(value) | Source::MotionOrCritical(value, _) => Some(value(&motion)),
+                _ => None,
+            });
         }
     }
 
-    /// The cell at `setting`, the `i`-th of its line.
-    fn cell(&mut self, at: (&Setting, Groups), i: usize) -> Cell {
+    /// What becomes of the motion at `setting`, the `i`-th of its line.
+    fn motion_at(&mut self, at: (&Setting, Groups), i: usize) -> Summary {
         match self.follow(at, i) {
-            Ok(Some(summary)) => Cell::of(&summary),
-            Err(CaseError::NoCycle(NoCycle::NoStickSlip)) => Cell::without(Outcome::NoCycle),
+            Ok(Some(summary)) => summary,
+            Err(CaseError::NoCycle(NoCycle::NoStickSlip)) => Summary::without(Outcome::NoCycle),
             // The sweep's values were checked: what is refused here is beyond what can be followed.
-            Ok(None) | Err(_) => Cell::without(Outcome::Undecided),
+            Ok(None) | Err(_) => Summary::without(Outcome::Undecided),
         }
     }
 

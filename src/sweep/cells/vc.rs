@@ -2,32 +2,24 @@
 
 use crate::critical::follow::Pace;
 use crate::critical::switch_on::{self, Phase, Scan, Survival, Trials, Windows};
-use crate::critical::{Critical, End, Method, Problem, by_simulation, critical_velocity, line};
+use crate::critical::{
+    Critical, CriticalWindows, End, Method, Problem, by_simulation, critical_velocity, line,
+};
 use crate::linear::{Crossings, MarginalTolerance};
 use crate::model::ModelError;
 use crate::model::elementary::pow;
 use crate::slip::case::CaseUnits;
 use crate::slip::motion::{Accuracy, Integrator};
 use crate::sweep::input::class::Class;
-use crate::sweep::input::parameter::{Parameter, Setting};
+use crate::sweep::input::parameter::Parameter;
 use crate::sweep::input::search::Protocol;
+use crate::sweep::input::setting::Setting;
 
 /// Error allowed in a step where control is switched on.
 const SWITCH_ON_ACCURACY: f64 = 1e-9;
 
 /// How many times as many steps a motion may take by collocation.
 pub const MORE_STEPS: u64 = 100;
-
-/// The critical velocity of a setting, and what is known besides.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Found {
-    /// v_c and what there is at it, in units of the setting.
-    pub critical: Critical,
-    /// Where stick-slip survives, up to the largest v0 at which it is looked for: v0 from and to,
-    /// increasing, in units of the setting. The last one may end at v_c, where N ≤ 0 occurs, or
-    /// with the range.
-    pub windows: Vec<[f64; 2]>,
-}
 
 /// What is asked of a setting: its problem in the units of a motion, and those units.
 ///
@@ -67,14 +59,14 @@ pub fn problem(setting: &Setting) -> Result<(Problem, CaseUnits), ModelError> {
 ///
 /// # Errors
 /// See [`problem`].
-pub fn find(setting: &Setting, protocol: Protocol) -> Result<Found, ModelError> {
+pub fn find(setting: &Setting, protocol: Protocol) -> Result<CriticalWindows, ModelError> {
     let (problem, units) = problem(setting)?;
     Ok(find_in(&problem, &units, protocol))
 }
 
 /// The critical velocity of a problem, in `units`.
 #[must_use]
-pub fn find_in(problem: &Problem, units: &CaseUnits, protocol: Protocol) -> Found {
+pub fn find_in(problem: &Problem, units: &CaseUnits, protocol: Protocol) -> CriticalWindows {
     match protocol {
         Protocol::Follow => followed(&critical_velocity(problem), problem, units),
         Protocol::SwitchOn(phase) => {
@@ -116,7 +108,7 @@ pub fn find_in_line(
     problems: &[Problem],
     units: &CaseUnits,
     stopped: impl Fn() -> bool,
-) -> Vec<Option<Found>> {
+) -> Vec<Option<CriticalWindows>> {
     let found = line::critical_velocities(problems, stopped).into_iter();
     let told = problems.iter().zip(found);
     told.map(|(problem, critical)| critical.map(|found| followed(&found, problem, units)))
@@ -124,14 +116,14 @@ pub fn find_in_line(
 }
 
 /// By the protocol `follow` there is one window, from rest to where stick-slip ends, or none.
-fn followed(found: &Critical, problem: &Problem, units: &CaseUnits) -> Found {
+fn followed(found: &Critical, problem: &Problem, units: &CaseUnits) -> CriticalWindows {
     let critical = in_units(found, units);
     let top = match critical.end {
         End::LiftOff => critical.v_liftoff,
         End::Persists => Protocol::Follow.v_max() * problem.law.mu_s() * units.velocity,
         _ => critical.vc,
     };
-    Found {
+    CriticalWindows {
         critical,
         windows: match critical.sustained {
             true => vec![[0.0, top]],
@@ -142,7 +134,7 @@ fn followed(found: &Critical, problem: &Problem, units: &CaseUnits) -> Found {
 
 /// v_c is the topmost edge of the windows; there is none where the topmost window ends at `v_max`
 /// only, or not all v0 were tried.
-fn switched_on(found: Windows, v_max: f64, velocity: f64) -> Found {
+fn switched_on(found: Windows, v_max: f64, velocity: f64) -> CriticalWindows {
     let top = found.top();
     let (vc, end) = match top {
         _ if !found.complete => (f64::NAN, End::Never),
@@ -153,7 +145,7 @@ fn switched_on(found: Windows, v_max: f64, velocity: f64) -> Found {
         Some(top) => (top, End::Lost),
     };
     let edge = |v: f64| v * velocity;
-    Found {
+    CriticalWindows {
         critical: Critical {
             vc: edge(vc),
             end,
@@ -251,7 +243,7 @@ pub fn simulation_agrees(
 pub fn class_at(
     v0: f64,
     (problem, units): (&Problem, &CaseUnits),
-    (protocol, found): (Protocol, &Found),
+    (protocol, found): (Protocol, &CriticalWindows),
     tolerance: MarginalTolerance,
 ) -> Class {
     let speed = v0 / units.velocity;

@@ -4,19 +4,20 @@
 use std::ops::Range;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use super::buffers::{FEW_FILL, TileBuffers};
-use super::vc::{self, Found, class_at};
-use crate::critical::Problem;
+use super::buffers::TileBuffers;
+use super::vc::{self, class_at};
 use crate::critical::line::BLOCK;
+use crate::critical::{CriticalWindows, Problem};
 use crate::linear::MarginalTolerance;
 use crate::linear::status::{DISAGREE, NOT_CONVERGED, SAMPLED};
 use crate::model::ModelError;
 use crate::slip::case::CaseUnits;
 use crate::slip::motion::Integrator;
-use crate::sweep::input::class::Class;
-use crate::sweep::input::field::{Field, number_of_outcome};
-use crate::sweep::input::parameter::{Parameter, Setting};
+use crate::sweep::input::field::Field;
+use crate::sweep::input::parameter::Parameter;
 use crate::sweep::input::search::{Protocol, Search};
+use crate::sweep::input::setting::Setting;
+use crate::sweep::input::source::{Source, VcCell};
 use crate::sweep::input::spec::SweepSpec;
 use crate::sweep::plan::pieces::mixed;
 
@@ -35,7 +36,7 @@ struct Known {
     problem: Problem,
     units: CaseUnits,
     phase: f64,
-    found: Found,
+    found: CriticalWindows,
 }
 
 impl Known {
@@ -53,39 +54,6 @@ pub(super) struct Cells {
     /// In the whole map, all cells counted row by row: likewise.
     pub first: u64,
     pub step: u64,
-}
-
-/// What is stored of a cell.
-struct Cell<'f> {
-    found: &'f Found,
-    class: Option<Class>,
-    v_smooth: f64,
-    status: u8,
-}
-
-impl Cell<'_> {
-    fn value(&self, field: Field) -> Option<f64> {
-        let critical = &self.found.critical;
-        match field {
-            Field::Vc => Some(critical.vc),
-            Field::VLiftoff => Some(critical.v_liftoff),
-            Field::StickTime => Some(critical.stick_time),
-            Field::SlipTime => Some(critical.slip_time),
-            Field::VSmooth => Some(self.v_smooth),
-            _ => None,
-        }
-    }
-
-    fn number(&self, field: Field) -> Option<u8> {
-        match field {
-            Field::Outcome => Some(number_of_outcome(&self.found.critical)),
-            Field::Method => Some(self.found.critical.method as u8),
-            Field::Class => self.class.map(|class| class as u8),
-            // More than that do not fit between the velocities that are tried.
-            Field::Windows => Some(self.found.windows.len().min(usize::from(FEW_FILL - 1)) as u8),
-            _ => None,
-        }
-    }
 }
 
 impl VcColumns {
@@ -126,7 +94,10 @@ impl VcColumns {
             let place = cells.at + i * cells.stride;
             let number = cells.first + i as u64 * cells.step;
             match self.cell(&setting, i, number) {
-                Ok(cell) => store(&cell, buffers, place),
+                Ok((cell, status)) => {
+                    buffers.status[place] |= status;
+                    store(&cell, buffers, place);
+                }
                 // The sweep's values were checked: what is refused here is beyond what can be
                 // followed.
                 Err(_) => store_nothing(buffers, place),
@@ -178,8 +149,14 @@ impl VcColumns {
         }
     }
 
-    /// The cell at `setting`, the `i`-th of its line and the `number`-th of the map.
-    fn cell(&mut self, setting: &Setting, i: usize, number: u64) -> Result<Cell<'_>, ModelError> {
+    /// The cell at `setting`, the `i`-th of its line and the `number`-th of the map, with its
+    /// status.
+    fn cell(
+        &mut self,
+        setting: &Setting,
+        i: usize,
+        number: u64,
+    ) -> Result<(VcCell<'_>, u8), ModelError> {
         let (problem, units) = vc::problem(setting)?;
         let protocol = self.search.protocol.at(setting);
         let v0 = setting.get(Parameter::V0);
@@ -201,15 +178,15 @@ impl VcColumns {
                 status |= DISAGREE;
             }
         }
-        Ok(Cell {
+        let cell = VcCell {
             class: classed.then(|| class_at(v0, at, (protocol, found), tolerance)),
             v_smooth: match smooth {
                 true => vc::v_smooth(at, vc, protocol.v_max()),
                 false => f64::NAN,
             },
             found,
-            status,
-        })
+        };
+        Ok((cell, status))
     }
 
     /// The answer to a problem, the `i`-th of its line.
@@ -219,7 +196,7 @@ impl VcColumns {
         protocol: Protocol,
         phase: f64,
         i: usize,
-    ) -> &Found {
+    ) -> &CriticalWindows {
         if self.known.len() <= i {
             self.known.resize_with(i + 1, || None);
         }
@@ -240,28 +217,19 @@ impl VcColumns {
     }
 }
 
-fn store(cell: &Cell, buffers: &mut TileBuffers, place: usize) {
-    buffers.status[place] |= cell.status;
-    for column in &mut buffers.kinds {
-        if let Some(number) = cell.number(column.field) {
-            column.cells[place] = number;
-        }
-    }
-    for column in &mut buffers.columns {
-        if let Some(value) = cell.value(column.field) {
-            column.cells[place] = value;
-        }
-    }
+fn store(cell: &VcCell, buffers: &mut TileBuffers, place: usize) {
+    buffers.put(place, |field| match field.source() {
+        Source::Critical(value) | Source::MotionOrCritical(_, value) => Some(value(cell)),
+        _ => None,
+    });
 }
 
 fn store_nothing(buffers: &mut TileBuffers, place: usize) {
     buffers.status[place] |= NOT_CONVERGED;
-    for column in buffers.kinds.iter_mut() {
-        column.cells[place] = FEW_FILL;
-    }
-    for column in buffers.columns.iter_mut().filter(|c| c.field.of_vc()) {
-        column.cells[place] = f64::NAN;
-    }
+    buffers.put(place, |field| match field.source() {
+        Source::Critical(_) | Source::MotionOrCritical(..) => Some(f64::NAN),
+        _ => None,
+    });
 }
 
 /// Whether a cell belongs to the sample of `share` of all cells: by its number alone.

@@ -13,8 +13,9 @@ use crate::linear::row::Delays;
 use crate::linear::status::NOT_CONVERGED;
 use crate::model::{Control, Groups, ModelError, Oscillator, SlidingPoint};
 use crate::sweep::input::field::Field;
-use crate::sweep::input::parameter::{Parameter, Setting};
+use crate::sweep::input::parameter::Parameter;
 use crate::sweep::input::protocol::Protocol;
+use crate::sweep::input::setting::Setting;
 use crate::sweep::plan::Plan;
 use crate::sweep::plan::tile::{Tile, for_each_index};
 

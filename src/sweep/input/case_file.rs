@@ -34,9 +34,11 @@
 use std::ops::Range;
 
 use super::given::{GivenParameters, read_units};
-use super::parameter::{LARGEST, Parameter, Setting, Units};
+use super::parameter::{LARGEST, Parameter};
+use super::setting::Setting;
 use super::simulation::{POSITIVE, Simulation};
 use super::toml_reader::{Entry, SpecError, entries, parse};
+use super::units::Units;
 use crate::model::Control;
 use crate::slip::case::{Case, CaseError};
 

@@ -1,133 +1,518 @@
-//! What a map can hold for each cell: every field's one name, meaning, unit and type.
+//! What a map can hold for each cell: every field's one name, meaning, unit, type and source.
+//!
+//! Longer than most files: it is a table, with a row for each field.
 
+use super::catalogue::catalogue;
 use super::class::Class;
-use super::limit_field::LimitField;
-use super::parameter::{Parameter, Units};
+use super::source::{OfRoots, Slope, Source};
+use super::units::Units;
 use crate::critical::{Critical, End, Method};
-use crate::linear::track::MOST_ROOTS;
 use crate::slip::outcome::Outcome;
 
-/// Names of the real and imaginary parts of the roots, by their rank from the right, and the rank
-/// in words.
-const ABSCISSAE: [&str; MOST_ROOTS] = [
-    "abscissa",
-    "abscissa_2",
-    "abscissa_3",
-    "abscissa_4",
-    "abscissa_5",
-    "abscissa_6",
-    "abscissa_7",
-    "abscissa_8",
-];
-const FREQUENCIES: [&str; MOST_ROOTS] = [
-    "frequency",
-    "frequency_2",
-    "frequency_3",
-    "frequency_4",
-    "frequency_5",
-    "frequency_6",
-    "frequency_7",
-    "frequency_8",
-];
-const ORDINALS: [&str; MOST_ROOTS] = [
-    "rightmost",
-    "second",
-    "third",
-    "fourth",
-    "fifth",
-    "sixth",
-    "seventh",
-    "eighth",
-];
-
-/// The place of a characteristic root from the right, conjugate pairs counted once.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub struct Rank(usize);
-
-impl Rank {
-    /// The rightmost root.
-    pub const FIRST: Self = Self(0);
-
-    /// 0 for the rightmost root, less than [`MOST_ROOTS`].
-    #[inline]
-    #[must_use]
-    pub const fn index(self) -> usize {
-        self.0
-    }
+/// How a field is stored.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Storage {
+    /// u16: a count, saturating.
+    Count,
+    /// u8: one of few kinds.
+    Kind,
+    /// u8: a small count, saturating.
+    Few,
+    /// f64, NaN for no value.
+    Real,
 }
 
-/// A parameter with respect to which the spectral abscissa is differentiated.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub enum Slope {
-    /// τ.
-    Tau,
-    /// α_v.
-    AlphaV,
-    /// α_N.
-    AlphaN,
-    /// μ_K′, at fixed μ_K.
-    MuPrime,
+/// How the values of a field are spread, which tells what scale shows them.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Spread {
+    /// Numbers of unstable roots.
+    Counts,
+    /// From 0 to the largest one; kinds and small counts.
+    FromZero,
+    /// From 0 on, a few far above all others.
+    LongTail,
+    /// Velocities and times above 0, over few or many orders of magnitude.
+    Magnitudes,
+    /// Velocities that fall to 0 faster than any power.
+    Decades,
+    /// Times of relaxation: the shortest ones matter, and they are infinite where nothing decays.
+    Relaxation,
+    /// On both sides of a change of stability at 0; `stable` is the sign of the stable side.
+    AboutZero {
+        /// 1 or −1.
+        stable: f64,
+    },
+    /// On both sides of 0, better below it, a few far from all others.
+    BetterBelow,
+    /// On both sides of 0, of order 1.
+    RelativeError,
 }
 
-impl Slope {
-    /// The parameter.
-    #[must_use]
-    pub const fn parameter(self) -> Parameter {
-        match self {
-            Self::Tau => Parameter::Tau,
-            Self::AlphaV => Parameter::AlphaV,
-            Self::AlphaN => Parameter::AlphaN,
-            Self::MuPrime => Parameter::MuPrime,
+/// The powers of force, length and time in a unit, or what has none.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Measure {
+    Powers([i32; 3]),
+    AngularFrequency,
+}
+
+const NUMBER: Measure = Measure::Powers([0, 0, 0]);
+const FORCE: Measure = Measure::Powers([1, 0, 0]);
+const VELOCITY: Measure = Measure::Powers([0, 1, -1]);
+const TIME: Measure = Measure::Powers([0, 0, 1]);
+const RATE: Measure = Measure::Powers([0, 0, -1]);
+
+/// What there is to know of a field.
+struct Row {
+    /// The name in sweep files and maps.
+    name: &'static str,
+    /// What it is, for `long_name` in maps and notes in pictures.
+    long_name: &'static str,
+    /// What it is in a few words, for titles of axes and colour bars.
+    short_name: &'static str,
+    /// What a reader of the map should know besides: where there is no value, and why.
+    comment: Option<&'static str>,
+    /// What it is and the comment beside fields of the critical velocity, where these differ.
+    beside_vc: Option<(&'static str, &'static str)>,
+    measure: Measure,
+    storage: Storage,
+    /// The names of its kinds, in the order of their numbers.
+    kinds: Option<fn() -> Vec<&'static str>>,
+    source: Source,
+    spread: Spread,
+    /// Whether sliding is stable in a cell with this value.
+    stable: Option<fn(f64) -> bool>,
+}
+
+/// What most rows have in common.
+const ROW: Row = Row {
+    name: "",
+    long_name: "",
+    short_name: "",
+    comment: None,
+    beside_vc: None,
+    measure: NUMBER,
+    storage: Storage::Real,
+    kinds: None,
+    source: Source::Line,
+    spread: Spread::FromZero,
+    stable: None,
+};
+
+/// Re λ of the root of a rank.
+macro_rules! real_part {
+    ($rank:literal, $name:literal, $ordinal:literal) => {
+        Row {
+            name: $name,
+            long_name: concat!(
+                "real part of the ",
+                $ordinal,
+                " characteristic root from the right, pairs counted once"
+            ),
+            short_name: concat!("Re λ, ", $ordinal, " root"),
+            comment: Some("-infinity where there are fewer roots"),
+            measure: RATE,
+            source: Source::Roots(OfRoots::RealPart($rank)),
+            spread: Spread::BetterBelow,
+            ..ROW
         }
+    };
+}
+
+/// |Im λ| of the root of a rank.
+macro_rules! frequency {
+    ($rank:literal, $name:literal, $ordinal:literal) => {
+        Row {
+            name: $name,
+            long_name: concat!(
+                "angular frequency of the ",
+                $ordinal,
+                " characteristic root from the right, pairs counted once"
+            ),
+            short_name: concat!("|Im λ|, ", $ordinal, " root"),
+            measure: Measure::AngularFrequency,
+            source: Source::Roots(OfRoots::Frequency($rank)),
+            ..ROW
+        }
+    };
+}
+
+/// A derivative of the spectral abscissa.
+const fn slope(of: Slope) -> Row {
+    let [force, length, time] = of.parameter().dimension();
+    Row {
+        measure: Measure::Powers([-force, -length, -1 - time]),
+        source: Source::Roots(OfRoots::Derivative(of)),
+        spread: Spread::BetterBelow,
+        ..ROW
     }
 }
 
-/// A quantity computed for every cell. `status` comes with every map and is not listed here.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub enum Field {
-    /// Number of unstable roots.
-    NUnstable,
-    /// What becomes of the motion or, beside fields of the critical velocity, of stick-slip there:
-    /// a number of [`OUTCOMES`].
-    Outcome,
-    /// Number of the [`Method`] that gave the critical velocity.
-    Method,
-    /// Number of the [`Class`] of v0.
-    Class,
-    /// Number of windows of v0, up to the largest one at which it is looked for, in which
-    /// stick-slip survives, whatever ends it there: v_c, N ≤ 0 or the range.
-    Windows,
-    /// Signed distance in τ to the nearest change of stability.
-    DelayMargin,
-    /// Re λ of the root of that rank; −∞ where there are fewer roots. Of the first: the spectral
-    /// abscissa.
-    Abscissa(Rank),
-    /// |Im λ| of the root of that rank, 0 for a real one; NaN where there are fewer roots.
-    Frequency(Rank),
-    /// −1/abscissa where the abscissa is negative, else +∞.
-    RelaxationTime,
-    /// Derivative of the spectral abscissa.
-    AbscissaSlope(Slope),
-    /// How far right of the spectral abscissa a line lies that no root is right of.
-    CertificateMargin,
-    /// From switch-on until ẋ stays within 1 % of v0; NaN where the motion does not come to slide.
-    SettleTime,
-    /// The smallest load since switch-on.
-    NMin,
-    /// The largest spring force since switch-on.
-    PeakForce,
-    /// The critical velocity; 0 where stick-slip is never sustained.
-    Vc,
-    /// The smallest v0 at which N ≤ 0 occurs.
-    VLiftoff,
-    /// Time stuck in a period at the critical velocity.
-    StickTime,
-    /// Time in slip in a period there.
-    SlipTime,
-    /// The velocity above which sliding is linearly stable and free of stick-slip.
-    VSmooth,
-    /// Of the limit of a short delay.
-    Limit(LimitField),
+const UNTIL_KNOWN: &str = "until the outcome was known; where control never acts, since t = 0";
+const APPROXIMATION_OVER: &str =
+    "approximation over vc_over_vtilde, less 1; no value where that is 0";
+
+catalogue! {
+    /// A quantity computed for every cell, in the order in which maps hold them. `status` comes
+    /// with every map and is not listed here.
+    pub enum Field: Row {
+        /// Number of unstable roots.
+        NUnstable = Row {
+            name: "n_unstable",
+            long_name: "number of characteristic roots with positive real part",
+            short_name: "number of unstable roots",
+            storage: Storage::Count,
+            source: Source::Line,
+            spread: Spread::Counts,
+            stable: Some(|value| value == 0.0),
+            ..ROW
+        };
+        /// What becomes of the motion or, beside fields of the critical velocity, of stick-slip
+        /// there: a number of [`OUTCOMES`].
+        Outcome = Row {
+            name: "outcome",
+            long_name: "what becomes of the motion",
+            short_name: "outcome",
+            storage: Storage::Kind,
+            kinds: Some(|| OUTCOMES.to_vec()),
+            source: Source::MotionOrCritical(
+                |motion| f64::from(motion.outcome as u8),
+                |cell| f64::from(number_of_outcome(&cell.found.critical)),
+            ),
+            comment: Some(
+                "undecided: none of the others before the horizon or within the steps allowed, \
+                 not_converged in status; no-cycle: no uncontrolled stick-slip at whose phase \
+                 control could be switched on",
+            ),
+            beside_vc: Some((
+                "how stick-slip ends at the critical velocity",
+                "lost: above it does not survive switching on, or there is none to switch on in; \
+                 persists: it survives at v_max; undecided: it was not found, but it is not known \
+                 everywhere",
+            )),
+            ..ROW
+        };
+        /// Number of the [`Method`] that gave the critical velocity.
+        Method = Row {
+            name: "method",
+            long_name: "what gave the critical velocity",
+            short_name: "method",
+            storage: Storage::Kind,
+            kinds: Some(|| Method::ALL.map(Method::name).to_vec()),
+            source: Source::Critical(|cell| f64::from(cell.found.critical.method as u8)),
+            ..ROW
+        };
+        /// Number of the [`Class`] of v0.
+        Class = Row {
+            name: "class",
+            long_name: "what the working velocity v0 is good for",
+            short_name: "at v0",
+            storage: Storage::Kind,
+            kinds: Some(|| Class::ALL.map(Class::name).to_vec()),
+            source: Source::Critical(|cell| cell.class.map_or(f64::NAN, |of| f64::from(of as u8))),
+            comment: Some(
+                "stable: sliding is linearly stable, without stick-slip beside it; bistable: \
+                 stick-slip persists beside it; lift-off: linearly stable, but stick-slip leads \
+                 to N <= 0 at v0 or below; undecided: marginal, or not known",
+            ),
+            ..ROW
+        };
+        /// Number of windows of v0, up to the largest one at which it is looked for, in which
+        /// stick-slip survives, whatever ends it there: v_c, N ≤ 0 or the range.
+        Windows = Row {
+            name: "windows",
+            long_name: "number of windows of v0, up to v_max, in which stick-slip survives",
+            short_name: "windows of v0",
+            storage: Storage::Few,
+            source: Source::Critical(|cell| cell.found.windows.len() as f64),
+            comment: Some(
+                "those that end where N <= 0 or reach v_max count; follow: one, from 0, or none; \
+                 switch-on: windows between the velocities that are tried may be missed",
+            ),
+            ..ROW
+        };
+        /// Signed distance in τ to the nearest change of stability.
+        DelayMargin = Row {
+            name: "delay_margin",
+            long_name: "distance in delay to the nearest change of stability, positive where \
+                        stable",
+            short_name: "delay margin",
+            measure: TIME,
+            source: Source::Line,
+            spread: Spread::AboutZero { stable: 1.0 },
+            stable: Some(|value| value > 0.0),
+            ..ROW
+        };
+        /// The spectral abscissa, Re λ of the rightmost root.
+        Abscissa = Row {
+            name: "abscissa",
+            long_name: "spectral abscissa, the largest real part of the characteristic roots",
+            short_name: "spectral abscissa",
+            spread: Spread::AboutZero { stable: -1.0 },
+            stable: Some(|value| value < 0.0),
+            comment: Some(
+                "certified in status: the argument principle, which shares nothing with the \
+                 computation of the roots, finds no root with Re lambda > abscissa + \
+                 certificate_margin * max(1/t, |abscissa|), t = sqrt(mass/stiffness)",
+            ),
+            ..real_part!(0, "abscissa", "rightmost")
+        };
+        /// Re λ of the second root from the right; −∞ where there are fewer.
+        Abscissa2 = real_part!(1, "abscissa_2", "second");
+        /// Re λ of the third root from the right; −∞ where there are fewer.
+        Abscissa3 = real_part!(2, "abscissa_3", "third");
+        /// Re λ of the fourth root from the right; −∞ where there are fewer.
+        Abscissa4 = real_part!(3, "abscissa_4", "fourth");
+        /// Re λ of the fifth root from the right; −∞ where there are fewer.
+        Abscissa5 = real_part!(4, "abscissa_5", "fifth");
+        /// Re λ of the sixth root from the right; −∞ where there are fewer.
+        Abscissa6 = real_part!(5, "abscissa_6", "sixth");
+        /// Re λ of the seventh root from the right; −∞ where there are fewer.
+        Abscissa7 = real_part!(6, "abscissa_7", "seventh");
+        /// Re λ of the eighth root from the right; −∞ where there are fewer.
+        Abscissa8 = real_part!(7, "abscissa_8", "eighth");
+        /// |Im λ| of the rightmost root, 0 for a real one.
+        Frequency = Row {
+            long_name: "angular frequency of the rightmost characteristic root",
+            short_name: "frequency",
+            ..frequency!(0, "frequency", "rightmost")
+        };
+        /// |Im λ| of the second root from the right; NaN where there are fewer.
+        Frequency2 = frequency!(1, "frequency_2", "second");
+        /// |Im λ| of the third root from the right; NaN where there are fewer.
+        Frequency3 = frequency!(2, "frequency_3", "third");
+        /// |Im λ| of the fourth root from the right; NaN where there are fewer.
+        Frequency4 = frequency!(3, "frequency_4", "fourth");
+        /// |Im λ| of the fifth root from the right; NaN where there are fewer.
+        Frequency5 = frequency!(4, "frequency_5", "fifth");
+        /// |Im λ| of the sixth root from the right; NaN where there are fewer.
+        Frequency6 = frequency!(5, "frequency_6", "sixth");
+        /// |Im λ| of the seventh root from the right; NaN where there are fewer.
+        Frequency7 = frequency!(6, "frequency_7", "seventh");
+        /// |Im λ| of the eighth root from the right; NaN where there are fewer.
+        Frequency8 = frequency!(7, "frequency_8", "eighth");
+        /// −1/abscissa where the abscissa is negative, else +∞.
+        RelaxationTime = Row {
+            name: "relaxation_time",
+            long_name: "time in which a small disturbance decays by a factor e",
+            short_name: "relaxation time",
+            measure: TIME,
+            source: Source::Roots(OfRoots::RelaxationTime),
+            spread: Spread::Relaxation,
+            stable: Some(|value| value < f64::INFINITY),
+            comment: Some("-1/abscissa; infinity where the abscissa is not negative"),
+            ..ROW
+        };
+        /// The derivative of the spectral abscissa with respect to τ.
+        DAbscissaDTau = Row {
+            name: "d_abscissa_d_tau",
+            long_name: "derivative of the spectral abscissa with respect to the delay of the \
+                        feedback",
+            short_name: "∂ abscissa / ∂ τ",
+            ..slope(Slope::Tau)
+        };
+        /// That with respect to α_v.
+        DAbscissaDAlphaV = Row {
+            name: "d_abscissa_d_alpha_v",
+            long_name: "derivative of the spectral abscissa with respect to the gain of velocity \
+                        control",
+            short_name: "∂ abscissa / ∂ α_v",
+            ..slope(Slope::AlphaV)
+        };
+        /// That with respect to α_N.
+        DAbscissaDAlphaN = Row {
+            name: "d_abscissa_d_alpha_n",
+            long_name: "derivative of the spectral abscissa with respect to the gain of load \
+                        control",
+            short_name: "∂ abscissa / ∂ α_N",
+            ..slope(Slope::AlphaN)
+        };
+        /// That with respect to μ_K′, at fixed μ_K.
+        DAbscissaDMuPrime = Row {
+            name: "d_abscissa_d_mu_prime",
+            long_name: "derivative of the spectral abscissa with respect to the slope of the \
+                        kinetic friction coefficient at the sliding velocity",
+            short_name: "∂ abscissa / ∂ μ′",
+            comment: Some("at fixed mu_k"),
+            ..slope(Slope::MuPrime)
+        };
+        /// How far right of the spectral abscissa a line lies that no root is right of.
+        CertificateMargin = Row {
+            name: "certificate_margin",
+            long_name: "certified distance: no characteristic root lies farther right of the \
+                        abscissa",
+            short_name: "certificate margin",
+            source: Source::Roots(OfRoots::CertificateMargin),
+            comment: Some("in units of max(1/t, |abscissa|), t = sqrt(mass/stiffness)"),
+            ..ROW
+        };
+        /// From switch-on until ẋ stays within 1 % of v0; NaN where the motion does not come to
+        /// slide.
+        SettleTime = Row {
+            name: "settle_time",
+            long_name: "time from switch-on until the velocity stays within 1 % of v0",
+            short_name: "settle time",
+            measure: TIME,
+            source: Source::Motion(|motion| motion.settle_time),
+            spread: Spread::LongTail,
+            comment: Some("no value where the motion does not come to slide"),
+            ..ROW
+        };
+        /// The smallest load since switch-on.
+        NMin = Row {
+            name: "n_min",
+            long_name: "smallest normal load since switch-on",
+            short_name: "smallest load",
+            measure: FORCE,
+            // Infinite where control never acted.
+            source: Source::Motion(|motion| match motion.n_min.is_finite() {
+                true => motion.n_min,
+                false => f64::NAN,
+            }),
+            comment: Some(UNTIL_KNOWN),
+            ..ROW
+        };
+        /// The largest spring force since switch-on.
+        PeakForce = Row {
+            name: "peak_force",
+            long_name: "largest spring force since switch-on",
+            short_name: "peak force",
+            measure: FORCE,
+            source: Source::Motion(|motion| motion.peak),
+            comment: Some(UNTIL_KNOWN),
+            ..ROW
+        };
+        /// The critical velocity; 0 where stick-slip is never sustained.
+        Vc = Row {
+            name: "vc",
+            long_name: "critical velocity, above which stick-slip does not survive",
+            short_name: "critical velocity",
+            measure: VELOCITY,
+            source: Source::Critical(|cell| cell.found.critical.vc),
+            spread: Spread::Magnitudes,
+            comment: Some(
+                "0 where stick-slip is not sustained at any v0; no value where N <= 0 ends it or \
+                 it survives at v_max",
+            ),
+            ..ROW
+        };
+        /// The smallest v0 at which N ≤ 0 occurs.
+        VLiftoff = Row {
+            name: "v_liftoff",
+            long_name: "smallest v0 at which the normal load reaches 0",
+            short_name: "lift-off velocity",
+            measure: VELOCITY,
+            source: Source::Critical(|cell| cell.found.critical.v_liftoff),
+            spread: Spread::Magnitudes,
+            ..ROW
+        };
+        /// Time stuck in a period at the critical velocity.
+        StickTime = Row {
+            name: "stick_time",
+            long_name: "time stuck in a period at the critical velocity",
+            short_name: "stick time",
+            measure: TIME,
+            source: Source::Critical(|cell| cell.found.critical.stick_time),
+            spread: Spread::Magnitudes,
+            comment: Some("no value for the protocol switch-on"),
+            ..ROW
+        };
+        /// Time in slip in a period there.
+        SlipTime = Row {
+            name: "slip_time",
+            long_name: "time in slip in a period at the critical velocity",
+            short_name: "slip time",
+            measure: TIME,
+            source: Source::Critical(|cell| cell.found.critical.slip_time),
+            comment: Some("no value for the protocol switch-on"),
+            ..ROW
+        };
+        /// The velocity above which sliding is linearly stable and free of stick-slip.
+        VSmooth = Row {
+            name: "v_smooth",
+            long_name: "velocity above which sliding is linearly stable and free of stick-slip",
+            short_name: "smooth above",
+            measure: VELOCITY,
+            source: Source::Critical(|cell| cell.v_smooth),
+            spread: Spread::Magnitudes,
+            comment: Some(
+                "up to v_max; no value where sliding is not stable at v_max or there is no vc",
+            ),
+            ..ROW
+        };
+        /// v_c/ṽ in the limit of a short delay, with ṽ = (μ_S−μ_K)N0/√(κM).
+        VcOverVtilde = Row {
+            name: "vc_over_vtilde",
+            long_name: "critical velocity over vtilde: below it stick-slip survives",
+            short_name: "v_c/ṽ",
+            source: Source::Limit(|cell| cell.exact.vc_over_vtilde),
+            spread: Spread::Decades,
+            comment: Some(
+                "vtilde = (mu_s - mu_k) normal_load / sqrt(stiffness mass), gamma = -mu_k alpha_n \
+                 tau / (2 sqrt(stiffness mass)), mu_ratio = mu_k/mu_s; 0 from gamma = 1 on",
+            ),
+            ..ROW
+        };
+        /// ω0 T, the duration of the slip that just grazes there, ω0 = √(κ/M).
+        Omega0T = Row {
+            name: "omega0_T",
+            long_name: "duration of the slip that just grazes, over sqrt(mass/stiffness)",
+            short_name: "duration of the slip ω_0T",
+            source: Source::Limit(|cell| cell.exact.omega0_t),
+            comment: Some("infinity from gamma = 1 on"),
+            ..ROW
+        };
+        /// The pulling velocity from which the block lifts off there, over ṽ.
+        LiftoffOverVtilde = Row {
+            name: "liftoff_over_vtilde",
+            long_name: "pulling velocity over vtilde from which the block lifts off while it \
+                        sticks",
+            short_name: "lift-off",
+            source: Source::Limit(|cell| cell.exact.liftoff_over_vtilde),
+            spread: Spread::Decades,
+            comment: Some("infinity at mu_ratio = 1"),
+            ..ROW
+        };
+        /// The letter's approximation of v_c/ṽ for γ → 0.
+        VcWeakControl = Row {
+            name: "vc_weak_control",
+            long_name: "the letter's approximation of v_c/vtilde as gamma goes to 0",
+            short_name: "v_c/ṽ for γ → 0",
+            source: Source::Limit(|cell| cell.weak),
+            spread: Spread::Decades,
+            comment: Some("1/(2 sqrt(pi gamma))"),
+            ..ROW
+        };
+        /// The letter's approximation of v_c/ṽ for γ → 1.
+        VcStrongControl = Row {
+            name: "vc_strong_control",
+            long_name: "the letter's approximation of v_c/vtilde as gamma goes to 1",
+            short_name: "v_c/ṽ for γ → 1",
+            source: Source::Limit(|cell| cell.strong),
+            spread: Spread::Decades,
+            comment: Some("exp(-1 - pi gamma/sqrt(1 - gamma^2))/gamma; 0 from gamma = 1 on"),
+            ..ROW
+        };
+        /// Relative error of [`Field::VcWeakControl`].
+        WeakControlError = Row {
+            name: "weak_control_error",
+            long_name: "relative error of vc_weak_control",
+            short_name: "error of v_c for γ → 0",
+            source: Source::Limit(|cell| cell.error(cell.weak)),
+            spread: Spread::RelativeError,
+            comment: Some(APPROXIMATION_OVER),
+            ..ROW
+        };
+        /// Relative error of [`Field::VcStrongControl`].
+        StrongControlError = Row {
+            name: "strong_control_error",
+            long_name: "relative error of vc_strong_control",
+            short_name: "error of v_c for γ → 1",
+            source: Source::Limit(|cell| cell.error(cell.strong)),
+            spread: Spread::RelativeError,
+            comment: Some(APPROXIMATION_OVER),
+            ..ROW
+        };
+    }
 }
 
 /// Names of all that a motion or stick-slip can come to, in the order of their numbers in maps:
@@ -170,92 +555,19 @@ pub(crate) fn number_of_end(end: End) -> u8 {
     }
 }
 
-/// How a field is stored.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Storage {
-    /// u16: a count, saturating.
-    Count,
-    /// u8: one of few kinds.
-    Kind,
-    /// u8: a small count, saturating.
-    Few,
-    /// f64, NaN for no value.
-    Real,
-}
-
 impl Field {
-    const COUNT: usize = 20 + 2 * MOST_ROOTS + LimitField::ALL.len();
-
-    /// All fields, in the order in which maps hold them.
-    pub const ALL: [Self; Self::COUNT] = Self::all();
-
-    const fn all() -> [Self; Self::COUNT] {
-        let mut all = [Self::NUnstable; Self::COUNT];
-        all[1] = Self::Outcome;
-        all[2] = Self::Method;
-        all[3] = Self::Class;
-        all[4] = Self::Windows;
-        all[5] = Self::DelayMargin;
-        let mut rank = 0;
-        while rank < MOST_ROOTS {
-            all[6 + rank] = Self::Abscissa(Rank(rank));
-            all[6 + MOST_ROOTS + rank] = Self::Frequency(Rank(rank));
-            rank += 1;
-        }
-        let rest = 6 + 2 * MOST_ROOTS;
-        all[rest] = Self::RelaxationTime;
-        all[rest + 1] = Self::AbscissaSlope(Slope::Tau);
-        all[rest + 2] = Self::AbscissaSlope(Slope::AlphaV);
-        all[rest + 3] = Self::AbscissaSlope(Slope::AlphaN);
-        all[rest + 4] = Self::AbscissaSlope(Slope::MuPrime);
-        all[rest + 5] = Self::CertificateMargin;
-        all[rest + 6] = Self::SettleTime;
-        all[rest + 7] = Self::NMin;
-        all[rest + 8] = Self::PeakForce;
-        all[rest + 9] = Self::Vc;
-        all[rest + 10] = Self::VLiftoff;
-        all[rest + 11] = Self::StickTime;
-        all[rest + 12] = Self::SlipTime;
-        all[rest + 13] = Self::VSmooth;
-        let mut i = 0;
-        while i < LimitField::ALL.len() {
-            all[rest + 14 + i] = Self::Limit(LimitField::ALL[i]);
-            i += 1;
-        }
-        all
-    }
-
-    /// The spectral abscissa.
-    pub const ABSCISSA: Self = Self::Abscissa(Rank::FIRST);
+    /// The velocities of the limit of a short delay, which one picture shows together.
+    pub const LIMIT_VELOCITIES: [Self; 4] = [
+        Self::VcOverVtilde,
+        Self::VcWeakControl,
+        Self::VcStrongControl,
+        Self::LiftoffOverVtilde,
+    ];
 
     /// The name in sweep files and maps.
     #[must_use]
     pub const fn name(self) -> &'static str {
-        match self {
-            Self::NUnstable => "n_unstable",
-            Self::DelayMargin => "delay_margin",
-            Self::Abscissa(rank) => ABSCISSAE[rank.0],
-            Self::Frequency(rank) => FREQUENCIES[rank.0],
-            Self::RelaxationTime => "relaxation_time",
-            Self::AbscissaSlope(Slope::Tau) => "d_abscissa_d_tau",
-            Self::AbscissaSlope(Slope::AlphaV) => "d_abscissa_d_alpha_v",
-            Self::AbscissaSlope(Slope::AlphaN) => "d_abscissa_d_alpha_n",
-            Self::AbscissaSlope(Slope::MuPrime) => "d_abscissa_d_mu_prime",
-            Self::CertificateMargin => "certificate_margin",
-            Self::Outcome => "outcome",
-            Self::SettleTime => "settle_time",
-            Self::NMin => "n_min",
-            Self::PeakForce => "peak_force",
-            Self::Limit(field) => field.name(),
-            Self::Vc => "vc",
-            Self::Method => "method",
-            Self::Class => "class",
-            Self::Windows => "windows",
-            Self::VLiftoff => "v_liftoff",
-            Self::StickTime => "stick_time",
-            Self::SlipTime => "slip_time",
-            Self::VSmooth => "v_smooth",
-        }
+        self.row().name
     }
 
     /// The field of that name.
@@ -266,155 +578,29 @@ impl Field {
 
     /// What it is, for `long_name` in maps and notes in pictures.
     #[must_use]
-    pub fn long_name(self) -> String {
-        match self {
-            Self::NUnstable => "number of characteristic roots with positive real part".into(),
-            Self::DelayMargin => {
-                "distance in delay to the nearest change of stability, positive where stable".into()
-            }
-            Self::ABSCISSA => {
-                "spectral abscissa, the largest real part of the characteristic roots".into()
-            }
-            Self::Abscissa(rank) => format!(
-                "real part of the {} characteristic root from the right, pairs counted once",
-                ORDINALS[rank.0]
-            ),
-            Self::Frequency(Rank::FIRST) => {
-                "angular frequency of the rightmost characteristic root".into()
-            }
-            Self::Frequency(rank) => format!(
-                "angular frequency of the {} characteristic root from the right, pairs counted \
-                once",
-                ORDINALS[rank.0]
-            ),
-            Self::RelaxationTime => "time in which a small disturbance decays by a factor e".into(),
-            Self::AbscissaSlope(slope) => format!(
-                "derivative of the spectral abscissa with respect to the {}",
-                slope.parameter().long_name()
-            ),
-            Self::CertificateMargin => {
-                "certified distance: no characteristic root lies farther right of the abscissa"
-                    .into()
-            }
-            Self::Outcome => "what becomes of the motion".into(),
-            Self::SettleTime => {
-                "time from switch-on until the velocity stays within 1 % of v0".into()
-            }
-            Self::NMin => "smallest normal load since switch-on".into(),
-            Self::PeakForce => "largest spring force since switch-on".into(),
-            Self::Limit(field) => field.long_name().into(),
-            Self::Vc => "critical velocity, above which stick-slip does not survive".into(),
-            Self::Method => "what gave the critical velocity".into(),
-            Self::Class => "what the working velocity v0 is good for".into(),
-            Self::Windows => {
-                "number of windows of v0, up to v_max, in which stick-slip survives".into()
-            }
-            Self::VLiftoff => "smallest v0 at which the normal load reaches 0".into(),
-            Self::StickTime => "time stuck in a period at the critical velocity".into(),
-            Self::SlipTime => "time in slip in a period at the critical velocity".into(),
-            Self::VSmooth => {
-                "velocity above which sliding is linearly stable and free of stick-slip".into()
-            }
-        }
+    pub const fn long_name(self) -> &'static str {
+        self.row().long_name
     }
 
     /// What it is in a few words, for titles of axes and colour bars.
     #[must_use]
-    pub fn short_name(self) -> String {
-        match self {
-            Self::NUnstable => "number of unstable roots".into(),
-            Self::DelayMargin => "delay margin".into(),
-            Self::ABSCISSA => "spectral abscissa".into(),
-            Self::Abscissa(rank) => format!("Re λ, {} root", ORDINALS[rank.0]),
-            Self::Frequency(Rank::FIRST) => "frequency".into(),
-            Self::Frequency(rank) => format!("|Im λ|, {} root", ORDINALS[rank.0]),
-            Self::RelaxationTime => "relaxation time".into(),
-            Self::AbscissaSlope(slope) => {
-                format!("∂ abscissa / ∂ {}", slope.parameter().symbol())
-            }
-            Self::CertificateMargin => "certificate margin".into(),
-            Self::Outcome => "outcome".into(),
-            Self::SettleTime => "settle time".into(),
-            Self::NMin => "smallest load".into(),
-            Self::PeakForce => "peak force".into(),
-            Self::Limit(field) => field.short_name().into(),
-            Self::Vc => "critical velocity".into(),
-            Self::Method => "method".into(),
-            Self::Class => "at v0".into(),
-            Self::Windows => "windows of v0".into(),
-            Self::VLiftoff => "lift-off velocity".into(),
-            Self::StickTime => "stick time".into(),
-            Self::SlipTime => "slip time".into(),
-            Self::VSmooth => "smooth above".into(),
-        }
+    pub const fn short_name(self) -> &'static str {
+        self.row().short_name
     }
 
     /// What a reader of the map should know besides, if anything.
     #[must_use]
     pub const fn comment(self) -> Option<&'static str> {
-        match self {
-            Self::ABSCISSA => Some(
-                "certified in status: the argument principle, which shares nothing with the \
-                computation of the roots, \
-                 finds no root with Re lambda > abscissa + certificate_margin * max(1/t, \
-                 |abscissa|), \
-                 t = sqrt(mass/stiffness)",
-            ),
-            Self::Abscissa(_) => Some("-infinity where there are fewer roots"),
-            Self::RelaxationTime => {
-                Some("-1/abscissa; infinity where the abscissa is not negative")
-            }
-            Self::AbscissaSlope(Slope::MuPrime) => Some("at fixed mu_k"),
-            Self::CertificateMargin => {
-                Some("in units of max(1/t, |abscissa|), t = sqrt(mass/stiffness)")
-            }
-            Self::Outcome => Some(
-                "undecided: none of the others before the horizon or within the steps allowed, \
-                not_converged in status; \
-                 no-cycle: no uncontrolled stick-slip at whose phase control could be switched on",
-            ),
-            Self::SettleTime => Some("no value where the motion does not come to slide"),
-            Self::Limit(field) => field.comment(),
-            Self::NMin | Self::PeakForce => {
-                Some("until the outcome was known; where control never acts, since t = 0")
-            }
-            Self::Vc => Some(
-                "0 where stick-slip is not sustained at any v0; no value where N <= 0 ends it or \
-                it survives at v_max",
-            ),
-            Self::Class => Some(
-                "stable: sliding is linearly stable, without stick-slip beside it; bistable: \
-                stick-slip persists beside it; \
-                 lift-off: linearly stable, but stick-slip leads to N <= 0 at v0 or below; \
-                 undecided: marginal, or not known",
-            ),
-            Self::Windows => Some(
-                "those that end where N <= 0 or reach v_max count; follow: one, from 0, or none; \
-                switch-on: windows between \
-                 the velocities that are tried may be missed",
-            ),
-            Self::StickTime | Self::SlipTime => Some("no value for the protocol switch-on"),
-            Self::VSmooth => {
-                Some("up to v_max; no value where sliding is not stable at v_max or there is no vc")
-            }
-            _ => None,
-        }
+        self.row().comment
     }
 
     /// What there is of it to know beside fields of the critical velocity: its long name and
     /// comment.
     #[must_use]
-    pub fn described_at_vc(self) -> (String, Option<&'static str>) {
-        match self {
-            Self::Outcome => (
-                "how stick-slip ends at the critical velocity".into(),
-                Some(
-                    "lost: above it does not survive switching on, or there is none to switch on \
-                    in; persists: it survives at \
-                     v_max; undecided: it was not found, but it is not known everywhere",
-                ),
-            ),
-            _ => (self.long_name(), self.comment()),
+    pub fn described_at_vc(self) -> (&'static str, Option<&'static str>) {
+        match self.row().beside_vc {
+            Some((long_name, comment)) => (long_name, Some(comment)),
+            None => (self.long_name(), self.comment()),
         }
     }
 
@@ -422,67 +608,47 @@ impl Field {
     /// [`Storage::Kind`].
     #[must_use]
     pub fn kinds(self) -> Option<Vec<&'static str>> {
-        match self {
-            Self::Outcome => Some(OUTCOMES.to_vec()),
-            Self::Method => Some(Method::ALL.map(Method::name).to_vec()),
-            Self::Class => Some(Class::ALL.map(Class::name).to_vec()),
-            _ => None,
-        }
+        self.row().kinds.map(|names| names())
     }
 
     /// The unit, as UDUNITS writes it; "1" if dimensionless.
     #[must_use]
     pub fn unit(self, units: &Units) -> String {
-        match self {
-            Self::NUnstable | Self::CertificateMargin | Self::Outcome | Self::Limit(_) => {
-                units.of([0; 3])
-            }
-            Self::Method | Self::Class | Self::Windows => units.of([0; 3]),
-            Self::Vc | Self::VLiftoff | Self::VSmooth => units.of([0, 1, -1]),
-            Self::StickTime | Self::SlipTime => units.time(),
-            Self::DelayMargin | Self::RelaxationTime | Self::SettleTime => units.time(),
-            Self::NMin | Self::PeakForce => units.of([1, 0, 0]),
-            Self::Abscissa(_) => units.of([0, 0, -1]),
-            Self::Frequency(_) => units.angular_frequency(),
-            Self::AbscissaSlope(slope) => {
-                let [force, length, time] = slope.parameter().dimension();
-                units.of([-force, -length, -1 - time])
-            }
+        match self.row().measure {
+            Measure::Powers(powers) => units.of(powers),
+            Measure::AngularFrequency => units.angular_frequency(),
         }
     }
 
     /// How it is stored.
     #[must_use]
     pub const fn storage(self) -> Storage {
-        match self {
-            Self::NUnstable => Storage::Count,
-            Self::Outcome | Self::Method | Self::Class => Storage::Kind,
-            Self::Windows => Storage::Few,
-            _ => Storage::Real,
-        }
+        self.row().storage
+    }
+
+    /// What computes it.
+    #[must_use]
+    pub const fn source(self) -> Source {
+        self.row().source
+    }
+
+    /// How its values are spread.
+    #[must_use]
+    pub const fn spread(self) -> Spread {
+        self.row().spread
     }
 
     /// True for fields of the critical velocity, which need a friction law; [`Field::Outcome`] is
     /// one beside them only.
     #[must_use]
     pub const fn of_vc(self) -> bool {
-        matches!(
-            self,
-            Self::Vc
-                | Self::Method
-                | Self::Class
-                | Self::Windows
-                | Self::VLiftoff
-                | Self::StickTime
-                | Self::SlipTime
-                | Self::VSmooth
-        )
+        matches!(self.source(), Source::Critical(_))
     }
 
     /// True for fields of linear stability at v0 or at a given slope.
     #[must_use]
     pub const fn of_sliding(self) -> bool {
-        !self.of_motion() && !self.of_vc() && !self.of_limit()
+        matches!(self.source(), Source::Line | Source::Roots(_))
     }
 
     /// True for fields of the motion of the block, which need a friction law and depend on its
@@ -490,8 +656,8 @@ impl Field {
     #[must_use]
     pub const fn of_motion(self) -> bool {
         matches!(
-            self,
-            Self::Outcome | Self::SettleTime | Self::NMin | Self::PeakForce
+            self.source(),
+            Source::Motion(_) | Source::MotionOrCritical(..)
         )
     }
 
@@ -499,16 +665,20 @@ impl Field {
     /// [`Protocol::Limit`](super::protocol::Protocol::Limit).
     #[must_use]
     pub const fn of_limit(self) -> bool {
-        matches!(self, Self::Limit(_))
+        matches!(self.source(), Source::Limit(_))
+    }
+
+    /// The fields of the limit of a short delay.
+    pub fn all_of_limit() -> impl Iterator<Item = Self> {
+        Self::ALL.into_iter().filter(|field| field.of_limit())
     }
 
     /// Number of roots from the right, pairs counted once, that the field needs; 0 if the closed
     /// form gives it.
     #[must_use]
     pub const fn roots_needed(self) -> usize {
-        match self {
-            Self::Abscissa(rank) | Self::Frequency(rank) => rank.0 + 1,
-            Self::RelaxationTime | Self::AbscissaSlope(_) | Self::CertificateMargin => 1,
+        match self.source() {
+            Source::Roots(of) => of.needed(),
             _ => 0,
         }
     }
@@ -516,13 +686,7 @@ impl Field {
     /// Whether sliding is stable in a cell with this value; none for fields that do not tell.
     #[must_use]
     pub fn tells_stable(self, value: f64) -> Option<bool> {
-        match self {
-            Self::NUnstable => Some(value == 0.0),
-            Self::DelayMargin => Some(value > 0.0),
-            Self::ABSCISSA => Some(value < 0.0),
-            Self::RelaxationTime => Some(value < f64::INFINITY),
-            _ => None,
-        }
+        self.row().stable.map(|stable| stable(value))
     }
 
     /// Bytes per cell, uncompressed.
@@ -539,26 +703,67 @@ impl Field {
 /// The names of all fields, for messages; numbered ones as a range.
 #[must_use]
 pub fn known_fields() -> String {
-    let last = MOST_ROOTS - 1;
     let names = Field::ALL.into_iter().filter_map(|field| match field {
-        Field::Abscissa(Rank(1)) => Some(format!("{} … {}", ABSCISSAE[1], ABSCISSAE[last])),
-        Field::Frequency(Rank(1)) => Some(format!("{} … {}", FREQUENCIES[1], FREQUENCIES[last])),
-        Field::Abscissa(Rank(2..)) | Field::Frequency(Rank(2..)) => None,
+        Field::Abscissa2 => Some(range(field, Field::Abscissa8)),
+        Field::Frequency2 => Some(range(field, Field::Frequency8)),
+        _ if field.roots_needed() > 1 => None,
         field => Some(field.name().to_owned()),
     });
     names.collect::<Vec<_>>().join(", ")
 }
 
+fn range(first: Field, last: Field) -> String {
+    format!("{} … {}", first.name(), last.name())
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::linear::track::MOST_ROOTS;
 
     #[test]
-    fn all_are_in_order_and_have_names_of_their_own() {
-        assert!(Field::ALL.windows(2).all(|w| w[0] < w[1]));
+    fn every_field_has_a_name_and_a_meaning_of_its_own() {
         for field in Field::ALL {
             assert_eq!(Field::from_name(field.name()), Some(field));
             assert!(field.roots_needed() <= MOST_ROOTS);
+            let others = || Field::ALL.into_iter().filter(|f| *f != field);
+            assert!(others().all(|other| other.long_name() != field.long_name()));
+            assert!(others().all(|other| other.short_name() != field.short_name()));
+            assert_eq!(field.kinds().is_some(), field.storage() == Storage::Kind);
+        }
+    }
+
+    #[test]
+    fn roots_are_told_by_their_rank() {
+        let of = |rank: usize| match rank {
+            0 => String::new(),
+            _ => format!("_{}", rank + 1),
+        };
+        for rank in 0..MOST_ROOTS {
+            let named = |name: &str| {
+                let field = Field::from_name(&format!("{name}{}", of(rank)));
+                field.expect("a field").source()
+            };
+            let real_part = named("abscissa");
+            assert!(matches!(real_part, Source::Roots(OfRoots::RealPart(r)) if r == rank));
+            let frequency = named("frequency");
+            assert!(matches!(frequency, Source::Roots(OfRoots::Frequency(r)) if r == rank));
+        }
+    }
+
+    #[test]
+    fn slopes_name_their_parameter() {
+        let slopes = Field::ALL
+            .into_iter()
+            .filter_map(|field| match field.source() {
+                Source::Roots(OfRoots::Derivative(slope)) => Some((field, slope.parameter())),
+                _ => None,
+            });
+        for (field, parameter) in slopes {
+            let (name, symbol) = (parameter.name(), parameter.symbol());
+            assert_eq!(field.name(), format!("d_abscissa_d_{name}"));
+            assert_eq!(field.short_name(), format!("∂ abscissa / ∂ {symbol}"));
+            assert!(field.long_name().ends_with(parameter.long_name()));
         }
     }
 

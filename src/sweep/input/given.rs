@@ -4,8 +4,11 @@
 use std::ops::Range;
 
 use super::friction_table::GivenTable;
-use super::parameter::{GivenError, LawKind, Parameter, Setting, Units};
+use super::law_kind::{Formula, LawKind};
+use super::parameter::Parameter;
+use super::setting::{GivenError, Setting};
 use super::toml_reader::{Entry, SpecError};
+use super::units::Units;
 
 /// The most letters of a unit.
 const LONGEST_UNIT: usize = 20;
@@ -50,8 +53,10 @@ impl GivenParameters {
     pub fn read_start(&mut self, start: &Entry) -> Result<(), SpecError> {
         for entry in start.table()? {
             let known = Parameter::from_name(entry.key).filter(|p| p.of_start());
-            let parameter =
-                known.ok_or_else(|| entry.unknown(&Parameter::START.map(Parameter::name)))?;
+            let parameter = known.ok_or_else(|| {
+                let of_start = Parameter::ALL.into_iter().filter(|p| p.of_start());
+                entry.unknown(&of_start.map(Parameter::name).collect::<Vec<_>>())
+            })?;
             self.read_value(&entry, parameter)?;
         }
         Ok(())
@@ -85,15 +90,12 @@ impl GivenParameters {
 
     /// Reads the table `[friction]`.
     pub fn read_friction(&mut self, friction: &Entry) -> Result<(), SpecError> {
-        let names = [
-            "law",
-            "mu0",
-            "v_s",
-            "mu_prime_rest",
-            "mu_s",
-            "speeds",
-            "mu_k",
-        ];
+        let of_laws = Parameter::ALL.into_iter().filter(|p| p.of_friction_law());
+        let names: Vec<_> = ["law"]
+            .into_iter()
+            .chain(of_laws.map(Parameter::name))
+            .chain(["speeds", "mu_k"])
+            .collect();
         let mut law = None;
         for entry in friction.table()? {
             match Parameter::from_name(entry.key).filter(|p| p.of_friction_law()) {
@@ -117,8 +119,7 @@ impl GivenParameters {
         if name == LawKind::TABLE {
             return Ok(LawKind::Table(self.table.table(&entry.span)?));
         }
-        let mut formulas = LawKind::FORMULAS.into_iter();
-        let law = formulas.find(|law| law.name() == name).ok_or_else(|| {
+        let law = Formula::from_name(name).ok_or_else(|| {
             entry
                 .error(format!("unknown friction law \"{name}\""))
                 .help(format!("known: {}", LawKind::names()))
@@ -129,7 +130,7 @@ impl GivenParameters {
                 SpecError::at(place.clone(), message).help("points are for law = \"table\"")
             );
         }
-        Ok(law)
+        Ok(LawKind::Formula(law))
     }
 
     /// Where to tell that the friction law is ill-posed: at what it is at rest, or at its name.

@@ -4,9 +4,9 @@ use std::ops::Range;
 
 use super::field::Field;
 use super::given::GivenParameters;
-use super::limit_field::LimitField;
-use super::parameter::{GivenError, Parameter, Setting};
+use super::parameter::Parameter;
 use super::protocol::Protocol;
+use super::setting::{GivenError, Setting};
 use super::toml_reader::{Entry, SpecError};
 
 /// Keys at the top of a sweep file that have a meaning in the limit.
@@ -56,7 +56,7 @@ impl LimitDraft {
         if let Some((name, place)) = foreign {
             return Err(no_meaning(name, place));
         }
-        for parameter in Parameter::LIMIT {
+        for parameter in Parameter::ALL.into_iter().filter(|p| p.of_limit()) {
             if given.place(parameter).is_none() {
                 let error = GivenError::Missing(parameter);
                 return Err(SpecError {
@@ -88,7 +88,8 @@ impl LimitDraft {
 
 fn no_meaning(name: &str, place: &Range<usize>) -> SpecError {
     let protocol = Protocol::Limit.name();
-    let fields = LimitField::ALL.map(LimitField::name).join(", ");
+    let names: Vec<_> = Field::all_of_limit().map(Field::name).collect();
+    let fields = names.join(", ");
     SpecError::at(
         place.clone(),
         format!("{name} has no meaning with protocol = \"{protocol}\""),

@@ -1,54 +1,14 @@
 //! Every parameter of a sweep: its one name in flags, sweep files and maps, its meaning, unit and
 //! range.
+//!
+//! Longer than most files: it is a table, with a row for each parameter.
 
-use std::cmp::Ordering;
-
-use crate::model::{Control, FrictionLaw, Groups, ModelError, Oscillator, SlidingPoint, Table};
+use super::catalogue::catalogue;
+use crate::model::ModelError;
 
 /// The largest size of any parameter, and one over the smallest of those that must be positive: far
 /// beyond any experiment, and small enough that no dimensionless group overflows.
 pub(super) const LARGEST: f64 = 1e12;
-
-/// A parameter of the model, of the friction law or of the control.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub enum Parameter {
-    /// μ_K′(v0), the slope of the friction law at the sliding velocity.
-    MuPrime,
-    /// α_v, the gain of velocity control.
-    AlphaV,
-    /// α_N, the gain of load control.
-    AlphaN,
-    /// τ, the delay.
-    Tau,
-    /// v0, the unperturbed pulling velocity.
-    V0,
-    /// μ_K(v0), the kinetic friction coefficient at the sliding velocity.
-    MuK,
-    /// M, the mass of the block.
-    Mass,
-    /// κ, the stiffness of the spring.
-    Stiffness,
-    /// N0, the unperturbed normal load.
-    NormalLoad,
-    /// μ0 of a friction law.
-    Mu0,
-    /// v_s of a friction law.
-    VS,
-    /// μ_K′(0⁺), the slope of the weakening law at rest: −μ0/v_s.
-    MuPrimeRest,
-    /// μ_S, the static friction coefficient.
-    MuS,
-    /// ẋ at t = 0.
-    XDot0,
-    /// Elongation at t = 0 and before.
-    A0,
-    /// Time from a release of uncontrolled stick-slip to switch-on.
-    SwitchOnPhase,
-    /// γ = −μ_K α_N τ/(2√(κM)) of [`Protocol::Limit`](super::protocol::Protocol::Limit).
-    Gamma,
-    /// μ_K/μ_S of the same.
-    MuRatio,
-}
 
 /// Ranges that a parameter's values can be held to.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -60,35 +20,300 @@ enum Range {
     Negative,
 }
 
-impl Parameter {
-    /// All parameters.
-    pub const ALL: [Self; 18] = [
-        Self::MuPrime,
-        Self::AlphaV,
-        Self::AlphaN,
-        Self::Tau,
-        Self::V0,
-        Self::MuK,
-        Self::Mass,
-        Self::Stiffness,
-        Self::NormalLoad,
-        Self::Mu0,
-        Self::VS,
-        Self::MuPrimeRest,
-        Self::MuS,
-        Self::XDot0,
-        Self::A0,
-        Self::SwitchOnPhase,
-        Self::Gamma,
-        Self::MuRatio,
-    ];
-
+/// What a parameter belongs to.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Group {
+    /// The block, its spring and load, and their control.
+    Model,
+    /// Sliding: what a friction law tells, where there is one.
+    Sliding,
+    /// The pull, which without a friction law has no meaning.
+    Pull,
+    /// A friction law.
+    Law,
     /// The start of a motion: where none is given it slides at v0.
-    pub const START: [Self; 3] = [Self::XDot0, Self::A0, Self::SwitchOnPhase];
+    Start,
+    /// The limit of a short delay.
+    Limit,
+}
 
-    /// All parameters of the limit of a short delay.
-    pub const LIMIT: [Self; 2] = [Self::Gamma, Self::MuRatio];
+/// The flag that gives a parameter of a single point.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Flag {
+    /// What stands for the value in the help.
+    pub value: &'static str,
+    /// What the help says.
+    pub help: &'static str,
+}
 
+/// What there is to know of a parameter.
+struct Row {
+    /// The same word everywhere; flags write `-` for `_`.
+    name: &'static str,
+    /// The symbol of the letter.
+    symbol: &'static str,
+    /// What it is, for `long_name` in maps and labels in pictures.
+    long_name: &'static str,
+    /// Powers of force, length and time in its unit.
+    dimension: [i32; 3],
+    range: Range,
+    /// The value where none is given; none where one must be, and for those of a start.
+    default: Option<f64>,
+    group: Group,
+    flag: Option<Flag>,
+}
+
+/// What most rows have in common.
+const ROW: Row = Row {
+    name: "",
+    symbol: "",
+    long_name: "",
+    dimension: [0, 0, 0],
+    range: Range::Positive,
+    default: None,
+    group: Group::Model,
+    flag: None,
+};
+
+const SLOPE: [i32; 3] = [0, -1, 1];
+const STIFFNESS: [i32; 3] = [1, -1, 0];
+const TIME: [i32; 3] = [0, 0, 1];
+const VELOCITY: [i32; 3] = [0, 1, -1];
+
+catalogue! {
+    /// A parameter of the model, of the friction law or of the control.
+    pub enum Parameter: Row {
+        /// μ_K′(v0), the slope of the friction law at the sliding velocity.
+        MuPrime = Row {
+            name: "mu_prime",
+            symbol: "μ′",
+            long_name: "slope of the kinetic friction coefficient at the sliding velocity",
+            dimension: SLOPE,
+            range: Range::Any,
+            group: Group::Sliding,
+            flag: Some(Flag {
+                value: "B",
+                help: "μ_K′(v0), slope of the friction coefficient at the sliding velocity",
+            }),
+            ..ROW
+        };
+        /// α_v, the gain of velocity control.
+        AlphaV = Row {
+            name: "alpha_v",
+            symbol: "α_v",
+            long_name: "gain of velocity control",
+            dimension: [0, 0, -1],
+            range: Range::Any,
+            default: Some(0.0),
+            flag: Some(Flag {
+                value: "A",
+                help: "α_v, gain of velocity control [default: 0]",
+            }),
+            ..ROW
+        };
+        /// α_N, the gain of load control.
+        AlphaN = Row {
+            name: "alpha_n",
+            symbol: "α_N",
+            long_name: "gain of load control",
+            dimension: STIFFNESS,
+            range: Range::Any,
+            default: Some(0.0),
+            flag: Some(Flag {
+                value: "A",
+                help: "α_N, gain of load control [default: 0]",
+            }),
+            ..ROW
+        };
+        /// τ, the delay.
+        Tau = Row {
+            name: "tau",
+            symbol: "τ",
+            long_name: "delay of the feedback",
+            dimension: TIME,
+            range: Range::NotNegative,
+            flag: Some(Flag {
+                value: "T",
+                help: "τ, delay of the feedback",
+            }),
+            ..ROW
+        };
+        /// v0, the unperturbed pulling velocity.
+        V0 = Row {
+            name: "v0",
+            symbol: "v0",
+            long_name: "unperturbed pulling velocity",
+            dimension: VELOCITY,
+            group: Group::Pull,
+            flag: Some(Flag {
+                value: "V0",
+                help: "v0, pulling velocity (with --friction)",
+            }),
+            ..ROW
+        };
+        /// μ_K(v0), the kinetic friction coefficient at the sliding velocity.
+        MuK = Row {
+            name: "mu_k",
+            symbol: "μ_K",
+            long_name: "kinetic friction coefficient at the sliding velocity",
+            default: Some(1.0),
+            group: Group::Sliding,
+            flag: Some(Flag {
+                value: "M",
+                help: "μ_K(v0), kinetic friction coefficient at the sliding velocity [default: 1]",
+            }),
+            ..ROW
+        };
+        /// M, the mass of the block.
+        Mass = Row {
+            name: "mass",
+            symbol: "M",
+            long_name: "mass of the block",
+            dimension: [1, -1, 2],
+            default: Some(1.0),
+            flag: Some(Flag {
+                value: "MASS",
+                help: "M, mass [default: 1]",
+            }),
+            ..ROW
+        };
+        /// κ, the stiffness of the spring.
+        Stiffness = Row {
+            name: "stiffness",
+            symbol: "κ",
+            long_name: "stiffness of the spring",
+            dimension: STIFFNESS,
+            default: Some(1.0),
+            flag: Some(Flag {
+                value: "STIFFNESS",
+                help: "κ, stiffness [default: 1]",
+            }),
+            ..ROW
+        };
+        /// N0, the unperturbed normal load.
+        NormalLoad = Row {
+            name: "normal_load",
+            symbol: "N0",
+            long_name: "unperturbed normal load",
+            dimension: [1, 0, 0],
+            default: Some(1.0),
+            flag: Some(Flag {
+                value: "NORMAL_LOAD",
+                help: "N0, normal load [default: 1]",
+            }),
+            ..ROW
+        };
+        /// μ0 of a friction law.
+        Mu0 = Row {
+            name: "mu0",
+            symbol: "μ0",
+            long_name: "kinetic friction coefficient mu0 of the friction law",
+            group: Group::Law,
+            flag: Some(Flag {
+                value: "MU0",
+                help: "μ0 of the friction law",
+            }),
+            ..ROW
+        };
+        /// v_s of a friction law.
+        VS = Row {
+            name: "v_s",
+            symbol: "v_s",
+            long_name: "velocity scale of the friction law",
+            dimension: VELOCITY,
+            group: Group::Law,
+            flag: Some(Flag {
+                value: "V_S",
+                help: "v_s of the friction law",
+            }),
+            ..ROW
+        };
+        /// μ_K′(0⁺), the slope of the weakening law at rest: −μ0/v_s.
+        MuPrimeRest = Row {
+            name: "mu_prime_rest",
+            symbol: "μ′(0)",
+            long_name: "slope of the kinetic friction coefficient at rest",
+            dimension: SLOPE,
+            range: Range::Negative,
+            group: Group::Law,
+            flag: Some(Flag {
+                value: "B",
+                help: "Slope of the weakening law at rest, −μ0/v_s, instead of --mu0 or --v-s",
+            }),
+            ..ROW
+        };
+        /// μ_S, the static friction coefficient.
+        MuS = Row {
+            name: "mu_s",
+            symbol: "μ_S",
+            long_name: "static friction coefficient",
+            default: Some(1.0),
+            group: Group::Law,
+            flag: Some(Flag {
+                value: "MU_S",
+                help: "μ_S, static friction coefficient [default: 1]",
+            }),
+            ..ROW
+        };
+        /// ẋ at t = 0.
+        XDot0 = Row {
+            name: "x_dot0",
+            symbol: "ẋ0",
+            long_name: "velocity of the block at t = 0",
+            dimension: VELOCITY,
+            range: Range::Any,
+            group: Group::Start,
+            ..ROW
+        };
+        /// Elongation at t = 0 and before.
+        A0 = Row {
+            name: "a0",
+            symbol: "a0",
+            long_name: "elongation of the spring at t = 0 and before",
+            dimension: [0, 1, 0],
+            range: Range::Any,
+            group: Group::Start,
+            ..ROW
+        };
+        /// Time from a release of uncontrolled stick-slip to switch-on.
+        SwitchOnPhase = Row {
+            name: "switch_on_phase",
+            symbol: "φ",
+            long_name: "time from release to switch-on",
+            dimension: TIME,
+            range: Range::NotNegative,
+            group: Group::Start,
+            ..ROW
+        };
+        /// γ = −μ_K α_N τ/(2√(κM)) of [`Protocol::Limit`](super::protocol::Protocol::Limit).
+        Gamma = Row {
+            name: "gamma",
+            symbol: "γ",
+            long_name: "strength of load control",
+            group: Group::Limit,
+            flag: Some(Flag {
+                value: "GAMMA",
+                help: "γ = −μ_K α_N τ/(2√(κM)) (with --protocol limit)",
+            }),
+            ..ROW
+        };
+        /// μ_K/μ_S of the same.
+        MuRatio = Row {
+            name: "mu_ratio",
+            symbol: "μ_K/μ_S",
+            long_name: "kinetic over static friction coefficient",
+            range: Range::Part,
+            group: Group::Limit,
+            flag: Some(Flag {
+                value: "MU_RATIO",
+                help: "μ_K/μ_S (with --protocol limit)",
+            }),
+            ..ROW
+        };
+    }
+}
+
+impl Parameter {
     /// The name as the key in a file.
     #[must_use]
     pub fn key(self) -> String {
@@ -98,26 +323,7 @@ impl Parameter {
     /// The name, the same word everywhere (flags write `-` for `_`).
     #[must_use]
     pub const fn name(self) -> &'static str {
-        match self {
-            Self::MuPrime => "mu_prime",
-            Self::AlphaV => "alpha_v",
-            Self::AlphaN => "alpha_n",
-            Self::Tau => "tau",
-            Self::V0 => "v0",
-            Self::MuK => "mu_k",
-            Self::Mass => "mass",
-            Self::Stiffness => "stiffness",
-            Self::NormalLoad => "normal_load",
-            Self::Mu0 => "mu0",
-            Self::VS => "v_s",
-            Self::MuPrimeRest => "mu_prime_rest",
-            Self::MuS => "mu_s",
-            Self::XDot0 => "x_dot0",
-            Self::A0 => "a0",
-            Self::SwitchOnPhase => "switch_on_phase",
-            Self::Gamma => "gamma",
-            Self::MuRatio => "mu_ratio",
-        }
+        self.row().name
     }
 
     /// The parameter of that name.
@@ -129,113 +335,61 @@ impl Parameter {
     /// What it is, for `long_name` in maps and labels in pictures.
     #[must_use]
     pub const fn long_name(self) -> &'static str {
-        match self {
-            Self::MuPrime => "slope of the kinetic friction coefficient at the sliding velocity",
-            Self::AlphaV => "gain of velocity control",
-            Self::AlphaN => "gain of load control",
-            Self::Tau => "delay of the feedback",
-            Self::V0 => "unperturbed pulling velocity",
-            Self::MuK => "kinetic friction coefficient at the sliding velocity",
-            Self::Mass => "mass of the block",
-            Self::Stiffness => "stiffness of the spring",
-            Self::NormalLoad => "unperturbed normal load",
-            Self::Mu0 => "kinetic friction coefficient mu0 of the friction law",
-            Self::VS => "velocity scale of the friction law",
-            Self::MuPrimeRest => "slope of the kinetic friction coefficient at rest",
-            Self::MuS => "static friction coefficient",
-            Self::XDot0 => "velocity of the block at t = 0",
-            Self::A0 => "elongation of the spring at t = 0 and before",
-            Self::SwitchOnPhase => "time from release to switch-on",
-            Self::Gamma => "strength of load control",
-            Self::MuRatio => "kinetic over static friction coefficient",
-        }
+        self.row().long_name
     }
 
     /// The symbol of the letter.
     #[must_use]
     pub const fn symbol(self) -> &'static str {
-        match self {
-            Self::MuPrime => "μ′",
-            Self::AlphaV => "α_v",
-            Self::AlphaN => "α_N",
-            Self::Tau => "τ",
-            Self::V0 => "v0",
-            Self::MuK => "μ_K",
-            Self::Mass => "M",
-            Self::Stiffness => "κ",
-            Self::NormalLoad => "N0",
-            Self::Mu0 => "μ0",
-            Self::VS => "v_s",
-            Self::MuPrimeRest => "μ′(0)",
-            Self::MuS => "μ_S",
-            Self::XDot0 => "ẋ0",
-            Self::A0 => "a0",
-            Self::SwitchOnPhase => "φ",
-            Self::Gamma => "γ",
-            Self::MuRatio => "μ_K/μ_S",
-        }
+        self.row().symbol
     }
 
     /// Powers of force, length and time in its unit.
     pub(super) const fn dimension(self) -> [i32; 3] {
-        match self {
-            Self::MuPrime | Self::MuPrimeRest => [0, -1, 1],
-            Self::AlphaV => [0, 0, -1],
-            Self::AlphaN | Self::Stiffness => [1, -1, 0],
-            Self::Tau | Self::SwitchOnPhase => [0, 0, 1],
-            Self::A0 => [0, 1, 0],
-            Self::V0 | Self::VS | Self::XDot0 => [0, 1, -1],
-            Self::MuK | Self::Mu0 | Self::MuS | Self::Gamma | Self::MuRatio => [0, 0, 0],
-            Self::Mass => [1, -1, 2],
-            Self::NormalLoad => [1, 0, 0],
-        }
+        self.row().dimension
     }
 
-    /// The value where a sweep does not give one; none where it must, and for [`Parameter::START`].
+    /// The value where a sweep does not give one; none where it must, and for those of
+    /// [`Group::Start`].
     #[must_use]
     pub const fn default_value(self) -> Option<f64> {
-        match self {
-            Self::AlphaV | Self::AlphaN => Some(0.0),
-            Self::MuK | Self::Mass | Self::Stiffness | Self::NormalLoad | Self::MuS => Some(1.0),
-            Self::MuPrime | Self::Tau | Self::V0 => None,
-            Self::Mu0 | Self::VS | Self::MuPrimeRest => None,
-            Self::XDot0 | Self::A0 | Self::SwitchOnPhase => None,
-            Self::Gamma | Self::MuRatio => None,
-        }
+        self.row().default
+    }
+
+    /// What it belongs to.
+    #[must_use]
+    pub const fn group(self) -> Group {
+        self.row().group
+    }
+
+    /// The flag of commands that ask for a single point, if there is one.
+    #[must_use]
+    pub const fn flag(self) -> Option<Flag> {
+        self.row().flag
     }
 
     /// True for the parameters that only a friction law has.
     #[must_use]
     pub const fn of_friction_law(self) -> bool {
-        matches!(self, Self::Mu0 | Self::VS | Self::MuPrimeRest | Self::MuS)
+        matches!(self.group(), Group::Law)
     }
 
-    /// True for [`Parameter::START`].
+    /// True for the parameters of the start of a motion.
     #[must_use]
     pub const fn of_start(self) -> bool {
-        matches!(self, Self::XDot0 | Self::A0 | Self::SwitchOnPhase)
+        matches!(self.group(), Group::Start)
     }
 
-    /// True for [`Parameter::LIMIT`].
+    /// True for the parameters of the limit of a short delay.
     #[must_use]
     pub const fn of_limit(self) -> bool {
-        matches!(self, Self::Gamma | Self::MuRatio)
-    }
-
-    const fn range(self) -> Range {
-        match self {
-            Self::MuPrime | Self::AlphaV | Self::AlphaN | Self::XDot0 | Self::A0 => Range::Any,
-            Self::Tau | Self::SwitchOnPhase => Range::NotNegative,
-            Self::MuRatio => Range::Part,
-            Self::MuPrimeRest => Range::Negative,
-            _ => Range::Positive,
-        }
+        matches!(self.group(), Group::Limit)
     }
 
     /// The range allowed, in words.
     #[must_use]
     pub const fn allowed(self) -> &'static str {
-        match self.range() {
+        match self.row().range {
             Range::Any => "a finite number of size at most 1e12",
             Range::NotNegative => "0 or more, at most 1e12",
             Range::Positive => "greater than 0, between 1e-12 and 1e12",
@@ -250,7 +404,7 @@ impl Parameter {
     /// Names the parameter, the value and the range allowed.
     pub fn check(self, value: f64) -> Result<f64, ModelError> {
         let inside = value.abs() <= LARGEST
-            && match self.range() {
+            && match self.row().range {
                 Range::Any => true,
                 Range::NotNegative => value >= 0.0,
                 Range::Positive => value >= 1.0 / LARGEST,
@@ -265,370 +419,6 @@ impl Parameter {
                 value,
                 allowed: self.allowed(),
             })
-        }
-    }
-}
-
-/// The units in which a sweep is written; none given means dimensionless.
-#[derive(Debug, Clone, PartialEq, Eq, Default)]
-pub struct Units {
-    /// Names of the units of force, length and time, as UDUNITS writes them.
-    pub force_length_time: Option<[String; 3]>,
-}
-
-impl Units {
-    /// The unit of a quantity with these powers of force, length and time; "1" where it has none.
-    #[must_use]
-    pub fn of(&self, dimension: [i32; 3]) -> String {
-        let Some(names) = &self.force_length_time else {
-            return "1".into();
-        };
-        let factors: Vec<String> = names
-            .iter()
-            .zip(dimension)
-            .filter(|&(_, power)| power != 0)
-            .map(|(name, power)| match power {
-                1 => name.clone(),
-                _ => format!("{name}{power}"),
-            })
-            .collect();
-        if factors.is_empty() {
-            "1".into()
-        } else {
-            factors.join(" ")
-        }
-    }
-
-    /// The unit of a parameter.
-    #[must_use]
-    pub fn of_parameter(&self, parameter: Parameter) -> String {
-        self.of(parameter.dimension())
-    }
-
-    /// The unit of time.
-    #[must_use]
-    pub fn time(&self) -> String {
-        self.of([0, 0, 1])
-    }
-
-    /// The unit of a rate of decay, one over time.
-    #[must_use]
-    pub fn rate(&self) -> String {
-        self.of([0, 0, -1])
-    }
-
-    /// The unit of an angular frequency.
-    #[must_use]
-    pub fn angular_frequency(&self) -> String {
-        match &self.force_length_time {
-            Some([_, _, time]) => format!("rad {time}-1"),
-            None => "1".into(),
-        }
-    }
-}
-
-/// Which friction law a sweep uses, with what it has besides parameters.
-#[derive(Debug, Clone, PartialEq)]
-pub enum LawKind {
-    /// [`FrictionLaw::coulomb`].
-    Coulomb,
-    /// [`FrictionLaw::weakening`].
-    Weakening,
-    /// [`FrictionLaw::stribeck`].
-    Stribeck,
-    /// [`FrictionLaw::table`].
-    Table(Table),
-}
-
-impl LawKind {
-    /// The laws that parameters alone describe.
-    pub const FORMULAS: [Self; 3] = [Self::Coulomb, Self::Weakening, Self::Stribeck];
-
-    /// The name of [`LawKind::Table`].
-    pub const TABLE: &str = "table";
-
-    /// The name in flags and sweep files.
-    #[must_use]
-    pub const fn name(&self) -> &'static str {
-        match self {
-            Self::Coulomb => "coulomb",
-            Self::Weakening => "weakening",
-            Self::Stribeck => "stribeck",
-            Self::Table(_) => Self::TABLE,
-        }
-    }
-
-    /// The names of all laws.
-    #[must_use]
-    pub fn names() -> String {
-        let formulas = Self::FORMULAS.iter().map(Self::name);
-        formulas.chain([Self::TABLE]).collect::<Vec<_>>().join(", ")
-    }
-
-    /// The parameters that describe the law, besides μ_S.
-    #[must_use]
-    pub const fn parameters(&self) -> &'static [Parameter] {
-        match self {
-            Self::Coulomb => &[Parameter::Mu0],
-            Self::Weakening => &[Parameter::Mu0, Parameter::VS, Parameter::MuPrimeRest],
-            Self::Stribeck => &[Parameter::Mu0, Parameter::VS],
-            Self::Table(_) => &[],
-        }
-    }
-
-    /// How many of [`LawKind::parameters`] have to be given: what one of them is follows from the
-    /// others, if it is not all.
-    #[must_use]
-    pub const fn needed(&self) -> usize {
-        match self {
-            Self::Weakening => 2,
-            _ => self.parameters().len(),
-        }
-    }
-}
-
-/// Why a set of given parameters does not make a setting.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum GivenError {
-    /// This one is needed and not given.
-    Missing(Parameter),
-    /// This one is given and would have no effect.
-    Unused(Parameter),
-    /// This one is given and follows from others that are given too.
-    Follows(Parameter),
-}
-
-impl GivenError {
-    /// What is wrong, in words, for a setting with the friction law `law`; `name` is how parameters
-    /// are called where they are given.
-    #[must_use]
-    pub fn message(self, law: Option<&LawKind>, name: fn(Parameter) -> String) -> String {
-        match (self, law) {
-            (Self::Follows(p), _) => {
-                let [mu0, v_s] = [Parameter::Mu0, Parameter::VS].map(name);
-                let p = name(p);
-                format!("{p} is given as well as {mu0} and {v_s}: it is -mu0/v_s")
-            }
-            (Self::Missing(p), Some(law))
-                if law.parameters().len() > law.needed() && p.of_friction_law() =>
-            {
-                let names: Vec<_> = law.parameters().iter().map(|p| name(*p)).collect();
-                let (p, law) = (name(p), law.name());
-                format!(
-                    "{p} is not given: the {law} law needs two of {}",
-                    names.join(", ")
-                )
-            }
-            (Self::Missing(p), _) => format!("{} is not given", name(p)),
-            (Self::Unused(p), _) if p.of_limit() => {
-                format!("{} is a parameter of protocol = \"limit\"", name(p))
-            }
-            (Self::Unused(p), Some(law)) => {
-                format!("{} has no meaning with the {} law", name(p), law.name())
-            }
-            (Self::Unused(p), None) => format!("{} needs a friction law", name(p)),
-        }
-    }
-
-    /// What could be done about it; `name` as in [`GivenError::message`].
-    #[must_use]
-    pub fn help(self, name: fn(Parameter) -> String) -> String {
-        use Parameter::{Mu0, MuK, MuPrime, MuPrimeRest, V0, VS};
-        match self {
-            Self::Missing(p) => format!("{}: {}, {}", name(p), p.long_name(), p.allowed()),
-            Self::Unused(p) if p.of_limit() => {
-                "protocol = \"limit\" in a sweep file asks for v_c as the delay vanishes; its \
-                parameters are gamma and mu_ratio"
-                    .into()
-            }
-            Self::Follows(_) => {
-                format!(
-                    "give two of {}",
-                    [Mu0, VS, MuPrimeRest].map(name).join(", ")
-                )
-            }
-            Self::Unused(MuPrimeRest) => {
-                let slope = name(MuPrimeRest);
-                format!("{slope} is the slope -mu0/v_s of the weakening law at rest")
-            }
-            Self::Unused(_) => {
-                let [mu_prime, mu_k, v0] = [MuPrime, MuK, V0].map(name);
-                format!(
-                    "give either {mu_prime} (with {mu_k}) or a friction law with {v0}, not \
-                    both"
-                )
-            }
-        }
-    }
-}
-
-/// One value for every parameter: a point of parameter space.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Setting {
-    values: [f64; Parameter::ALL.len()],
-    law: Option<LawKind>,
-}
-
-impl Setting {
-    /// The default values; those without a default are NaN until they are set. `law`: where μ_K and
-    /// μ_K′ come from.
-    #[must_use]
-    pub fn new(law: Option<LawKind>) -> Self {
-        let values = Parameter::ALL.map(|p| p.default_value().unwrap_or(f64::NAN));
-        Self { values, law }
-    }
-
-    /// The value of a parameter.
-    #[inline]
-    #[must_use]
-    pub fn get(&self, parameter: Parameter) -> f64 {
-        self.values[parameter as usize]
-    }
-
-    /// Sets the value of a parameter.
-    #[inline]
-    pub fn set(&mut self, parameter: Parameter, value: f64) {
-        self.values[parameter as usize] = value;
-    }
-
-    /// The friction law that the setting uses, if any.
-    #[must_use]
-    pub fn law(&self) -> Option<&LawKind> {
-        self.law.as_ref()
-    }
-
-    /// True for the parameters on which a cell of this setting depends: those that it takes and has
-    /// a value of. Not asked of the limit of a short delay, see
-    /// [`SweepSpec::uses`](super::spec::SweepSpec::uses).
-    #[must_use]
-    pub fn uses(&self, parameter: Parameter) -> bool {
-        let taken = parameter.of_start() || Self::takes(self.law.as_ref(), parameter);
-        taken && !self.get(parameter).is_nan()
-    }
-
-    /// True for the parameters that a setting with this law can have, its start left aside.
-    fn takes(law: Option<&LawKind>, parameter: Parameter) -> bool {
-        match (law, parameter) {
-            _ if parameter.of_limit() => false,
-            (Some(_), Parameter::MuPrime | Parameter::MuK) => false,
-            (Some(law), Parameter::Mu0 | Parameter::VS | Parameter::MuPrimeRest) => {
-                law.parameters().contains(&parameter)
-            }
-            (Some(_), _) => true,
-            (None, _) => !parameter.of_friction_law() && parameter != Parameter::V0,
-        }
-    }
-
-    /// Every parameter that a setting with this law needs is given, and none that would be ignored.
-    /// The start of a motion is another matter: linear stability knows none.
-    ///
-    /// # Errors
-    /// Names the first parameter that is missing or unused.
-    pub fn check_given(
-        law: Option<&LawKind>,
-        given: impl Fn(Parameter) -> bool,
-    ) -> Result<(), GivenError> {
-        for parameter in Parameter::ALL.into_iter().filter(|p| !p.of_start()) {
-            let taken = Self::takes(law, parameter);
-            if given(parameter) && !taken {
-                return Err(GivenError::Unused(parameter));
-            }
-            let of_law = law.is_some_and(|law| law.parameters().contains(&parameter));
-            let needed = taken && !of_law && parameter.default_value().is_none();
-            if needed && !given(parameter) {
-                return Err(GivenError::Missing(parameter));
-            }
-        }
-        law.map_or(Ok(()), |law| Self::check_law_given(law, given))
-    }
-
-    /// Checks that as many parameters of the law are given as it needs.
-    fn check_law_given(law: &LawKind, given: impl Fn(Parameter) -> bool) -> Result<(), GivenError> {
-        let parameters = law.parameters();
-        let there = parameters.iter().filter(|p| given(**p)).count();
-        match (there.cmp(&law.needed()), parameters) {
-            (Ordering::Less, _) => {
-                let missing = parameters.iter().find(|p| !given(**p));
-                missing.map_or(Ok(()), |p| Err(GivenError::Missing(*p)))
-            }
-            (Ordering::Greater, [.., last]) => Err(GivenError::Follows(*last)),
-            _ => Ok(()),
-        }
-    }
-
-    /// μ0 and v_s of the law, each given or from the other and the slope at rest.
-    fn mu0_and_v_s(&self) -> (f64, f64) {
-        let of = |p| self.get(p);
-        let (mu0, v_s) = (of(Parameter::Mu0), of(Parameter::VS));
-        let slope = of(Parameter::MuPrimeRest);
-        match (mu0.is_nan(), v_s.is_nan()) {
-            (true, false) => (-slope * v_s, v_s),
-            (false, true) => (mu0, -mu0 / slope),
-            _ => (mu0, v_s),
-        }
-    }
-
-    /// The friction law with its parameters.
-    ///
-    /// # Errors
-    /// When the law is ill-posed, see [`FrictionLaw`].
-    pub fn friction_law(&self) -> Result<Option<FrictionLaw>, ModelError> {
-        let (mu0, v_s) = self.mu0_and_v_s();
-        let mu_s = self.get(Parameter::MuS);
-        self.law
-            .as_ref()
-            .map(|law| match law {
-                LawKind::Coulomb => FrictionLaw::coulomb(mu0, mu_s),
-                LawKind::Weakening => FrictionLaw::weakening(mu0, v_s, mu_s),
-                LawKind::Stribeck => FrictionLaw::stribeck(mu0, v_s, mu_s),
-                LawKind::Table(table) => FrictionLaw::table(table.clone(), mu_s),
-            })
-            .transpose()
-    }
-
-    /// μ_K and μ_K′ at the sliding velocity: from the friction law, or as given.
-    ///
-    /// # Errors
-    /// When the law is ill-posed.
-    pub fn sliding_point(&self) -> Result<SlidingPoint, ModelError> {
-        match self.friction_law()? {
-            Some(law) => SlidingPoint::of_law(&law, self.get(Parameter::V0)),
-            None => Ok(SlidingPoint {
-                mu_k: self.get(Parameter::MuK),
-                mu_prime: self.get(Parameter::MuPrime),
-            }),
-        }
-    }
-
-    /// The oscillator.
-    ///
-    /// # Errors
-    /// When mass, stiffness or load are not positive.
-    pub fn oscillator(&self) -> Result<Oscillator, ModelError> {
-        Oscillator::new(
-            self.get(Parameter::Mass),
-            self.get(Parameter::Stiffness),
-            self.get(Parameter::NormalLoad),
-        )
-    }
-
-    /// The dimensionless groups and the unit of time √(M/κ).
-    ///
-    /// # Errors
-    /// When a parameter is outside the model's range.
-    pub fn groups(&self) -> Result<(Groups, f64), ModelError> {
-        let oscillator = self.oscillator()?;
-        let groups = oscillator.groups(self.sliding_point()?, self.control());
-        Ok((groups, oscillator.time_unit()))
-    }
-
-    /// Both gains.
-    #[inline]
-    #[must_use]
-    pub fn control(&self) -> Control {
-        Control {
-            alpha_v: self.get(Parameter::AlphaV),
-            alpha_n: self.get(Parameter::AlphaN),
         }
     }
 }

@@ -1,6 +1,7 @@
 //! How critical velocities are looked for.
 
-use super::parameter::{Parameter, Setting};
+use super::parameter::Parameter;
+use super::setting::Setting;
 use crate::critical::GRAZE_PRECISION;
 use crate::critical::follow::Pace;
 use crate::critical::switch_on::{Phase, Scan};

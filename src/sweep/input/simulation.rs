@@ -3,7 +3,8 @@
 
 use std::ops::{Range, RangeInclusive};
 
-use super::parameter::{LARGEST, Parameter, Setting};
+use super::parameter::{LARGEST, Parameter};
+use super::setting::Setting;
 use super::toml_reader::{Entry, SpecError};
 use crate::model::{Control, ModelError};
 use crate::slip::case::{Case, Start};

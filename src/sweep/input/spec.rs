@@ -59,14 +59,15 @@ use super::axis::{Axis, MOST_POINTS, Spacing, plane_of_curves, spaced};
 use super::best_plane::gain_plane;
 use super::field::{Field, known_fields};
 use super::given::{GivenParameters, read_units};
-use super::limit_field::LimitField;
 use super::limit_spec::LimitDraft;
-use super::parameter::{Parameter, Setting, Units};
+use super::parameter::Parameter;
 use super::protocol::Protocol;
 use super::search::Search;
+use super::setting::Setting;
 use super::simulation::Simulation;
 pub use super::toml_reader::SpecError;
 use super::toml_reader::{Entry, entries, parse};
+use super::units::Units;
 use crate::linear::MarginalTolerance;
 use crate::model::Shown;
 use vc_keys::VcKeys;
@@ -292,7 +293,7 @@ impl Draft {
             Some(Protocol::Limit) => (
                 self.limit.check(&self.given, self.axes_place.as_ref())?,
                 None,
-                LimitField::ALL.map(Field::Limit).to_vec(),
+                Field::all_of_limit().collect(),
             ),
             None => {
                 let (fixed, critical) = self.check()?;
@@ -446,7 +447,7 @@ impl Draft {
     }
 
     fn check_no_motions(&self) -> Result<(), SpecError> {
-        let start = Parameter::START.into_iter();
+        let start = Parameter::ALL.into_iter().filter(|p| p.of_start());
         let start = start.filter_map(|p| Some((p.name(), self.given.place(p)?)));
         let simulation = self.simulation_place.as_ref().map(|s| ("simulation", s));
         match start.chain(simulation).next() {
@@ -551,7 +552,7 @@ fn read_fields(entry: &Entry) -> Result<Vec<Field>, SpecError> {
     }
     // An abscissa without the distance that its certificate leaves open would say less than it
     // seems to.
-    if fields.contains(&Field::ABSCISSA) && !fields.contains(&Field::CertificateMargin) {
+    if fields.contains(&Field::Abscissa) && !fields.contains(&Field::CertificateMargin) {
         fields.push(Field::CertificateMargin);
     }
     fields.sort_unstable();

@@ -3,7 +3,8 @@
 
 use super::Plan;
 use crate::slip::motion::{BYTES_OF_A_STEP, MOST_KEPT};
-use crate::sweep::input::parameter::{Parameter, Setting};
+use crate::sweep::input::parameter::Parameter;
+use crate::sweep::input::setting::Setting;
 
 /// The program, the HDF5 library, the tiles that wait to be saved, a picture.
 const BASE: u64 = 90 << 20;

@@ -14,8 +14,10 @@ use crate::critical::switch_on::Phase;
 use crate::model::table::Column;
 use crate::sweep::input::axis::plane_of_curves;
 use crate::sweep::input::best_plane::gain_plane;
-use crate::sweep::input::parameter::{LawKind, Parameter, Setting};
+use crate::sweep::input::law_kind::LawKind;
+use crate::sweep::input::parameter::Parameter;
 use crate::sweep::input::search::Protocol;
+use crate::sweep::input::setting::Setting;
 use crate::sweep::input::spec::{SpecError, SweepSpec};
 
 /// Cells in a tile, about: small enough for a processor's cache, large enough to compress and write

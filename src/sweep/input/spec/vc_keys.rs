@@ -4,8 +4,9 @@ use std::ops::Range;
 
 use super::{Draft, Field};
 use crate::critical::switch_on::Phase;
-use crate::sweep::input::parameter::{Parameter, Setting};
+use crate::sweep::input::parameter::Parameter;
 use crate::sweep::input::search::{PHASES, Protocol, Search};
+use crate::sweep::input::setting::Setting;
 use crate::sweep::input::toml_reader::{Entry, SpecError};
 
 /// The share of cells that are recomputed where the file does not say.

@@ -1,0 +1,145 @@
+//! Which friction law a sweep uses.
+
+use super::catalogue::catalogue;
+use super::parameter::Parameter;
+use super::setting::Setting;
+use crate::model::{FrictionLaw, ModelError, Table};
+
+/// What there is to know of a law that parameters alone describe.
+struct Row {
+    /// The name in flags and sweep files.
+    name: &'static str,
+    /// Its formula, for the help.
+    formula: &'static str,
+    /// The parameters that describe it, besides μ_S.
+    parameters: &'static [Parameter],
+    /// How many of them have to be given: what one of them is follows from the others, if it is
+    /// not all.
+    needed: usize,
+    /// The law of a setting.
+    law: fn(&Setting) -> Result<FrictionLaw, ModelError>,
+}
+
+catalogue! {
+    /// A friction law that parameters alone describe.
+    pub enum Formula: Row {
+        /// [`FrictionLaw::coulomb`].
+        Coulomb = Row {
+            name: "coulomb",
+            formula: "μ_K = μ0",
+            parameters: &[Parameter::Mu0],
+            needed: 1,
+            law: |at| FrictionLaw::coulomb(at.get(Parameter::Mu0), at.get(Parameter::MuS)),
+        };
+        /// [`FrictionLaw::weakening`].
+        Weakening = Row {
+            name: "weakening",
+            formula: "μ_K = μ0/(1 + v/v_s)",
+            parameters: &[Parameter::Mu0, Parameter::VS, Parameter::MuPrimeRest],
+            needed: 2,
+            law: |at| {
+                let (mu0, v_s) = mu0_and_v_s(at);
+                FrictionLaw::weakening(mu0, v_s, at.get(Parameter::MuS))
+            },
+        };
+        /// [`FrictionLaw::stribeck`].
+        Stribeck = Row {
+            name: "stribeck",
+            formula: "μ_K = μ0 + (μ_S − μ0) exp(−(v/v_s)²)",
+            parameters: &[Parameter::Mu0, Parameter::VS],
+            needed: 2,
+            law: |at| {
+                let [mu0, v_s, mu_s] = [Parameter::Mu0, Parameter::VS, Parameter::MuS].map(|p| at.get(p));
+                FrictionLaw::stribeck(mu0, v_s, mu_s)
+            },
+        };
+    }
+}
+
+impl Formula {
+    /// The name in flags and sweep files.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        self.row().name
+    }
+
+    /// Its formula, for the help.
+    #[must_use]
+    pub const fn formula(self) -> &'static str {
+        self.row().formula
+    }
+
+    /// The law of that name.
+    #[must_use]
+    pub fn from_name(name: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|law| law.name() == name)
+    }
+}
+
+/// μ0 and v_s of velocity weakening, each given or from the other and the slope at rest.
+fn mu0_and_v_s(at: &Setting) -> (f64, f64) {
+    let (mu0, v_s) = (at.get(Parameter::Mu0), at.get(Parameter::VS));
+    let slope = at.get(Parameter::MuPrimeRest);
+    match (mu0.is_nan(), v_s.is_nan()) {
+        (true, false) => (-slope * v_s, v_s),
+        (false, true) => (mu0, -mu0 / slope),
+        _ => (mu0, v_s),
+    }
+}
+
+/// A friction law, with what it has besides parameters.
+#[derive(Debug, Clone, PartialEq)]
+pub enum LawKind {
+    /// A formula.
+    Formula(Formula),
+    /// [`FrictionLaw::table`].
+    Table(Table),
+}
+
+impl LawKind {
+    /// The name of [`LawKind::Table`].
+    pub const TABLE: &str = "table";
+
+    /// The name in flags and sweep files.
+    #[must_use]
+    pub const fn name(&self) -> &'static str {
+        match self {
+            Self::Formula(law) => law.name(),
+            Self::Table(_) => Self::TABLE,
+        }
+    }
+
+    /// The names of all laws.
+    #[must_use]
+    pub fn names() -> String {
+        let formulas = Formula::ALL.into_iter().map(Formula::name);
+        formulas.chain([Self::TABLE]).collect::<Vec<_>>().join(", ")
+    }
+
+    /// The parameters that describe the law, besides μ_S.
+    #[must_use]
+    pub const fn parameters(&self) -> &'static [Parameter] {
+        match self {
+            Self::Formula(law) => law.row().parameters,
+            Self::Table(_) => &[],
+        }
+    }
+
+    /// How many of [`LawKind::parameters`] have to be given: what one of them is follows from the
+    /// others, if it is not all.
+    #[must_use]
+    pub const fn needed(&self) -> usize {
+        match self {
+            Self::Formula(law) => law.row().needed,
+            Self::Table(_) => 0,
+        }
+    }
+
+    /// The law with the parameters of a setting.
+    pub(super) fn at(&self, setting: &Setting) -> Result<FrictionLaw, ModelError> {
+        match self {
+            Self::Formula(law) => (law.row().law)(setting),
+            Self::Table(table) => FrictionLaw::table(table.clone(), setting.get(Parameter::MuS)),
+        }
+    }
+}
