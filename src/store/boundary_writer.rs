@@ -1,74 +1,59 @@
 //! Crossing curves in a map, and curves of degrees of stability: CF contiguous ragged arrays,
 //! appended plane by plane.
-//!
-//! Dimensions of the group: `curve` (one piece of a curve), `vertex` (all vertices of all pieces,
-//! one piece after the other) and `corner` (points where two curves cross).
 
 use hdf5::plist::group_create::LinkCreationOrder;
 use hdf5::{Dataset, Group, H5Type};
 
 use super::attributes::{put_numbers, put_text};
-use super::curve_rows::CurveRows;
+use super::curve_rows::{BoundaryColumn, CurveRows, EachColumn, Named, Per};
 use super::netcdf::{DimensionId, Dimensions, named};
-use super::schema::{BOUNDARIES, CORNER_DEGREE_OF_STABILITY, DEGREE_OF_STABILITY, PLANE};
+use super::schema::{BOUNDARIES, PLANE};
 use crate::sweep::{Parameter, Plan};
 
 /// Elements in a chunk of the appended datasets.
 const CHUNK: usize = 1 << 13;
 
-/// A one-dimensional dataset that grows.
-struct Column<T> {
+/// The dimensions, in the order of [`Per`].
+type Ids = [DimensionId; 3];
+
+/// The value of one axis outside the planes, for every curve or corner.
+struct OuterColumn {
     dataset: Dataset,
-    waiting: Vec<T>,
+    waiting: Vec<f64>,
 }
 
-impl<T: H5Type> Column<T> {
-    fn flush(&mut self) -> hdf5::Result<()> {
-        if self.waiting.is_empty() {
-            return Ok(());
-        }
-        let from = self.dataset.size();
-        let to = from + self.waiting.len();
-        self.dataset.resize(to)?;
-        self.dataset.write_slice(&self.waiting, from..to)?;
-        self.waiting.clear();
-        Ok(())
-    }
-}
-
-/// The group of crossing curves of a map that is being written.
+/// The group of curves of a map that is being written.
 pub(super) struct BoundaryWriter {
-    curve: DimensionId,
-    vertex: DimensionId,
-    corner: DimensionId,
-    vertex_columns: [Column<f64>; 3],
-    vertex_count: Column<i32>,
-    branch: Column<i64>,
-    direction: Column<i8>,
-    stable_side: Column<i8>,
-    degree: Column<f64>,
-    curve_outer: Vec<Column<f64>>,
-    corner_columns: [Column<f64>; 4],
-    corner_branches: [Column<i64>; 2],
-    corner_stable: Column<i8>,
-    corner_degree: Column<f64>,
-    corner_outer: Vec<Column<f64>>,
+    ids: Ids,
+    /// The lengths of the three dimensions.
+    lengths: [usize; 3],
+    /// One for each column of the rows.
+    datasets: Vec<Dataset>,
+    waiting: CurveRows,
+    outer_of_curves: Vec<OuterColumn>,
+    outer_of_corners: Vec<OuterColumn>,
 }
 
-/// Makes the columns of one dimension.
-struct Columns<'a> {
+/// Makes datasets in the group.
+struct Maker<'a> {
     group: &'a Group,
+    plan: &'a Plan,
+    /// The parameter of the planes.
+    parameter: Parameter,
+    /// Those of the axes outside of them.
+    outer: Vec<Parameter>,
     dimensions: &'a mut Dimensions,
-    dimension: DimensionId,
+    ids: Ids,
 }
 
-impl Columns<'_> {
+impl Maker<'_> {
+    /// An empty dataset that grows along the dimension of `per`.
     fn make<T: H5Type>(
         &mut self,
+        per: Per,
         name: &str,
-        long_name: &str,
-        unit: &str,
-    ) -> hdf5::Result<Column<T>> {
+        (long_name, unit): (&str, &str),
+    ) -> hdf5::Result<Dataset> {
         let dataset = named(self.group.new_dataset_builder())
             .empty::<T>()
             .shape(0..)
@@ -78,26 +63,94 @@ impl Columns<'_> {
             .create(name)?;
         put_text(&dataset, "long_name", long_name)?;
         put_text(&dataset, "units", unit)?;
-        self.dimensions.attach(&dataset, &[self.dimension])?;
-        Ok(Column {
-            dataset,
-            waiting: Vec::new(),
-        })
+        self.dimensions
+            .attach(&dataset, &[self.ids[per as usize]])?;
+        Ok(dataset)
+    }
+
+    /// That of a column.
+    fn column<T: H5Type>(&mut self, about: &BoundaryColumn) -> hdf5::Result<Dataset> {
+        let units = &self.plan.spec.units;
+        let dataset = match about.named {
+            Named::Number(name, meaning) => self.make::<T>(about.per, name, (meaning, "1")),
+            Named::Frequency(name, meaning) => {
+                self.make::<T>(about.per, name, (meaning, &units.angular_frequency()))
+            }
+            Named::Rate(name, meaning) => self.make::<T>(about.per, name, (meaning, &units.rate())),
+            Named::Parameter(prefix) => self.of_parameter(about.per, prefix, self.parameter),
+            Named::Delay(prefix) => self.of_parameter(about.per, prefix, Parameter::Tau),
+        }?;
+        if let Some(counted) = about.counts {
+            put_text(&dataset, "sample_dimension", counted)?;
+        }
+        if let Some((values, meanings)) = about.flags {
+            put_flags(&dataset, values, meanings)?;
+        }
+        Ok(dataset)
     }
 
     fn of_parameter(
         &mut self,
+        per: Per,
         prefix: &str,
         parameter: Parameter,
-        plan: &Plan,
-    ) -> hdf5::Result<Column<f64>> {
+    ) -> hdf5::Result<Dataset> {
         let name = format!("{prefix}{}", parameter.name());
-        self.make(
-            &name,
-            parameter.long_name(),
-            &plan.spec.units.of_parameter(parameter),
-        )
+        let unit = self.plan.spec.units.of_parameter(parameter);
+        self.make::<f64>(per, &name, (parameter.long_name(), &unit))
     }
+
+    /// A column for each axis outside the planes.
+    fn outer(&mut self, per: Per, prefix: &str) -> hdf5::Result<Vec<OuterColumn>> {
+        let parameters = self.outer.clone().into_iter();
+        parameters
+            .map(|parameter| {
+                Ok(OuterColumn {
+                    dataset: self.of_parameter(per, prefix, parameter)?,
+                    waiting: Vec::new(),
+                })
+            })
+            .collect()
+    }
+}
+
+/// Makes the datasets of all columns, those of the outer axes behind the columns of curves.
+struct Making<'a> {
+    maker: Maker<'a>,
+    datasets: Vec<Dataset>,
+    outer_of_curves: Option<Vec<OuterColumn>>,
+}
+
+impl EachColumn for Making<'_> {
+    fn see<T: H5Type>(&mut self, about: &'static BoundaryColumn, _: &[T]) -> hdf5::Result<()> {
+        if about.per != Per::Curve && self.outer_of_curves.is_none() {
+            self.outer_of_curves = Some(self.maker.outer(Per::Curve, "")?);
+        }
+        self.datasets.push(self.maker.column::<T>(about)?);
+        Ok(())
+    }
+}
+
+/// Appends all columns to their datasets.
+struct Appending<'a>(std::slice::Iter<'a, Dataset>);
+
+impl EachColumn for Appending<'_> {
+    fn see<T: H5Type>(&mut self, _: &'static BoundaryColumn, values: &[T]) -> hdf5::Result<()> {
+        match self.0.next() {
+            Some(dataset) => append(dataset, values),
+            None => Ok(()),
+        }
+    }
+}
+
+fn append<T: H5Type>(dataset: &Dataset, values: &[T]) -> hdf5::Result<()> {
+    if values.is_empty() {
+        return Ok(());
+    }
+    let from = dataset.size();
+    let to = from + values.len();
+    dataset.resize(to)?;
+    dataset.write_slice(values, from..to)
 }
 
 impl BoundaryWriter {
@@ -121,163 +174,66 @@ impl BoundaryWriter {
             "exact crossing curves: where characteristic roots lie on the imaginary axis; and \
             boundaries of degrees of stability",
         )?;
-        let curve = dimensions.add_bare(&group, "curve")?;
-        let vertex = dimensions.add_bare(&group, "vertex")?;
-        let corner = dimensions.add_bare(&group, "corner")?;
-        let outer: Vec<usize> = (0..plan.spec.axes.len())
-            .filter(|&a| a != p && a != tau)
-            .collect();
+        let ids = [
+            dimensions.add_bare(&group, "curve")?,
+            dimensions.add_bare(&group, "vertex")?,
+            dimensions.add_bare(&group, "corner")?,
+        ];
         let parameter = plan.spec.axes[p].parameter;
-        put_text(
-            &group,
-            PLANE,
-            &format!("{} {}", parameter.name(), Parameter::Tau.name()),
-        )?;
-        let frequency = plan.spec.units.angular_frequency();
-        let rate = plan.spec.units.rate();
-        let outer_parameters = || outer.iter().map(|&axis| plan.spec.axes[axis].parameter);
-
-        let mut columns = Columns {
-            group: &group,
-            dimensions,
-            dimension: curve,
+        let plane = format!("{} {}", parameter.name(), Parameter::Tau.name());
+        put_text(&group, PLANE, &plane)?;
+        let axes = plan.spec.axes.iter().enumerate();
+        let outer = axes.filter(|&(axis, _)| axis != p && axis != tau);
+        let mut making = Making {
+            maker: Maker {
+                group: &group,
+                plan,
+                parameter,
+                outer: outer.map(|(_, axis)| axis.parameter).collect(),
+                dimensions,
+                ids,
+            },
+            datasets: Vec::new(),
+            outer_of_curves: None,
         };
-        let vertex_count = columns.make("vertex_count", "number of vertices of the curve", "1")?;
-        put_text(&vertex_count.dataset, "sample_dimension", "vertex")?;
-        let branch = columns.make("branch", "branch number k of the crossing delay", "1")?;
-        let direction = columns.make(
-            "direction",
-            "how a pair of roots crosses with growing delay",
-            "1",
-        )?;
-        put_flags(
-            &direction.dataset,
-            &[-1, 0, 1],
-            "to_the_left touch to_the_right",
-        )?;
-        let stable_side = columns.make(
-            "stable_side",
-            "side of the curve on which sliding is stable, to its degree of stability",
-            "1",
-        )?;
-        put_flags(
-            &stable_side.dataset,
-            &[-1, 0, 1],
-            "shorter_delays neither longer_delays",
-        )?;
-        let degree = columns.make(
-            DEGREE_OF_STABILITY,
-            "degree of stability: roots on the curve have this real part, negated",
-            &rate,
-        )?;
-        let curve_outer = outer_parameters()
-            .map(|parameter| columns.of_parameter("", parameter, plan))
-            .collect::<hdf5::Result<_>>()?;
-
-        columns.dimension = vertex;
-        let vertex_columns = [
-            columns.of_parameter("", parameter, plan)?,
-            columns.of_parameter("", Parameter::Tau, plan)?,
-            columns.make("omega", "crossing frequency", &frequency)?,
-        ];
-
-        columns.dimension = corner;
-        let corner_columns = [
-            columns.of_parameter("corner_", parameter, plan)?,
-            columns.of_parameter("corner_", Parameter::Tau, plan)?,
-            columns.make(
-                "corner_omega_upper",
-                "larger frequency; at degree of stability 0 the pair crosses to the right",
-                &frequency,
-            )?,
-            columns.make(
-                "corner_omega_lower",
-                "smaller frequency; at degree of stability 0 the pair crosses to the left",
-                &frequency,
-            )?,
-        ];
-        let corner_branches = [
-            columns.make(
-                "corner_branch_upper",
-                "branch of the pair with the larger frequency",
-                "1",
-            )?,
-            columns.make(
-                "corner_branch_lower",
-                "branch of the pair with the smaller frequency",
-                "1",
-            )?,
-        ];
-        let corner_stable = columns.make(
-            "corner_bounds_stable",
-            "the stable region has a corner here",
-            "1",
-        )?;
-        put_flags(&corner_stable.dataset, &[0, 1], "no yes")?;
-        let corner_degree = columns.make(
-            CORNER_DEGREE_OF_STABILITY,
-            "degree of stability of the curves that meet",
-            &rate,
-        )?;
-        let corner_outer = outer_parameters()
-            .map(|parameter| columns.of_parameter("corner_", parameter, plan))
-            .collect::<hdf5::Result<_>>()?;
+        let waiting = CurveRows::default();
+        waiting.each(&mut making)?;
         Ok(Self {
-            curve,
-            vertex,
-            corner,
-            vertex_columns,
-            vertex_count,
-            branch,
-            direction,
-            stable_side,
-            degree,
-            curve_outer,
-            corner_columns,
-            corner_branches,
-            corner_stable,
-            corner_degree,
-            corner_outer,
+            ids,
+            lengths: [0; 3],
+            outer_of_corners: making.maker.outer(Per::Corner, "corner_")?,
+            datasets: making.datasets,
+            waiting,
+            outer_of_curves: making.outer_of_curves.unwrap_or_default(),
         })
     }
 
     /// Appends the curves of the next plane, which lies at the values `outer` of the axes outside
     /// of it.
     pub fn append(&mut self, rows: &CurveRows, outer: &[f64]) -> hdf5::Result<()> {
-        self.vertex_count.waiting.extend(&rows.vertex_count);
-        self.branch.waiting.extend(&rows.branch);
-        self.direction.waiting.extend(&rows.direction);
-        self.stable_side.waiting.extend(&rows.stable_side);
-        self.degree.waiting.extend(&rows.degree);
-        repeat_each(&mut self.curve_outer, outer, rows.curves());
-        extend_each(&mut self.vertex_columns, &rows.vertices);
-        extend_each(&mut self.corner_columns, &rows.corners);
-        extend_each(&mut self.corner_branches, &rows.corner_branches);
-        self.corner_stable.waiting.extend(&rows.corner_stable);
-        self.corner_degree.waiting.extend(&rows.corner_degree);
-        repeat_each(&mut self.corner_outer, outer, rows.corners());
-        if self.vertex_columns[0].waiting.len() >= CHUNK {
+        self.waiting.extend(rows);
+        let more = [rows.curves(), rows.vertices(), rows.corners()];
+        for (length, more) in self.lengths.iter_mut().zip(more) {
+            *length += more;
+        }
+        repeat_each(&mut self.outer_of_curves, outer, rows.curves());
+        repeat_each(&mut self.outer_of_corners, outer, rows.corners());
+        if self.waiting.vertices() >= CHUNK {
             self.flush()?;
         }
         Ok(())
     }
 
     fn flush(&mut self) -> hdf5::Result<()> {
-        self.vertex_count.flush()?;
-        self.branch.flush()?;
-        self.direction.flush()?;
-        self.stable_side.flush()?;
-        self.corner_stable.flush()?;
-        for column in self.corner_branches.iter_mut() {
-            column.flush()?;
-        }
-        let columns = self.vertex_columns.iter_mut().chain(&mut self.curve_outer);
-        for column in columns
-            .chain(&mut self.corner_columns)
-            .chain(&mut self.corner_outer)
-            .chain([&mut self.degree, &mut self.corner_degree])
+        self.waiting.each(&mut Appending(self.datasets.iter()))?;
+        self.waiting.clear();
+        for column in self
+            .outer_of_curves
+            .iter_mut()
+            .chain(&mut self.outer_of_corners)
         {
-            column.flush()?;
+            append(&column.dataset, &column.waiting)?;
+            column.waiting.clear();
         }
         Ok(())
     }
@@ -285,24 +241,14 @@ impl BoundaryWriter {
     /// Gives the dimensions the lengths that their data have come to.
     pub fn finish(&mut self, dimensions: &Dimensions) -> hdf5::Result<()> {
         self.flush()?;
-        for (id, length) in [
-            (self.curve, self.branch.dataset.size()),
-            (self.vertex, self.vertex_columns[0].dataset.size()),
-            (self.corner, self.corner_stable.dataset.size()),
-        ] {
+        for (id, length) in self.ids.into_iter().zip(self.lengths) {
             dimensions.scale(id).resize(length)?;
         }
         Ok(())
     }
 }
 
-fn extend_each<T: Copy>(columns: &mut [Column<T>], values: &[Vec<T>]) {
-    for (column, values) in columns.iter_mut().zip(values) {
-        column.waiting.extend(values);
-    }
-}
-
-fn repeat_each(columns: &mut [Column<f64>], values: &[f64], times: usize) {
+fn repeat_each(columns: &mut [OuterColumn], values: &[f64], times: usize) {
     for (column, &value) in columns.iter_mut().zip(values) {
         column.waiting.extend(std::iter::repeat_n(value, times));
     }

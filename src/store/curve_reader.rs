@@ -2,16 +2,17 @@
 
 use std::ops::Range;
 
-use hdf5::{Dataset, SliceOrIndex};
+use hdf5::{Dataset, Group, H5Type, SliceOrIndex};
 
-use super::curve_rows::CurveRows;
+use super::curve_rows::{BoundaryColumn, CurveRows, EachColumn, FillColumn, Named, Per};
 use super::error::StoreError;
 use super::map_file::MapFile;
 use super::open;
-use super::schema::{BOUNDARIES, DEGREE_OF_STABILITY};
+use super::schema::BOUNDARIES;
 use super::values::{self, Number};
 use crate::linear::Direction;
 use crate::linear::curves::{CurvePiece, StableSide, Vertex};
+use crate::sweep::Parameter;
 
 /// A curve of a map with the values of the axes outside its plane.
 #[derive(Debug, Clone, PartialEq)]
@@ -51,11 +52,11 @@ impl MapFile {
         while from.0 < columns.curves() {
             let (rows, outer) = columns.read(from).map_err(read)?.ok_or_else(damaged)?;
             from.0 += rows.curves();
-            from.1 += rows.vertices[0].len();
+            from.1 += rows.vertices();
             let curves = curves_of(&rows, &outer).ok_or_else(damaged)?;
             curves.into_iter().for_each(&mut visit);
         }
-        if from == (columns.curves(), columns.vertices()) {
+        if from == (columns.curves(), columns.vertices) {
             Ok(())
         } else {
             Err(damaged())
@@ -83,40 +84,115 @@ impl MapFile {
 /// The variables of the group that describe curves.
 struct CurveColumns {
     vertex_count: Dataset,
-    branch: Dataset,
-    direction: Dataset,
-    stable_side: Dataset,
-    /// Absent in maps of the first versions: 0 in all rows.
-    degree: Option<Dataset>,
+    /// Of all columns of the rows, in order; none for those of corners, and for those that maps of
+    /// the first versions do not hold.
+    columns: Vec<Option<Dataset>>,
     outer: Vec<Dataset>,
-    vertices: [Dataset; 3],
+    vertices: usize,
+}
+
+/// Opens the datasets of the columns that describe curves.
+struct Opening<'a> {
+    group: Group,
+    /// The parameter of the planes.
+    parameter: &'a str,
+    columns: Vec<Option<Dataset>>,
+}
+
+impl Opening<'_> {
+    fn column(&self, name: &str) -> hdf5::Result<Dataset> {
+        let dataset = open::dataset(&self.group, name)?;
+        match dataset.ndim() {
+            1 => Ok(dataset),
+            n => Err(format!("{name} has {n} dimensions").into()),
+        }
+    }
+}
+
+impl EachColumn for Opening<'_> {
+    fn see<T: H5Type>(&mut self, about: &'static BoundaryColumn, _: &[T]) -> hdf5::Result<()> {
+        let name = match about.named {
+            Named::Number(name, _) | Named::Frequency(name, _) | Named::Rate(name, _) => {
+                name.to_owned()
+            }
+            Named::Parameter(prefix) => format!("{prefix}{}", self.parameter),
+            Named::Delay(prefix) => format!("{prefix}{}", Parameter::Tau.name()),
+        };
+        let absent = about.optional && !self.group.link_exists(&name);
+        let column = match about.per == Per::Corner || absent {
+            true => None,
+            false => Some(self.column(&name)?),
+        };
+        self.columns.push(column);
+        Ok(())
+    }
+}
+
+/// Reads some rows of all columns.
+struct Reading<'a> {
+    columns: std::slice::Iter<'a, Option<Dataset>>,
+    curves: Range<usize>,
+    vertices: Range<usize>,
+}
+
+impl FillColumn for Reading<'_> {
+    fn fill<T: Number>(
+        &mut self,
+        about: &'static BoundaryColumn,
+        values: &mut Vec<T>,
+    ) -> hdf5::Result<()> {
+        let rows = match about.per {
+            Per::Curve => &self.curves,
+            Per::Vertex => &self.vertices,
+            Per::Corner => &(0..0),
+        };
+        *values = match self.columns.next() {
+            Some(Some(dataset)) => part(dataset, rows.clone())?,
+            _ => vec![T::default(); rows.len()],
+        };
+        Ok(())
+    }
+}
+
+/// Whether all columns have as many rows as there are.
+struct Fitting<'a> {
+    columns: std::slice::Iter<'a, Option<Dataset>>,
+    curves: usize,
+    /// Vertices that are there at least.
+    vertices: usize,
+    fits: bool,
+}
+
+impl EachColumn for Fitting<'_> {
+    fn see<T: H5Type>(&mut self, about: &'static BoundaryColumn, _: &[T]) -> hdf5::Result<()> {
+        if let Some(Some(dataset)) = self.columns.next() {
+            self.fits &= match about.per {
+                Per::Curve => dataset.size() == self.curves,
+                Per::Vertex => dataset.size() >= self.vertices,
+                Per::Corner => true,
+            };
+        }
+        Ok(())
+    }
 }
 
 impl CurveColumns {
     fn of(map: &MapFile, (p, tau): (usize, usize)) -> hdf5::Result<Self> {
-        let group = map.group(BOUNDARIES)?;
-        let column = |name: &str| -> hdf5::Result<Dataset> {
-            let dataset = open::dataset(&group, name)?;
-            match dataset.ndim() {
-                1 => Ok(dataset),
-                n => Err(format!("{name} has {n} dimensions").into()),
-            }
-        };
         let name = |axis: usize| map.axes()[axis].parameter.name();
+        let mut opening = Opening {
+            group: map.group(BOUNDARIES)?,
+            parameter: name(p),
+            columns: Vec::new(),
+        };
+        CurveRows::default().each(&mut opening)?;
         let outer = (0..map.axes().len()).filter(|&axis| axis != p && axis != tau);
         Ok(Self {
-            vertex_count: column("vertex_count")?,
-            branch: column("branch")?,
-            direction: column("direction")?,
-            stable_side: column("stable_side")?,
-            degree: match group.link_exists(DEGREE_OF_STABILITY) {
-                true => Some(column(DEGREE_OF_STABILITY)?),
-                false => None,
-            },
+            vertex_count: opening.column("vertex_count")?,
+            vertices: opening.column("omega")?.size(),
             outer: outer
-                .map(|axis| column(name(axis)))
+                .map(|axis| opening.column(name(axis)))
                 .collect::<hdf5::Result<_>>()?,
-            vertices: [column(name(p))?, column("tau")?, column("omega")?],
+            columns: opening.columns,
         })
     }
 
@@ -124,61 +200,53 @@ impl CurveColumns {
         self.vertex_count.size()
     }
 
-    fn vertices(&self) -> usize {
-        self.vertices[0].size()
+    /// How many of the curves from `first` on are read at once, and how many vertices they have:
+    /// at least one curve. None where one says that it has more than there can be.
+    fn next(&self, first: usize) -> hdf5::Result<Option<(usize, usize)>> {
+        let most = self.curves().min(first + CURVES_AT_ONCE);
+        let counts: Vec<i32> = part(&self.vertex_count, first..most)?;
+        let (mut curves, mut vertices) = (0, 0);
+        for count in counts {
+            let count = usize::try_from(count).unwrap_or(usize::MAX);
+            if count > MOST_VERTICES {
+                return Ok(None);
+            }
+            if curves > 0 && vertices + count > VERTICES_AT_ONCE {
+                break;
+            }
+            (curves, vertices) = (curves + 1, vertices + count);
+        }
+        Ok(Some((curves, vertices)))
     }
 
     /// The rows of the curves from `first` on, a number of curves and of vertices, with the values
     /// of the axes outside their planes, but no corners; at least one curve. None where the columns
     /// do not fit together.
     fn read(&self, first: (usize, usize)) -> hdf5::Result<Option<(CurveRows, Vec<Vec<f64>>)>> {
-        let most = self.curves().min(first.0 + CURVES_AT_ONCE);
-        let mut vertex_count: Vec<i32> = part(&self.vertex_count, first.0..most)?;
-        let mut vertices = 0;
-        let mut fitting = 0;
-        for &count in &vertex_count {
-            let count = usize::try_from(count).unwrap_or(usize::MAX);
-            if count > MOST_VERTICES {
-                return Ok(None);
-            }
-            if fitting > 0 && vertices + count > VERTICES_AT_ONCE {
-                break;
-            }
-            (fitting, vertices) = (fitting + 1, vertices + count);
-        }
-        vertex_count.truncate(fitting);
-        let rows = first.0..first.0 + fitting;
-        let of_vertices = first.1..first.1 + vertices;
-        let mut columns = [&self.branch, &self.direction, &self.stable_side]
-            .into_iter()
-            .chain(&self.degree)
-            .chain(&self.outer);
-        if columns.any(|column| column.size() != self.curves())
-            || self.vertices.iter().any(|v| v.size() < of_vertices.end)
-        {
+        let Some((curves, vertices)) = self.next(first.0)? else {
+            return Ok(None);
+        };
+        let curves = first.0..first.0 + curves;
+        let vertices = first.1..first.1 + vertices;
+        let mut fitting = Fitting {
+            columns: self.columns.iter(),
+            curves: self.curves(),
+            vertices: vertices.end,
+            fits: self.outer.iter().all(|c| c.size() == self.curves()),
+        };
+        CurveRows::default().each(&mut fitting)?;
+        if !fitting.fits {
             return Ok(None);
         }
-        let numbers = |column: &Dataset| part::<f64>(column, rows.clone());
-        let [p, tau, omega] = &self.vertices;
-        let along = |column: &Dataset| part::<f64>(column, of_vertices.clone());
-        let rows_read = CurveRows {
-            branch: part(&self.branch, rows.clone())?,
-            direction: part(&self.direction, rows.clone())?,
-            stable_side: part(&self.stable_side, rows.clone())?,
-            degree: match &self.degree {
-                Some(degree) => numbers(degree)?,
-                None => vec![0.0; fitting],
-            },
-            vertex_count,
-            vertices: [along(p)?, along(tau)?, along(omega)?],
-            ..CurveRows::default()
-        };
-        let outer = self
-            .outer
-            .iter()
-            .map(numbers)
-            .collect::<hdf5::Result<_>>()?;
-        Ok(Some((rows_read, outer)))
+        let outer = self.outer.iter().map(|column| part(column, curves.clone()));
+        let outer = outer.collect::<hdf5::Result<_>>()?;
+        let mut rows = CurveRows::default();
+        rows.fill(&mut Reading {
+            columns: self.columns.iter(),
+            curves,
+            vertices,
+        })?;
+        Ok(Some((rows, outer)))
     }
 }
 
@@ -204,7 +272,7 @@ pub fn curves_of(rows: &CurveRows, outer: &[Vec<f64>]) -> Option<Vec<MapCurve>> 
     let curve = |i: usize| {
         // Not negative, and all together as many as there are: the rows are consistent.
         let to = from + rows.vertex_count[i] as usize;
-        let [ps, taus, omegas] = rows.vertices.each_ref().map(|column| &column[from..to]);
+        let [ps, taus, omegas] = [&rows.p, &rows.tau, &rows.omega].map(|c| &c[from..to]);
         from = to;
         MapCurve {
             outer: outer.iter().map(|column| column[i]).collect(),

@@ -1,41 +1,229 @@
 //! The curves of a plane as rows of numbers: as they are kept between the computing and the map,
 //! and as they stand in it.
 
+use hdf5::H5Type;
 use serde::{Deserialize, Serialize};
 
+use super::schema::{CORNER_DEGREE_OF_STABILITY, DEGREE_OF_STABILITY};
+use super::values::Number;
 use crate::linear::Direction;
 use crate::linear::curves::{Corner, CurvePiece, StableSide};
 use crate::sweep::Plan;
 use crate::sweep::cells::boundaries::BoundaryPlane;
 
-/// The curves of one plane, column by column: one row per curve, per vertex and per corner.
-#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
-pub struct CurveRows {
-    /// Some curves are left out: too many cross the plane.
-    pub left_out: bool,
-    /// Per curve: number of vertices.
-    pub vertex_count: Vec<i32>,
-    /// Per curve: k.
-    pub branch: Vec<i64>,
-    /// Per curve: −1, 0, 1.
-    pub direction: Vec<i8>,
-    /// Per curve: −1 shorter delays, 0 neither, 1 longer ones.
-    pub stable_side: Vec<i8>,
-    /// Per curve: σ.
-    pub degree: Vec<f64>,
-    /// Per vertex: parameter, delay, frequency.
-    pub vertices: [Vec<f64>; 3],
-    /// Per corner: parameter, delay, larger and smaller frequency.
-    pub corners: [Vec<f64>; 4],
-    /// Per corner: the branches of the two.
-    pub corner_branches: [Vec<i64>; 2],
-    /// Per corner: 1 where the stable region has one.
-    pub corner_stable: Vec<i8>,
-    /// Per corner: σ.
-    pub corner_degree: Vec<f64>,
+/// What a column has a number for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Per {
+    /// One piece of a curve.
+    Curve,
+    /// A vertex of a piece; those of all pieces, one piece after the other.
+    Vertex,
+    /// A point where two curves cross.
+    Corner,
+}
+
+/// What a column is called, and the unit of its numbers.
+#[derive(Debug, Clone, Copy)]
+pub(super) enum Named {
+    /// A number by this name, with this meaning.
+    Number(&'static str, &'static str),
+    /// A frequency.
+    Frequency(&'static str, &'static str),
+    /// A rate of decay.
+    Rate(&'static str, &'static str),
+    /// The parameter of the plane, its name behind this.
+    Parameter(&'static str),
+    /// The delay, its name behind this.
+    Delay(&'static str),
+}
+
+/// What there is to know of a column.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct BoundaryColumn {
+    pub per: Per,
+    pub named: Named,
+    /// Numbers that stand for something, and the words for it.
+    pub flags: Option<(&'static [i8], &'static str)>,
+    /// The dimension whose elements it counts, see CF's contiguous ragged arrays.
+    pub counts: Option<&'static str>,
+    /// Zero in all rows of maps that do not hold it, those of the first versions.
+    pub optional: bool,
+}
+
+const fn column(per: Per, named: Named) -> BoundaryColumn {
+    BoundaryColumn {
+        per,
+        named,
+        flags: None,
+        counts: None,
+        optional: false,
+    }
+}
+
+/// Looks at every column, in the order in which they stand in a map.
+pub(super) trait EachColumn {
+    /// A column with its numbers.
+    fn see<T: H5Type>(&mut self, about: &'static BoundaryColumn, values: &[T]) -> hdf5::Result<()>;
+}
+
+/// Fills every column, in the order in which they stand in a map.
+pub(super) trait FillColumn {
+    /// Appends to a column.
+    fn fill<T: Number>(
+        &mut self,
+        about: &'static BoundaryColumn,
+        values: &mut Vec<T>,
+    ) -> hdf5::Result<()>;
+}
+
+macro_rules! boundary_columns {
+    ($(#[$about:meta])* $Rows:ident { $($(#[$doc:meta])* $name:ident: $kind:ty = $row:expr;)+ }) => {
+        $(#[$about])*
+        #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+        pub struct $Rows {
+            /// Some curves are left out: too many cross the plane.
+            pub left_out: bool,
+            $($(#[$doc])* pub $name: Vec<$kind>,)+
+        }
+
+        impl $Rows {
+            /// All columns looked at by `visitor`, in order.
+            pub(super) fn each(&self, visitor: &mut impl EachColumn) -> hdf5::Result<()> {
+                $({
+                    const ABOUT: &BoundaryColumn = &$row;
+                    visitor.see(ABOUT, &self.$name)?;
+                })+
+                Ok(())
+            }
+
+            /// All columns filled by `visitor`, in order.
+            pub(super) fn fill(&mut self, visitor: &mut impl FillColumn) -> hdf5::Result<()> {
+                $({
+                    const ABOUT: &BoundaryColumn = &$row;
+                    visitor.fill(ABOUT, &mut self.$name)?;
+                })+
+                Ok(())
+            }
+
+            /// Takes the rows of `more` behind its own.
+            pub(super) fn extend(&mut self, more: &Self) {
+                self.left_out |= more.left_out;
+                $(self.$name.extend_from_slice(&more.$name);)+
+            }
+
+            /// Forgets all rows.
+            pub(super) fn clear(&mut self) {
+                $(self.$name.clear();)+
+            }
+
+            /// Lengths of the columns, and of what.
+            fn lengths(&self) -> Vec<(Per, usize)> {
+                vec![$(($row.per, self.$name.len())),+]
+            }
+        }
+    };
+}
+
+boundary_columns! {
+    /// The curves of one plane, column by column: one row per curve, per vertex and per corner.
+    CurveRows {
+        /// Per curve: number of vertices.
+        vertex_count: i32 = BoundaryColumn {
+            counts: Some("vertex"),
+            ..column(Per::Curve, Named::Number("vertex_count", "number of vertices of the curve"))
+        };
+        /// Per curve: k.
+        branch: i64 = column(
+            Per::Curve,
+            Named::Number("branch", "branch number k of the crossing delay"),
+        );
+        /// Per curve: −1, 0, 1.
+        direction: i8 = BoundaryColumn {
+            flags: Some((&[-1, 0, 1], "to_the_left touch to_the_right")),
+            ..column(
+                Per::Curve,
+                Named::Number("direction", "how a pair of roots crosses with growing delay"),
+            )
+        };
+        /// Per curve: −1 shorter delays, 0 neither, 1 longer ones.
+        stable_side: i8 = BoundaryColumn {
+            flags: Some((&[-1, 0, 1], "shorter_delays neither longer_delays")),
+            ..column(
+                Per::Curve,
+                Named::Number(
+                    "stable_side",
+                    "side of the curve on which sliding is stable, to its degree of stability",
+                ),
+            )
+        };
+        /// Per curve: σ.
+        degree: f64 = BoundaryColumn {
+            optional: true,
+            ..column(
+                Per::Curve,
+                Named::Rate(
+                    DEGREE_OF_STABILITY,
+                    "degree of stability: roots on the curve have this real part, negated",
+                ),
+            )
+        };
+        /// Per vertex: the parameter.
+        p: f64 = column(Per::Vertex, Named::Parameter(""));
+        /// Per vertex: the delay.
+        tau: f64 = column(Per::Vertex, Named::Delay(""));
+        /// Per vertex: the frequency.
+        omega: f64 = column(Per::Vertex, Named::Frequency("omega", "crossing frequency"));
+        /// Per corner: the parameter.
+        corner_p: f64 = column(Per::Corner, Named::Parameter("corner_"));
+        /// Per corner: the delay.
+        corner_tau: f64 = column(Per::Corner, Named::Delay("corner_"));
+        /// Per corner: the larger frequency.
+        corner_omega_upper: f64 = column(
+            Per::Corner,
+            Named::Frequency(
+                "corner_omega_upper",
+                "larger frequency; at degree of stability 0 the pair crosses to the right",
+            ),
+        );
+        /// Per corner: the smaller frequency.
+        corner_omega_lower: f64 = column(
+            Per::Corner,
+            Named::Frequency(
+                "corner_omega_lower",
+                "smaller frequency; at degree of stability 0 the pair crosses to the left",
+            ),
+        );
+        /// Per corner: the branch of the pair with the larger frequency.
+        corner_branch_upper: i64 = column(
+            Per::Corner,
+            Named::Number("corner_branch_upper", "branch of the pair with the larger frequency"),
+        );
+        /// Per corner: the branch of the other pair.
+        corner_branch_lower: i64 = column(
+            Per::Corner,
+            Named::Number("corner_branch_lower", "branch of the pair with the smaller frequency"),
+        );
+        /// Per corner: 1 where the stable region has one.
+        corner_stable: i8 = BoundaryColumn {
+            flags: Some((&[0, 1], "no yes")),
+            ..column(
+                Per::Corner,
+                Named::Number("corner_bounds_stable", "the stable region has a corner here"),
+            )
+        };
+        /// Per corner: σ.
+        corner_degree: f64 = column(
+            Per::Corner,
+            Named::Rate(
+                CORNER_DEGREE_OF_STABILITY,
+                "degree of stability of the curves that meet",
+            ),
+        );
+    }
 }
 
 impl CurveRows {
+    /// The rows of the curves of a plane.
     pub fn of(plane: &BoundaryPlane) -> Self {
         let mut rows = Self::default();
         for of in &plane.curves {
@@ -68,16 +256,27 @@ impl CurveRows {
             StableSide::Longer => 1,
         });
         for vertex in &piece.vertices {
-            push_each(&mut self.vertices, [vertex.p, vertex.tau, vertex.omega]);
+            self.p.push(vertex.p);
+            self.tau.push(vertex.tau);
+            self.omega.push(vertex.omega);
         }
     }
 
     fn push_corner(&mut self, corner: &Corner, degree: f64) {
         let (upper, lower) = (corner.upper, corner.lower);
         self.corner_degree.push(degree);
-        push_each(&mut self.corners, [corner.p, corner.tau, upper.0, lower.0]);
-        push_each(&mut self.corner_branches, [upper.1 as i64, lower.1 as i64]);
+        self.corner_p.push(corner.p);
+        self.corner_tau.push(corner.tau);
+        self.corner_omega_upper.push(upper.0);
+        self.corner_omega_lower.push(lower.0);
+        self.corner_branch_upper.push(upper.1 as i64);
+        self.corner_branch_lower.push(lower.1 as i64);
         self.corner_stable.push(i8::from(corner.bounds_stable));
+    }
+
+    /// Number of vertices of all curves.
+    pub fn vertices(&self) -> usize {
+        self.p.len()
     }
 
     /// Number of curves.
@@ -92,23 +291,18 @@ impl CurveRows {
 
     /// Whether the columns have the same lengths, and the curves as many vertices as they say.
     pub fn is_consistent(&self) -> bool {
-        let curves = self.curves();
         let vertices = self.vertex_count.iter().try_fold(0_usize, |sum, &n| {
             usize::try_from(n).ok().and_then(|n| sum.checked_add(n))
         });
-        let corners = self.corners();
-        [
-            self.branch.len(),
-            self.direction.len(),
-            self.stable_side.len(),
-            self.degree.len(),
-        ]
-        .iter()
-        .all(|&n| n == curves)
-            && self.vertices.iter().all(|v| Some(v.len()) == vertices)
-            && self.corners.iter().all(|c| c.len() == corners)
-            && self.corner_branches.iter().all(|c| c.len() == corners)
-            && self.corner_degree.len() == corners
+        let (curves, corners) = (Some(self.curves()), Some(self.corners()));
+        self.lengths().into_iter().all(|(per, length)| {
+            Some(length)
+                == match per {
+                    Per::Curve => curves,
+                    Per::Vertex => vertices,
+                    Per::Corner => corners,
+                }
+        })
     }
 }
 
@@ -120,10 +314,4 @@ pub(super) fn outer_values(plan: &Plan, index: &[usize]) -> Vec<f64> {
     axes.filter(|&(axis, _)| axis != p && axis != tau)
         .map(|(_, (axis, &i))| axis.values[i])
         .collect()
-}
-
-fn push_each<T, const N: usize>(columns: &mut [Vec<T>; N], values: [T; N]) {
-    for (column, value) in columns.iter_mut().zip(values) {
-        column.push(value);
-    }
 }

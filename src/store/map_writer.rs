@@ -372,8 +372,8 @@ impl Variables<'_> {
             None => (field.long_name(), field.comment()),
         };
         match field.kinds() {
-            Some(kinds) => put_flags(&dataset, &long_name, &kinds)?,
-            None => put_text(&dataset, "long_name", &long_name)?,
+            Some(kinds) => put_flags(&dataset, long_name, &kinds)?,
+            None => put_text(&dataset, "long_name", long_name)?,
         }
         put_text(&dataset, "units", &field.unit(&spec.units))?;
         if let Some(comment) = comment {

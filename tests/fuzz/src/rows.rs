@@ -22,11 +22,9 @@ pub fn rows(data: &[u8]) {
         direction: (0..length(2, curves)).map(|_| bytes.byte() as i8).collect(),
         stable_side: (0..length(3, curves)).map(|_| bytes.byte() as i8).collect(),
         degree: (0..length(4, curves)).map(|_| bytes.real()).collect(),
-        vertices: [5, 6, 7].map(|column| {
-            (0..length(column, vertices))
-                .map(|_| bytes.real())
-                .collect()
-        }),
+        p: (0..length(5, vertices)).map(|_| bytes.real()).collect(),
+        tau: (0..length(6, vertices)).map(|_| bytes.real()).collect(),
+        omega: (0..length(7, vertices)).map(|_| bytes.real()).collect(),
         vertex_count,
         ..CurveRows::default()
     };
@@ -37,12 +35,12 @@ pub fn rows(data: &[u8]) {
         Some(found) => {
             assert_eq!(found.len(), rows.vertex_count.len());
             let held: usize = found.iter().map(|c| c.piece.vertices.len()).sum();
-            assert_eq!(held, rows.vertices[0].len());
+            assert_eq!(held, rows.p.len());
         }
         None => assert!(odd != 0 || rows.vertex_count.iter().any(|n| !(0..=100).contains(n))),
     }
     let mut summary = FieldSummary::default();
-    summary.add(&rows.vertices[0]);
+    summary.add(&rows.p);
     summary.add(&rows.degree);
     assert!(summary.range.is_none_or(|(low, high)| low <= high));
 }
