@@ -15,7 +15,7 @@ use super::sweep_file::read_table;
 
 /// The values that flags give to parameters, each by the flag of its row.
 #[derive(Debug, Clone)]
-struct Values([Option<f64>; Parameter::ALL.len()]);
+struct Values(Box<[Option<f64>; Parameter::ALL.len()]>);
 
 impl Values {
     /// The flags of the parameters that are `wanted`.
@@ -36,14 +36,14 @@ impl Values {
     }
 
     fn of(matches: &ArgMatches, wanted: impl Fn(Group) -> bool) -> Self {
-        Self(Parameter::ALL.map(|parameter| {
+        Self(Box::new(Parameter::ALL.map(|parameter| {
             let asked = wanted(parameter.group()) && parameter.flag().is_some();
             let value = || matches.get_one::<f64>(parameter.name()).copied();
             asked.then(value).flatten()
-        }))
+        })))
     }
 
-    const fn get(&self, parameter: Parameter) -> Option<f64> {
+    fn get(&self, parameter: Parameter) -> Option<f64> {
         self.0[parameter as usize]
     }
 }
@@ -122,7 +122,7 @@ impl LimitArgs {
     }
 
     /// The value given to a parameter.
-    pub const fn get(&self, parameter: Parameter) -> Option<f64> {
+    pub fn get(&self, parameter: Parameter) -> Option<f64> {
         self.0.get(parameter)
     }
 
@@ -159,7 +159,7 @@ pub fn flag(parameter: Parameter) -> String {
 }
 
 impl ParameterArgs {
-    const fn given(&self, parameter: Parameter) -> Option<f64> {
+    fn given(&self, parameter: Parameter) -> Option<f64> {
         self.values.get(parameter)
     }
 

@@ -1,8 +1,8 @@
 //! What becomes of a block just beyond the velocity at which its stick-slip ends.
 
-use super::Problem;
 use super::climb::Road;
 use super::follow::{self, Fate};
+use super::problem::Problem;
 use super::stops::{Stops, Waiting};
 use crate::slip::motion::{Event, Mode, Motion};
 use crate::slip::outcome::{Observer, Outcome};

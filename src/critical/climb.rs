@@ -6,6 +6,8 @@ use crate::slip::motion::{Accuracy, Motion};
 
 use super::cycle::{DIP, GAUGES, LOAD, Period, STICK, TURN};
 
+/// Error allowed in a step on the way to a graze.
+pub(super) const GRAZE_TOLERANCE: f64 = 1e-6;
 /// The largest relative step of v0.
 pub(super) const LARGEST_STEP: f64 = 1.0;
 /// Nearer than this to the end, relative, the rest of the way is told from the last two trials.
@@ -356,7 +358,7 @@ pub(super) fn climb_finely<R: Road + Clone>(
     if matches!(climbed, Climbed::Unclear) {
         return (climbed, at);
     }
-    let finer = |by: f64| Accuracy::of(super::GRAZE_TOLERANCE * by);
+    let finer = |by: f64| Accuracy::of(GRAZE_TOLERANCE * by);
     if at.v0 < SLOW {
         road.refine(finer(at.v0 / SLOW));
         return climb_again(road, &at);

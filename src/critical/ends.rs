@@ -1,16 +1,17 @@
 //! Where the orbit of stick-slip ends: a slip grazes ẋ = ẍ = 0, or the load or a stick vanishes.
 //! How an end that a climb came to is checked, and what comes after it.
 
-use super::Problem;
+use super::answer::{Critical, End, Method};
 use super::beyond::{Beyond, PRECISION, beyond, without_stick};
 use super::climb::{Climbed, Place, Ran, Road};
 use super::cycle::{Period, Ride, STICK, ride};
 use super::orbit::Orbit;
+use super::problem::Problem;
 use crate::slip::motion::Motion;
 
 /// The end of an orbit.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) enum Found {
+pub(super) enum RoadEnd {
     /// The first slip of the period grazes.
     Graze(f64, Period),
     /// The stick of the period vanishes.
@@ -28,7 +29,17 @@ pub(super) enum Found {
     Unclear,
 }
 
-impl Found {
+impl RoadEnd {
+    /// What it tells, found by `method`; none where it does not.
+    pub fn told(&self, method: Method) -> Option<Critical> {
+        match self {
+            Self::Graze(v0, period) => Some(of_orbit((*v0, End::Grazing), period, method)),
+            Self::Vanish(v0, period) => Some(of_orbit((*v0, End::Fold), period, method)),
+            Self::LiftOff(v0) => Some(Critical::of_lift_off(*v0, method)),
+            Self::Changes(_) | Self::Persists(_) | Self::Irregular | Self::Unclear => None,
+        }
+    }
+
     /// The v0 at which stick-slip ends, where that is known.
     pub fn end(&self) -> Option<f64> {
         match self {
@@ -54,85 +65,99 @@ pub(super) fn same_slip(one: &Period, other: &Period, i: usize) -> bool {
     (one.cycles()[i].slip / other.cycles()[i].slip - 1.0).abs() <= SAME_SLIP
 }
 
+fn of_orbit((vc, end): (f64, End), period: &Period, method: Method) -> Critical {
+    // At the graze itself, that of the first slip, it lasts until the minimum of ẋ.
+    let longer = match end {
+        End::Grazing => period.cycles()[0].to_minimum.min(period.stick_time()),
+        _ => 0.0,
+    };
+    Critical {
+        stick_time: period.stick_time() - longer,
+        slip_time: period.slip_time() + longer,
+        n_min: period.n_min(),
+        ..Critical::nothing(vc, end, method)
+    }
+}
+
 /// What the end of a climb comes to. The road's kept motion is just below it.
-pub(super) fn finish(problem: &Problem, road: &mut Orbit, climbed: Climbed, at: &Place) -> Found {
+pub(super) fn finish(problem: &Problem, road: &mut Orbit, climbed: Climbed, at: &Place) -> RoadEnd {
     let end = arrive(road, climbed, at);
     verify(problem, road, end).0
 }
 
 /// The end that a climb came to, before it is known what comes after it.
-pub(super) fn arrive(road: &mut Orbit, climbed: Climbed, at: &Place) -> Found {
+pub(super) fn arrive(road: &mut Orbit, climbed: Climbed, at: &Place) -> RoadEnd {
     match climbed {
         Climbed::Graze { v0, slip } => grazes(road, v0, slip, at),
         Climbed::Vanish(v0) => vanishes(road, v0, at),
-        Climbed::Changes(v0) => Found::Changes(v0),
-        Climbed::LiftOff(v0) => Found::LiftOff(v0),
-        Climbed::Unclear => Found::Unclear,
+        Climbed::Changes(v0) => RoadEnd::Changes(v0),
+        Climbed::LiftOff(v0) => RoadEnd::LiftOff(v0),
+        Climbed::Unclear => RoadEnd::Unclear,
     }
 }
 
 /// What an end that was arrived at is when what comes after it is looked at; and how clearly, as a
 /// share of v0 that the block is away from stopping once more.
-pub(super) fn verify(problem: &Problem, road: &mut Orbit, end: Found) -> (Found, f64) {
+pub(super) fn verify(problem: &Problem, road: &mut Orbit, end: RoadEnd) -> (RoadEnd, f64) {
     let beyond = match end {
-        Found::Graze(v0, period) if !holds_below(road, v0, &period) => {
-            return (Found::Unclear, 0.0);
+        RoadEnd::Graze(v0, period) if !holds_below(road, v0, &period) => {
+            return (RoadEnd::Unclear, 0.0);
         }
-        Found::Graze(v0, period) => beyond(problem, (v0, period.cycles()[0].slip), road),
-        Found::Vanish(v0, period) if attracts(road.motion().clone(), &period, DISTURBED) => {
+        RoadEnd::Graze(v0, period) => beyond(problem, (v0, period.cycles()[0].slip), road),
+        RoadEnd::Vanish(v0, period) if attracts(road.motion().clone(), &period, DISTURBED) => {
             without_stick(problem, v0, road)
         }
-        Found::LiftOff(v0) if lifts(road, v0) => return (end, 1.0),
-        Found::Vanish(..) | Found::LiftOff(_) => return (Found::Unclear, 0.0),
+        RoadEnd::LiftOff(v0) if lifts(road, v0) => return (end, 1.0),
+        RoadEnd::Vanish(..) | RoadEnd::LiftOff(_) => return (RoadEnd::Unclear, 0.0),
         _ => return (end, 0.0),
     };
     match beyond {
         Beyond::Ends(clear) => (end, clear),
-        Beyond::Persists(slips) => (Found::Persists(slips), 0.0),
-        Beyond::Irregular => (Found::Irregular, 0.0),
-        Beyond::Unknown => (Found::Unclear, 0.0),
+        Beyond::Persists(slips) => (RoadEnd::Persists(slips), 0.0),
+        Beyond::Irregular => (RoadEnd::Irregular, 0.0),
+        Beyond::Unknown => (RoadEnd::Unclear, 0.0),
     }
 }
 
 /// A period this near below its end, relative, is as good as one at the end.
 const AT_END: f64 = 2.0 * PRECISION;
 
-fn grazes(road: &mut Orbit, v0: f64, slip: usize, at: &Place) -> Found {
+fn grazes(road: &mut Orbit, v0: f64, slip: usize, at: &Place) -> RoadEnd {
     let mut period = at.period;
     if v0 > at.v0 * (1.0 + AT_END) {
         let below = v0 * (1.0 - PRECISION);
         let Ran::Period(last, _) = road.trial(below, Some(&at.period), f64::INFINITY) else {
-            return Found::Unclear;
+            return RoadEnd::Unclear;
         };
         if !same_slip(&last, &at.period, slip) {
-            return Found::Unclear;
+            return RoadEnd::Unclear;
         }
         road.keep();
         period = last;
     }
     if slip > 0 && !road.rotate(slip, &period) {
-        return Found::Unclear;
+        return RoadEnd::Unclear;
     }
     let period = period.rotated(slip);
     if !period.cycles()[0].to_minimum.is_finite() {
-        return Found::Unclear;
+        return RoadEnd::Unclear;
     }
-    Found::Graze(v0, period)
+    RoadEnd::Graze(v0, period)
 }
 
 /// A stick that vanishes leaves less than this of it, over √(M/κ), just below its end.
 const VANISHING: f64 = 1e-3;
 
-fn vanishes(road: &mut Orbit, v0: f64, at: &Place) -> Found {
+fn vanishes(road: &mut Orbit, v0: f64, at: &Place) -> RoadEnd {
     let below = v0 * (1.0 - PRECISION);
     let Ran::Period(period, gauges) = road.trial(below, Some(&at.period), CHECKED) else {
-        return Found::Unclear;
+        return RoadEnd::Unclear;
     };
     if -gauges[STICK] > VANISHING {
-        return Found::Unclear;
+        return RoadEnd::Unclear;
     }
     road.keep();
-    Found::Vanish(v0, period)
+    RoadEnd::Vanish(v0, period)
 }
 
 /// A graze ends stick-slip if its orbit attracts this far below it, relative: nearer than v_c is

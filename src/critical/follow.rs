@@ -1,8 +1,8 @@
 //! The critical velocity by simulation: stick-slip is followed while v0 is raised, carrying the
 //! state.
 
-use super::Problem;
 use super::climb::JUMP;
+use super::problem::Problem;
 use super::stops::{Stops, Waiting};
 use super::trend::{expected_way, jumps, vanishes, ways};
 use crate::slip::motion::{Accuracy, Motion};

@@ -8,9 +8,10 @@
 //! scratch. A line is cut into blocks for that, so that the answer in a cell depends on its block
 //! alone.
 
+use super::answer::{Critical, Method};
+use super::problem::Problem;
 use super::search::from_scratch;
 use super::track::Track;
-use super::{Critical, Method, Problem, of_found};
 
 /// Cells of a block; blocks start at multiples of it.
 pub const BLOCK: usize = 128;
@@ -158,7 +159,7 @@ impl Block<'_> {
                 return (seen, seen == checked);
             }
             let next = track.next(&self.problems[cell]);
-            let found = next.and_then(|found| of_found(&found, Method::GrazeOrbit));
+            let found = next.and_then(|found| found.told(Method::GrazeOrbit));
             let Some(mut critical) = found else {
                 return (seen, seen == checked);
             };

@@ -2,11 +2,11 @@
 //! all memory is erased. Every slip starts from a = μ_S (1 + α_n v0 τ), which has grown evenly, and
 //! one tells.
 
-use super::Problem;
 use super::beyond::{Beyond, PRECISION, beyond};
 use super::climb::{Climbed, LARGEST_STEP, Place, Ran, Road, climb_finely};
 use super::cycle::{Period, Ride, ride};
-use super::ends::{CHANGED, FIRST_STEP, Found, MOST_KINDS, same_slip};
+use super::ends::{CHANGED, FIRST_STEP, MOST_KINDS, RoadEnd, same_slip};
+use super::problem::Problem;
 use crate::slip::motion::{Accuracy, Motion};
 
 /// Where v0 of one slip starts, in order, in units of μ_S N0/√(κM): what has no memory ends in the
@@ -65,7 +65,7 @@ impl Slips<'_> {
 }
 
 /// By one slip, under pure load control; none where that does not lead to the end.
-pub(super) fn by_one_slip(problem: &Problem, accuracy: Accuracy) -> Option<Found> {
+pub(super) fn by_one_slip(problem: &Problem, accuracy: Accuracy) -> Option<RoadEnd> {
     if problem.alpha_v != 0.0 {
         return None;
     }
@@ -78,7 +78,7 @@ pub(super) fn by_one_slip(problem: &Problem, accuracy: Accuracy) -> Option<Found
         match climbed {
             Climbed::Graze { v0, .. } => return slip_grazes(&mut road, v0, &at),
             Climbed::LiftOff(v0) => {
-                return outlasts(&mut road, v0).map(|_| Found::LiftOff(v0));
+                return outlasts(&mut road, v0).map(|_| RoadEnd::LiftOff(v0));
             }
             Climbed::Changes(v0) => {
                 let beyond = v0 * (1.0 + CHANGED);
@@ -104,14 +104,14 @@ fn outlasts(road: &mut Slips, v0: f64) -> Option<Period> {
 }
 
 /// A graze of one slip.
-fn slip_grazes(road: &mut Slips, v0: f64, at: &Place) -> Option<Found> {
+fn slip_grazes(road: &mut Slips, v0: f64, at: &Place) -> Option<RoadEnd> {
     let period = outlasts(road, v0)?;
     if !same_slip(&period, &at.period, 0) {
         return None;
     }
     let slip = period.cycles()[0].slip;
     match beyond(road.problem, (v0, slip), road) {
-        Beyond::Ends(_) => Some(Found::Graze(v0, period)),
+        Beyond::Ends(_) => Some(RoadEnd::Graze(v0, period)),
         // From here on the orbit is followed.
         _ => None,
     }

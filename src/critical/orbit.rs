@@ -6,10 +6,10 @@
 //! extrapolated: what is left of a transient is of the second order in the step of v0, where simply
 //! going on would leave one of the first order.
 
-use super::Problem;
 use super::climb::{Place, Ran, Road, SETTLED, Seen};
 use super::cycle::{Cycle, GAUGES, MOST_SLIPS, Period, Ride, Stop, ride};
 use super::follow::Pace;
+use super::problem::Problem;
 use crate::slip::motion::{Accuracy, Motion, Stretch};
 
 /// The most periods at one v0; of many slips, the most slips.

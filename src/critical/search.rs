@@ -1,30 +1,36 @@
 //! The end of stick-slip of one problem, by the first of the roads that leads to it.
 
+use super::answer::{Critical, End, Method};
 use super::beyond::{Beyond, PRECISION, kind};
-use super::climb::{LARGEST_STEP, Place, Road, climb_finely, jumps};
-use super::ends::{CHANGED, FIRST_STEP, Found, MOST_KINDS, finish};
+use super::climb::{GRAZE_TOLERANCE, LARGEST_STEP, Place, Road, climb_finely, jumps};
+use super::ends::{CHANGED, FIRST_STEP, MOST_KINDS, RoadEnd, finish};
 use super::follow::{self, Fate, Pace};
 use super::one_slip::by_one_slip;
 use super::orbit::Orbit;
+use super::problem::Problem;
+use super::simulated::{FOLLOW_TOLERANCE, confirmed, gliding, told};
 use super::track::Track;
-use super::{
-    Critical, End, FOLLOW_TOLERANCE, GRAZE_TOLERANCE, Method, Problem, confirmed, gliding, nothing,
-    of_found, persists_without_control, told,
-};
 use crate::slip::motion::{Accuracy, Motion};
+
+/// The largest v0 at which stick-slip of `problem` persists while v0 is raised from low values:
+/// protocol `follow`.
+#[must_use]
+pub fn critical_velocity(problem: &Problem) -> Critical {
+    from_scratch(problem).0
+}
 
 /// The first one where stick-slip goes on past the graze that was expected.
 const LAST_STEP: f64 = 2.0 * PRECISION;
 
 /// The critical velocity, and what a neighbour may start from.
 pub(super) fn from_scratch(problem: &Problem) -> (Critical, Option<Track>) {
-    if persists_without_control(problem) {
-        let critical = nothing(f64::NAN, End::Persists, Method::Simulation);
+    if problem.persists_without_control() {
+        let critical = Critical::nothing(f64::NAN, End::Persists, Method::Simulation);
         return (critical, None);
     }
     let accuracy = Accuracy::of(GRAZE_TOLERANCE);
     let one_slip = by_one_slip(problem, accuracy);
-    if let Some(critical) = one_slip.and_then(|found| of_found(&found, Method::GrazeSlip)) {
+    if let Some(critical) = one_slip.and_then(|found| found.told(Method::GrazeSlip)) {
         return match ends_below_the_start(problem, &critical) && starts_above(problem, accuracy) {
             true => (simulated(problem), None),
             false => (critical, None),
@@ -133,17 +139,17 @@ impl Kinds<'_> {
             let (climbed, at) = climb_finely(&mut road, place, step);
             let found = finish(self.problem, &mut road, climbed, &at);
             let next = match found {
-                Found::Persists(slips) => Next::Periodic(road.tried().clone(), slips),
-                Found::Irregular => Next::Irregular(road.tried().clone()),
-                Found::Changes(v0) => match changed(self.problem, &mut road, v0) {
+                RoadEnd::Persists(slips) => Next::Periodic(road.tried().clone(), slips),
+                RoadEnd::Irregular => Next::Irregular(road.tried().clone()),
+                RoadEnd::Changes(v0) => match changed(self.problem, &mut road, v0) {
                     // Nothing is left of it.
                     Next::Ends(_) => {
-                        return self.end(road, at, &Found::Vanish(v0, at.period), kind);
+                        return self.end(road, at, &RoadEnd::Vanish(v0, at.period), kind);
                     }
                     next => next,
                 },
-                Found::Unclear => recognised(self.problem, &road, &at),
-                Found::Graze(..) | Found::Vanish(..) | Found::LiftOff(..) => {
+                RoadEnd::Unclear => recognised(self.problem, &road, &at),
+                RoadEnd::Graze(..) | RoadEnd::Vanish(..) | RoadEnd::LiftOff(..) => {
                     return self.end(road, at, &found, kind);
                 }
             };
@@ -172,8 +178,8 @@ impl Kinds<'_> {
     }
 
     /// The end that the last kind of stick-slip has, after so many others.
-    fn end(&self, road: Orbit, at: Place, found: &Found, others: usize) -> Reached {
-        match of_found(found, Method::GrazeOrbit) {
+    fn end(&self, road: Orbit, at: Place, found: &RoadEnd, others: usize) -> Reached {
+        match found.told(Method::GrazeOrbit) {
             Some(critical) => {
                 let mut track = Track::new(self.problem, road, at, found);
                 track.one_kind = others == 0 && self.entry.is_none();
@@ -204,7 +210,7 @@ impl Kinds<'_> {
             // It was lost where it was come to.
             None => Err(Critical {
                 decided: false,
-                ..nothing(v0, End::Irregular, Method::Simulation)
+                ..Critical::nothing(v0, End::Irregular, Method::Simulation)
             }),
         }
     }

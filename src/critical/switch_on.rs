@@ -1,7 +1,7 @@
 //! The critical velocity by the protocol `switch-on`: control is switched on at a phase of
 //! uncontrolled stick-slip, and the velocities v0 at which stick-slip survives that form windows.
 
-use super::Problem;
+use super::problem::Problem;
 use super::sticking::Sticking;
 use crate::model::elementary::pow;
 use crate::slip::cycle::{NoCycle, UncontrolledCycle, restart_after_release};

@@ -1,9 +1,9 @@
 //! The end of an orbit as the start of its neighbour's search, on a line of delays.
 
-use super::Problem;
 use super::climb::{Place, climb, jumps};
-use super::ends::{Found, arrive, verify};
+use super::ends::{RoadEnd, arrive, verify};
 use super::orbit::{At, Orbit};
+use super::problem::Problem;
 use crate::model::elementary::{exp, ln};
 
 /// An orbit at its end, from which the next cell of a line starts.
@@ -49,10 +49,10 @@ enum Ending {
 }
 
 impl Ending {
-    fn of(found: &Found) -> Self {
+    fn of(found: &RoadEnd) -> Self {
         match found {
-            Found::LiftOff(_) => Self::LiftOff,
-            Found::Vanish(..) => Self::Vanish,
+            RoadEnd::LiftOff(_) => Self::LiftOff,
+            RoadEnd::Vanish(..) => Self::Vanish,
             _ => Self::Graze,
         }
     }
@@ -116,7 +116,7 @@ const KNOWN_ENDS: usize = 4;
 
 impl Track {
     /// From the end that was `found` of `problem` at the last place of `road`.
-    pub fn new(problem: &Problem, road: Orbit, at: Place, found: &Found) -> Self {
+    pub fn new(problem: &Problem, road: Orbit, at: Place, found: &RoadEnd) -> Self {
         let ending = Ending::of(found);
         Self {
             road,
@@ -150,14 +150,14 @@ impl Track {
     /// The end of stick-slip of `problem`, which differs by its delay alone from the one before;
     /// none where the orbit before does not lead to its end. After that the track is of no more
     /// use.
-    pub fn next(&mut self, problem: &Problem) -> Option<Found> {
+    pub fn next(&mut self, problem: &Problem) -> Option<RoadEnd> {
         let mut trials = MOST_TRIALS;
         self.approach(problem, &mut trials)
     }
 
     /// The end at the delay of `problem`, by way of delays in between where the whole way is too
     /// far, within so many `trials`.
-    fn approach(&mut self, problem: &Problem, trials: &mut u32) -> Option<Found> {
+    fn approach(&mut self, problem: &Problem, trials: &mut u32) -> Option<RoadEnd> {
         let first = self.ending.nearest()[0];
         loop {
             *trials = trials.checked_sub(1)?;
@@ -188,7 +188,7 @@ impl Track {
         self.approach(problem, trials)
     }
 
-    fn attempt(&mut self, problem: &Problem) -> Result<Found, Lost> {
+    fn attempt(&mut self, problem: &Problem) -> Result<RoadEnd, Lost> {
         let tau = problem.tau;
         let expected = self.expected(tau);
         let ended = self.road.place_kept().clone();
@@ -204,7 +204,9 @@ impl Track {
         let found = arrive(&mut self.road, climbed, &at);
         let found = self.look(problem, found, (expected, at.period.slip_time()));
         let end = match found {
-            Found::Persists(_) | Found::Irregular | Found::Changes(_) => return Err(Lost::Goes),
+            RoadEnd::Persists(_) | RoadEnd::Irregular | RoadEnd::Changes(_) => {
+                return Err(Lost::Goes);
+            }
             _ => found.end().ok_or(Lost::Unknown)?,
         };
         self.off = (end / expected - 1.0).abs();
@@ -250,7 +252,7 @@ impl Track {
     /// What an end that was arrived at is, looked at what comes after it unless that can be told
     /// from the ends before. There it was expected at `expected`, and its orbit slips for `slip` in
     /// a period.
-    fn look(&mut self, problem: &Problem, end: Found, (expected, slip): (f64, f64)) -> Found {
+    fn look(&mut self, problem: &Problem, end: RoadEnd, (expected, slip): (f64, f64)) -> RoadEnd {
         let as_expected = |end: f64| (end / expected - 1.0).abs() < AS_EXPECTED;
         let alike = Ending::of(&end) == self.ending
             && end.end().is_some_and(as_expected)

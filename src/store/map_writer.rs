@@ -27,6 +27,7 @@ use crate::linear::status::FLAGS;
 use crate::sweep::engine::{FEW_FILL, N_UNSTABLE_FILL, STATUS_FILL};
 use crate::sweep::input::field::Storage;
 use crate::sweep::input::law_kind::LawKind;
+use crate::sweep::input::search::LIMIT;
 use crate::sweep::input::search::{Protocol, Search};
 use crate::sweep::input::units::Units;
 use crate::sweep::plan::in_hexadecimal;
@@ -289,8 +290,8 @@ fn put_root(file: &File, plan: &Plan, provenance: &Provenance) -> hdf5::Result<(
     put_text(file, root::PLAN_HASH, &plan.hash())?;
     put_text(file, root::SWEEP, &plan.spec.text)?;
     put_numbers(file, root::MARGINAL_TOLERANCE, &[plan.spec.tolerance.0])?;
-    if let Some(protocol) = plan.spec.protocol {
-        put_text(file, root::PROTOCOL, protocol.name())?;
+    if plan.spec.limit {
+        put_text(file, root::PROTOCOL, LIMIT)?;
     }
     put_friction(file, &plan.spec.fixed)
 }

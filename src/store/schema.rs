@@ -53,7 +53,7 @@ pub mod root {
     pub const CELLS_MISSING: &str = "cells_missing";
     /// Tolerance of the marginal flag.
     pub const MARGINAL_TOLERANCE: &str = "marginal_tolerance";
-    /// Name of the [`crate::sweep::Protocol`], where there is one.
+    /// [`crate::sweep::input::search::LIMIT`], where it is a map of that limit.
     pub const PROTOCOL: &str = "protocol";
     /// Name of the friction law, where there is one.
     pub const FRICTION_LAW: &str = "friction_law";

@@ -1,4 +1,4 @@
-//! Which files of `src` name which others in their `use` lines.
+//! Which files of `src` name which others, in their `use` lines and by paths in the code.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
@@ -12,9 +12,11 @@ pub fn graph(sources: &[PathBuf]) -> BTreeMap<PathBuf, BTreeSet<PathBuf>> {
     let used = |path: &PathBuf| {
         let own = module(path);
         let code = std::fs::read_to_string(path).unwrap();
+        let code = without_tests(&code);
         let trees = use_trees(&code);
-        let paths = trees.iter().flat_map(|tree| expanded(tree));
-        let found = paths.filter_map(|used| file_of(&used, &own, &files));
+        let mut paths: Vec<String> = trees.iter().flat_map(|tree| expanded(tree)).collect();
+        paths.extend(paths_in(&code));
+        let found = paths.iter().filter_map(|used| file_of(used, &own, &files));
         found.filter(|found| found != path).collect()
     };
     sources.iter().map(|p| (p.clone(), used(p))).collect()
@@ -52,15 +54,26 @@ fn module(path: &Path) -> Module {
     names
 }
 
-/// What stands between `use` and the semicolon, without re-exports, which name what is inside, and
-/// without tests.
-fn use_trees(code: &str) -> Vec<String> {
+/// A file in one line, without its tests and comments.
+fn without_tests(code: &str) -> String {
     let code = code.split("#[cfg(test)]\nmod tests {").next().unwrap();
-    let lines: Vec<&str> = code
-        .lines()
-        .filter(|line| !line.trim_start().starts_with("//"))
-        .collect();
-    let code = lines.join(" ");
+    let lines = code.lines();
+    let lines = lines.filter(|line| !line.trim_start().starts_with("//"));
+    lines.collect::<Vec<_>>().join(" ")
+}
+
+/// Paths from the crate's root or from a module above, wherever they stand outside of `use` lines.
+fn paths_in(code: &str) -> Vec<String> {
+    let in_path = |letter: char| letter.is_alphanumeric() || "_:".contains(letter);
+    let words = code.split(|letter| !in_path(letter));
+    let paths = words.filter(|word| word.starts_with("crate::") || word.starts_with("super::"));
+    // `use crate::{…}` leaves a path without an end.
+    let whole = paths.filter(|path| !path.ends_with(':'));
+    whole.map(str::to_owned).collect()
+}
+
+/// What stands between `use` and the semicolon, without re-exports, which name what is inside.
+fn use_trees(code: &str) -> Vec<String> {
     let mut trees = Vec::new();
     for (at, _) in code.match_indices("use ") {
         let before = code[..at].trim_end();
@@ -107,7 +120,11 @@ fn file_of(path: &str, own: &Module, files: &BTreeMap<Module, &PathBuf>) -> Opti
             Module::new()
         }
         "self" | "super" => own.clone(),
-        _ => return None,
+        // A module below this one, or another crate.
+        child => {
+            let below: Module = own.iter().cloned().chain([child.to_owned()]).collect();
+            return files.get(&below).map(|file| (*file).clone());
+        }
     };
     while let Some(first @ ("self" | "super")) = names.first().copied() {
         names.remove(0);

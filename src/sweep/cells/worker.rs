@@ -14,7 +14,6 @@ use crate::linear::status::NOT_CONVERGED;
 use crate::model::{Control, Groups, ModelError, Oscillator, SlidingPoint};
 use crate::sweep::input::field::Field;
 use crate::sweep::input::parameter::Parameter;
-use crate::sweep::input::protocol::Protocol;
 use crate::sweep::input::setting::Setting;
 use crate::sweep::plan::Plan;
 use crate::sweep::plan::tile::{Tile, for_each_index};
@@ -178,7 +177,7 @@ impl<'p> Worker<'p> {
     }
 
     fn fill_until(&mut self, tile: &Tile, stop: &AtomicBool) -> bool {
-        if self.plan.spec.protocol == Some(Protocol::Limit) {
+        if self.plan.spec.limit {
             self.buffers.clear();
             limit_columns::fill(self.plan, tile, &self.strides, &mut self.buffers);
             return true;

@@ -661,8 +661,7 @@ impl Field {
         )
     }
 
-    /// True for fields of the limit of a short delay, which need
-    /// [`Protocol::Limit`](super::protocol::Protocol::Limit).
+    /// True for fields of the limit of a short delay, which only sweeps of it have.
     #[must_use]
     pub const fn of_limit(self) -> bool {
         matches!(self.source(), Source::Limit(_))

@@ -5,7 +5,7 @@ use std::ops::Range;
 use super::field::Field;
 use super::given::GivenParameters;
 use super::parameter::Parameter;
-use super::protocol::Protocol;
+use super::search::LIMIT;
 use super::setting::{GivenError, Setting};
 use super::toml_reader::{Entry, SpecError};
 
@@ -87,7 +87,7 @@ impl LimitDraft {
 }
 
 fn no_meaning(name: &str, place: &Range<usize>) -> SpecError {
-    let protocol = Protocol::Limit.name();
+    let protocol = LIMIT;
     let names: Vec<_> = Field::all_of_limit().map(Field::name).collect();
     let fields = names.join(", ");
     SpecError::at(

@@ -285,7 +285,7 @@ catalogue! {
             group: Group::Start,
             ..ROW
         };
-        /// γ = −μ_K α_N τ/(2√(κM)) of [`Protocol::Limit`](super::protocol::Protocol::Limit).
+        /// γ = −μ_K α_N τ/(2√(κM)) of the limit of a short delay.
         Gamma = Row {
             name: "gamma",
             symbol: "γ",

@@ -9,7 +9,11 @@ use crate::critical::switch_on::{Phase, Scan};
 /// Phases over one cycle for the worst case.
 pub const PHASES: u32 = 32;
 
-/// Which question is asked.
+/// The protocol of a sweep that stands for itself: Coulomb friction and load control as τ → 0, the
+/// closed form of [`crate::critical::limit`].
+pub const LIMIT: &str = "limit";
+
+/// Which question is asked of motions.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Protocol {
     /// From controlled stick-slip at low v0, raised until stick-slip ends.

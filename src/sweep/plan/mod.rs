@@ -18,7 +18,8 @@ use crate::sweep::input::law_kind::LawKind;
 use crate::sweep::input::parameter::Parameter;
 use crate::sweep::input::search::Protocol;
 use crate::sweep::input::setting::Setting;
-use crate::sweep::input::spec::{SpecError, SweepSpec};
+use crate::sweep::input::spec::SweepSpec;
+use crate::sweep::input::toml_reader::SpecError;
 
 /// Cells in a tile, about: small enough for a processor's cache, large enough to compress and write
 /// well.

@@ -1,0 +1,203 @@
+//! Reads a sweep file.
+
+mod checks;
+
+use std::ops::Range;
+
+use super::axis::{Axis, MOST_POINTS};
+use super::field::Field;
+use super::given::{GivenParameters, read_units};
+use super::limit_spec::LimitDraft;
+use super::parameter::Parameter;
+use super::search::LIMIT;
+use super::simulation::Simulation;
+use super::spec::SweepSpec;
+use super::spec_values::{read_degrees, read_fields, read_list, read_range, read_tolerance};
+use super::toml_reader::{Entry, SpecError, entries, parse};
+use super::units::Units;
+use super::vc_keys::VcKeys;
+use crate::linear::MarginalTolerance;
+
+/// More points than this on all axes but the last are refused: their product would be too many
+/// cells.
+const MOST_POINTS_TOGETHER: u64 = 2 * MOST_POINTS;
+
+impl std::str::FromStr for SweepSpec {
+    type Err = SpecError;
+
+    /// Reads a sweep file.
+    ///
+    /// # Errors
+    /// Points at the first place that is not understood, out of range or contradictory.
+    fn from_str(text: &str) -> Result<Self, SpecError> {
+        let document = parse(text)?;
+        let mut draft = Draft::default();
+        for entry in entries(document.get_ref(), "") {
+            draft.limit.note_key(&entry);
+            match entry.key {
+                "title" => draft.title = entry.line()?.to_owned(),
+                "protocol" if entry.string()? == LIMIT => {
+                    draft.is_limit = true;
+                }
+                "fields" => draft.read_fields(&entry)?,
+                "boundaries" => draft.boundaries = Some(entry.boolean()?),
+                "degree_of_stability" => draft.read_degrees(&entry)?,
+                "best" => draft.best = entry.boolean()?.then(|| entry.key_span.clone()),
+                "axes" => draft.read_axes(&entry)?,
+                "fixed" => draft.given.read_fixed(&entry)?,
+                "friction" => draft.given.read_friction(&entry)?,
+                "start" => draft.given.read_start(&entry)?,
+                "simulation" => draft.read_simulation(&entry)?,
+                "units" => draft.units = read_units(&entry)?,
+                "tolerance" => draft.tolerance = read_tolerance(&entry)?,
+                _ if draft.vc.read(&entry)? => {}
+                _ => return Err(entry.unknown(&KEYS)),
+            }
+        }
+        draft.finish(text)
+    }
+}
+
+/// The keys of a sweep file.
+const KEYS: [&str; 15] = [
+    "title",
+    "fields",
+    "boundaries",
+    "degree_of_stability",
+    "best",
+    VcKeys::KEYS[0],
+    VcKeys::KEYS[1],
+    VcKeys::KEYS[2],
+    "axes",
+    "fixed",
+    "friction",
+    "start",
+    "simulation",
+    "units",
+    "tolerance",
+];
+
+/// What was read of a sweep file, and where, until it is known to fit together.
+#[derive(Default)]
+struct Draft {
+    title: String,
+    is_limit: bool,
+    limit: LimitDraft,
+    fields: Option<Vec<Field>>,
+    /// Where the first field of motions is asked for, if one is.
+    motion_place: Option<Range<usize>>,
+    /// The first of these that depends on where a motion starts, with its name.
+    start_place: Option<(&'static str, Range<usize>)>,
+    /// Where the first field of the critical velocity is asked for, if one is.
+    vc_place: Option<Range<usize>>,
+    vc: VcKeys,
+    simulation: Simulation,
+    simulation_place: Option<Range<usize>>,
+    boundaries: Option<bool>,
+    degrees: Vec<f64>,
+    degrees_place: Option<Range<usize>>,
+    /// Where the best settings are asked for, if they are.
+    best: Option<Range<usize>>,
+    axes: Vec<Axis>,
+    axes_place: Option<Range<usize>>,
+    given: GivenParameters,
+    units: Units,
+    tolerance: MarginalTolerance,
+}
+
+impl Draft {
+    fn read_fields(&mut self, fields: &Entry) -> Result<(), SpecError> {
+        self.fields = Some(read_fields(fields)?);
+        self.limit.note_fields(fields)?;
+        for element in fields.array()? {
+            let Some(field) = Field::from_name(element.string()?) else {
+                continue;
+            };
+            let place = || Some(element.span.clone());
+            if field.of_vc() {
+                self.vc_place = self.vc_place.take().or_else(place);
+            }
+            if field.of_motion() {
+                self.motion_place = self.motion_place.take().or_else(place);
+            }
+            if field.of_motion() && field != Field::Outcome {
+                let named = || Some((field.name(), element.span.clone()));
+                self.start_place = self.start_place.take().or_else(named);
+            }
+        }
+        Ok(())
+    }
+
+    fn read_simulation(&mut self, simulation: &Entry) -> Result<(), SpecError> {
+        self.simulation_place = Some(simulation.key_span.clone());
+        self.simulation.read_table(simulation)
+    }
+
+    fn read_degrees(&mut self, degrees: &Entry) -> Result<(), SpecError> {
+        self.degrees = read_degrees(degrees)?;
+        self.degrees_place = Some(degrees.key_span.clone());
+        Ok(())
+    }
+
+    fn read_axes(&mut self, axes: &Entry) -> Result<(), SpecError> {
+        self.axes_place = Some(axes.key_span.clone());
+        for entry in axes.table()? {
+            let parameter = Parameter::from_name(entry.key)
+                .ok_or_else(|| entry.unknown(&Parameter::ALL.map(Parameter::name)))?;
+            self.given.give(&entry, parameter)?;
+            let points: u64 = self.axes.iter().map(|axis| axis.len() as u64).sum();
+            if points > MOST_POINTS_TOGETHER {
+                let message = format!(
+                    "the axes before it have {points} points together; at most \
+                    {MOST_POINTS_TOGETHER} are allowed"
+                );
+                return Err(entry.error(message));
+            }
+            let values = if entry.is_table() {
+                read_range(&entry)?
+            } else {
+                read_list(&entry, parameter)?
+            };
+            let axis = Axis::new(parameter, values).map_err(|e| entry.error(e.0))?;
+            self.axes.push(axis);
+        }
+        Ok(())
+    }
+
+    fn finish(self, text: &str) -> Result<SweepSpec, SpecError> {
+        if self.axes.is_empty() {
+            let message = "a sweep needs at least one axis";
+            return Err(SpecError {
+                span: self.axes_place,
+                ..SpecError::whole(message)
+                    .help("for example: [axes] tau = { from = 0, to = 12, points = 1201 }")
+            });
+        }
+        let (fixed, critical, default_fields) = match self.is_limit {
+            true => (
+                self.limit.check(&self.given, self.axes_place.as_ref())?,
+                None,
+                Field::all_of_limit().collect(),
+            ),
+            false => {
+                let (fixed, critical) = self.check()?;
+                (fixed, critical, vec![Field::NUnstable])
+            }
+        };
+        Ok(SweepSpec {
+            title: self.title,
+            limit: self.is_limit,
+            axes: self.axes,
+            fixed,
+            fields: self.fields.unwrap_or(default_fields),
+            boundaries: self.boundaries,
+            degrees_of_stability: self.degrees,
+            best: self.best.is_some(),
+            tolerance: self.tolerance,
+            simulation: self.simulation,
+            critical,
+            units: self.units,
+            text: text.to_owned(),
+        })
+    }
+}

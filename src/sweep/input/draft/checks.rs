@@ -1,0 +1,228 @@
+//! Whether what a sweep file says fits together.
+
+use std::ops::Range;
+
+use super::Draft;
+use crate::sweep::input::axis::plane_of_curves;
+use crate::sweep::input::best_plane::gain_plane;
+use crate::sweep::input::field::Field;
+use crate::sweep::input::parameter::Parameter;
+use crate::sweep::input::search::Search;
+use crate::sweep::input::setting::Setting;
+use crate::sweep::input::toml_reader::SpecError;
+
+impl Draft {
+    /// Everything fits together in a sweep of sliding or of motions; gives the parameters that are
+    /// no axes, and what is looked for of the critical velocity.
+    pub(super) fn check(&self) -> Result<(Setting, Option<Search>), SpecError> {
+        self.limit.check_absent()?;
+        let without_v0 = self.given.law_place().is_some() && !self.needs_v0();
+        let optional = without_v0.then_some(Parameter::V0);
+        self.given.check(optional, self.axes_place.as_ref())?;
+        self.check_degrees()?;
+        self.check_best()?;
+        let fixed = self.given.setting();
+        self.check_law(&fixed)?;
+        let critical = self.check_nonlinear(&fixed)?;
+        Ok((fixed, critical))
+    }
+
+    /// There are boundaries beside which to trace degrees of stability.
+    fn check_degrees(&self) -> Result<(), SpecError> {
+        let Some(place) = &self.degrees_place else {
+            return Ok(());
+        };
+        let refuse = |message: &str, help: &str| {
+            Err(SpecError::at(place.clone(), format!("degree_of_stability: {message}")).help(help))
+        };
+        if self.boundaries == Some(false) {
+            return refuse(
+                "its curves are traced with the boundaries, and boundaries = false",
+                "set boundaries = true, or leave degree_of_stability out",
+            );
+        }
+        if plane_of_curves(&self.axes).is_none() {
+            return refuse(
+                "there is no plane for its curves",
+                "an axis tau and another axis are needed, with two values or more each",
+            );
+        }
+        Ok(())
+    }
+
+    /// Best settings are looked for in planes of a gain and the delay: both must be axes.
+    fn check_best(&self) -> Result<(), SpecError> {
+        match &self.best {
+            Some(place) if gain_plane(&self.axes).is_none() => {
+                let message =
+                    "best needs an axis of a gain and one of the delay, with two points or more";
+                Err(SpecError::at(place.clone(), message).help(
+                    "alpha_v or alpha_n, and tau, in [axes]; the best setting is looked for \
+                        within their ranges",
+                ))
+            }
+            _ => Ok(()),
+        }
+    }
+
+    /// The law is well posed in every cell: μ0 at its largest against μ_S at its smallest.
+    fn check_law(&self, fixed: &Setting) -> Result<(), SpecError> {
+        let Some(place) = self.given.ill_posed_place() else {
+            return Ok(());
+        };
+        let mut worst = fixed.clone();
+        for axis in &self.axes {
+            let (smallest, largest) = axis.range();
+            // With a slope at rest, μ0 grows with v_s and with the slope's size.
+            let value = match axis.parameter {
+                Parameter::Mu0 | Parameter::VS => largest,
+                _ => smallest,
+            };
+            worst.set(axis.parameter, value);
+        }
+        worst
+            .friction_law()
+            .map(|_| ())
+            .map_err(|e| SpecError::at(place.clone(), e.to_string()))
+    }
+}
+
+/// Motions: what fields of theirs need, and what has no effect without them.
+impl Draft {
+    /// The values of a parameter in the sweep: of its axis, or the fixed one.
+    fn values(&self, fixed: &Setting, parameter: Parameter) -> Vec<f64> {
+        let axis = self.axes.iter().find(|axis| axis.parameter == parameter);
+        axis.map_or_else(|| vec![fixed.get(parameter)], |axis| axis.values.clone())
+    }
+
+    /// Fields of the critical velocity or of motions have what they need; what is looked for.
+    fn check_nonlinear(&self, fixed: &Setting) -> Result<Option<Search>, SpecError> {
+        if let Some(place) = &self.vc_place {
+            return self.critical_search(fixed, place).map(Some);
+        }
+        self.check_no_search()?;
+        match &self.motion_place {
+            Some(place) => self.check_motions(fixed, place)?,
+            None => self.check_no_motions()?,
+        }
+        Ok(None)
+    }
+
+    fn check_law_is_there(&self, place: &Range<usize>, why: &str) -> Result<(), SpecError> {
+        if self.given.law_place().is_some() {
+            return Ok(());
+        }
+        let message = format!("this field needs a friction law: {why}");
+        Err(SpecError::at(place.clone(), message)
+            .help("give [friction] and v0 instead of mu_prime and mu_k"))
+    }
+
+    /// No gain acts without a delay.
+    fn check_delays(&self, fixed: &Setting, place: &Range<usize>) -> Result<(), SpecError> {
+        let gains = [Parameter::AlphaV, Parameter::AlphaN];
+        let mut gains = gains.into_iter().flat_map(|p| self.values(fixed, p));
+        let acts = gains.any(|gain| gain != 0.0);
+        if acts && self.values(fixed, Parameter::Tau).contains(&0.0) {
+            let message = "tau = 0 is outside its range: greater than 0 where gains act and \
+                motions are followed";
+            let place = self.given.place(Parameter::Tau).unwrap_or(place);
+            return Err(SpecError::at(place.clone(), message));
+        }
+        Ok(())
+    }
+
+    fn check_motions(&self, fixed: &Setting, place: &Range<usize>) -> Result<(), SpecError> {
+        self.check_law_is_there(place, "motions stick and slip by it")?;
+        self.given.check_start()?;
+        self.check_delays(fixed, place)?;
+        let phases = self.values(fixed, Parameter::SwitchOnPhase);
+        let latest = phases.into_iter().fold(0.0, f64::max);
+        let name = Parameter::SwitchOnPhase.name();
+        self.simulation.check_horizon(name, latest)
+    }
+
+    fn check_no_motions(&self) -> Result<(), SpecError> {
+        let start = Parameter::ALL.into_iter().filter(|p| p.of_start());
+        let start = start.filter_map(|p| Some((p.name(), self.given.place(p)?)));
+        let simulation = self.simulation_place.as_ref().map(|s| ("simulation", s));
+        match start.chain(simulation).next() {
+            Some((name, place)) => {
+                let message = format!("{name} has no effect on the fields that are asked for");
+                Err(SpecError::at(place.clone(), message).help(
+                    "motions are followed for the fields outcome, settle_time, n_min and \
+                    peak_force",
+                ))
+            }
+            None => Ok(()),
+        }
+    }
+}
+
+/// Critical velocities: what fields of theirs need, and what has no effect without them.
+impl Draft {
+    /// Whether anything in the sweep is about v0: a law without one still has a critical velocity.
+    fn needs_v0(&self) -> bool {
+        let fields = self.fields.iter().flatten();
+        let curves = self.boundaries == Some(true) || !self.degrees.is_empty();
+        let about_v0 = |f: &Field| f.of_sliding() || *f == Field::Class;
+        self.vc_place.is_none()
+            || self.best.is_some()
+            || curves
+            || fields.copied().any(|f| about_v0(&f))
+    }
+
+    /// What is looked for, where a field of the critical velocity stands at `place`.
+    fn critical_search(&self, fixed: &Setting, place: &Range<usize>) -> Result<Search, SpecError> {
+        self.check_law_is_there(place, "the critical velocity depends on the whole of it")?;
+        if let Some((name, place)) = &self.start_place {
+            let message = format!("{name} cannot stand beside fields of the critical velocity");
+            return Err(SpecError::at(place.clone(), message).help(
+                "it is about a motion from one start: make a sweep of its own for it; outcome can \
+                stand in both",
+            ));
+        }
+        self.check_no_effect_on_vc()?;
+        self.check_delays(fixed, place)?;
+        let phase = self.given.place(Parameter::SwitchOnPhase);
+        self.vc.search(phase)
+    }
+
+    /// Nothing is given that would not be looked at.
+    fn check_no_effect_on_vc(&self) -> Result<(), SpecError> {
+        let place = |p: Parameter| Some((p.name(), self.given.place(p)?));
+        let v0 = place(Parameter::V0).filter(|_| !self.needs_v0());
+        let start = place(Parameter::XDot0).or(place(Parameter::A0));
+        let simulation = self.simulation_place.as_ref().map(|s| ("simulation", s));
+        let help = match v0 {
+            Some(_) => {
+                "v0 is what is looked for; the field class, fields of linear stability and \
+                boundaries = true are about one"
+            }
+            None => {
+                "the critical velocity does not depend on where a motion starts, and has \
+                accuracies of its own"
+            }
+        };
+        match v0.or(start).or(simulation) {
+            Some((name, place)) => {
+                let message = format!("{name} has no effect on the fields that are asked for");
+                Err(SpecError::at(place.clone(), message).help(help))
+            }
+            None => Ok(()),
+        }
+    }
+
+    /// No key of the critical velocity where no field of it is asked for.
+    fn check_no_search(&self) -> Result<(), SpecError> {
+        match self.vc.given().next() {
+            Some((key, place)) => {
+                let message = format!("{key} has no effect on the fields that are asked for");
+                let fields = Field::ALL.into_iter().filter(|f| f.of_vc());
+                let names: Vec<_> = fields.map(Field::name).collect();
+                Err(SpecError::at(place.clone(), message)
+                    .help(format!("it is for the fields {}", names.join(", "))))
+            }
+            None => Ok(()),
+        }
+    }
+}

@@ -1,0 +1,122 @@
+//! The values of a sweep file's keys.
+
+use super::axis::{Spacing, spaced};
+use super::field::{Field, known_fields};
+use super::parameter::Parameter;
+use super::toml_reader::{Entry, SpecError};
+use crate::linear::MarginalTolerance;
+use crate::model::Shown;
+
+/// More degrees of stability than this are refused.
+const MOST_DEGREES: usize = 16;
+/// The largest degree of stability, in 1/time.
+const LARGEST_DEGREE: f64 = 1e12;
+
+pub(super) fn read_range(axis: &Entry) -> Result<Vec<f64>, SpecError> {
+    let (mut from, mut to, mut points, mut spacing) = (None, None, None, Spacing::Linear);
+    for entry in axis.table()? {
+        match entry.key {
+            "from" => from = Some(entry.number()?),
+            "to" => to = Some(entry.number()?),
+            "points" => points = Some(entry.whole()?),
+            "spacing" => {
+                spacing = match entry.string()? {
+                    "linear" => Spacing::Linear,
+                    "log" => Spacing::Log,
+                    other => {
+                        return Err(entry
+                            .error(format!("unknown spacing \"{other}\""))
+                            .help("known: linear, log"));
+                    }
+                }
+            }
+            _ => return Err(entry.unknown(&["from", "to", "points", "spacing"])),
+        }
+    }
+    let missing = |name| axis.error(format!("{name} is missing"));
+    let from = from.ok_or_else(|| missing("from"))?;
+    let to = to.ok_or_else(|| missing("to"))?;
+    let points = points.ok_or_else(|| missing("points"))?;
+    spaced(from, to, points, spacing).map_err(|e| axis.error(e.0))
+}
+
+pub(super) fn read_list(axis: &Entry, parameter: Parameter) -> Result<Vec<f64>, SpecError> {
+    let elements = axis
+        .array()
+        .map_err(|e| e.help("an axis is a list of values or { from = …, to = …, points = … }"))?;
+    elements
+        .iter()
+        .map(|element| {
+            let value = element.number()?;
+            parameter
+                .check(value)
+                .map_err(|e| SpecError::at(element.span.clone(), e.to_string()))
+        })
+        .collect()
+}
+
+pub(super) fn read_degrees(entry: &Entry) -> Result<Vec<f64>, SpecError> {
+    let elements = entry
+        .array()
+        .map_err(|e| e.help("for example: degree_of_stability = [0.05, 0.1]"))?;
+    if elements.is_empty() || elements.len() > MOST_DEGREES {
+        let message = format!("{} values; 1 to {MOST_DEGREES} are allowed", elements.len());
+        return Err(entry.error(message));
+    }
+    let mut degrees: Vec<f64> = Vec::new();
+    for element in &elements {
+        let value = element.number()?;
+        if !(1.0 / LARGEST_DEGREE..=LARGEST_DEGREE).contains(&value) {
+            return Err(element.error(format!(
+                "{} is outside its range: greater than 0, between 1e-12 and 1e12",
+                Shown(value)
+            )));
+        }
+        if degrees.last().is_some_and(|last| *last >= value) {
+            return Err(element.error("the values must be strictly increasing"));
+        }
+        degrees.push(value);
+    }
+    Ok(degrees)
+}
+
+pub(super) fn read_fields(entry: &Entry) -> Result<Vec<Field>, SpecError> {
+    let mut fields = Vec::new();
+    for element in entry.array()? {
+        let name = element.string()?;
+        let field = Field::from_name(name).ok_or_else(|| {
+            element
+                .error(format!("unknown field \"{name}\""))
+                .help(format!("known: {}", known_fields()))
+        })?;
+        if fields.contains(&field) {
+            return Err(element.error(format!("\"{name}\" is listed twice")));
+        }
+        fields.push(field);
+    }
+    if fields.is_empty() {
+        return Err(entry
+            .error("the list is empty")
+            .help(format!("known: {}", known_fields())));
+    }
+    // An abscissa without the distance that its certificate leaves open would say less than it
+    // seems to.
+    if fields.contains(&Field::Abscissa) && !fields.contains(&Field::CertificateMargin) {
+        fields.push(Field::CertificateMargin);
+    }
+    fields.sort_unstable();
+    Ok(fields)
+}
+
+pub(super) fn read_tolerance(tolerance: &Entry) -> Result<MarginalTolerance, SpecError> {
+    let mut result = MarginalTolerance::default();
+    for entry in tolerance.table()? {
+        match entry.key {
+            "marginal" => {
+                result = MarginalTolerance(entry.number_within(f64::EPSILON..=0.01)?);
+            }
+            _ => return Err(entry.unknown(&["marginal"])),
+        }
+    }
+    Ok(result)
+}
