@@ -95,6 +95,8 @@ def main() -> int:
     parser.add_argument("sweeps", type=Path, nargs="*")
     given = parser.parse_args()
     sweeps = given.sweeps or sorted(SWEEPS.glob("*.toml"))
+    if not sweeps:
+        parser.error(f"there is no sweep in {SWEEPS}")
     changed = 0
     for sweep in sweeps:
         with tempfile.TemporaryDirectory() as folder:

@@ -81,7 +81,7 @@ build_aarch64() {
         PKG_CONFIG_LIBDIR=$root/usr/lib/aarch64-linux-gnu/pkgconfig \
         CARGO_TARGET_AARCH64_UNKNOWN_LINUX_GNU_LINKER=aarch64-linux-gnu-gcc \
         CARGO_TARGET_AARCH64_UNKNOWN_LINUX_GNU_RUSTFLAGS=$flags \
-        cargo build --release --locked --bin slipmap --target $triple >&2
+        cargo build --release --locked --bin slipmap --target $triple >&2 || die "no build for aarch64"
 }
 
 [ "$(uname -sm)" = "Linux x86_64" ] || die "unlike processors are emulated on Linux on x86-64 only"

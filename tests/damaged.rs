@@ -17,6 +17,7 @@ mod program;
 
 use std::collections::BTreeMap;
 use std::fs;
+use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 
 use chance::Chance;
@@ -320,7 +321,8 @@ fn odd_maps_are_refused() {
         sound.put("info", &sound.map);
         let path = sound.folder.path().join("map.h5");
         map::edit(&path, edit).unwrap();
-        let found = MapFile::open(&path).and_then(|map| map.for_each_curve(drop));
+        let found =
+            MapFile::open(&path).and_then(|map| map.for_each_curve(|_| ControlFlow::Continue(())));
         let error = found.expect_err(says).to_string();
         assert!(error.contains(says), "{error}");
     }

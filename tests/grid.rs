@@ -52,12 +52,14 @@ fn it_holds_what_the_map_holds() {
     let grid = Grid::compute(&plan, 1).unwrap();
     let abscissa = &grid.cells.columns[0];
     assert_eq!(abscissa.field, Field::Abscissa);
-    let lengths = [61, 431];
+    let cells = 61 * 431;
+    assert_eq!(abscissa.cells.len(), 2 * cells);
     for i in 0..2 {
         let plane = map
             .plane(Field::Abscissa, &[i, 0, 0], (1, 2), usize::MAX)
             .unwrap();
-        let there = &abscissa.cells[i * lengths[0] * lengths[1]..];
+        let there = &abscissa.cells[i * cells..][..cells];
+        assert_eq!(plane.cells.len(), cells);
         for (cell, there) in plane.cells.iter().zip(there) {
             assert_eq!(cell.to_bits(), there.to_bits());
         }
@@ -71,4 +73,53 @@ fn it_holds_what_the_map_holds() {
         assert_eq!(there.abscissa, found.as_ref().unwrap().overall.abscissa);
     }
     assert_eq!(best.len(), grid.best.len());
+}
+
+/// Lines that several tiles hold parts of, with the delay in the middle of three axes, kinds and
+/// statuses.
+#[test]
+fn lines_in_pieces_and_kinds_have_their_place() {
+    let text = "fields = [\"outcome\", \"n_min\"]\n[axes]\nalpha_v = [-0.33, 0.0]\n\
+        tau = { from = 0.1, to = 9.0, points = 7 }\nx_dot0 = [0.0, 0.2, 0.35]\n[fixed]\nv0 = 0.35\n\
+        [friction]\nlaw = \"weakening\"\nmu0 = 0.5\nv_s = 0.5\nmu_s = 1.0\n";
+    let spec: SweepSpec = text.parse().unwrap();
+    let whole = Arc::new(Plan::new(spec.clone()).unwrap());
+    let pieces = Arc::new(Plan::with_tiles_of(4, spec).unwrap());
+    assert!(pieces.tiles.len() > 6 && pieces.tiles.tile_shape()[1] < 7);
+    let [whole, pieces] = [whole, pieces].map(|plan| Grid::compute(&plan, 2).unwrap());
+    assert_eq!(whole.cells.status, pieces.cells.status);
+    assert_eq!(whole.cells.kinds[0].cells, pieces.cells.kinds[0].cells);
+    let [a, b] = [&whole, &pieces].map(|grid| &grid.cells.columns[0].cells);
+    assert!(a.iter().zip(b).all(|(a, b)| a.to_bits() == b.to_bits()));
+    // What becomes of one motion, followed alone.
+    for index in [[0, 2, 1], [1, 5, 2], [0, 6, 0]] {
+        let setting = whole.plan().setting(&index);
+        let case = whole
+            .plan()
+            .spec
+            .simulation
+            .case(&setting, 0.0)
+            .unwrap()
+            .unwrap();
+        let abscissa = case.stable_abscissa().unwrap();
+        let alone = case.follow(&mut case.motion().unwrap(), abscissa, &mut ());
+        let at = (index[0] * 7 + index[1]) * 3 + index[2];
+        assert_eq!(
+            whole.cells.kinds[0].cells[at], alone.outcome as u8,
+            "{index:?}"
+        );
+    }
+}
+
+#[test]
+fn what_does_not_fit_into_memory_is_refused() {
+    let text = "[axes]\nalpha_v = { from = -1.0, to = 1.0, points = 10000000 }\n\
+        tau = { from = 0.1, to = 9.0, points = 10000000 }\n[fixed]\nmu_prime = -0.3\n";
+    let plan = Plan::new(text.parse().unwrap());
+    let Ok(plan) = plan else { panic!("{plan:?}") };
+    let refused = Grid::compute(&Arc::new(plan), 1).unwrap_err();
+    assert!(
+        refused.to_string().contains("do not fit into memory"),
+        "{refused}"
+    );
 }

@@ -1,6 +1,7 @@
 //! `slipmap info`: what a map holds.
 
 use std::io::{IsTerminal, Write};
+use std::ops::ControlFlow;
 use std::path::PathBuf;
 
 use slipmap::linear::curves::StableSide;
@@ -113,12 +114,15 @@ fn tell_curves(map: &MapFile, rows: &mut Rows) -> Result<(), Failure> {
         return Ok(());
     }
     let (mut crossing, mut bounding, mut decaying) = (0, 0, 0);
-    map.for_each_curve(|curve| match curve.degree_of_stability {
-        0.0 => {
-            crossing += 1;
-            bounding += u64::from(curve.piece.stable_side != StableSide::Neither);
+    map.for_each_curve(|curve| {
+        match curve.degree_of_stability {
+            0.0 => {
+                crossing += 1;
+                bounding += u64::from(curve.piece.stable_side != StableSide::Neither);
+            }
+            _ => decaying += 1,
         }
-        _ => decaying += 1,
+        ControlFlow::Continue(())
     })?;
     let text = format!("{crossing} crossing curves, {bounding} of them bound a stable region");
     rows.row("boundaries", text)?;

@@ -6,6 +6,11 @@
 pub fn as_many_as_allowed() {
     #[cfg(unix)]
     {
+        // macOS refuses more than this, whatever it tells of users.
+        #[cfg(target_os = "macos")]
+        const MOST: libc::rlim_t = libc::OPEN_MAX as libc::rlim_t;
+        #[cfg(not(target_os = "macos"))]
+        const MOST: libc::rlim_t = libc::RLIM_INFINITY;
         let mut limit = libc::rlimit {
             rlim_cur: 0,
             rlim_max: 0,
@@ -13,7 +18,7 @@ pub fn as_many_as_allowed() {
         // SAFETY: the limit is live during both calls.
         unsafe {
             if libc::getrlimit(libc::RLIMIT_NOFILE, &raw mut limit) == 0 {
-                limit.rlim_cur = limit.rlim_max;
+                limit.rlim_cur = limit.rlim_max.min(MOST);
                 libc::setrlimit(libc::RLIMIT_NOFILE, &raw const limit);
             }
         }

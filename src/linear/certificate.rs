@@ -65,7 +65,7 @@ impl UnstableCount {
         Self(line.and_then(|line| line.turning()))
     }
 
-    /// The number of roots with positive real part at the delay `tau`, as [`roots_right_of`] 0.
+    /// The number of roots right of 0 at the delay `tau`, see [`roots_right_of`].
     #[inline]
     #[must_use]
     pub fn at(&self, tau: f64) -> Option<u64> {

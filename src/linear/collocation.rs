@@ -27,10 +27,9 @@ pub const MOST_NODES: usize = 384;
 
 /// How many nodes resolve every root λ with |λ| ≤ `radius`.
 ///
-/// The number of nodes from the problem, as Wu and Michiels (2012) advise: the interpolant of
-/// e^(λθ) on [−τ, 0] has to be good on all of the region where roots can be. With |λ|τ/2 as the
-/// argument of the Chebyshev expansion its error falls faster than any power once N exceeds that
-/// argument.
+/// The interpolant of e^(λθ) on [−τ, 0] has to be good on all of the region where roots can be (Wu
+/// and Michiels, 2012). With |λ|τ/2 as the argument of the Chebyshev expansion its error falls
+/// faster than any power once N exceeds that argument.
 ///
 /// None where that takes more than is reasonable.
 #[must_use]

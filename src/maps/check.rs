@@ -36,8 +36,8 @@ pub fn check(map: &MapFile, program: (&str, &str), effort: Effort) -> Result<Rep
     let Some(plan) = planned(map, &mut report) else {
         return Ok(report);
     };
-    check_seal(map, &mut report);
     let never = AtomicBool::new(false);
+    check_seal(map, &mut report, &never);
     check_schema(map, &plan, &mut report, &never);
     check_checksums(map, &plan, &mut report, &never);
     if map.is_partial() {
@@ -182,7 +182,12 @@ fn compute_tiles(
                 Ok(Some(stored)) if stored == chunk => {}
                 // Of a map that is not complete.
                 Ok(None) if map.is_partial() => equal = false,
-                _ => {
+                Err(error) => {
+                    equal = false;
+                    let fault = format!("{name}: tile {number} cannot be read: {error}");
+                    report.faults.push(fault);
+                }
+                Ok(_) => {
                     equal = false;
                     report
                         .faults

@@ -1,6 +1,6 @@
 //! Reads the crossing curves of a map.
 
-use std::ops::Range;
+use std::ops::{ControlFlow, Range};
 
 use hdf5::{Dataset, Group, H5Type, SliceOrIndex};
 
@@ -33,12 +33,15 @@ const VERTICES_AT_ONCE: usize = 1 << 17;
 const MOST_VERTICES: usize = 1 << 20;
 
 impl MapFile {
-    /// Hands over all curves of the map, one by one, in order; few of them are in memory at once.
-    /// None where it holds none.
+    /// Hands over all curves of the map, one by one, in order, until `visit` has seen enough; few
+    /// of them are in memory at once. None where it holds none.
     ///
     /// # Errors
     /// When the file is damaged; some curves may have been handed over then.
-    pub fn for_each_curve(&self, mut visit: impl FnMut(MapCurve)) -> Result<(), StoreError> {
+    pub fn for_each_curve(
+        &self,
+        mut visit: impl FnMut(MapCurve) -> ControlFlow<()>,
+    ) -> Result<(), StoreError> {
         let Some(plane) = self.boundary_plane() else {
             return Ok(());
         };
@@ -54,7 +57,9 @@ impl MapFile {
             from.0 += rows.curves();
             from.1 += rows.vertices();
             let curves = curves_of(&rows, &outer).ok_or_else(damaged)?;
-            curves.into_iter().for_each(&mut visit);
+            if curves.into_iter().try_for_each(&mut visit).is_break() {
+                return Ok(());
+            }
         }
         if from == (columns.curves(), columns.vertices) {
             Ok(())
@@ -76,6 +81,7 @@ impl MapFile {
             if wanted(&curve.outer) {
                 curves.push(curve);
             }
+            ControlFlow::Continue(())
         })?;
         Ok(curves)
     }

@@ -189,7 +189,11 @@ impl<'p> MapWriter<'p> {
             path: path.clone(),
             why,
         })?;
-        seal::put(self.output.part()).map_err(StoreError::io("write", &path))?;
+        let sealed = seal::put(self.output.part(), stop);
+        if stop.load(Ordering::Relaxed) {
+            return Err(StoreError::Stopped);
+        }
+        sealed.map_err(StoreError::io("write", &path))?;
         self.output.commit()
     }
 }

@@ -7,6 +7,7 @@
 use std::fs::{File, OpenOptions};
 use std::io::{self, Read, Seek, SeekFrom, Write};
 use std::path::Path;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 use sha2::{Digest, Sha256};
 
@@ -30,45 +31,59 @@ pub(super) enum Seal {
     Missing,
 }
 
-/// Puts the seal behind a file that is closed.
+/// Puts the seal behind a file that is closed, and reads it back. Once `stop` is set, no more is
+/// read, and what is put is no seal.
 ///
 /// # Errors
-/// When the system refuses.
-pub(super) fn put(path: &Path) -> io::Result<()> {
+/// When the system refuses, or does not give back what was written.
+pub(super) fn put(path: &Path, stop: &AtomicBool) -> io::Result<()> {
     let mut file = OpenOptions::new().read(true).append(true).open(path)?;
     let length = file.metadata()?.len();
-    let seal = line(&mut file, length)?;
-    file.write_all(&seal)
+    let seal = line(&mut file, length, stop)?;
+    file.write_all(&seal)?;
+    match last(&mut file)? {
+        (before, found) if before == length && found[..] == seal => Ok(()),
+        _ => Err(io::Error::other("the seal is not read as it was written")),
+    }
+}
+
+/// The bytes where a seal would be, and how many are before them.
+fn last(file: &mut File) -> io::Result<(u64, [u8; LENGTH])> {
+    let mut found = [0; LENGTH];
+    let before = file.metadata()?.len().saturating_sub(LENGTH as u64);
+    file.seek(SeekFrom::Start(before))?;
+    file.read_exact(&mut found)?;
+    Ok((before, found))
 }
 
 /// Whether a file is as it was sealed.
 ///
+/// Once `stop` is set, no more is read, and the answer means nothing.
+///
 /// # Errors
 /// When it cannot be read.
-pub(super) fn check(path: &Path) -> io::Result<Seal> {
+pub(super) fn check(path: &Path, stop: &AtomicBool) -> io::Result<Seal> {
     let mut file = File::open(path)?;
-    let Some(length) = file.metadata()?.len().checked_sub(LENGTH as u64) else {
+    if file.metadata()?.len() < LENGTH as u64 {
         return Ok(Seal::Missing);
-    };
-    file.seek(SeekFrom::Start(length))?;
-    let mut found = [0; LENGTH];
-    file.read_exact(&mut found)?;
+    }
+    let (length, found) = last(&mut file)?;
     if !found.starts_with(BEFORE) {
         return Ok(Seal::Missing);
     }
     file.rewind()?;
-    Ok(match line(&mut file, length)? == found {
+    Ok(match line(&mut file, length, stop)?[..] == found {
         true => Seal::Whole,
         false => Seal::Broken,
     })
 }
 
 /// The seal of the first `length` bytes.
-fn line(file: &mut File, length: u64) -> io::Result<Vec<u8>> {
+fn line(file: &mut File, length: u64, stop: &AtomicBool) -> io::Result<Vec<u8>> {
     let mut hash = Sha256::new();
     let mut block = vec![0; BLOCK];
     let mut rest = file.take(length);
-    loop {
+    while !stop.load(Ordering::Relaxed) {
         let read = match rest.read(&mut block) {
             Ok(0) => break,
             Ok(read) => read,
@@ -90,18 +105,20 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("file");
         std::fs::write(&path, b"all of it").unwrap();
-        assert_eq!(check(&path).unwrap(), Seal::Missing);
-        put(&path).unwrap();
-        assert_eq!(check(&path).unwrap(), Seal::Whole);
+        let go = AtomicBool::new(false);
+        let check = |path| check(path, &go).unwrap();
+        assert_eq!(check(&path), Seal::Missing);
+        put(&path, &go).unwrap();
+        assert_eq!(check(&path), Seal::Whole);
         let sealed = std::fs::read(&path).unwrap();
         assert!(sealed.starts_with(b"all of it\n"));
         for bit in 0..sealed.len() * 8 {
             let mut bytes = sealed.clone();
             bytes[bit / 8] ^= 1 << (bit % 8);
             std::fs::write(&path, &bytes).unwrap();
-            assert_ne!(check(&path).unwrap(), Seal::Whole, "bit {bit}");
+            assert_ne!(check(&path), Seal::Whole, "bit {bit}");
         }
         std::fs::write(&path, &sealed[..sealed.len() - 1]).unwrap();
-        assert_eq!(check(&path).unwrap(), Seal::Missing);
+        assert_eq!(check(&path), Seal::Missing);
     }
 }

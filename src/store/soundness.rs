@@ -1,5 +1,6 @@
 //! Whether the file of a map is as it was written: its schema against its sweep, its checksums.
 
+use std::ops::ControlFlow;
 use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
@@ -46,9 +47,13 @@ pub(super) fn as_written(path: &Path, plan: &Plan, stop: &AtomicBool) -> Result<
     let mut report = Report::default();
     check_schema(&map, plan, &mut report, stop);
     check_checksums(&map, plan, &mut report, stop);
-    match report.faults.into_iter().next() {
-        None => Ok(()),
+    // What is a remark on an old map is a fault of a new one.
+    let wrong = report.faults.into_iter().chain(report.remarks).next();
+    let all = names(&map).count() as u64 + 1;
+    match wrong {
         Some(fault) => Err(fault),
+        None if report.checksums < all => Err("some of its checksums are missing".into()),
+        None => Ok(()),
     }
 }
 
@@ -121,7 +126,11 @@ pub(crate) fn check_schema(map: &MapFile, plan: &Plan, report: &mut Report, stop
     if stop.load(Ordering::Relaxed) {
         return;
     }
-    if let Err(error) = map.for_each_curve(drop) {
+    let read = map.for_each_curve(|_| match stop.load(Ordering::Relaxed) {
+        true => ControlFlow::Break(()),
+        false => ControlFlow::Continue(()),
+    });
+    if let Err(error) = read {
         faults.push(error.to_string());
     }
 }
@@ -138,8 +147,9 @@ pub(crate) fn names(map: &MapFile) -> impl Iterator<Item = &'static str> {
     map.fields().iter().map(|f| f.name()).chain([STATUS])
 }
 
-pub(crate) fn check_seal(map: &MapFile, report: &mut Report) {
-    match seal::check(map.path()) {
+/// Whether all bytes are those that were sealed; after `stop` is set the answer means nothing.
+pub(crate) fn check_seal(map: &MapFile, report: &mut Report, stop: &AtomicBool) {
+    match seal::check(map.path(), stop) {
         Ok(Seal::Whole) => report.checksums += 1,
         Ok(Seal::Broken) => {
             let fault = "the checksum of all bytes does not fit: bytes have changed";

@@ -1,6 +1,5 @@
 //! A sweep computed into memory: for programs that want numbers and no file.
 
-use std::convert::Infallible;
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
@@ -11,7 +10,7 @@ use super::engine::{self, Computed, Encode, RunError, Sink};
 use super::events::Silent;
 use super::plan::Plan;
 use super::plan::pieces::{Piece, Todo};
-use super::plan::tile::for_each_index;
+use super::plan::tile::{for_each_index, place_of, strides_of};
 
 /// All values of a sweep in memory.
 ///
@@ -37,6 +36,8 @@ use super::plan::tile::for_each_index;
 #[derive(Debug, Clone)]
 pub struct Grid {
     plan: Arc<Plan>,
+    /// Places between neighbours along each axis.
+    strides: Vec<usize>,
     /// The cells of the whole map in the order of its axes, the last one fastest.
     pub cells: TileBuffers,
     /// The crossing curves, plane by plane.
@@ -45,28 +46,42 @@ pub struct Grid {
     pub best: Vec<Option<BestSettings>>,
 }
 
+/// The cells of a sweep do not fit into memory.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
+#[error("{cells} cells of {bytes} bytes each do not fit into memory")]
+pub struct TooLarge {
+    /// How many cells there are.
+    pub cells: u64,
+    /// How many bytes each of them takes.
+    pub bytes: u64,
+}
+
 impl Grid {
-    /// Computes all of `plan` on `threads` threads. It takes the memory of all cells at once, which
-    /// for large sweeps is more than there is.
+    /// Computes all of `plan` on `threads` threads, one at least. It takes the memory of all cells
+    /// at once.
     ///
     /// # Errors
-    /// When a parameter is outside the model's range, or the threads cannot be started.
-    pub fn compute(plan: &Arc<Plan>, threads: usize) -> Result<Self, RunError<Infallible>> {
-        let planes = |count: u64| usize::try_from(count).unwrap_or(usize::MAX);
-        let mut taken = Taken {
-            cells: TileBuffers::of_cells(plan, planes(plan.cells())),
-            curves: vec![None; planes(plan.boundary_planes())],
-            best: vec![None; planes(plan.best_planes())],
+    /// When that is more than there is, a parameter is outside the model's range, or the threads
+    /// cannot be started.
+    pub fn compute(plan: &Arc<Plan>, threads: usize) -> Result<Self, RunError<TooLarge>> {
+        let cells = room_for(plan).map_err(RunError::Sink)?;
+        let mut grid = Self {
+            cells: TileBuffers::of_cells(plan, cells),
+            curves: vec![BoundaryPlane::default(); plan.boundary_planes() as usize],
+            best: vec![None; plan.best_planes() as usize],
+            strides: strides_of(plan.shape()),
             plan: Arc::clone(plan),
         };
         let (todo, stop) = (Todo::all(plan.pieces()), Arc::new(AtomicBool::new(false)));
-        engine::run(plan, todo, threads, &mut taken, &Silent, &stop)?;
-        Ok(Self {
-            plan: taken.plan,
-            cells: taken.cells,
-            curves: taken.curves.into_iter().flatten().collect(),
-            best: taken.best,
-        })
+        engine::run(
+            plan,
+            todo,
+            threads.max(1),
+            &mut Taken(&mut grid),
+            &Silent,
+            &stop,
+        )?;
+        Ok(grid)
     }
 
     /// The sweep.
@@ -74,14 +89,30 @@ impl Grid {
     pub fn plan(&self) -> &Plan {
         &self.plan
     }
+
+    fn put_tile(&mut self, number: usize, from: &TileBuffers) {
+        let tile = self.plan.tiles.tile(number);
+        let strides = self.plan.tiles.strides();
+        let first = place_of(&tile.offset, &self.strides);
+        for_each_index(&tile.extent, None, |inside| {
+            let at = first + place_of(inside, &self.strides);
+            self.cells.take_cell(at, from, place_of(inside, &strides));
+        });
+    }
 }
 
-/// What has come so far.
-struct Taken {
-    plan: Arc<Plan>,
-    cells: TileBuffers,
-    curves: Vec<Option<BoundaryPlane>>,
-    best: Vec<Option<BestSettings>>,
+/// The number of cells of a sweep, if the system has memory for them.
+fn room_for(plan: &Plan) -> Result<usize, TooLarge> {
+    let fields = plan.spec.fields.iter().map(|field| field.bytes());
+    let status = size_of::<u8>();
+    let bytes = fields.sum::<usize>() + status;
+    let cells = usize::try_from(plan.cells()).ok();
+    let all = cells.and_then(|cells| cells.checked_mul(bytes));
+    let fits = all.is_some_and(|all| Vec::<u8>::new().try_reserve_exact(all).is_ok());
+    cells.filter(|_| fits).ok_or(TooLarge {
+        cells: plan.cells(),
+        bytes: bytes as u64,
+    })
 }
 
 /// Pieces as they are computed, to be handed to another thread.
@@ -106,38 +137,27 @@ impl Encode for Copies {
     }
 }
 
-impl Sink for Taken {
+/// Takes the pieces as they come.
+struct Taken<'g>(&'g mut Grid);
+
+impl Sink for Taken<'_> {
     type Encoder = Copies;
-    type Error = Infallible;
+    type Error = TooLarge;
 
     fn encoder(&self) -> Copies {
         Copies
     }
 
-    fn write(&mut self, piece: Piece, piece_taken: Owned) -> Result<(), Infallible> {
+    fn write(&mut self, piece: Piece, piece_taken: Owned) -> Result<(), TooLarge> {
         match (piece, piece_taken) {
             (Piece::Curves(number), Owned::Curves(plane)) => {
-                self.curves[number as usize] = Some(plane);
+                self.0.curves[number as usize] = plane;
             }
-            (Piece::Best(number), Owned::Best(best)) => self.best[number as usize] = best,
-            (Piece::Tile(number), Owned::Tile(tile)) => self.put_tile(number as usize, &tile),
+            (Piece::Best(number), Owned::Best(best)) => self.0.best[number as usize] = best,
+            (Piece::Tile(number), Owned::Tile(tile)) => self.0.put_tile(number as usize, &tile),
             // Each kind of piece is computed as such.
             _ => {}
         }
         Ok(())
-    }
-}
-
-impl Taken {
-    fn put_tile(&mut self, number: usize, from: &TileBuffers) {
-        let tiles = &self.plan.tiles;
-        let (tile, strides) = (tiles.tile(number), tiles.strides());
-        for_each_index(&tile.extent, None, |inside| {
-            let place = inside.iter().zip(&strides).map(|(i, stride)| i * stride);
-            let place = place.sum();
-            let index = tile.offset.iter().zip(inside).map(|(o, i)| o + i);
-            let at = (index.zip(tiles.shape())).fold(0, |at, (i, &length)| at * length + i);
-            self.cells.take_cell(at, from, place);
-        });
     }
 }

@@ -12,7 +12,7 @@ use super::record::Content;
 use super::shards;
 use crate::sweep::plan::Plan;
 use crate::sweep::plan::pieces::{Piece, Pieces, Shard};
-use crate::sweep::plan::tile::for_each_index;
+use crate::sweep::plan::tile::{for_each_index, place_of};
 
 /// What the tiles of all shards of a map hold.
 #[derive(Debug)]
@@ -169,7 +169,7 @@ impl Survey {
         let strides = self.plan.tiles.strides();
         let last = tile.extent.len() - 1;
         for_each_index(&tile.extent, Some(last), |index| {
-            let start: usize = index.iter().zip(&strides).map(|(i, s)| i * s).sum();
+            let start = place_of(index, &strides);
             let row = &status[start..start + tile.extent[last]];
             self.statuses.add(row.iter().copied());
         });

@@ -16,7 +16,7 @@ use crate::sweep::plan::tile::index_of;
 const SCAN_STEPS: usize = 4096;
 
 /// The curves of one plane.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Default)]
 pub struct BoundaryPlane {
     /// Index along every axis of the sweep; 0 along the plane's own two.
     pub index: Vec<usize>,

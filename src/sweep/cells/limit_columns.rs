@@ -7,17 +7,16 @@ use crate::linear::status::NOT_CONVERGED;
 use crate::sweep::input::parameter::Parameter;
 use crate::sweep::input::source::Source;
 use crate::sweep::plan::Plan;
-use crate::sweep::plan::tile::{Tile, for_each_index};
+use crate::sweep::plan::tile::{Tile, for_each_index, place_of};
 
 /// Computes the cells of `tile`, whose places in `buffers` go by `strides`.
 pub(super) fn fill(plan: &Plan, tile: &Tile, strides: &[usize], buffers: &mut TileBuffers) {
     let mut setting = plan.spec.fixed.clone();
     for_each_index(&tile.extent, None, |inside| {
-        let mut at = 0;
         for (i, axis) in plan.spec.axes.iter().enumerate() {
             setting.set(axis.parameter, axis.values[tile.offset[i] + inside[i]]);
-            at += inside[i] * strides[i];
         }
+        let at = place_of(inside, strides);
         let [gamma, mu_ratio] = [Parameter::Gamma, Parameter::MuRatio].map(|p| setting.get(p));
         let Ok(cell) = LimitCell::at(gamma, mu_ratio) else {
             buffers.status[at] = NOT_CONVERGED;

@@ -198,9 +198,9 @@ const fn sample_tolerances(integrator: Integrator) -> [f64; 3] {
 
 /// Whether simulation alone, with steps of v0 of its own by this `integrator`, agrees with `found`,
 /// the answer for `problem` by the protocol `follow`, in `units`: it has to see stick-slip end at
-/// the same velocity, see [`Critical::ends_like`]. None where it cannot tell: small steps do not
-/// decide, and large ones, which may throw stick-slip from one kind to another, end elsewhere; or
-/// where the cell is not decided and claims nothing.
+/// the same velocity, see [`Critical::ends_like`]. None where it cannot tell: the smallest steps do
+/// not decide, and larger ones, which may throw stick-slip from one kind to another, end elsewhere;
+/// or where the cell is not decided and claims nothing.
 #[must_use]
 pub fn simulation_agrees(
     problem: &Problem,
@@ -211,7 +211,7 @@ pub fn simulation_agrees(
     if !found.decided {
         return None;
     }
-    let mut differs = None;
+    let mut told = None;
     let tolerances = sample_tolerances(integrator);
     for ([first, unseen], tolerance) in SAMPLE_STEPS.into_iter().zip(tolerances) {
         let pace = Pace {
@@ -227,14 +227,19 @@ pub fn simulation_agrees(
             ..Accuracy::of(tolerance)
         };
         let again = by_simulation(problem, &pace, accuracy);
-        if found.ends_like(&in_units(&again, units)) {
+        if found.ends_like(&in_units(&again, units)) && tells(&again) {
             return Some(true);
         }
-        if again.decided && first < TOO_LARGE {
-            differs = Some(false);
-        }
+        // The smallest steps have the last word.
+        told = (again.decided && first < TOO_LARGE).then_some(false);
     }
-    differs
+    told
+}
+
+/// Whether what a simulation came to says anything: one that gave up has found an end, but not that
+/// there is none.
+fn tells(again: &Critical) -> bool {
+    again.decided || !matches!(again.end, End::Persists | End::Never)
 }
 
 /// The class of `v0`, in units of the setting, where the critical velocity is `found` by
@@ -411,6 +416,23 @@ mod tests {
         let mut lifted = critical(End::LiftOff, none, 0.2);
         lifted.sustained = false;
         assert!(windows(&lifted).is_empty());
+    }
+
+    /// A simulation that gave up says nothing of stick-slip that persists or never is; one that came
+    /// to an end says where.
+    #[test]
+    fn who_gives_up_does_not_agree() {
+        for (end, alone) in [
+            (End::Persists, false),
+            (End::Never, false),
+            (End::Grazing, true),
+            (End::LiftOff, true),
+        ] {
+            let mut again = critical(end, 0.3, 0.3);
+            assert!(tells(&again));
+            again.decided = false;
+            assert_eq!(tells(&again), alone, "{end:?}");
+        }
     }
 
     /// The topmost window tells, and one that is open at the end of the range has no edge.

@@ -16,7 +16,7 @@ use crate::sweep::input::field::Field;
 use crate::sweep::input::parameter::Parameter;
 use crate::sweep::input::setting::Setting;
 use crate::sweep::plan::Plan;
-use crate::sweep::plan::tile::{Tile, for_each_index};
+use crate::sweep::plan::tile::{Tile, for_each_index, place_of, strides_of};
 
 /// The column of delay margins.
 fn delay_margins(columns: &mut [Column]) -> Option<&mut Vec<f64>> {
@@ -46,7 +46,7 @@ pub struct Worker<'p> {
     /// Looks for critical velocities, where a field needs them.
     vc: Option<VcColumns>,
     /// Cells between neighbours along each axis in the whole map.
-    map_strides: Vec<u64>,
+    map_strides: Vec<usize>,
     /// Whether cells have a sliding state.
     slides: bool,
 }
@@ -156,7 +156,7 @@ impl<'p> Worker<'p> {
             roots: RootColumns::new(&plan.spec.fields),
             slip: SlipColumns::new(&plan.spec),
             vc: VcColumns::new(&plan.spec),
-            map_strides: map_strides(plan.shape()),
+            map_strides: strides_of(plan.shape()),
             slides: plan.spec.has_sliding(),
         }
     }
@@ -195,7 +195,7 @@ impl<'p> Worker<'p> {
         }
         self.unflagged = whole;
         for_each_index(&tile.extent, self.plan.tau_axis, |inside| {
-            let at: usize = inside.iter().zip(&self.strides).map(|(i, s)| i * s).sum();
+            let at = place_of(inside, &self.strides);
             self.lines.move_to(&tile.offset, inside);
             match self.lines.groups() {
                 _ if !self.slides => self.fill_without_sliding(at),
@@ -317,12 +317,18 @@ impl<'p> Worker<'p> {
     /// Computes the fields of the critical velocity, in a line whose status is there.
     fn fill_critical(&mut self, offset: &[usize], inside: &[usize], at: usize, stop: &AtomicBool) {
         let Some(vc) = &mut self.vc else { return };
-        let index = offset.iter().zip(inside).map(|(o, i)| (o + i) as u64);
+        let index = offset.iter().zip(inside).map(|(o, i)| o + i);
         let cells = Cells {
             at,
             stride: self.stride,
-            first: index.zip(&self.map_strides).map(|(i, s)| i * s).sum(),
-            step: self.plan.tau_axis.map_or(1, |axis| self.map_strides[axis]),
+            first: index
+                .zip(&self.map_strides)
+                .map(|(i, s)| (i * s) as u64)
+                .sum(),
+            step: self
+                .plan
+                .tau_axis
+                .map_or(1, |axis| self.map_strides[axis] as u64),
         };
         let setting = &self.lines.setting;
         vc.fill(
@@ -353,15 +359,6 @@ impl<'p> Worker<'p> {
             }
         }
     }
-}
-
-/// Cells between neighbours along each axis of a map, last axis fastest.
-fn map_strides(shape: &[usize]) -> Vec<u64> {
-    let mut strides = vec![1; shape.len()];
-    for axis in (1..shape.len()).rev() {
-        strides[axis - 1] = strides[axis] * shape[axis] as u64;
-    }
-    strides
 }
 
 fn scatter<T: Copy>(row: &[T], out: &mut [T], stride: usize) {

@@ -174,7 +174,7 @@ impl Plan {
     pub fn boundary_planes(&self) -> u64 {
         match self.boundary_plane {
             Some((p, tau)) => {
-                let of_plane = (self.shape()[p] * self.shape()[tau]) as u64;
+                let of_plane = self.shape()[p] as u64 * self.shape()[tau] as u64;
                 self.cells() / of_plane
             }
             None => 0,
@@ -185,7 +185,9 @@ impl Plan {
     #[must_use]
     pub fn best_planes(&self) -> u64 {
         match self.best_plane() {
-            Some((gain, tau)) => self.cells() / (self.shape()[gain] * self.shape()[tau]) as u64,
+            Some((gain, tau)) => {
+                self.cells() / (self.shape()[gain] as u64 * self.shape()[tau] as u64)
+            }
             None => 0,
         }
     }

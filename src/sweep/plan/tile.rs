@@ -87,12 +87,23 @@ impl TileGrid {
     /// shape.
     #[must_use]
     pub fn strides(&self) -> Vec<usize> {
-        let mut strides = vec![1; self.tile_shape.len()];
-        for axis in (1..strides.len()).rev() {
-            strides[axis - 1] = strides[axis] * self.tile_shape[axis];
-        }
-        strides
+        strides_of(&self.tile_shape)
     }
+}
+
+/// Cells between neighbours along each axis of a box, last axis fastest.
+pub(crate) fn strides_of(shape: &[usize]) -> Vec<usize> {
+    let mut strides = vec![1; shape.len()];
+    for axis in (1..shape.len()).rev() {
+        strides[axis - 1] = strides[axis] * shape[axis];
+    }
+    strides
+}
+
+/// The place in memory of the cell at an index.
+#[inline]
+pub(crate) fn place_of(index: &[usize], strides: &[usize]) -> usize {
+    index.iter().zip(strides).map(|(i, s)| i * s).sum()
 }
 
 /// The index in a box of that shape of its cell of number `number`, last axis fastest.
