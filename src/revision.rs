@@ -7,12 +7,12 @@ use std::process::Command;
 /// How git ends the revision of a source that was changed since.
 const DIRTY: &str = "-dirty";
 /// What the program is made from.
-pub const SOURCE: [&str; 4] = ["Cargo.toml", "Cargo.lock", "build.rs", "src"];
+pub(crate) const SOURCE: [&str; 4] = ["Cargo.toml", "Cargo.lock", "build.rs", "src"];
 
 /// Git's revision where the repository is the folder's own, else that which a package carries, else
 /// one made of the source's bytes. Where the source is not that of the revision its bytes count
 /// too: two programs of different source never have the same one.
-pub fn of(folder: &Path) -> String {
+pub(crate) fn of(folder: &Path) -> String {
     let own = folder.join(".git").exists().then(|| of_git(folder));
     let known = own.flatten().or_else(|| of_package(folder));
     match known {

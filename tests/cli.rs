@@ -1,5 +1,7 @@
 //! The real program by its command line: what users type, read and find on disk.
 
+#![allow(clippy::too_many_lines, reason = "a test tells one story")]
+
 use std::process::Command;
 
 #[path = "common/map.rs"]
@@ -762,6 +764,7 @@ fn a_measured_friction_law_goes_through_every_command() {
 #[cfg(unix)]
 #[test]
 fn odd_names_and_texts_are_answered() {
+    type Title = hdf5::types::FixedUnicode<32_000>;
     use std::os::unix::ffi::OsStrExt;
     let folder = Folder::with(&[("small.toml", SMALL)]);
     let odd = std::ffi::OsStr::from_bytes(b"\xff.h5");
@@ -775,7 +778,6 @@ fn odd_names_and_texts_are_answered() {
     assert_eq!(folder.files(), ["small.toml"]);
     expect(&folder.run(&["run", "small.toml"]), 0, "5 002 cells");
     let path = folder.path().join("small.h5");
-    type Title = hdf5::types::FixedUnicode<32_000>;
     let entitle = |text: &str| {
         map::edit(&path, |file| {
             file.delete_attr("title").unwrap();

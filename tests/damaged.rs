@@ -4,6 +4,8 @@
 //! `SLIPMAP_DAMAGED=10000 cargo test --release --test damaged -- --nocapture` tries so many files
 //! and prints how they ended.
 
+#![allow(clippy::too_many_lines, reason = "a test tells one story")]
+
 #[path = "common/chance.rs"]
 mod chance;
 #[path = "damaged/checksums.rs"]

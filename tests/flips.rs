@@ -4,6 +4,8 @@
 //! `SLIPMAP_FLIPS=2500` flips more bits of maps than 150, `SLIPMAP_TILE_FLIPS=1000` more of tiles
 //! and manifests than 30.
 
+#![allow(clippy::too_many_lines, reason = "a test tells one story")]
+
 #![cfg(unix)]
 
 #[path = "common/chance.rs"]

@@ -1,6 +1,8 @@
 //! Maps that somebody made to do harm, through every command that opens one: each ends soon, with a
 //! message, with little memory, and shows nothing of another file.
 
+#![allow(clippy::too_many_lines, reason = "a test tells one story")]
+
 #![cfg(unix)]
 
 #[path = "common/limited.rs"]

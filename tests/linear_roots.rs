@@ -442,7 +442,7 @@ fn the_spectrum_is_complete() {
         let Ok(roots) = finder.right_of(Groups::new(b, a_v, a_n), tau, line) else {
             panic!("{b} {a_v} {a_n} {tau} {line}");
         };
-        let count: u64 = roots.iter().map(|r| r.count()).sum();
+        let count: u64 = roots.iter().map(slipmap::linear::newton::Root::count).sum();
         assert!(roots.windows(2).all(|w| w[0].lambda.re >= w[1].lambda.re));
         if let Some(expected) = winding::roots_right_of(b, a_v, a_n, tau, line) {
             assert_eq!(count, expected);

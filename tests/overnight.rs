@@ -4,6 +4,8 @@
 //! `SLIPMAP_KILLS=100` kills more often than the 20 times of the suite; `SLIPMAP_DAMAGES=1000`
 //! damages more files than 60.
 
+#![allow(clippy::too_many_lines, reason = "a test tells one story")]
+
 #![cfg(unix)]
 
 #[path = "common/chance.rs"]

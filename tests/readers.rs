@@ -333,9 +333,9 @@ fn python(folder: &Path) -> Command {
 
 /// Runs to the end; a program that is missing or fails fails the test, with what it said.
 fn run(command: &mut Command) -> Output {
-    let output = command
-        .output()
-        .unwrap_or_else(|error| panic!("{:?} cannot be run: {error}", command.get_program()));
+    let output = command.output().unwrap_or_else(|error| {
+        panic!("{} cannot be run: {error}", command.get_program().display())
+    });
     assert!(
         output.status.success(),
         "{command:?} ended with {}\n{}{}",

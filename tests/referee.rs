@@ -5,6 +5,8 @@
 //! its own. `SLIPMAP_CASES` asks for so many motions by chance, and for a tenth as many critical
 //! velocities and phases of switch-on; `SLIPMAP_SEED` for others.
 
+#![allow(clippy::too_many_lines, reason = "a test tells one story")]
+
 #[path = "referee/against.rs"]
 mod against;
 #[path = "referee/asked.rs"]

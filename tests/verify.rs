@@ -1,5 +1,7 @@
 //! `slipmap verify`: sound maps pass, and whatever is changed in one is found.
 
+#![allow(clippy::too_many_lines, reason = "a test tells one story")]
+
 #[path = "common/map.rs"]
 mod map;
 #[path = "common/program.rs"]

@@ -21,7 +21,7 @@ four periods of the free oscillator; gains of
 velocity control up to ±2 max(1, |b|) √(κ/M); gains of load \
 control from 4(1 + |b|) κ/μ_K below the weakest negative one that
 stabilises, -(|b| + b²/2) κ/μ_K, to 4(1 + |b|) κ/μ_K.")]
-pub struct Args {
+pub(super) struct Args {
     #[command(flatten)]
     parameters: ParameterArgs,
     /// The gain that is searched; the other one is given as usual
@@ -133,7 +133,7 @@ impl From<&Optimum> for OptimumOut {
     }
 }
 
-pub fn main(args: &Args) -> Result<(), Failure> {
+pub(super) fn main(args: &Args) -> Result<(), Failure> {
     let gain = args.control.searched();
     let help = "leave it out; --alpha-from, --alpha-to, --tau-from and --tau-to are the ranges of \
         the search";

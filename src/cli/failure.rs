@@ -10,7 +10,7 @@ use slipmap::sweep::SpecError;
 use super::say::{self, shortened, visible, visible_line};
 
 /// Why a command did not do what it was asked for.
-pub enum Failure {
+pub(super) enum Failure {
     /// Exit code 1: it could not be done.
     Failed(Report),
     /// Exit code 2: the input does not make sense.
@@ -28,27 +28,27 @@ pub enum Failure {
 
 impl Failure {
     /// What could not be done, in words.
-    pub fn failed(message: impl Into<String>) -> Self {
+    pub(super) fn failed(message: impl Into<String>) -> Self {
         Self::Failed(Report::new(shown(message)))
     }
 
     /// What failed, with advice on what to do.
-    pub fn failed_with_help(message: impl Into<String>, help: impl Into<String>) -> Self {
+    pub(super) fn failed_with_help(message: impl Into<String>, help: impl Into<String>) -> Self {
         Self::Failed(Report::new(shown(message).with_help(visible(&help.into()))))
     }
 
     /// Bad input, in words.
-    pub fn bad_input(message: impl Into<String>) -> Self {
+    pub(super) fn bad_input(message: impl Into<String>) -> Self {
         Self::BadInput(Report::new(shown(message)))
     }
 
     /// Bad input with advice.
-    pub fn bad_input_with_help(message: impl Into<String>, help: impl Into<String>) -> Self {
+    pub(super) fn bad_input_with_help(message: impl Into<String>, help: impl Into<String>) -> Self {
         Self::BadInput(Report::new(shown(message).with_help(visible(&help.into()))))
     }
 
     /// A flag with a value that its parameter does not take.
-    pub fn out_of_range(flag: &str, error: &ModelError) -> Self {
+    pub(super) fn out_of_range(flag: &str, error: &ModelError) -> Self {
         Self::bad_input(format!(
             "{flag} {} is outside its range: {}",
             Shown(error.value),
@@ -57,7 +57,7 @@ impl Failure {
     }
 
     /// Bad input at a place of a file.
-    pub fn in_file(error: SpecError, name: &str, text: &str) -> Self {
+    pub(super) fn in_file(error: SpecError, name: &str, text: &str) -> Self {
         let name = visible_line(name);
         let mut diagnostic = shown(error.message);
         if let Some(help) = error.help {
@@ -77,7 +77,7 @@ impl Failure {
     }
 
     /// Prints the failure to standard error and gives the exit code.
-    pub fn report(self) -> ExitCode {
+    pub(super) fn report(self) -> ExitCode {
         let (report, code) = match self {
             Self::Interrupted { message, code } => {
                 say::remark(message);

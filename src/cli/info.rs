@@ -20,7 +20,7 @@ use super::signals::Signals;
 const NOT_TOLD: &str = "not everything is told";
 
 #[derive(Debug, clap::Args)]
-pub struct Args {
+pub(super) struct Args {
     /// The map
     #[arg(value_name = "MAP.h5")]
     map: PathBuf,
@@ -29,7 +29,7 @@ pub struct Args {
     sweep: bool,
 }
 
-pub fn main(args: &Args) -> Result<(), Failure> {
+pub(super) fn main(args: &Args) -> Result<(), Failure> {
     let signals = Signals::catch()?;
     let map = open(&args.map, &signals, NOT_TOLD)?;
     signals.or_end(NOT_TOLD, || tell(&map, args))

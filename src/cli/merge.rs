@@ -17,7 +17,7 @@ use super::signals::Signals;
 use super::{open_files, run, say};
 
 #[derive(Debug, clap::Args)]
-pub struct Args {
+pub(super) struct Args {
     /// The map that `run --shard` was given, or would have been by default
     #[arg(value_name = "MAP.h5")]
     map: PathBuf,
@@ -36,7 +36,7 @@ pub struct Args {
     fresh: bool,
 }
 
-pub fn main(args: &Args) -> Result<(), Failure> {
+pub(super) fn main(args: &Args) -> Result<(), Failure> {
     let signals = Signals::catch()?;
     let target = args.output.as_ref().unwrap_or(&args.map);
     if shards::settle(&args.map, |hash| maker::is_complete(target, Some(hash)))? {

@@ -78,7 +78,7 @@ fn say_usage(error: &clap::Error) -> ExitCode {
 }
 
 /// Runs the command line of this process.
-pub fn main() -> ExitCode {
+pub(crate) fn main() -> ExitCode {
     let command = match Cli::try_parse() {
         Ok(cli) => cli.command,
         Err(error) => return say_usage(&error),

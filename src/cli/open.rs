@@ -17,7 +17,7 @@ use super::signals::Signals;
 /// own that is gone afterwards.
 ///
 /// A signal ends it, with `message`.
-pub fn open(path: &Path, signals: &Signals, message: &str) -> Result<MapFile, Failure> {
+pub(super) fn open(path: &Path, signals: &Signals, message: &str) -> Result<MapFile, Failure> {
     let opened = || signals.or_end(message, || MapFile::open(path));
     let held = path.exists().then(opened).transpose()?;
     let present = match held.as_ref().is_none_or(MapFile::is_partial) {

@@ -3,14 +3,9 @@
 /// Raises the limit that a user gives to programs to the one that the system gives to users: a
 /// merge holds one file of every shard. Where the system refuses, the limit stays, and opening one
 /// more says so.
-pub fn as_many_as_allowed() {
+pub(super) fn as_many_as_allowed() {
     #[cfg(unix)]
     {
-        // macOS refuses more than this, whatever it tells of users.
-        #[cfg(target_os = "macos")]
-        const MOST: libc::rlim_t = libc::OPEN_MAX as libc::rlim_t;
-        #[cfg(not(target_os = "macos"))]
-        const MOST: libc::rlim_t = libc::RLIM_INFINITY;
         let mut limit = libc::rlimit {
             rlim_cur: 0,
             rlim_max: 0,
@@ -18,7 +13,13 @@ pub fn as_many_as_allowed() {
         // SAFETY: the limit is live during both calls.
         unsafe {
             if libc::getrlimit(libc::RLIMIT_NOFILE, &raw mut limit) == 0 {
-                limit.rlim_cur = limit.rlim_max.min(MOST);
+                limit.rlim_cur = limit.rlim_max;
+                // macOS refuses more than this, whatever it tells of users.
+                #[cfg(target_os = "macos")]
+                {
+                    let most = libc::OPEN_MAX as libc::rlim_t;
+                    limit.rlim_cur = limit.rlim_cur.min(most);
+                }
                 libc::setrlimit(libc::RLIMIT_NOFILE, &raw const limit);
             }
         }

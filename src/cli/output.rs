@@ -12,15 +12,18 @@ use super::say;
 
 /// The file to write: `given`, or the name of `input` with .h5 in the current folder. `kind`: map
 /// or trace.
-pub fn output_path(given: Option<&Path>, input: &Path, kind: &str) -> Result<PathBuf, Failure> {
-    let path = match given {
-        Some(path) => path.to_owned(),
-        None => {
-            let stem = input.file_stem().unwrap_or(input.as_os_str());
-            let mut name = stem.to_owned();
-            name.push(".h5");
-            PathBuf::from(name)
-        }
+pub(super) fn output_path(
+    given: Option<&Path>,
+    input: &Path,
+    kind: &str,
+) -> Result<PathBuf, Failure> {
+    let path = if let Some(path) = given {
+        path.to_owned()
+    } else {
+        let stem = input.file_stem().unwrap_or(input.as_os_str());
+        let mut name = stem.to_owned();
+        name.push(".h5");
+        PathBuf::from(name)
     };
     let is_folder = path.as_os_str().as_encoded_bytes().ends_with(b"/");
     if is_folder || path.file_name().is_none() {
@@ -49,7 +52,7 @@ pub fn output_path(given: Option<&Path>, input: &Path, kind: &str) -> Result<Pat
 }
 
 /// This program, now, running `command` on `input`.
-pub fn provenance(command: &str, input: &Path) -> Provenance {
+pub(super) fn provenance(command: &str, input: &Path) -> Provenance {
     let now = humantime::format_rfc3339_seconds(representable(SystemTime::now()));
     Provenance {
         program_version: env!("CARGO_PKG_VERSION").into(),
@@ -59,7 +62,7 @@ pub fn provenance(command: &str, input: &Path) -> Provenance {
 }
 
 /// Says what besides cells a map holds, on standard error.
-pub fn tell_assembled(assembled: &Assembled, quiet: bool) {
+pub(super) fn tell_assembled(assembled: &Assembled, quiet: bool) {
     if quiet {
         return;
     }

@@ -70,7 +70,7 @@ fn law_names() -> PossibleValuesParser {
 
 /// A point of parameter space.
 #[derive(Debug)]
-pub struct ParameterArgs {
+pub(super) struct ParameterArgs {
     values: Values,
     law: LawArgs,
 }
@@ -114,7 +114,7 @@ impl FromArgMatches for ParameterArgs {
 
 /// A point of the limit of a short delay.
 #[derive(Debug)]
-pub struct LimitArgs(Values);
+pub(super) struct LimitArgs(Values);
 
 impl LimitArgs {
     const fn of_limit(group: Group) -> bool {
@@ -122,12 +122,12 @@ impl LimitArgs {
     }
 
     /// The value given to a parameter.
-    pub fn get(&self, parameter: Parameter) -> Option<f64> {
+    pub(super) fn get(&self, parameter: Parameter) -> Option<f64> {
         self.0.get(parameter)
     }
 
     /// The first parameter that is given.
-    pub fn any_given(&self) -> Option<Parameter> {
+    pub(super) fn any_given(&self) -> Option<Parameter> {
         Parameter::ALL.into_iter().find(|p| self.get(*p).is_some())
     }
 }
@@ -154,7 +154,7 @@ impl FromArgMatches for LimitArgs {
 }
 
 /// The flag that gives a parameter.
-pub fn flag(parameter: Parameter) -> String {
+pub(super) fn flag(parameter: Parameter) -> String {
     format!("--{}", parameter.name().replace('_', "-"))
 }
 
@@ -183,7 +183,7 @@ impl ParameterArgs {
     }
 
     /// The setting that the flags describe.
-    pub fn setting(&self) -> Result<Setting, Failure> {
+    pub(super) fn setting(&self) -> Result<Setting, Failure> {
         let setting = self.setting_but(&[], "")?;
         setting.sliding_point().map_err(|e| self.refused(&e))?;
         Ok(setting)
@@ -191,7 +191,7 @@ impl ParameterArgs {
 
     /// The setting of a critical velocity: a friction law, no v0, and a delay only where control
     /// acts.
-    pub fn setting_without_v0(&self) -> Result<Setting, Failure> {
+    pub(super) fn setting_without_v0(&self) -> Result<Setting, Failure> {
         if self.law.friction.is_none() {
             return Err(Failure::bad_input_with_help(
                 "--friction is not given: the critical velocity depends on the whole friction law",
@@ -209,14 +209,18 @@ impl ParameterArgs {
     }
 
     /// Whether any parameter is given.
-    pub fn any_given(&self) -> bool {
+    pub(super) fn any_given(&self) -> bool {
         let flags = self.law.friction.is_some() || self.law.table.is_some();
         flags || Parameter::ALL.into_iter().any(|p| self.given(p).is_some())
     }
 
     /// The setting that the flags describe but for the parameters `searched`, which must not be
     /// given. `help` says why.
-    pub fn setting_but(&self, searched: &[Parameter], help: &str) -> Result<Setting, Failure> {
+    pub(super) fn setting_but(
+        &self,
+        searched: &[Parameter],
+        help: &str,
+    ) -> Result<Setting, Failure> {
         self.setting_with(None, searched, help)
     }
 
@@ -257,7 +261,7 @@ impl ParameterArgs {
     }
 
     /// What the model refuses, by the name of the flag that gave it.
-    pub fn refused(&self, error: &ModelError) -> Failure {
+    pub(super) fn refused(&self, error: &ModelError) -> Failure {
         let named = |p: &Parameter| p.name() == error.parameter;
         let Some(parameter) = Parameter::ALL.into_iter().find(named) else {
             return Failure::bad_input(error.to_string());

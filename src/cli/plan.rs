@@ -23,7 +23,7 @@ const ENOUGH: usize = 12;
 const LONGEST_SAMPLE: Duration = Duration::from_secs(6);
 
 #[derive(Debug, clap::Args)]
-pub struct Args {
+pub(super) struct Args {
     /// The sweep file
     #[arg(value_name = "SWEEP.toml")]
     sweep: PathBuf,
@@ -36,7 +36,7 @@ pub struct Args {
     memory: u64,
 }
 
-pub fn main(args: &Args) -> Result<(), Failure> {
+pub(super) fn main(args: &Args) -> Result<(), Failure> {
     let plan = read_plan(&args.sweep)?;
     let asked = args.threads.unwrap_or_else(default_threads);
     let threads = threads_within(&plan, args.memory, asked)?;

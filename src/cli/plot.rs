@@ -16,7 +16,7 @@ use super::signals::Signals;
 const NOT_DRAWN: &str = "the picture is not drawn";
 
 #[derive(Debug, clap::Args)]
-pub struct Args {
+pub(super) struct Args {
     /// The map
     #[arg(value_name = "MAP.h5")]
     map: PathBuf,
@@ -64,7 +64,7 @@ fn parse_at(text: &str) -> Result<(Parameter, f64), String> {
     Ok((parameter, value))
 }
 
-pub fn main(args: &Args) -> Result<(), Failure> {
+pub(super) fn main(args: &Args) -> Result<(), Failure> {
     let signals = Signals::catch()?;
     let map = open(&args.map, &signals, NOT_DRAWN)?;
     let path = match &args.output {
@@ -89,7 +89,7 @@ pub fn main(args: &Args) -> Result<(), Failure> {
 }
 
 /// The name of the picture beside a map.
-pub fn beside(map: &Path) -> PathBuf {
+pub(super) fn beside(map: &Path) -> PathBuf {
     map.with_extension("png")
 }
 

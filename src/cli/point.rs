@@ -20,7 +20,7 @@ const MOST_INTERVALS: usize = 100_000;
 
 #[derive(Debug, clap::Args)]
 #[command(after_help = "Example: slipmap point --mu-prime -0.7 --alpha-v -0.3174 --tau 4.313")]
-pub struct Args {
+pub(super) struct Args {
     #[command(flatten)]
     parameters: ParameterArgs,
     /// How many characteristic roots to list, from the right; pairs count once
@@ -144,7 +144,7 @@ struct CrossingOut {
     direction: &'static str,
 }
 
-pub fn main(args: &Args) -> Result<(), Failure> {
+pub(super) fn main(args: &Args) -> Result<(), Failure> {
     let setting = args.parameters.setting()?;
     let sliding = setting.sliding_point()?;
     let (groups, time_unit) = setting.groups()?;

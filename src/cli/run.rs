@@ -31,7 +31,7 @@ const MOST_THREADS: usize = 4096;
 const PREVIEW_WIDTH: usize = 78;
 
 #[derive(Debug, clap::Args)]
-pub struct Args {
+pub(super) struct Args {
     /// The sweep file
     #[arg(value_name = "SWEEP.toml")]
     sweep: PathBuf,
@@ -61,7 +61,7 @@ pub struct Args {
 }
 
 /// The number of threads of a `--threads` flag.
-pub fn parse_threads(text: &str) -> Result<usize, String> {
+pub(super) fn parse_threads(text: &str) -> Result<usize, String> {
     text.parse()
         .ok()
         .filter(|n| (1..=MOST_THREADS).contains(n))
@@ -69,10 +69,10 @@ pub fn parse_threads(text: &str) -> Result<usize, String> {
 }
 
 /// The memory of a run where none is given.
-pub const MEMORY: &str = "500MB";
+pub(super) const MEMORY: &str = "500MB";
 
 /// The bytes of a `--memory` flag.
-pub fn parse_memory(text: &str) -> Result<u64, String> {
+pub(super) fn parse_memory(text: &str) -> Result<u64, String> {
     text.parse::<ByteSize>()
         .map(|size| size.as_u64())
         .map_err(|_| "expected a size such as 500MB or 2GiB".to_owned())
@@ -84,7 +84,7 @@ fn useful(plan: &Plan, asked: usize) -> usize {
 }
 
 /// As many of the threads that are `asked` for as are useful and stay within `memory` bytes.
-pub fn threads_within(plan: &Plan, memory: u64, asked: usize) -> Result<usize, Failure> {
+pub(super) fn threads_within(plan: &Plan, memory: u64, asked: usize) -> Result<usize, Failure> {
     let needs = Memory::of(plan);
     needs.threads_within(memory, useful(plan, asked)).ok_or_else(|| {
         let (least, given) = (bytes(needs.on(1)), bytes(memory));
@@ -109,11 +109,11 @@ fn parse_seconds(text: &str) -> Result<Duration, String> {
 }
 
 /// As many threads as the machine offers to this process.
-pub fn default_threads() -> usize {
+pub(super) fn default_threads() -> usize {
     std::thread::available_parallelism().map_or(1, usize::from)
 }
 
-pub fn main(args: &Args) -> Result<(), Failure> {
+pub(super) fn main(args: &Args) -> Result<(), Failure> {
     let signals = Signals::catch()?;
     let plan = read_plan(&args.sweep)?;
     let path = output_path(args.output.as_deref(), &args.sweep, "map")?;
@@ -219,7 +219,7 @@ fn refuse_other_way(map: &Path, asked: Shard) -> Result<(), Failure> {
 }
 
 /// Says that a map is complete, and draws it where an earlier command did not come to that.
-pub fn nothing_to_do(
+pub(super) fn nothing_to_do(
     path: &Path,
     remark: &str,
     quiet: bool,
@@ -245,7 +245,7 @@ fn lacks_picture(map: &Path) -> bool {
 
 /// Draws a complete map beside it, and on the terminal. What fails here is a warning: the map is
 /// there.
-pub fn show(path: &Path, quiet: bool, signals: &Signals) {
+pub(super) fn show(path: &Path, quiet: bool, signals: &Signals) {
     let complete = format!("{} is complete, the same command draws it", path.display());
     let map = match signals.or_end(&complete, || MapFile::open(path)) {
         Ok(map) => map,
@@ -285,7 +285,11 @@ pub fn show(path: &Path, quiet: bool, signals: &Signals) {
 /// not be replaced.
 ///
 /// `fresh` replaces maps only: another file under that name is more likely a slip than a wish.
-pub fn already_there(path: &Path, plan: &Plan, fresh: bool) -> Result<Option<String>, Failure> {
+pub(super) fn already_there(
+    path: &Path,
+    plan: &Plan,
+    fresh: bool,
+) -> Result<Option<String>, Failure> {
     if !path.exists() {
         return Ok(None);
     }

@@ -5,12 +5,12 @@ use std::fmt::Display;
 use std::io::{StdoutLock, Write};
 
 use serde::Serialize;
-pub use slipmap::report::visible::{shortened, visible, visible_line};
+pub(super) use slipmap::report::visible::{shortened, visible, visible_line};
 
 use super::failure::Failure;
 
 /// A line on standard output: a result. Fails where it cannot be written, a full disk for instance.
-pub fn result(line: impl Display) -> Result<(), Failure> {
+pub(super) fn result(line: impl Display) -> Result<(), Failure> {
     Ok(writeln!(
         std::io::stdout(),
         "{}",
@@ -19,34 +19,34 @@ pub fn result(line: impl Display) -> Result<(), Failure> {
 }
 
 /// Lines of a name and a text on standard output, one below the other.
-pub struct Rows<'o>(StdoutLock<'o>);
+pub(super) struct Rows<'o>(StdoutLock<'o>);
 
 impl Rows<'_> {
     /// Nothing else is written to standard output meanwhile.
-    pub fn begin() -> Self {
+    pub(super) fn begin() -> Self {
         Self(std::io::stdout().lock())
     }
 
     /// Tells one of them. Fails where it cannot be written.
-    pub fn row(&mut self, name: &str, text: impl AsRef<str>) -> Result<(), Failure> {
+    pub(super) fn row(&mut self, name: &str, text: impl AsRef<str>) -> Result<(), Failure> {
         let text = visible_line(text.as_ref());
         Ok(writeln!(self.0, "{name:<12} {text}")?)
     }
 }
 
 /// One JSON object on standard output.
-pub fn json(value: &impl Serialize) -> Result<(), Failure> {
+pub(super) fn json(value: &impl Serialize) -> Result<(), Failure> {
     let text = serde_json::to_string(value).map_err(std::io::Error::from)?;
     let text = slipmap::report::visible::visible_json(&text);
     Ok(writeln!(std::io::stdout(), "{text}")?)
 }
 
 /// A line on standard error: a remark.
-pub fn remark(line: impl Display) {
+pub(super) fn remark(line: impl Display) {
     coloured(visible(&line.to_string()));
 }
 
 /// A line for people, of a text that holds no other control characters than slipmap's own.
-pub fn coloured(text: impl Display) {
+pub(super) fn coloured(text: impl Display) {
     let _ = writeln!(std::io::stderr(), "{text}");
 }

@@ -16,7 +16,7 @@ use super::say;
 const BETWEEN_LOOKS: Duration = Duration::from_millis(50);
 
 /// The signals as flags.
-pub struct Signals {
+pub(super) struct Signals {
     /// One has come.
     pub stop: Arc<AtomicBool>,
     code: Arc<AtomicUsize>,
@@ -27,7 +27,7 @@ impl Signals {
     ///
     /// # Errors
     /// When the system refuses.
-    pub fn catch() -> Result<Self, Failure> {
+    pub(super) fn catch() -> Result<Self, Failure> {
         let (stop, code) = (
             Arc::new(AtomicBool::new(false)),
             Arc::new(AtomicUsize::new(130)),
@@ -50,7 +50,7 @@ impl Signals {
     }
 
     /// The end of a command that was stopped by a signal.
-    pub fn interrupted(&self, message: impl Display) -> Failure {
+    pub(super) fn interrupted(&self, message: impl Display) -> Failure {
         Failure::Interrupted {
             message: format!("interrupted: {message}"),
             code: self.code.load(Ordering::Relaxed) as u8,
@@ -58,7 +58,7 @@ impl Signals {
     }
 
     /// [`Signals::interrupted`] where a signal has come, else `failure`.
-    pub fn or_stopped(&self, failure: Failure, message: impl Display) -> Failure {
+    pub(super) fn or_stopped(&self, failure: Failure, message: impl Display) -> Failure {
         match self.stop.load(Ordering::Relaxed) {
             true => self.interrupted(message),
             false => failure,
@@ -67,7 +67,7 @@ impl Signals {
 
     /// Does work that changes no file and cannot look at a flag, a call of a library for instance.
     /// A signal before or meanwhile ends the process with `message`.
-    pub fn or_end<T>(&self, message: impl Display, work: impl FnOnce() -> T) -> T {
+    pub(super) fn or_end<T>(&self, message: impl Display, work: impl FnOnce() -> T) -> T {
         let busy = Arc::new(AtomicBool::new(true));
         let watch = Watch {
             stop: Arc::clone(&self.stop),

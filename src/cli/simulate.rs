@@ -24,7 +24,7 @@ const EVENTS_SHOWN: usize = 12;
 
 #[derive(Debug, clap::Args)]
 #[command(after_help = "Example: slipmap simulate sweeps/fig3a.toml")]
-pub struct Args {
+pub(super) struct Args {
     /// The case file
     #[arg(value_name = "CASE.toml")]
     case: PathBuf,
@@ -92,7 +92,7 @@ impl MotionOut {
     }
 }
 
-pub fn main(args: &Args) -> Result<(), Failure> {
+pub(super) fn main(args: &Args) -> Result<(), Failure> {
     let signals = Signals::catch()?;
     let spec = read_case(&args.case)?;
     let path = output_path(args.output.as_deref(), &args.case, "trace")?;

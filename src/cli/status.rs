@@ -20,7 +20,7 @@ use super::say::{self, Rows};
 const MOST_OF_LOG: u64 = 64 << 20;
 
 #[derive(Debug, clap::Args)]
-pub struct Args {
+pub(super) struct Args {
     /// The map, there or still to come
     #[arg(value_name = "MAP.h5")]
     map: PathBuf,
@@ -29,7 +29,7 @@ pub struct Args {
     json: bool,
 }
 
-pub fn main(args: &Args) -> Result<(), Failure> {
+pub(super) fn main(args: &Args) -> Result<(), Failure> {
     let status = match Survey::of(&args.map)? {
         Some(survey) => of_tiles(&args.map, &survey),
         None => of_map(&args.map)?,

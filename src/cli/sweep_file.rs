@@ -14,19 +14,19 @@ use super::failure::Failure;
 const MOST_BYTES: u64 = 16 << 20;
 
 /// The plan of the sweep file at `path`.
-pub fn read_plan(path: &Path) -> Result<Plan, Failure> {
+pub(super) fn read_plan(path: &Path) -> Result<Plan, Failure> {
     read(path, "sweep", |text| {
         text.parse::<SweepSpec>().and_then(Plan::new)
     })
 }
 
 /// The case of the case file at `path`.
-pub fn read_case(path: &Path) -> Result<CaseSpec, Failure> {
+pub(super) fn read_case(path: &Path) -> Result<CaseSpec, Failure> {
     read(path, "case", str::parse)
 }
 
 /// The friction curve of the two columns in the file at `path`.
-pub fn read_table(path: &Path) -> Result<Table, Failure> {
+pub(super) fn read_table(path: &Path) -> Result<Table, Failure> {
     read(path, "table", table_of_columns)
 }
 

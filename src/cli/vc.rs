@@ -23,7 +23,7 @@ use super::parameters::{LimitArgs, ParameterArgs, flag};
   slipmap vc --friction weakening --mu0 0.5 --v-s 0.5 --alpha-v=-0.33 --tau 4.15 \
 --protocol switch-on --phase 0.2
   slipmap vc --protocol limit --gamma 0.25 --mu-ratio 0.5")]
-pub struct Args {
+pub(super) struct Args {
     #[command(flatten)]
     parameters: ParameterArgs,
     /// Which question is asked
@@ -78,7 +78,7 @@ struct Limit {
 }
 
 /// Runs the subcommand.
-pub fn main(args: &Args) -> Result<(), Failure> {
+pub(super) fn main(args: &Args) -> Result<(), Failure> {
     args.check()?;
     let mut out = std::io::stdout().lock();
     match args.protocol {

@@ -15,7 +15,7 @@ use super::say::{self, Rows};
 const MOST: u64 = 100_000_000;
 
 #[derive(Debug, clap::Args)]
-pub struct Args {
+pub(super) struct Args {
     /// The map
     #[arg(value_name = "MAP.h5")]
     map: PathBuf,
@@ -32,7 +32,7 @@ pub struct Args {
     json: bool,
 }
 
-pub fn main(args: &Args) -> Result<(), Failure> {
+pub(super) fn main(args: &Args) -> Result<(), Failure> {
     let map = MapFile::open(&args.map)?;
     let effort = Effort {
         cells: args.cells,

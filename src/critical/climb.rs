@@ -94,24 +94,24 @@ pub(super) struct Seen([[f64; 3]; GAUGES]);
 
 impl Seen {
     /// Before the first period.
-    pub fn none() -> Self {
+    pub(super) fn none() -> Self {
         Self([[f64::NAN; 3]; GAUGES])
     }
 
     /// Whether there is none yet.
-    pub fn none_yet(&self) -> bool {
+    pub(super) fn none_yet(&self) -> bool {
         self.0[LOAD][2].is_nan()
     }
 
     /// One more period.
-    pub fn push(&mut self, period: &Period) {
+    pub(super) fn push(&mut self, period: &Period) {
         for (seen, gauge) in self.0.iter_mut().zip(period.gauges()) {
             *seen = [seen[1], seen[2], gauge];
         }
     }
 
     /// Whether they have come to rest, at `v0`.
-    pub fn settled(&self, settled: f64, v0: f64) -> bool {
+    pub(super) fn settled(&self, settled: f64, v0: f64) -> bool {
         let speed = |gauge: usize| gauge < LOAD || gauge == DIP;
         let mut seen = self.0.iter().enumerate();
         !self.0[LOAD][0].is_nan()
@@ -122,7 +122,7 @@ impl Seen {
     }
 
     /// What they come to.
-    pub fn limits(&self) -> [f64; GAUGES] {
+    pub(super) fn limits(&self) -> [f64; GAUGES] {
         self.0.map(limit)
     }
 }
@@ -146,7 +146,7 @@ pub(super) struct Place {
 
 impl Place {
     /// Before anything is known of how it changes.
-    pub fn first(v0: f64, period: Period, gauges: [f64; GAUGES], settled: f64) -> Self {
+    pub(super) fn first(v0: f64, period: Period, gauges: [f64; GAUGES], settled: f64) -> Self {
         Self {
             v0,
             period,
@@ -160,7 +160,7 @@ impl Place {
 
     /// By how much v0 has to grow until the first gauge vanishes, relative, and which one; +∞ where
     /// none comes to that.
-    pub fn gap(&self) -> (f64, usize) {
+    pub(super) fn gap(&self) -> (f64, usize) {
         let mut first = (f64::INFINITY, LOAD);
         for (i, (gauge, slope)) in self.gauges.iter().zip(&self.slopes).enumerate() {
             let gap = -gauge / slope / self.v0;

@@ -31,7 +31,7 @@ pub(super) enum RoadEnd {
 
 impl RoadEnd {
     /// What it tells, found by `method`; none where it does not.
-    pub fn told(&self, method: Method) -> Option<Critical> {
+    pub(super) fn told(&self, method: Method) -> Option<Critical> {
         match self {
             Self::Graze(v0, period) => Some(of_orbit((*v0, End::Grazing), period, method)),
             Self::Vanish(v0, period) => Some(of_orbit((*v0, End::Fold), period, method)),
@@ -41,7 +41,7 @@ impl RoadEnd {
     }
 
     /// The v0 at which stick-slip ends, where that is known.
-    pub fn end(&self) -> Option<f64> {
+    pub(super) fn end(&self) -> Option<f64> {
         match self {
             Self::Graze(v0, _) | Self::Vanish(v0, _) | Self::LiftOff(v0) => Some(*v0),
             Self::Changes(_) | Self::Persists(_) | Self::Irregular | Self::Unclear => None,

@@ -126,7 +126,7 @@ impl Orbit {
 
     /// The orbit from the first start at which the block does not lift off, with its first place;
     /// none where it does not stick again there, or lifts off at all of them.
-    pub fn sustained(problem: &Problem, accuracy: Accuracy) -> Option<(Self, Place)> {
+    pub(super) fn sustained(problem: &Problem, accuracy: Accuracy) -> Option<(Self, Place)> {
         for start in STARTS {
             let v0 = start * problem.law.mu_s();
             let mut road = Self::released(problem, v0, accuracy);
@@ -146,7 +146,7 @@ impl Orbit {
 
     /// Of a `motion` that is released in stick-slip of so many `slips`, at most [`MOST_SLIPS`], in
     /// a period.
-    pub fn of(motion: Motion, slips: usize) -> Self {
+    pub(super) fn of(motion: Motion, slips: usize) -> Self {
         let v0 = motion.parameters().v0;
         let at = At {
             motion,
@@ -166,27 +166,27 @@ impl Orbit {
     }
 
     /// The motion that was kept last.
-    pub fn motion(&self) -> &Motion {
+    pub(super) fn motion(&self) -> &Motion {
         &self.kept.motion
     }
 
     /// The gauges of the first period of the last trial, before it came to rest.
-    pub fn first_gauges(&self) -> &[f64; GAUGES] {
+    pub(super) fn first_gauges(&self) -> &[f64; GAUGES] {
         &self.first
     }
 
     /// Where it was kept last.
-    pub fn place_kept(&self) -> &At {
+    pub(super) fn place_kept(&self) -> &At {
         &self.kept
     }
 
     /// The motion that was tried last.
-    pub fn tried(&self) -> &Motion {
+    pub(super) fn tried(&self) -> &Motion {
         &self.tried.motion
     }
 
     /// Begins its period so many slips later; false where it does not come to that.
-    pub fn rotate(&mut self, by: usize, period: &Period) -> bool {
+    pub(super) fn rotate(&mut self, by: usize, period: &Period) -> bool {
         let stops = period.stops();
         let rides = |motion: &mut Motion| {
             let mut stops = stops.iter().take(by);
@@ -201,7 +201,7 @@ impl Orbit {
     }
 
     /// The place to begin with; none where there is no stick-slip.
-    pub fn first_place(&mut self) -> Option<Place> {
+    pub(super) fn first_place(&mut self) -> Option<Place> {
         let v0 = self.kept.v0;
         let Ran::Period(period, gauges) = self.trial(v0, None, f64::INFINITY) else {
             return None;
@@ -213,7 +213,7 @@ impl Orbit {
     /// Starts with another delay and `v0` from where it ended; with a motion that ended likewise at
     /// another delay, from both pasts, extrapolated by `share` of what lies between them. Slopes
     /// are taken to be those of a place `like` it.
-    pub fn restart(
+    pub(super) fn restart(
         &mut self,
         before: Option<(&mut At, f64)>,
         (v0, tau): (f64, f64),

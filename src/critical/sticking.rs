@@ -35,7 +35,7 @@ pub(super) struct Sticking {
 
 impl Sticking {
     /// Of a motion that has just been released, at t = 0.
-    pub const fn new(patience: f64, slides: bool) -> Self {
+    pub(super) const fn new(patience: f64, slides: bool) -> Self {
         Self {
             patience,
             until: patience,
@@ -56,14 +56,14 @@ impl Sticking {
 
     /// Whether it still sticks, for longer than it was waited for to do so periodically, or has
     /// come back to it again and again.
-    pub fn goes_on(&self) -> bool {
+    pub(super) fn goes_on(&self) -> bool {
         self.now >= self.until && self.recently() || self.returns >= RETURNS
     }
 
     /// Whether it slips forwards, and has come nearer to stable sliding for long. That far from any
     /// stick only the amplitude of its oscillation is left to change, slowly, and goes on as it
     /// does.
-    pub fn calms_down(&self) -> bool {
+    pub(super) fn calms_down(&self) -> bool {
         self.slides && self.rises >= RISES
     }
 

@@ -6,7 +6,7 @@ use crate::slip::outcome::Observer;
 
 /// How long a block that slips is waited for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Waiting {
+pub(super) enum Waiting {
     /// For a few cycles: v0 glides on.
     Brief,
     /// Until the minima of ẋ have not fallen for three windows of time.
@@ -22,7 +22,7 @@ pub enum Waiting {
 impl Waiting {
     /// Stick-slip that does not repeat within so many cycles under the delay `tau` is irregular.
     #[must_use]
-    pub fn cycles(self, tau: f64) -> usize {
+    pub(super) fn cycles(self, tau: f64) -> usize {
         match self {
             Self::Brief => 4 + (0.5 * tau) as usize,
             Self::Short => 12 + tau as usize,
@@ -52,7 +52,7 @@ const ENOUGH: u32 = 6;
 
 /// Sees the stops of a motion, and the minima of ẋ where it does not stop.
 #[derive(Debug, Clone, Copy)]
-pub struct Stops {
+pub(super) struct Stops {
     /// When the last one was.
     pub last: f64,
     /// How many there were.
@@ -79,7 +79,7 @@ pub struct Stops {
 impl Stops {
     /// Of a motion from now on; `slides`: whether sliding is linearly stable.
     #[must_use]
-    pub fn new(motion: &Motion, slides: bool, waiting: Waiting) -> Self {
+    pub(super) fn new(motion: &Motion, slides: bool, waiting: Waiting) -> Self {
         let p = motion.parameters();
         let delay = if p.switch_on.is_finite() { p.tau } else { 0.0 };
         let window = delay + 2.0 * std::f64::consts::TAU;
@@ -103,7 +103,7 @@ impl Stops {
     /// The shallowest stop of the last period, of so many `slips`: the time to its minimum, and its
     /// depth.
     #[must_use]
-    pub fn shallowest(&self, slips: u32) -> (f64, f64) {
+    pub(super) fn shallowest(&self, slips: u32) -> (f64, f64) {
         let recent = (slips.max(1) as usize).min(RECENT).min(self.count as usize);
         let deepest = (f64::NAN, f64::NEG_INFINITY);
         (1..=recent).fold(deepest, |shallowest, back| {
@@ -118,13 +118,13 @@ impl Stops {
 
     /// Whether the block has slipped for long and come no nearer to a stop.
     #[must_use]
-    pub fn slips_on(&self) -> bool {
+    pub(super) fn slips_on(&self) -> bool {
         self.calm >= self.waiting.windows() || self.calm >= ENOUGH && 2 * self.calm >= self.windows
     }
 
     /// Whether it has grown far beyond stick-slip.
     #[must_use]
-    pub fn far(&self) -> bool {
+    pub(super) fn far(&self) -> bool {
         self.far
     }
 

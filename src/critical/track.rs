@@ -116,7 +116,7 @@ const KNOWN_ENDS: usize = 4;
 
 impl Track {
     /// From the end that was `found` of `problem` at the last place of `road`.
-    pub fn new(problem: &Problem, road: Orbit, at: Place, found: &RoadEnd) -> Self {
+    pub(super) fn new(problem: &Problem, road: Orbit, at: Place, found: &RoadEnd) -> Self {
         let ending = Ending::of(found);
         Self {
             road,
@@ -142,7 +142,7 @@ impl Track {
     }
 
     /// This end, with what is known of one that was come to from scratch at this delay.
-    pub fn like(mut self, other: &Self) -> Self {
+    pub(super) fn like(mut self, other: &Self) -> Self {
         (self.decided, self.one_kind) = (other.decided, other.one_kind);
         self
     }
@@ -150,7 +150,7 @@ impl Track {
     /// The end of stick-slip of `problem`, which differs by its delay alone from the one before;
     /// none where the orbit before does not lead to its end. After that the track is of no more
     /// use.
-    pub fn next(&mut self, problem: &Problem) -> Option<RoadEnd> {
+    pub(super) fn next(&mut self, problem: &Problem) -> Option<RoadEnd> {
         let mut trials = MOST_TRIALS;
         self.approach(problem, &mut trials)
     }
@@ -291,12 +291,12 @@ impl Track {
     }
 
     /// Whether the last end was not where the ends before made it expected.
-    pub fn surprised(&self) -> bool {
+    pub(super) fn surprised(&self) -> bool {
         self.ends.len() == KNOWN_ENDS && self.off > SURPRISE
     }
 
     /// Whether it was seen that stick-slip ends where the last cell says.
-    pub fn seen(&self) -> bool {
+    pub(super) fn seen(&self) -> bool {
         self.unseen == 0
     }
 
@@ -314,7 +314,7 @@ impl Track {
 
     /// Learns of the cell before, whose end was found otherwise: an end like its own expects the
     /// next one better.
-    pub fn recall(&mut self, tau: f64, end: f64) {
+    pub(super) fn recall(&mut self, tau: f64, end: f64) {
         if self.ends.len() < KNOWN_ENDS && self.ends.first().is_some_and(|first| tau < first.0) {
             self.ends.insert(0, (tau, end));
             self.off = self.ending.nearest()[1].max(0.25 * self.off);

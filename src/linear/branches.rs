@@ -60,7 +60,7 @@ impl Pair {
 /// holds.
 ///
 /// `tau` > 0 in units of √(M/κ). Control must act.
-pub fn starting_values(groups: Groups, tau: f64, line: f64, starts: &mut Vec<Complex64>) {
+pub(super) fn starting_values(groups: Groups, tau: f64, line: f64, starts: &mut Vec<Complex64>) {
     starts.clear();
     let pair = Pair::new(groups);
     let radius = root_bound(groups, tau, line);

@@ -16,7 +16,7 @@ use std::f64::consts::PI;
 use faer::diag::Diag;
 use faer::dyn_stack::{MemBuffer, MemStack};
 use faer::linalg::evd::{ComputeEigenvectors, evd_real, evd_scratch};
-use faer::{Mat, Par};
+use faer::{Mat, Par, Spec};
 use num_complex::Complex64;
 
 use crate::model::Groups;
@@ -55,7 +55,7 @@ pub fn eigenvalues(groups: Groups, tau: f64, nodes: usize) -> Option<Vec<Complex
         ComputeEigenvectors::No,
         ComputeEigenvectors::No,
         Par::Seq,
-        Default::default(),
+        Spec::default(),
     );
     let mut memory = MemBuffer::new(scratch);
     evd_real(
@@ -66,7 +66,7 @@ pub fn eigenvalues(groups: Groups, tau: f64, nodes: usize) -> Option<Vec<Complex
         None,
         Par::Seq,
         MemStack::new(&mut memory),
-        Default::default(),
+        Spec::default(),
     )
     .ok()?;
     let mut values: Vec<Complex64> = (0..size)

@@ -428,7 +428,7 @@ impl<'a, F: Fn(f64) -> Crossings> Stretch<'a, F> {
                 (-1, 1) => stretches.push((edge(lo), edge(hi))),
                 (1, -1) => stretches.push((edge(hi), edge(lo))),
                 (0, outside) => {
-                    stretches.extend(from.take().map(|start| (start, edge(bound(outside)))))
+                    stretches.extend(from.take().map(|start| (start, edge(bound(outside)))));
                 }
                 (outside, _) => from = Some(edge(bound(outside))),
             }

@@ -13,7 +13,7 @@ pub(super) struct Rounded {
 impl Rounded {
     /// The sum of `terms`.
     #[inline(always)]
-    pub fn sum<const N: usize>(terms: [f64; N]) -> Self {
+    pub(super) fn sum<const N: usize>(terms: [f64; N]) -> Self {
         let (mut value, mut size) = (0.0, 0.0);
         for term in terms {
             value += term;
@@ -26,7 +26,7 @@ impl Rounded {
     }
 
     #[inline(always)]
-    pub fn plus_error(self, error: f64) -> Self {
+    pub(super) fn plus_error(self, error: f64) -> Self {
         Self {
             error: self.error + error,
             ..self
@@ -35,7 +35,7 @@ impl Rounded {
 
     /// `by` is as good as exact.
     #[inline(always)]
-    pub fn scaled(self, by: f64) -> Self {
+    pub(super) fn scaled(self, by: f64) -> Self {
         Self {
             value: by * self.value,
             error: by.abs() * self.error,
@@ -43,12 +43,12 @@ impl Rounded {
     }
 
     #[inline(always)]
-    pub fn minus(self, other: Self) -> Self {
+    pub(super) fn minus(self, other: Self) -> Self {
         Self::sum([self.value, -other.value]).plus_error(self.error + other.error)
     }
 
     #[inline(always)]
-    pub fn times(self, other: Self) -> Self {
+    pub(super) fn times(self, other: Self) -> Self {
         let value = self.value * other.value;
         let error = self.value.abs() * other.error + other.value.abs() * self.error;
         Self {
@@ -59,7 +59,7 @@ impl Rounded {
 
     /// The sign is beyond doubt.
     #[inline(always)]
-    pub fn decided(self) -> bool {
+    pub(super) fn decided(self) -> bool {
         self.value.abs() > self.error
     }
 }

@@ -148,7 +148,9 @@ impl Row<'_> {
 
     #[cold]
     fn flag(&self, status: &mut [u8], flag: u8) {
-        status.iter_mut().for_each(|s| *s |= flag);
+        for s in status {
+            *s |= flag;
+        }
         self.flagged.set(true);
     }
 

@@ -43,7 +43,7 @@ impl Iterator for StableDelays {
     }
 }
 
-fn nth_delay(crossing: &Option<Crossing>, i: u64) -> Option<f64> {
+fn nth_delay(crossing: Option<&Crossing>, i: u64) -> Option<f64> {
     crossing.map(|c| c.delay(c.first_branch + i))
 }
 
@@ -73,10 +73,10 @@ impl Crossings {
         let from = match (stable_at_once, i) {
             _ if self.always_marginal => None,
             (true, 0) => Some(0.0),
-            (true, i) => nth_delay(&self.lower, i - 1),
-            (false, i) => nth_delay(&self.lower, i),
+            (true, i) => nth_delay(self.lower.as_ref(), i - 1),
+            (false, i) => nth_delay(self.lower.as_ref(), i),
         }?;
-        let to = nth_delay(&self.upper, i).unwrap_or(f64::INFINITY);
+        let to = nth_delay(self.upper.as_ref(), i).unwrap_or(f64::INFINITY);
         (from < to).then_some(StableInterval { from, to })
     }
 

@@ -231,7 +231,9 @@ fn compute(
 ) -> Result<(), RunError<StoreError>> {
     let mut todo = Todo::new(plan.pieces(), shard, job.order);
     let done: Vec<Piece> = folder.done().collect();
-    done.into_iter().for_each(|piece| todo.mark_done(piece));
+    for piece in done {
+        todo.mark_done(piece);
+    }
     engine::run(plan, todo, job.threads, folder, observer, stop)
 }
 

@@ -18,6 +18,9 @@ pub struct LinearCase {
 
 /// The parameters of the letter's Fig. 3(a), velocity control, and Fig. 3(b), load control: both
 /// stable.
+///
+/// # Panics
+/// Never: the letter's law is well posed.
 #[must_use]
 pub fn letter_fig3() -> [LinearCase; 2] {
     let case = |source, v0, alpha_v, alpha_n, tau| {

@@ -303,7 +303,7 @@ mod tests {
         for (width, _) in widths.iter().zip(&mu_k[1..]) {
             speeds.push(speeds[speeds.len() - 1] + width);
         }
-        Table::new(speeds, mu_k[..widths.len() + 1].to_vec()).unwrap()
+        Table::new(speeds, mu_k[..=widths.len()].to_vec()).unwrap()
     }
 
     fn points() -> impl Strategy<Value = Table> {
@@ -419,7 +419,7 @@ mod tests {
         ] {
             match wrong(&speeds, &mu_k) {
                 TableError::Value { column, index, .. } => assert_eq!((column, index), at),
-                other => panic!("{other}"),
+                other @ TableError::Count { .. } => panic!("{other}"),
             }
         }
     }

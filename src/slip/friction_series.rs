@@ -30,7 +30,7 @@ pub(super) enum FrictionSeries {
 
 impl FrictionSeries {
     /// For `law` at the speed 0, with ẋ in units of `velocity_unit`.
-    pub fn new(law: &FrictionLaw, velocity_unit: f64) -> Self {
+    pub(super) fn new(law: &FrictionLaw, velocity_unit: f64) -> Self {
         let zero = [0.0; MOST_ORDER + 1];
         match law.kind() {
             &Kind::Coulomb { mu0 } => Self::Coulomb(Coulomb { mu0 }),
@@ -55,7 +55,7 @@ impl FrictionSeries {
     }
 
     /// Goes on from `speed`, wherever it was before.
-    pub fn restart(&mut self, speed: f64) {
+    pub(super) fn restart(&mut self, speed: f64) {
         if let Self::Table(series) = self {
             series.restart(speed);
         }
@@ -67,7 +67,7 @@ impl FrictionSeries {
     /// Coulomb's law and a cubic of a table are polynomials of the speed, and the pole of velocity
     /// weakening makes its coefficients grow as fast as its distance asks for. Stribeck's Gaussian
     /// alone can hide from them.
-    pub fn resolved(&self, speed: &[f64], length: f64, error: f64) -> f64 {
+    pub(super) fn resolved(&self, speed: &[f64], length: f64, error: f64) -> f64 {
         match self {
             Self::Stribeck(series) => series.resolved(speed, length, error),
             Self::Coulomb(_) | Self::Weakening(_) | Self::Table(_) => length,
@@ -75,7 +75,7 @@ impl FrictionSeries {
     }
 
     /// Goes on from where `other` is, the series of the same law.
-    pub fn copy_place(&mut self, other: &Self) {
+    pub(super) fn copy_place(&mut self, other: &Self) {
         if let (Self::Table(series), Self::Table(other)) = (self, other) {
             series.copy_place(other);
         }

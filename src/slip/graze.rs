@@ -31,7 +31,9 @@ impl Step {
     pub fn minimum_beyond_stop(&self) -> (f64, f64) {
         let mut about = shifted(Self::range(&self.u, self.order), self.length);
         if about[1] > 0.0 {
-            about.iter_mut().for_each(|c| *c = -*c);
+            for c in &mut about {
+                *c = -*c;
+            }
         }
         let (fall, bend) = (-about[1], 2.0 * about[2]);
         if bend <= 0.0 {

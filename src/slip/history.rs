@@ -72,7 +72,7 @@ pub(super) struct History {
 impl History {
     /// Makes it the history a = `a` for all times before `now`; jumps of the order `felt` and
     /// higher are not felt.
-    pub fn restart(&mut self, a: f64, now: f64, felt: u32) {
+    pub(super) fn restart(&mut self, a: f64, now: f64, felt: u32) {
         let mut coefficients = [0.0; MOST_ORDER + 1];
         coefficients[0] = a;
         self.felt = felt;
@@ -89,7 +89,7 @@ impl History {
     }
 
     /// A past of at least two delays in which a has grown at the rate `rate`, to `a` at time 0.
-    pub fn restart_rising(&mut self, a: f64, rate: f64, tau: f64) {
+    pub(super) fn restart_rising(&mut self, a: f64, rate: f64, tau: f64) {
         self.restart(a, 0.0, self.felt);
         let past = 3.0 * tau;
         let piece = &mut self.pieces[0];
@@ -102,23 +102,23 @@ impl History {
     /// stay within the tolerance, which at the end of its radius is its last term, of this `order`.
     /// It stands in for its neighbours as far as it is them, to some times the `tolerance`: errors
     /// of its middle terms do not show in the last ones.
-    pub fn look_ahead(&mut self, gain: f64, order: usize, tolerance: f64) {
+    pub(super) fn look_ahead(&mut self, gain: f64, order: usize, tolerance: f64) {
         self.apart = NEIGHBOURS_APART * tolerance;
         self.ahead = SHARE.min(1.0 / rough_root(gain, order));
     }
 
     /// The part of a radius to which it does so.
-    pub fn ahead(&self) -> f64 {
+    pub(super) fn ahead(&self) -> f64 {
         self.ahead
     }
 
     /// Jumps of the order `felt` and higher are not felt from now on.
-    pub fn feel(&mut self, felt: u32) {
+    pub(super) fn feel(&mut self, felt: u32) {
         self.felt = felt;
     }
 
     /// Becomes a copy of `other`, in memory that is there.
-    pub fn copy_from(&mut self, other: &Self) {
+    pub(super) fn copy_from(&mut self, other: &Self) {
         self.pieces.clear();
         self.pieces.extend(other.pieces.iter().cloned());
         (self.at, self.felt) = (other.at, other.felt);
@@ -130,7 +130,7 @@ impl History {
     ///
     /// What is alike in the two pasts stands at the same place of stretches of time that follow one
     /// another, back and back again through `stretches`, the last one first.
-    pub fn extrapolate(
+    pub(super) fn extrapolate(
         &mut self,
         (last, before): (&mut Self, &mut Self),
         share: f64,
@@ -205,7 +205,7 @@ impl History {
     }
 
     /// Moves everything by `time`.
-    pub fn shift(&mut self, time: f64) {
+    pub(super) fn shift(&mut self, time: f64) {
         for piece in &mut self.pieces {
             piece.from += time;
             piece.to += time;
@@ -215,7 +215,7 @@ impl History {
     /// Adds the step from the end of the last one to `to`; its polynomial holds there, and for
     /// `radius` from its start, both ways. False where there is no room for it.
     #[must_use]
-    pub fn push(&mut self, to: f64, radius: f64, a: &[f64], kink: u32) -> bool {
+    pub(super) fn push(&mut self, to: f64, radius: f64, a: &[f64], kink: u32) -> bool {
         let from = self.pieces.back().map_or(to, |p| p.to);
         let mut coefficients = [0.0; MOST_ORDER + 1];
         coefficients[..a.len()].copy_from_slice(a);
@@ -230,7 +230,7 @@ impl History {
     }
 
     /// Whether no step has room any more.
-    pub fn is_full(&self) -> bool {
+    pub(super) fn is_full(&self) -> bool {
         self.pieces.len() >= MOST_KEPT
     }
 
@@ -243,7 +243,7 @@ impl History {
     }
 
     /// Forgets what ended before `time`.
-    pub fn forget_before(&mut self, time: f64) {
+    pub(super) fn forget_before(&mut self, time: f64) {
         while self.pieces.len() > 1 && self.pieces[0].to < time {
             self.pieces.pop_front();
             self.at = self.at.saturating_sub(1);
@@ -252,7 +252,7 @@ impl History {
 
     /// Writes the polynomial of a from `time` on, as one of the time since then, to `out`; zero
     /// beyond its order. `latest` is the order of the kink at the end of the last step.
-    pub fn read(&mut self, time: f64, latest: u32, out: &mut Coefficients) -> Reach {
+    pub(super) fn read(&mut self, time: f64, latest: u32, out: &mut Coefficients) -> Reach {
         // `time` is rounded as the present is, one delay later: with less than that a step could be
         // too short to move on.
         let now = self.pieces.back().map_or(0.0, |p| p.to.abs());
@@ -291,7 +291,7 @@ impl History {
     }
 
     /// What the last polynomial says at `time`, beyond its end.
-    pub fn foreseen(&self, time: f64) -> f64 {
+    pub(super) fn foreseen(&self, time: f64) -> f64 {
         self.pieces.back().map_or(f64::NAN, |last| {
             value(&last.a[..=last.order], time - last.from)
         })

@@ -633,7 +633,7 @@ impl Motion {
             let room = self.tolerance / ratio;
             (roughest_log2(room) / k as f64, room, k)
         });
-        let shorter = if asked[0].0 < asked[1].0 { 0 } else { 1 };
+        let shorter = usize::from(asked[0].0 >= asked[1].0);
         let (_, room, k) = asked[shorter];
         let length = rough_root(room, k);
         if self.mode == Mode::Stick {
@@ -702,7 +702,9 @@ impl Motion {
     fn speed(&self) -> Coefficients {
         let mut speed = self.step.u;
         if self.mode == Mode::Backwards {
-            speed.iter_mut().for_each(|u| *u = -*u);
+            for u in &mut *speed {
+                *u = -*u;
+            }
         }
         if speed[0] == 0.0 {
             let backwards = -RELEASED * self.force_noise()..0.0;

@@ -41,7 +41,7 @@ pub(super) struct Crossing {
 
 impl TableSeries {
     /// At the speed 0, with ẋ in units of `velocity_unit`.
-    pub fn new(table: &Table, velocity_unit: f64) -> Self {
+    pub(super) fn new(table: &Table, velocity_unit: f64) -> Self {
         let zero = [0.0; MOST_ORDER + 1];
         let mut series = Self {
             table: table.clone(),
@@ -58,7 +58,7 @@ impl TableSeries {
     }
 
     /// Goes on from `speed`, wherever it was before.
-    pub fn restart(&mut self, speed: f64) {
+    pub(super) fn restart(&mut self, speed: f64) {
         let region = match self.table.region(speed * self.velocity_unit) {
             Ok(point) => point + 1,
             Err(region) => region,
@@ -67,7 +67,7 @@ impl TableSeries {
     }
 
     /// Goes on with the cubic of `region`.
-    pub fn enter(&mut self, region: usize) {
+    pub(super) fn enter(&mut self, region: usize) {
         let piece = self.table.piece(region);
         self.region = region;
         self.piece = Piece {
@@ -78,12 +78,12 @@ impl TableSeries {
     }
 
     /// Goes on with the cubic that `other` is on.
-    pub fn copy_place(&mut self, other: &Self) {
+    pub(super) fn copy_place(&mut self, other: &Self) {
         (self.region, self.piece) = (other.region, other.piece);
     }
 
     /// μ_K by the cubic in use, which goes on beyond its ends.
-    pub fn value(&self, speed: f64) -> f64 {
+    pub(super) fn value(&self, speed: f64) -> f64 {
         let w = (speed - self.piece.from) / self.piece.width;
         let [c0, c1, c2, c3] = self.piece.c;
         ((c3 * w + c2) * w + c1) * w + c0
@@ -96,7 +96,7 @@ impl TableSeries {
     }
 
     /// Where |ẋ|, whose series is `speed`, first leaves the cubic in use within `length`.
-    pub fn crossing(&self, speed: &[f64], length: f64, tolerance: f64) -> Option<Crossing> {
+    pub(super) fn crossing(&self, speed: &[f64], length: f64, tolerance: f64) -> Option<Crossing> {
         let last = self.table.speeds().len() - 1;
         let slack = (0.125 * tolerance * self.piece.width).max(noise(speed, length));
         let mut first: Option<Crossing> = None;

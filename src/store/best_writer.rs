@@ -27,7 +27,7 @@ pub(crate) struct BestRow {
 }
 
 impl BestRow {
-    pub fn of(found: Option<&BestSettings>) -> Self {
+    pub(crate) fn of(found: Option<&BestSettings>) -> Self {
         let Some(found) = found else {
             return Self {
                 numbers: [f64::NAN; 5],
@@ -162,7 +162,7 @@ impl Variables<'_> {
 impl BestWriter {
     /// Creates the group, for the planes of `plan` spanned by the axes `gain` and delay; `axes` are
     /// the map's dimensions.
-    pub fn create(
+    pub(super) fn create(
         parent: &Group,
         dimensions: &mut Dimensions,
         axes: &[DimensionId],
@@ -202,7 +202,7 @@ impl BestWriter {
     }
 
     /// Takes the best setting of the next plane, in order.
-    pub fn append(&mut self, row: &BestRow) {
+    pub(super) fn append(&mut self, row: &BestRow) {
         for (column, value) in self.numbers.iter_mut().zip(row.numbers) {
             column.values.push(value);
         }
@@ -213,7 +213,7 @@ impl BestWriter {
     }
 
     /// Writes what was taken. To be called once, when all planes are there.
-    pub fn finish(&self) -> hdf5::Result<()> {
+    pub(super) fn finish(&self) -> hdf5::Result<()> {
         self.numbers.iter().try_for_each(Column::write)?;
         self.flags.iter().try_for_each(Column::write)?;
         self.regions.write()

@@ -155,7 +155,7 @@ fn append<T: H5Type>(dataset: &Dataset, values: &[T]) -> hdf5::Result<()> {
 
 impl BoundaryWriter {
     /// Creates the group, for the plane of `plan` spanned by the axes `p` and delay.
-    pub fn create(
+    pub(super) fn create(
         parent: &Group,
         dimensions: &mut Dimensions,
         plan: &Plan,
@@ -210,7 +210,7 @@ impl BoundaryWriter {
 
     /// Appends the curves of the next plane, which lies at the values `outer` of the axes outside
     /// of it.
-    pub fn append(&mut self, rows: &CurveRows, outer: &[f64]) -> hdf5::Result<()> {
+    pub(super) fn append(&mut self, rows: &CurveRows, outer: &[f64]) -> hdf5::Result<()> {
         self.waiting.extend(rows);
         let more = [rows.curves(), rows.vertices(), rows.corners()];
         for (length, more) in self.lengths.iter_mut().zip(more) {
@@ -239,7 +239,7 @@ impl BoundaryWriter {
     }
 
     /// Gives the dimensions the lengths that their data have come to.
-    pub fn finish(&mut self, dimensions: &Dimensions) -> hdf5::Result<()> {
+    pub(super) fn finish(&mut self, dimensions: &Dimensions) -> hdf5::Result<()> {
         self.flush()?;
         for (id, length) in self.ids.into_iter().zip(self.lengths) {
             dimensions.scale(id).resize(length)?;

@@ -63,7 +63,7 @@ element!(f64, Strategy::Default, f64::to_bits);
 
 impl ChunkCodec {
     /// The chunk as HDF5 stores it: bytes shuffled (for elements longer than one) and deflated.
-    pub fn encode<T: Element>(&mut self, values: &[T]) -> Chunk {
+    pub(super) fn encode<T: Element>(&mut self, values: &[T]) -> Chunk {
         let Some(key) = constant_key(values) else {
             return self.compress(values);
         };

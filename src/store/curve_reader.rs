@@ -269,6 +269,7 @@ fn part<T: Number>(column: &Dataset, rows: Range<usize>) -> hdf5::Result<Vec<T>>
 
 /// The curves that rows describe, with the values of the axes outside their planes column by
 /// column; none where the columns do not fit together.
+#[must_use]
 pub fn curves_of(rows: &CurveRows, outer: &[Vec<f64>]) -> Option<Vec<MapCurve>> {
     let curves = rows.curves();
     if !rows.is_consistent() || outer.iter().any(|column| column.len() != curves) {

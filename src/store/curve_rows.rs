@@ -224,6 +224,7 @@ boundary_columns! {
 
 impl CurveRows {
     /// The rows of the curves of a plane.
+    #[must_use]
     pub fn of(plane: &BoundaryPlane) -> Self {
         let mut rows = Self::default();
         for of in &plane.curves {
@@ -275,21 +276,25 @@ impl CurveRows {
     }
 
     /// Number of vertices of all curves.
+    #[must_use]
     pub fn vertices(&self) -> usize {
         self.p.len()
     }
 
     /// Number of curves.
+    #[must_use]
     pub fn curves(&self) -> usize {
         self.vertex_count.len()
     }
 
     /// Number of corners.
+    #[must_use]
     pub fn corners(&self) -> usize {
         self.corner_stable.len()
     }
 
     /// Whether the columns have the same lengths, and the curves as many vertices as they say.
+    #[must_use]
     pub fn is_consistent(&self) -> bool {
         let vertices = self.vertex_count.iter().try_fold(0_usize, |sum, &n| {
             usize::try_from(n).ok().and_then(|n| sum.checked_add(n))

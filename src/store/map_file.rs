@@ -266,7 +266,7 @@ impl MapFile {
             false => thinned(row_axis),
         };
         let dataset = self.dataset(field.name())?;
-        let cells = self.read_field(field, &dataset, slab)?;
+        let cells = self.read_field(field, &dataset, &slab)?;
         let cells = if row_axis > column_axis {
             transposed(&cells, columns.len(), rows.len())
         } else {
@@ -296,13 +296,13 @@ impl MapFile {
 
     /// One cell of a field as a number: NaN where it has no value.
     pub(crate) fn cell(&self, field: Field, index: &[usize]) -> Result<f64, StoreError> {
-        let cells = self.read_field(field, &self.dataset(field.name())?, at(index))?;
+        let cells = self.read_field(field, &self.dataset(field.name())?, &at(index))?;
         Ok(cells.first().copied().unwrap_or(f64::NAN))
     }
 
     /// The status of one cell.
     pub(crate) fn cell_status(&self, index: &[usize]) -> Result<u8, StoreError> {
-        let cells = self.read::<u8>(&self.dataset(STATUS)?, at(index))?;
+        let cells = self.read::<u8>(&self.dataset(STATUS)?, &at(index))?;
         Ok(cells.first().copied().unwrap_or(STATUS_FILL))
     }
 
@@ -311,7 +311,7 @@ impl MapFile {
         &self,
         field: Field,
         dataset: &Dataset,
-        slab: Vec<SliceOrIndex>,
+        slab: &[SliceOrIndex],
     ) -> Result<Vec<f64>, StoreError> {
         match field.storage() {
             Storage::Real => self.read(dataset, slab),
@@ -323,9 +323,9 @@ impl MapFile {
     pub(super) fn read<T: Number>(
         &self,
         dataset: &Dataset,
-        slab: Vec<SliceOrIndex>,
+        slab: &[SliceOrIndex],
     ) -> Result<Vec<T>, StoreError> {
-        read(dataset, &slab).map_err(StoreError::hdf5("read", &self.path))
+        read(dataset, slab).map_err(StoreError::hdf5("read", &self.path))
     }
 
     /// The axes of the planes in which the map holds crossing curves; none where it holds no

@@ -138,13 +138,13 @@ fn piece_shape(dataset: &Dataset) -> Vec<usize> {
 /// Every piece of a dataset as a hyperslab, cut at the dataset's edges.
 pub(super) fn for_each_chunk<E>(
     dataset: &Dataset,
-    mut visit: impl FnMut(Vec<SliceOrIndex>) -> Result<(), E>,
+    mut visit: impl FnMut(&[SliceOrIndex]) -> Result<(), E>,
 ) -> Result<(), E> {
     let shape = dataset.shape();
     let chunk = piece_shape(dataset);
     let mut offset = vec![0; shape.len()];
     loop {
-        let slab = offset
+        let slab: Vec<_> = offset
             .iter()
             .zip(&chunk)
             .zip(&shape)
@@ -155,7 +155,7 @@ pub(super) fn for_each_chunk<E>(
                 block: 1,
             })
             .collect();
-        visit(slab)?;
+        visit(&slab)?;
         let mut axis = shape.len();
         loop {
             if axis == 0 {

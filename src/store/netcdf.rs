@@ -35,7 +35,7 @@ pub(super) struct DimensionId(usize);
 impl Dimensions {
     /// Makes `scale`, a one-dimensional dataset, the scale of a new dimension. `name` none: one
     /// with coordinates.
-    pub fn add(&mut self, scale: Dataset, name: Option<&str>) -> hdf5::Result<DimensionId> {
+    pub(super) fn add(&mut self, scale: Dataset, name: Option<&str>) -> hdf5::Result<DimensionId> {
         put_text(&scale, "CLASS", "DIMENSION_SCALE")?;
         let path = scale.name();
         let own = path.rsplit('/').next().unwrap_or(&path);
@@ -49,7 +49,7 @@ impl Dimensions {
     }
 
     /// A dimension without coordinates, extended as data come.
-    pub fn add_bare(&mut self, group: &Group, name: &str) -> hdf5::Result<DimensionId> {
+    pub(super) fn add_bare(&mut self, group: &Group, name: &str) -> hdf5::Result<DimensionId> {
         let scale = named(group.new_dataset_builder())
             .empty::<f32>()
             .shape(0..)
@@ -62,12 +62,16 @@ impl Dimensions {
     }
 
     /// The scale of a dimension.
-    pub fn scale(&self, id: DimensionId) -> &Dataset {
+    pub(super) fn scale(&self, id: DimensionId) -> &Dataset {
         &self.list[id.0].scale
     }
 
     /// Says that `dataset` has these dimensions, in order.
-    pub fn attach(&mut self, dataset: &Dataset, dimensions: &[DimensionId]) -> hdf5::Result<()> {
+    pub(super) fn attach(
+        &mut self,
+        dataset: &Dataset,
+        dimensions: &[DimensionId],
+    ) -> hdf5::Result<()> {
         let mut lists = Vec::with_capacity(dimensions.len());
         for (place, id) in dimensions.iter().enumerate() {
             let dimension = &mut self.list[id.0];
@@ -79,7 +83,7 @@ impl Dimensions {
     }
 
     /// Writes for each scale who uses it. To be called once, when all datasets are attached.
-    pub fn finish(&self) -> hdf5::Result<()> {
+    pub(super) fn finish(&self) -> hdf5::Result<()> {
         for dimension in self.list.iter().filter(|d| !d.uses.is_empty()) {
             let uses: hdf5::Result<Vec<ScaleUse>> = dimension
                 .uses

@@ -233,7 +233,7 @@ fn vet_dataset(dataset: &Dataset) -> Result<(), String> {
         Layout::Chunked => {
             if !matches!(
                 filters(plist.id())[..],
-                [] | [DEFLATE] | [SHUFFLE] | [SHUFFLE, DEFLATE]
+                [] | [DEFLATE | SHUFFLE] | [SHUFFLE, DEFLATE]
             ) {
                 return Err("is stored by filters that slipmap does not use".into());
             }

@@ -54,13 +54,13 @@ impl Sorts {
         map: &MapFile,
         datasets: &[Dataset],
         shape: &[usize],
-        slab: Vec<SliceOrIndex>,
+        slab: &[SliceOrIndex],
     ) -> Result<(), StoreError> {
         let kinds = datasets
             .iter()
-            .map(|dataset| map.read::<u8>(dataset, slab.clone()))
+            .map(|dataset| map.read::<u8>(dataset, slab))
             .collect::<Result<Vec<_>, _>>()?;
-        let (starts, lengths) = extent(&slab);
+        let (starts, lengths) = extent(slab);
         for cell in 0..kinds[0].len() {
             let mut sort = [0; SORTS.len()];
             for (sort, kinds) in sort.iter_mut().zip(&kinds) {

@@ -158,7 +158,7 @@ fn fill_file(
     let numbers: Vec<u8> = trace
         .samples
         .iter()
-        .map(|s| number(&MODES, s.mode))
+        .map(|s| number(&MODES, &s.mode))
         .collect();
     let mode = columns.make("mode", &numbers, FLAG_FILL)?;
     put_flags(&mode, "what the block does", &MODES.map(|(_, name)| name))?;
@@ -171,8 +171,8 @@ fn column(trace: &Trace, of: fn(&Sample) -> f64) -> Vec<f64> {
 }
 
 /// The number of `value` among `all`.
-fn number<T: PartialEq>(all: &[(T, &str)], value: T) -> u8 {
-    let place = all.iter().position(|(known, _)| *known == value);
+fn number<T: PartialEq>(all: &[(T, &str)], value: &T) -> u8 {
+    let place = all.iter().position(|(known, _)| known == value);
     place.map_or(FLAG_FILL, |place| place as u8)
 }
 
@@ -271,7 +271,7 @@ fn put_events(
     let dataset = columns.make("t", &times, f64::NAN)?;
     put_text(&dataset, "long_name", "time of the event")?;
     put_text(&dataset, "units", &TIME.unit(&spec.units))?;
-    let kinds: Vec<u8> = events.iter().map(|e| number(&EVENTS, e.kind)).collect();
+    let kinds: Vec<u8> = events.iter().map(|e| number(&EVENTS, &e.kind)).collect();
     let dataset = columns.make("kind", &kinds, FLAG_FILL)?;
     put_flags(&dataset, "what happens", &EVENTS.map(|(_, name)| name))?;
     let elongations: Vec<f64> = events.iter().map(|e| e.a).collect();

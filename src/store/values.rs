@@ -104,7 +104,7 @@ pub(super) struct Chunks<'d> {
 
 impl<'d> Chunks<'d> {
     /// None where the dataset is not stored in chunks.
-    pub fn of(dataset: &'d Dataset) -> hdf5::Result<Option<Self>> {
+    pub(super) fn of(dataset: &'d Dataset) -> hdf5::Result<Option<Self>> {
         let Some(chunk) = dataset.chunk() else {
             return Ok(None);
         };
@@ -167,7 +167,7 @@ impl<'d> Chunks<'d> {
     /// # Errors
     /// Where they cannot be read, are more than a chunk can have, or readers are told to skip
     /// filters of this chunk.
-    pub fn stored(&self, offset: &[usize]) -> hdf5::Result<Option<Vec<u8>>> {
+    pub(super) fn stored(&self, offset: &[usize]) -> hdf5::Result<Option<Vec<u8>>> {
         let offset: Vec<u64> = offset.iter().map(|&o| o as u64).collect();
         let Some(size) = self.size(&offset)? else {
             return Ok(None);
@@ -223,7 +223,7 @@ impl<'d> Chunks<'d> {
 
     /// The values of a hyperslab, row by row; those of chunks that are not there have the fill
     /// value.
-    pub fn read<T: Number>(&self, slab: &[SliceOrIndex]) -> hdf5::Result<Vec<T>> {
+    pub(super) fn read<T: Number>(&self, slab: &[SliceOrIndex]) -> hdf5::Result<Vec<T>> {
         let picked: Option<Vec<Picked>> = slab.iter().map(Picked::of).collect();
         let picked = picked.filter(|picked| {
             let inside = |(p, &end): (&Picked, &usize)| p.count == 0 || p.index(p.count - 1) < end;

@@ -133,7 +133,7 @@ pub fn run<S: Sink>(
         here(plan, &todo, sink, observer, stop)
     } else if left.0 > 0 {
         let receiver = start(plan, todo, threads, sink, stop)?;
-        receive(plan, receiver, sink, observer, stop)
+        receive(plan, &receiver, sink, observer, stop)
     } else {
         Ok(0)
     };
@@ -264,7 +264,7 @@ fn take<S: Sink>(
 /// time.
 fn receive<S: Sink>(
     plan: &Plan,
-    receiver: Arrivals<S>,
+    receiver: &Arrivals<S>,
     sink: &mut S,
     observer: &dyn Observer,
     stop: &AtomicBool,

@@ -6,7 +6,7 @@ use proptest::test_runner::FileFailurePersistence;
 
 /// Configures `cases` cases; those that fail are kept in the file `kept`, from the package's folder
 /// on.
-pub fn cases(cases: u32, kept: &'static str) -> ProptestConfig {
+pub(crate) fn cases(cases: u32, kept: &'static str) -> ProptestConfig {
     ProptestConfig {
         failure_persistence: Some(Box::new(FileFailurePersistence::Direct(kept))),
         ..ProptestConfig::with_cases(cases)

@@ -5,11 +5,11 @@ use slipmap::model::{FrictionLaw, Table};
 
 #[path = "chance.rs"]
 mod chance;
-pub use chance::Chance;
+pub(crate) use chance::Chance;
 
 impl Chance {
     /// Weakening or Coulomb friction under load, velocity or mixed control.
-    pub fn problem(&mut self) -> Problem {
+    pub(crate) fn problem(&mut self) -> Problem {
         let (mu0, v_s) = (self.between(0.3, 0.7), self.between(0.2, 1.5));
         let law = if self.between(0.0, 1.0) < 0.2 {
             FrictionLaw::coulomb(mu0, 1.0)
@@ -21,7 +21,7 @@ impl Chance {
 
     /// The same with Stribeck's law or a table, which may rise again at high speeds.
     #[allow(dead_code)]
-    pub fn problem_of_other_laws(&mut self) -> Problem {
+    pub(crate) fn problem_of_other_laws(&mut self) -> Problem {
         let (mu0, v_s) = (self.between(0.3, 0.7), self.between(0.1, 1.0));
         let law = if self.between(0.0, 1.0) < 0.5 {
             FrictionLaw::stribeck(mu0, v_s, 1.0)

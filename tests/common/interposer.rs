@@ -7,7 +7,7 @@ use std::sync::OnceLock;
 use super::program::{Folder, err};
 
 /// Curves, best settings and decay rates in a few tiles.
-pub const SWEEP: &str = "
+pub(crate) const SWEEP: &str = "
     fields = [\"n_unstable\", \"abscissa\"]
     best = true
     [axes]
@@ -37,7 +37,7 @@ fn library() -> &'static Path {
 }
 
 /// A command whose calls on what lies in `folder` go through the library.
-pub fn interposed(folder: &Folder, args: &[&str]) -> Command {
+pub(crate) fn interposed(folder: &Folder, args: &[&str]) -> Command {
     let mut command = folder.command(args);
     command
         .env("LD_PRELOAD", library())
@@ -46,7 +46,7 @@ pub fn interposed(folder: &Folder, args: &[&str]) -> Command {
 }
 
 /// Copies all that is in a folder.
-pub fn copy(from: &Path, to: &Path) {
+pub(crate) fn copy(from: &Path, to: &Path) {
     for entry in std::fs::read_dir(from).unwrap() {
         let entry = entry.unwrap();
         let place = to.join(entry.file_name());

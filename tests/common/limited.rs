@@ -15,7 +15,7 @@ const PATIENCE: Duration = Duration::from_secs(10);
 
 /// How a process ended.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-pub enum End {
+pub(crate) enum End {
     Code(i32),
     Signal(i32),
     Hung,
@@ -23,7 +23,7 @@ pub enum End {
 
 /// What a process left behind.
 #[derive(Debug)]
-pub struct Ended {
+pub(crate) struct Ended {
     pub end: End,
     /// Everything that it wrote, on either stream.
     pub said: Vec<u8>,
@@ -32,7 +32,7 @@ pub struct Ended {
 }
 
 impl Ended {
-    pub fn text(&self) -> String {
+    pub(crate) fn text(&self) -> String {
         String::from_utf8_lossy(&self.said).into_owned()
     }
 }
@@ -42,7 +42,7 @@ impl Ended {
     clippy::zombie_processes,
     reason = "wait4 waits for it, and tells its memory"
 )]
-pub fn run(folder: &Path, args: &[&str], variables: &[(&str, &str)]) -> Ended {
+pub(crate) fn run(folder: &Path, args: &[&str], variables: &[(&str, &str)]) -> Ended {
     let said = folder.join("said");
     let out = File::create(&said).unwrap();
     let limited = format!("ulimit -v {MEMORY}; ulimit -c 0; exec \"$0\" \"$@\"");
@@ -67,7 +67,7 @@ pub fn run(folder: &Path, args: &[&str], variables: &[(&str, &str)]) -> Ended {
 
 /// Waits for a child, which is not waited for otherwise, and tells how it ended and its memory in
 /// bytes.
-pub fn wait(child: libc::pid_t, patience: Duration) -> (End, u64) {
+pub(crate) fn wait(child: libc::pid_t, patience: Duration) -> (End, u64) {
     let begun = Instant::now();
     let mut pause = Duration::from_millis(1);
     loop {

@@ -13,14 +13,14 @@ use slipmap::store::map_writer::Provenance;
 use slipmap::sweep::Plan;
 
 /// Computes the map of a plan.
-pub fn write(plan: &Plan, threads: usize, path: &Path) {
+pub(crate) fn write(plan: &Plan, threads: usize, path: &Path) {
     let plan = Arc::new(plan.clone());
     make_in_memory(&plan, path, threads, &Provenance::default()).unwrap();
     settle(path);
 }
 
 /// Changes a file.
-pub fn edit<T>(path: &Path, change: impl FnOnce(&hdf5::File) -> T) -> T {
+pub(crate) fn edit<T>(path: &Path, change: impl FnOnce(&hdf5::File) -> T) -> T {
     settle(path);
     let done = change(&hdf5::File::open_rw(path).unwrap());
     settle(path);
@@ -29,7 +29,7 @@ pub fn edit<T>(path: &Path, change: impl FnOnce(&hdf5::File) -> T) -> T {
 
 /// Waits until a file that was open can be opened again: a child that another test started
 /// meanwhile holds its lock too.
-pub fn settle(path: &Path) {
+pub(crate) fn settle(path: &Path) {
     let file = std::fs::File::open(path).unwrap();
     file.lock().unwrap();
     // Not by closing it: a child may have inherited this one.
@@ -37,7 +37,7 @@ pub fn settle(path: &Path) {
 }
 
 /// The bytes of every dataset of a file, by name.
-pub fn datasets(path: &Path) -> BTreeMap<String, Vec<u8>> {
+pub(crate) fn datasets(path: &Path) -> BTreeMap<String, Vec<u8>> {
     settle(path);
     let mut all = BTreeMap::new();
     collect(&hdf5::File::open(path).unwrap(), &mut all);

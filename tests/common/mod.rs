@@ -1,4 +1,4 @@
 //! Helpers that several test programs share.
 
-pub mod cases;
-pub mod winding;
+pub(crate) mod cases;
+pub(crate) mod winding;

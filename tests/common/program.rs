@@ -6,14 +6,14 @@ use std::path::Path;
 use std::process::{Command, Output};
 
 /// A folder of its own for one test.
-pub struct Folder(tempfile::TempDir);
+pub(crate) struct Folder(tempfile::TempDir);
 
 impl Folder {
-    pub fn new() -> Self {
+    pub(crate) fn new() -> Self {
         Self(tempfile::tempdir().unwrap())
     }
 
-    pub fn with(files: &[(&str, &str)]) -> Self {
+    pub(crate) fn with(files: &[(&str, &str)]) -> Self {
         let folder = Self::new();
         for (name, text) in files {
             std::fs::write(folder.path().join(name), text).unwrap();
@@ -21,11 +21,11 @@ impl Folder {
         folder
     }
 
-    pub fn path(&self) -> &Path {
+    pub(crate) fn path(&self) -> &Path {
         self.0.path()
     }
 
-    pub fn command(&self, args: &[&str]) -> Command {
+    pub(crate) fn command(&self, args: &[&str]) -> Command {
         let mut command = Command::new(env!("CARGO_BIN_EXE_slipmap"));
         command
             .args(args)
@@ -35,12 +35,12 @@ impl Folder {
         command
     }
 
-    pub fn run(&self, args: &[&str]) -> Output {
+    pub(crate) fn run(&self, args: &[&str]) -> Output {
         self.command(args).output().unwrap()
     }
 
     /// Names of all files, sorted.
-    pub fn files(&self) -> Vec<String> {
+    pub(crate) fn files(&self) -> Vec<String> {
         let mut names: Vec<String> = std::fs::read_dir(self.path())
             .unwrap()
             .map(|e| e.unwrap().file_name().into_string().unwrap())
@@ -51,18 +51,18 @@ impl Folder {
 }
 
 /// Standard output.
-pub fn out(output: &Output) -> String {
+pub(crate) fn out(output: &Output) -> String {
     String::from_utf8(output.stdout.clone()).unwrap()
 }
 
 /// Standard error.
-pub fn err(output: &Output) -> String {
+pub(crate) fn err(output: &Output) -> String {
     String::from_utf8(output.stderr.clone()).unwrap()
 }
 
 /// It ended with this code and said this, on either stream, and did not panic.
 #[track_caller]
-pub fn expect(output: &Output, code: i32, says: &str) {
+pub(crate) fn expect(output: &Output, code: i32, says: &str) {
     let text = format!("{}{}", out(output), err(output));
     assert_eq!(output.status.code(), Some(code), "{text}");
     // Messages are wrapped to the terminal: compare words.

@@ -14,12 +14,12 @@ use num_complex::Complex64;
 /// The number of roots with positive real part, or none where D comes too near to zero on the
 /// imaginary axis.
 #[allow(dead_code, reason = "not every test binary uses it")]
-pub fn unstable_roots(b: f64, a_v: f64, a_n: f64, tau: f64) -> Option<u64> {
+pub(crate) fn unstable_roots(b: f64, a_v: f64, a_n: f64, tau: f64) -> Option<u64> {
     roots_right_of(b, a_v, a_n, tau, 0.0)
 }
 
 /// The number of roots with Re λ > `line`, or none where D comes too near to zero on that line.
-pub fn roots_right_of(b: f64, a_v: f64, a_n: f64, tau: f64, line: f64) -> Option<u64> {
+pub(crate) fn roots_right_of(b: f64, a_v: f64, a_n: f64, tau: f64, line: f64) -> Option<u64> {
     let kappa = (-line * tau).exp();
     let d = |m: Complex64| {
         let l = m + line;

@@ -13,28 +13,28 @@ use std::time::{Duration, SystemTime};
 const HOUR: Duration = Duration::from_secs(3600);
 
 /// Which node.
-pub type Number = usize;
+pub(crate) type Number = usize;
 
 /// A name in a folder.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Name(pub Number, pub String);
+pub(crate) struct Name(pub Number, pub String);
 
 /// A file or a folder.
 #[derive(Debug, Clone)]
-pub enum Node {
+pub(crate) enum Node {
     File(Vec<u8>),
     Folder(BTreeMap<String, Number>),
 }
 
 impl Node {
-    pub fn folder() -> Self {
+    pub(crate) fn folder() -> Self {
         Self::Folder(BTreeMap::new())
     }
 }
 
 /// One change.
 #[derive(Debug, Clone)]
-pub enum Change {
+pub(crate) enum Change {
     Link {
         name: Name,
         node: Number,
@@ -64,12 +64,12 @@ pub enum Change {
 
 impl Change {
     /// Whether it is one of what is in a file.
-    pub fn is_of_data(&self) -> bool {
+    pub(crate) fn is_of_data(&self) -> bool {
         matches!(self, Self::Write { .. } | Self::Truncate { .. })
     }
 
     /// What it is, without its bytes.
-    pub fn in_short(&self) -> String {
+    pub(crate) fn in_short(&self) -> String {
         match self {
             Self::Write { node, at, data } => format!("{} bytes at {at} of {node}", data.len()),
             other => format!("{other:?}"),
@@ -88,7 +88,7 @@ impl Change {
 }
 
 /// What a sync after each of some changes makes of them: whether they are sure to last.
-pub fn lasting(changes: &[Change]) -> Vec<bool> {
+pub(crate) fn lasting(changes: &[Change]) -> Vec<bool> {
     let mut lasting = vec![false; changes.len()];
     for (i, change) in changes.iter().enumerate() {
         if let Change::Sync { node } = change {
@@ -102,7 +102,7 @@ pub fn lasting(changes: &[Change]) -> Vec<bool> {
 
 /// All files and folders.
 #[derive(Debug, Clone)]
-pub struct Disk(Vec<Node>);
+pub(crate) struct Disk(Vec<Node>);
 
 impl Default for Disk {
     fn default() -> Self {
@@ -111,22 +111,22 @@ impl Default for Disk {
 }
 
 impl Disk {
-    pub const ROOT: Number = 0;
+    pub(crate) const ROOT: Number = 0;
 
     /// A new node without a name.
-    pub fn add(&mut self, node: Node) -> Number {
+    pub(crate) fn add(&mut self, node: Node) -> Number {
         self.0.push(node);
         self.0.len() - 1
     }
 
     /// How many nodes there are.
-    pub fn nodes(&self) -> usize {
+    pub(crate) fn nodes(&self) -> usize {
         self.0.len()
     }
 
     /// The same files and folders with those that `other` has besides, as they are when they are
     /// new.
-    pub fn with_nodes_of(&self, other: &Self) -> Self {
+    pub(crate) fn with_nodes_of(&self, other: &Self) -> Self {
         let mut nodes = self.0.clone();
         for node in &other.0[nodes.len()..] {
             nodes.push(match node {
@@ -137,33 +137,33 @@ impl Disk {
         Self(nodes)
     }
 
-    pub fn entries(&mut self, folder: Number) -> &mut BTreeMap<String, Number> {
+    pub(crate) fn entries(&mut self, folder: Number) -> &mut BTreeMap<String, Number> {
         match &mut self.0[folder] {
             Node::Folder(entries) => entries,
             Node::File(_) => panic!("a file is no folder"),
         }
     }
 
-    pub fn bytes(&mut self, file: Number) -> &mut Vec<u8> {
+    pub(crate) fn bytes(&mut self, file: Number) -> &mut Vec<u8> {
         match &mut self.0[file] {
             Node::File(bytes) => bytes,
             Node::Folder(_) => panic!("a folder is no file"),
         }
     }
 
-    pub fn is_folder(&self, node: Number) -> bool {
+    pub(crate) fn is_folder(&self, node: Number) -> bool {
         matches!(self.0[node], Node::Folder(_))
     }
 
     /// What has a name.
-    pub fn at(&self, name: &Name) -> Option<Number> {
+    pub(crate) fn at(&self, name: &Name) -> Option<Number> {
         match &self.0[name.0] {
             Node::Folder(entries) => entries.get(&name.1).copied(),
             Node::File(_) => None,
         }
     }
 
-    pub fn apply(&mut self, change: &Change) {
+    pub(crate) fn apply(&mut self, change: &Change) {
         match change {
             Change::Link { name, node } => drop(self.entries(name.0).insert(name.1.clone(), *node)),
             Change::Rename { from, to, node } => {
@@ -184,14 +184,14 @@ impl Disk {
         }
     }
 
-    pub fn write(&mut self, file: Number, at: usize, data: &[u8]) {
+    pub(crate) fn write(&mut self, file: Number, at: usize, data: &[u8]) {
         let bytes = self.bytes(file);
         bytes.resize(bytes.len().max(at + data.len()), 0);
         bytes[at..at + data.len()].copy_from_slice(data);
     }
 
     /// Every path with the bytes of its file; folders have none.
-    pub fn listing(&self) -> BTreeMap<String, Option<&[u8]>> {
+    pub(crate) fn listing(&self) -> BTreeMap<String, Option<&[u8]>> {
         let all = self.paths().into_iter();
         all.map(|(path, node)| match &self.0[node] {
             Node::File(bytes) => (path, Some(&bytes[..])),
@@ -216,7 +216,7 @@ impl Disk {
     }
 
     /// Writes all of it to an empty folder. Nodes before `new` are an hour old.
-    pub fn put(&self, folder: &Path, new: Number) {
+    pub(crate) fn put(&self, folder: &Path, new: Number) {
         for (path, node) in self.paths() {
             let path = folder.join(&path[1..]);
             match &self.0[node] {

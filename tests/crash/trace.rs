@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use super::disk::{Change, Disk, Name, Node, Number};
 
 /// A folder before a command, and the changes by it, in order.
-pub struct Trace {
+pub(crate) struct Trace {
     pub before: Disk,
     /// Nodes from here on are new.
     pub new: Number,
@@ -16,7 +16,7 @@ pub struct Trace {
 
 impl Trace {
     /// Of a command that works in `folder` and leaves its record at `record`.
-    pub fn of(folder: &Path, record: &Path, command: impl FnOnce()) -> Self {
+    pub(crate) fn of(folder: &Path, record: &Path, command: impl FnOnce()) -> Self {
         let (mut before, mut inodes) = (Disk::default(), Inodes::new());
         take_in(folder, Disk::ROOT, &mut before, &mut inodes);
         command();

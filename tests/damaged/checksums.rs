@@ -51,7 +51,7 @@ fn lookup3(bytes: &[u8]) -> u32 {
 }
 
 /// The blocks of a sound file that begin at `places` and have their checksum behind them.
-pub fn blocks(bytes: &[u8], places: &[usize]) -> Vec<Range<usize>> {
+pub(crate) fn blocks(bytes: &[u8], places: &[usize]) -> Vec<Range<usize>> {
     let block = |&start: &usize| {
         let longest = (bytes.len() - start).saturating_sub(4).min(LONGEST);
         let fits = |&length: &usize| {
@@ -64,7 +64,7 @@ pub fn blocks(bytes: &[u8], places: &[usize]) -> Vec<Range<usize>> {
 }
 
 /// Makes the checksums fit again.
-pub fn repair(bytes: &mut [u8], blocks: &[Range<usize>]) {
+pub(crate) fn repair(bytes: &mut [u8], blocks: &[Range<usize>]) {
     let length = bytes.len();
     for block in blocks.iter().filter(|block| block.end + 4 <= length) {
         let sum = lookup3(&bytes[block.clone()]);

@@ -19,7 +19,7 @@ use super::switch_on::{self, Fate};
 
 /// What comes of a question.
 #[derive(Debug)]
-pub enum Verdict {
+pub(crate) enum Verdict {
     /// So many things were compared, and agree.
     Agree(usize),
     /// Where the referee's answer hangs on its steps, it says nothing from there on; so much agrees
@@ -42,7 +42,7 @@ const KNOWN: f64 = 1e-7;
 const ALLOWED: f64 = 1e-9;
 
 /// The events of a motion.
-pub fn motion(start: &Start) -> Verdict {
+pub(crate) fn motion(start: &Start) -> Verdict {
     let pace = Pace::of(MOTION_PACE);
     let (coarse, _) = events(start, pace);
     let (fine, end) = events(start, pace.halved());
@@ -84,7 +84,7 @@ fn differ(text: &str, i: usize, fine: &[(Event, f64)], found: &[(Event, f64)]) -
 }
 
 /// The referee's events, and until when it has followed the block.
-pub fn events(start: &Start, pace: Pace) -> (Vec<(Event, f64)>, f64) {
+pub(crate) fn events(start: &Start, pace: Pace) -> (Vec<(Event, f64)>, f64) {
     let (u, a) = (start.x_dot0, start.a0);
     let mut block = Block::at_rest_or_sliding(start.setting.clone(), pace, u, a);
     let mut events = Vec::new();
@@ -100,7 +100,7 @@ pub fn events(start: &Start, pace: Pace) -> (Vec<(Event, f64)>, f64) {
 }
 
 /// slipmap's events of a case file, in its units, until the horizon.
-pub fn events_of_slipmap(text: &str, horizon: f64) -> Vec<(Event, f64)> {
+pub(crate) fn events_of_slipmap(text: &str, horizon: f64) -> Vec<(Event, f64)> {
     let spec: CaseSpec = text.parse().expect("a case file");
     let unit = spec.case.units().time;
     let mut motion = spec.case.motion().expect("a motion");
@@ -133,7 +133,7 @@ const RAMPS_AGREE: f64 = 3e-5;
 const VELOCITY_ALLOWED: f64 = 2e-4;
 
 /// The critical velocity.
-pub fn velocity(setting: &Setting) -> Verdict {
+pub(crate) fn velocity(setting: &Setting) -> Verdict {
     let found = critical_velocity(&problem(setting));
     if !found.decided {
         return Verdict::Undecided;
@@ -159,7 +159,7 @@ fn ramp_of(setting: &Setting, (share, largest, stops): (f64, f64, usize)) -> End
 }
 
 /// slipmap's critical velocity, and the referee's by its faster ramp, against a known one.
-pub fn known_velocity(setting: &Setting, expected: End) -> Verdict {
+pub(crate) fn known_velocity(setting: &Setting, expected: End) -> Verdict {
     let found = critical_velocity(&problem(setting));
     let ramp = ramp_of(setting, RAMPS[0]);
     let right = |one: End| one.is_near(expected, VELOCITY_ALLOWED);
@@ -174,7 +174,7 @@ pub fn known_velocity(setting: &Setting, expected: End) -> Verdict {
 }
 
 /// What slipmap says of the end of stick-slip, in the referee's words.
-pub fn end(found: &Critical) -> End {
+pub(crate) fn end(found: &Critical) -> End {
     match found.end {
         critical::End::LiftOff => End::LiftsOff(found.v_liftoff),
         critical::End::Persists => End::Persists,
@@ -184,7 +184,7 @@ pub fn end(found: &Critical) -> End {
 }
 
 /// The problem of a setting with M = κ = N0 = 1.
-pub fn problem(setting: &Setting) -> Problem {
+pub(crate) fn problem(setting: &Setting) -> Problem {
     Problem {
         law: friction_law(&setting.friction),
         velocity_unit: 1.0,
@@ -212,7 +212,7 @@ fn friction_law(friction: &Friction) -> FrictionLaw {
 const FOLLOWED: [(f64, f64); 2] = [(2.0, 60.0), (1.0, 120.0)];
 
 /// What becomes of stick-slip when control is switched on.
-pub fn fate(setting: &Setting, phase: f64) -> Verdict {
+pub(crate) fn fate(setting: &Setting, phase: f64) -> Verdict {
     let text = phase_file(setting, phase);
     let command = simulate_command(&text);
     let fates = FOLLOWED.map(|(share, times)| {
@@ -232,7 +232,7 @@ pub fn fate(setting: &Setting, phase: f64) -> Verdict {
 }
 
 /// What a scan of `slipmap vc --protocol switch-on` says at this v0; none where it is undecided.
-pub fn fate_of_trial(setting: &Setting, phase: f64) -> Option<Fate> {
+pub(crate) fn fate_of_trial(setting: &Setting, phase: f64) -> Option<Fate> {
     let problem = problem(setting);
     let accuracy = motion::Accuracy::of(1e-9);
     let mut trials = Trials::new(&problem, Phase::After(phase), accuracy, MOST_STEPS as u64);
@@ -246,7 +246,7 @@ pub fn fate_of_trial(setting: &Setting, phase: f64) -> Option<Fate> {
 }
 
 /// What slipmap says of a case file with a phase; none where it is undecided.
-pub fn fate_of_slipmap(text: &str) -> Option<Fate> {
+pub(crate) fn fate_of_slipmap(text: &str) -> Option<Fate> {
     match text.parse::<CaseSpec>() {
         Ok(spec) => fate_of(spec.case.run(&mut ()).expect("a motion").outcome),
         Err(error) if error.message.contains("there is none at this v0") => Some(Fate::NoCycle),
@@ -255,7 +255,7 @@ pub fn fate_of_slipmap(text: &str) -> Option<Fate> {
 }
 
 /// An outcome in the referee's words.
-pub fn fate_of(outcome: Outcome) -> Option<Fate> {
+pub(crate) fn fate_of(outcome: Outcome) -> Option<Fate> {
     match outcome {
         Outcome::StickSlip => Some(Fate::Survives),
         Outcome::Sliding | Outcome::Oscillation | Outcome::Diverged => Some(Fate::Ends),

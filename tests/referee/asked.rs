@@ -42,7 +42,7 @@ fn lines(named: &[(&str, f64)]) -> String {
 }
 
 /// The tables `[friction]` and `[fixed]` of a file, with v0.
-pub fn law_and_parameters(s: &Setting) -> String {
+pub(crate) fn law_and_parameters(s: &Setting) -> String {
     let (name, named) = coefficients(&s.friction);
     let mut text = format!("[friction]\nlaw = \"{name}\"\n{}", lines(&named));
     if let Law::Table(curve) = &s.friction.law {
@@ -52,7 +52,7 @@ pub fn law_and_parameters(s: &Setting) -> String {
 }
 
 /// A case file that traces a motion to its horizon.
-pub fn case_file(start: &Start) -> String {
+pub(crate) fn case_file(start: &Start) -> String {
     let s = &start.setting;
     let switch_on = match s.switch_on.is_finite() {
         true => number(s.switch_on),
@@ -77,7 +77,7 @@ pub fn case_file(start: &Start) -> String {
 }
 
 /// A case file in which control is switched on at a phase of uncontrolled stick-slip.
-pub fn phase_file(s: &Setting, phase: f64) -> String {
+pub(crate) fn phase_file(s: &Setting, phase: f64) -> String {
     format!(
         "{}[start]\n{}",
         law_and_parameters(s),
@@ -86,12 +86,12 @@ pub fn phase_file(s: &Setting, phase: f64) -> String {
 }
 
 /// Shell commands that write a case file and simulate it.
-pub fn simulate_command(case: &str) -> String {
+pub(crate) fn simulate_command(case: &str) -> String {
     format!("cat > case.toml <<'END'\n{case}END\nslipmap simulate case.toml --json --fresh")
 }
 
 /// A shell command that asks for the critical velocity.
-pub fn vc_command(s: &Setting) -> String {
+pub(crate) fn vc_command(s: &Setting) -> String {
     let (name, named) = coefficients(&s.friction);
     let mut command = String::new();
     if let Law::Table(curve) = &s.friction.law {

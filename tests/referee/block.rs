@@ -12,14 +12,14 @@ use super::steps::{Pace, first_below};
 
 /// What the block does; a slip has the sign of ẋ.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Mode {
+pub(crate) enum Mode {
     Stick,
     Slip(f64),
 }
 
 /// What happens to it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
-pub enum Event {
+pub(crate) enum Event {
     Release,
     Stick,
     Reversal,
@@ -62,7 +62,7 @@ const OF_A_TABLE: u32 = 3;
 
 /// A moving block with its past.
 #[derive(Debug, Clone)]
-pub struct Block {
+pub(crate) struct Block {
     pub setting: Setting,
     pace: Pace,
     past: Past,
@@ -78,7 +78,7 @@ pub struct Block {
 
 impl Block {
     /// A block at t = 0 with the elongation `a`, which was `a` at all times before.
-    pub fn at_rest_or_sliding(setting: Setting, pace: Pace, u: f64, a: f64) -> Self {
+    pub(crate) fn at_rest_or_sliding(setting: Setting, pace: Pace, u: f64, a: f64) -> Self {
         let mode = match u == 0.0 {
             true if (setting.stiffness * a).abs() <= setting.friction.mu_s * setting.load => {
                 Mode::Stick
@@ -91,7 +91,7 @@ impl Block {
 
     /// A block that is released at t = 0, after a stick that outlasted the delay; none where N ≤ 0
     /// before that.
-    pub fn released(setting: Setting, pace: Pace) -> Option<Self> {
+    pub(crate) fn released(setting: Setting, pace: Pace) -> Option<Self> {
         let s = &setting;
         let load = s.load + s.alpha_n * s.v0 * s.tau;
         let a = s.friction.mu_s * load / s.stiffness;
@@ -118,14 +118,14 @@ impl Block {
     }
 
     /// Changes v0 from now on.
-    pub fn set_v0(&mut self, v0: f64) {
+    pub(crate) fn set_v0(&mut self, v0: f64) {
         self.setting.v0 = v0;
         self.stuck_since = self.t;
         self.kink(1);
     }
 
     /// Control acts from now on.
-    pub fn switch_on(&mut self) {
+    pub(crate) fn switch_on(&mut self) {
         self.controlled = true;
         self.setting.switch_on = self.t;
         self.stuck_since = self.t;
@@ -133,7 +133,7 @@ impl Block {
     }
 
     /// One step, not beyond `until`, and the event that ends it, if one does.
-    pub fn advance(&mut self, until: f64) -> Option<Event> {
+    pub(crate) fn advance(&mut self, until: f64) -> Option<Event> {
         if !self.controlled && self.t >= self.setting.switch_on {
             self.switch_on();
             return Some(Event::SwitchOn);
@@ -255,10 +255,10 @@ impl Block {
     fn step_length(&self, now: &Look, until: f64) -> f64 {
         let s = &self.setting;
         let mut end = until;
-        if !self.controlled {
-            end = end.min(s.switch_on);
-        } else {
+        if self.controlled {
             end = end.min(self.echoes.next());
+        } else {
+            end = end.min(s.switch_on);
         }
         let room = end - self.t;
         if self.stretches_evenly() {
@@ -276,7 +276,7 @@ impl Block {
         if self.controlled {
             let then = self.t - s.tau;
             h = h.min(self.pace.delayed(s.tau));
-            h = h.min(self.past.end_of_step(then, self.pace.seen_at_once()) - then);
+            h = h.min(self.past.end_of_step(then, Pace::seen_at_once()) - then);
         }
         // No tiny step before an end.
         if room < h {

@@ -8,7 +8,7 @@ use super::against::Verdict;
 
 /// How many verdicts there were of each kind.
 #[derive(Debug, Default)]
-pub struct Tally {
+pub(crate) struct Tally {
     /// Questions, and things compared in them.
     pub asked: usize,
     pub compared: usize,
@@ -47,7 +47,7 @@ impl Tally {
 }
 
 /// Puts the questions 0 to `total` − 1, and says how far it is ten times.
-pub fn ask(what: &str, total: usize, question: impl Fn(usize) -> Verdict + Sync) -> Tally {
+pub(crate) fn ask(what: &str, total: usize, question: impl Fn(usize) -> Verdict + Sync) -> Tally {
     let tally = Mutex::new(Tally::default());
     let next = AtomicUsize::new(0);
     let work = || {

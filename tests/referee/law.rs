@@ -5,7 +5,7 @@ use super::pchip::Curve;
 
 /// μ_K(v), v ≥ 0; v_s and the speeds of a table in the units of the velocity.
 #[derive(Debug, Clone)]
-pub enum Law {
+pub(crate) enum Law {
     /// μ0 at every speed.
     Coulomb { mu0: f64 },
     /// μ0/(1 + v/v_s).
@@ -18,7 +18,7 @@ pub enum Law {
 
 /// A law with its coefficient of static friction.
 #[derive(Debug, Clone)]
-pub struct Friction {
+pub(crate) struct Friction {
     pub law: Law,
     pub mu_s: f64,
 }
@@ -28,7 +28,7 @@ const FLANK: f64 = 6.0;
 
 impl Friction {
     /// The piece that holds at `speed`, and above it where two of them meet.
-    pub fn piece(&self, speed: f64) -> usize {
+    pub(crate) fn piece(&self, speed: f64) -> usize {
         match &self.law {
             Law::Table(curve) => curve.piece(speed),
             _ => 0,
@@ -36,7 +36,7 @@ impl Friction {
     }
 
     /// The speeds between which a piece holds.
-    pub fn bounds(&self, piece: usize) -> (f64, f64) {
+    pub(crate) fn bounds(&self, piece: usize) -> (f64, f64) {
         match &self.law {
             Law::Table(curve) => curve.bounds(piece),
             _ => (f64::NEG_INFINITY, f64::INFINITY),
@@ -44,7 +44,7 @@ impl Friction {
     }
 
     /// μ_K, by a piece that goes on smoothly beyond its bounds.
-    pub fn coefficient(&self, piece: usize, speed: f64) -> f64 {
+    pub(crate) fn coefficient(&self, piece: usize, speed: f64) -> f64 {
         match &self.law {
             Law::Coulomb { mu0 } => *mu0,
             Law::Weakening { mu0, v_s } => mu0 / (1.0 + speed / v_s),
@@ -57,7 +57,7 @@ impl Friction {
     }
 
     /// dμ_K/dv.
-    pub fn slope(&self, piece: usize, speed: f64) -> f64 {
+    pub(crate) fn slope(&self, piece: usize, speed: f64) -> f64 {
         match &self.law {
             Law::Coulomb { .. } => 0.0,
             Law::Weakening { mu0, v_s } => {
@@ -74,7 +74,7 @@ impl Friction {
 
     /// The change of speed over which the law bends. A fast block may change its speed by half of
     /// what parts it from the flank of Stribeck's law besides: no step jumps over the flank.
-    pub fn reach(&self, piece: usize, speed: f64) -> f64 {
+    pub(crate) fn reach(&self, piece: usize, speed: f64) -> f64 {
         match &self.law {
             Law::Coulomb { .. } => f64::INFINITY,
             Law::Weakening { v_s, .. } => v_s + speed.abs(),

@@ -13,7 +13,7 @@ struct Node {
 
 /// The elongation up to now; before the first node, and beyond the last one, it goes on evenly.
 #[derive(Debug, Clone)]
-pub struct Past {
+pub(crate) struct Past {
     nodes: Vec<Node>,
     /// Where it was looked up last: the next look-up is near.
     place: Cell<usize>,
@@ -21,7 +21,7 @@ pub struct Past {
 
 impl Past {
     /// An elongation that has grown to `a` at time `t` at a constant rate.
-    pub fn rising(t: f64, a: f64, rate: f64) -> Self {
+    pub(crate) fn rising(t: f64, a: f64, rate: f64) -> Self {
         let node = Node {
             t,
             a,
@@ -35,14 +35,14 @@ impl Past {
     }
 
     /// The next step sets out at this rate.
-    pub fn leave(&mut self, rate: f64) {
+    pub(crate) fn leave(&mut self, rate: f64) {
         if let Some(last) = self.nodes.last_mut() {
             last.after = rate;
         }
     }
 
     /// A step has ended.
-    pub fn arrive(&mut self, t: f64, a: f64, rate: f64) {
+    pub(crate) fn arrive(&mut self, t: f64, a: f64, rate: f64) {
         self.nodes.push(Node {
             t,
             a,
@@ -52,7 +52,7 @@ impl Past {
     }
 
     /// The elongation at a time, and its rate.
-    pub fn at(&self, t: f64) -> (f64, f64) {
+    pub(crate) fn at(&self, t: f64) -> (f64, f64) {
         let i = self.find(t);
         let first = &self.nodes[i];
         if t < first.t {
@@ -76,7 +76,7 @@ impl Past {
     }
 
     /// The end of the `ahead`-th step from `t` on; infinite where there are fewer.
-    pub fn end_of_step(&self, t: f64, ahead: usize) -> f64 {
+    pub(crate) fn end_of_step(&self, t: f64, ahead: usize) -> f64 {
         let i = self.find(t);
         self.nodes.get(i + ahead).map_or(f64::INFINITY, |n| n.t)
     }
@@ -96,7 +96,7 @@ impl Past {
     }
 
     /// Forgets what was long before `t`, now and then.
-    pub fn forget_before(&mut self, t: f64) {
+    pub(crate) fn forget_before(&mut self, t: f64) {
         let unused = self.find(t);
         if unused > 1000 && 2 * unused > self.nodes.len() {
             self.nodes.drain(..unused);

@@ -3,7 +3,7 @@
 
 /// A curve through points; constant below the first and beyond the last one.
 #[derive(Debug, Clone)]
-pub struct Curve {
+pub(crate) struct Curve {
     pub x: Vec<f64>,
     pub y: Vec<f64>,
     slopes: Vec<f64>,
@@ -11,7 +11,7 @@ pub struct Curve {
 
 impl Curve {
     /// Through two points or more, `x` increasing.
-    pub fn through(x: &[f64], y: &[f64]) -> Self {
+    pub(crate) fn through(x: &[f64], y: &[f64]) -> Self {
         let widths: Vec<f64> = x.windows(2).map(|w| w[1] - w[0]).collect();
         let rises = y.windows(2).zip(&widths);
         let secants: Vec<f64> = rises.map(|(w, h)| (w[1] - w[0]) / h).collect();
@@ -23,12 +23,12 @@ impl Curve {
     }
 
     /// Piece 0 lies below the first point, piece i between points i − 1 and i, the last one beyond.
-    pub fn piece(&self, x: f64) -> usize {
+    pub(crate) fn piece(&self, x: f64) -> usize {
         self.x.iter().take_while(|knot| **knot <= x).count()
     }
 
     /// From where to where a piece holds.
-    pub fn bounds(&self, piece: usize) -> (f64, f64) {
+    pub(crate) fn bounds(&self, piece: usize) -> (f64, f64) {
         let from = match piece {
             0 => f64::NEG_INFINITY,
             i => self.x[i - 1],
@@ -37,7 +37,7 @@ impl Curve {
     }
 
     /// The value by a piece.
-    pub fn value(&self, piece: usize, x: f64) -> f64 {
+    pub(crate) fn value(&self, piece: usize, x: f64) -> f64 {
         let Some((i, h, q)) = self.inside(piece, x) else {
             return self.end(piece);
         };
@@ -48,7 +48,7 @@ impl Curve {
     }
 
     /// Its slope.
-    pub fn slope(&self, piece: usize, x: f64) -> f64 {
+    pub(crate) fn slope(&self, piece: usize, x: f64) -> f64 {
         let Some((i, h, q)) = self.inside(piece, x) else {
             return 0.0;
         };

@@ -9,7 +9,7 @@ use super::steps::Pace;
 
 /// How a ramp goes.
 #[derive(Debug, Clone, Copy)]
-pub struct Ramp {
+pub(crate) struct Ramp {
     pub pace: Pace,
     /// The largest step of v0, relative.
     pub largest: f64,
@@ -31,7 +31,7 @@ const MOST_STEPS: usize = 4_000_000;
 
 /// How a ramp ended.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub enum End {
+pub(crate) enum End {
     /// Stick-slip is lost at this v0.
     Lost(f64),
     /// The block lifts off at this v0.
@@ -46,7 +46,7 @@ pub enum End {
 
 impl End {
     /// Whether both end alike, at velocities that differ by no more than `precision`, relative.
-    pub fn is_near(self, other: Self, precision: f64) -> bool {
+    pub(crate) fn is_near(self, other: Self, precision: f64) -> bool {
         let near = |a: f64, b: f64| (a / b - 1.0).abs() <= precision;
         match (self, other) {
             (Self::Lost(a), Self::Lost(b)) | (Self::LiftsOff(a), Self::LiftsOff(b)) => near(a, b),
@@ -57,7 +57,7 @@ impl End {
 
 /// What becomes of stick-slip at one v0.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Fate {
+pub(crate) enum Fate {
     Sticks,
     Slips,
     LiftsOff,
@@ -66,7 +66,7 @@ pub enum Fate {
 
 /// Raises v0 until stick-slip ends. What is asked for is the smallest v0 of lift-off: where a start
 /// lifts off, larger ones are not tried.
-pub fn critical_velocity(setting: &Setting, ramp: Ramp) -> End {
+pub(crate) fn critical_velocity(setting: &Setting, ramp: Ramp) -> End {
     let s = setting;
     let unit = s.friction.mu_s * s.load / (s.stiffness * s.mass).sqrt();
     let mut lifted = f64::INFINITY;
@@ -133,7 +133,7 @@ fn raise(mut held: Block, ramp: Ramp, largest: f64) -> End {
 
 /// Follows a block at its v0 until it has stuck so often, or so often that its cycles repeat; or
 /// sticks no more.
-pub fn hold(block: &mut Block, stops: usize) -> Fate {
+pub(crate) fn hold(block: &mut Block, stops: usize) -> Fate {
     let mut seen = Stops::new();
     let mut swing = Swing::new(block);
     for _ in 0..MOST_STEPS {

@@ -5,17 +5,17 @@ use super::pchip::Curve;
 use super::setting::Setting;
 
 /// Numbers that look random, the same for the same seed.
-pub struct Chance(u64);
+pub(crate) struct Chance(u64);
 
 impl Chance {
     /// The `number`-th sequence of a seed, which depends on no other.
-    pub fn of(seed: u64, number: usize) -> Self {
+    pub(crate) fn of(seed: u64, number: usize) -> Self {
         let mut chance = Self(seed ^ (number as u64).wrapping_mul(0xd134_2543_de82_ef95));
         chance.unit();
         chance
     }
 
-    pub fn unit(&mut self) -> f64 {
+    pub(crate) fn unit(&mut self) -> f64 {
         self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
         let mut z = self.0;
         z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
@@ -23,21 +23,21 @@ impl Chance {
         ((z ^ (z >> 31)) >> 11) as f64 / (1_u64 << 53) as f64
     }
 
-    pub fn between(&mut self, from: f64, to: f64) -> f64 {
+    pub(crate) fn between(&mut self, from: f64, to: f64) -> f64 {
         from + (to - from) * self.unit()
     }
 
-    pub fn log(&mut self, from: f64, to: f64) -> f64 {
+    pub(crate) fn log(&mut self, from: f64, to: f64) -> f64 {
         self.between(from.ln(), to.ln()).exp()
     }
 
-    pub fn below(&mut self, n: usize) -> usize {
+    pub(crate) fn below(&mut self, n: usize) -> usize {
         (self.unit() * n as f64) as usize
     }
 }
 
 /// A block set in motion at t = 0, and until when it is followed.
-pub struct Start {
+pub(crate) struct Start {
     pub setting: Setting,
     pub x_dot0: f64,
     pub a0: f64,
@@ -90,7 +90,7 @@ fn units(chance: &mut Chance) -> [f64; 3] {
 }
 
 /// A motion, in the time unit followed for some cycles and delays.
-pub fn start(chance: &mut Chance) -> Start {
+pub(crate) fn start(chance: &mut Chance) -> Start {
     let [mass, stiffness, load] = units(chance);
     let (time, length) = ((mass / stiffness).sqrt(), load / stiffness);
     let friction = friction_in(friction(chance), length / time);
@@ -138,7 +138,7 @@ fn friction_in(mut friction: Friction, velocity: f64) -> Friction {
 }
 
 /// A block under control whose critical velocity is asked for; M = κ = N0 = 1.
-pub fn problem(chance: &mut Chance) -> Setting {
+pub(crate) fn problem(chance: &mut Chance) -> Setting {
     let friction = friction(chance);
     let (alpha_v, alpha_n) = gains(chance);
     Setting {
@@ -155,7 +155,7 @@ pub fn problem(chance: &mut Chance) -> Setting {
 }
 
 /// A block in uncontrolled stick-slip, and the phase at which control is switched on.
-pub fn phase(chance: &mut Chance) -> (Setting, f64) {
+pub(crate) fn phase(chance: &mut Chance) -> (Setting, f64) {
     let mut setting = problem(chance);
     setting.v0 = chance.log(0.03, 3.0);
     (setting, [0.0, chance.between(0.0, 6.0)][chance.below(2)])

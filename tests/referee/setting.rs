@@ -4,7 +4,7 @@ use super::law::Friction;
 
 /// What is given, in any units that fit together.
 #[derive(Debug, Clone)]
-pub struct Setting {
+pub(crate) struct Setting {
     pub friction: Friction,
     pub mass: f64,
     pub stiffness: f64,
@@ -19,7 +19,7 @@ pub struct Setting {
 
 impl Setting {
     /// √(M/κ).
-    pub fn time(&self) -> f64 {
+    pub(crate) fn time(&self) -> f64 {
         (self.mass / self.stiffness).sqrt()
     }
 }

@@ -2,7 +2,7 @@
 
 /// Shares of the times in which a motion changes; halved, they halve every step.
 #[derive(Debug, Clone, Copy)]
-pub struct Pace {
+pub(crate) struct Pace {
     share: f64,
 }
 
@@ -21,34 +21,34 @@ const ROUNDING: f64 = 1e-15;
 
 impl Pace {
     /// Of so many times the shares above.
-    pub fn of(share: f64) -> Self {
+    pub(crate) fn of(share: f64) -> Self {
         Self { share }
     }
 
     /// With steps half as long.
-    pub fn halved(self) -> Self {
+    pub(crate) fn halved(self) -> Self {
         Self::of(0.5 * self.share)
     }
 
     /// A step in slip, by the time unit, rates that add up, and the rate at which the speed crosses
     /// what the law bends over.
-    pub fn slipping(self, time: f64, rates: f64, bend: f64) -> f64 {
+    pub(crate) fn slipping(self, time: f64, rates: f64, bend: f64) -> f64 {
         let smooth = OF_RATE / (1.0 / time + rates);
         self.share * smooth.min(OF_BEND / bend)
     }
 
     /// A step in stick.
-    pub fn stuck(self, time: f64, rates: f64) -> f64 {
+    pub(crate) fn stuck(self, time: f64, rates: f64) -> f64 {
         self.share * OF_RATE_STUCK / (1.0 / time + rates)
     }
 
     /// A step, by the delay.
-    pub fn delayed(self, tau: f64) -> f64 {
+    pub(crate) fn delayed(self, tau: f64) -> f64 {
         (self.share * OF_DELAY * tau).min(0.5 * tau)
     }
 
     /// The most steps of the past that one step sees.
-    pub fn seen_at_once(self) -> usize {
+    pub(crate) fn seen_at_once() -> usize {
         SEEN
     }
 }
@@ -56,7 +56,7 @@ impl Pace {
 /// Where in a step of length `h` a number falls below 0 first, told from its values and rates at
 /// both ends; minima inside are looked at. `start` is the time of the step, to whose rounding it is
 /// found.
-pub fn first_below(
+pub(crate) fn first_below(
     h: f64,
     ends: ((f64, f64), (f64, f64)),
     start: f64,

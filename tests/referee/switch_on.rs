@@ -7,7 +7,7 @@ use super::steps::Pace;
 
 /// What is seen at last.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Fate {
+pub(crate) enum Fate {
     /// It still sticks in the last quarter of the time.
     Survives,
     /// It does not.
@@ -24,7 +24,7 @@ const MOST_CYCLES: f64 = 1000.0;
 
 /// Switches control on `phase` after a release, modulo the period, and follows the block for so
 /// many of its longest times: period and delay. None where a delay has too many cycles.
-pub fn fate(setting: &Setting, pace: Pace, phase: f64, times: f64) -> Option<Fate> {
+pub(crate) fn fate(setting: &Setting, pace: Pace, phase: f64, times: f64) -> Option<Fate> {
     let mut block = Block::at_rest_or_sliding(
         Setting {
             switch_on: f64::INFINITY,

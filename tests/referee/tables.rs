@@ -65,7 +65,7 @@ impl Row<'_> {
 }
 
 /// `motion_events.csv`: starts, and their first events.
-pub fn motions() -> Vec<(Start, Vec<(Event, f64)>)> {
+pub(crate) fn motions() -> Vec<(Start, Vec<(Event, f64)>)> {
     let table = include_str!("../reference/motion_events.csv");
     let motion = |row: Row| {
         let events = row.word("events").expect("events").split(';');
@@ -95,7 +95,7 @@ fn event(text: &str) -> (Event, f64) {
 }
 
 /// `vc_referee.csv`: critical velocities.
-pub fn velocities() -> Vec<(Setting, End)> {
+pub(crate) fn velocities() -> Vec<(Setting, End)> {
     let table = include_str!("../reference/vc_referee.csv");
     let velocity = |row: Row| {
         assert_eq!(row.word("outcome"), Some("lost"));
@@ -105,7 +105,7 @@ pub fn velocities() -> Vec<(Setting, End)> {
 }
 
 /// `switch_on_fate.csv`: settings, phases of switch-on, and what becomes of stick-slip.
-pub fn fates() -> Vec<(Setting, f64, Fate)> {
+pub(crate) fn fates() -> Vec<(Setting, f64, Fate)> {
     let table = include_str!("../reference/switch_on_fate.csv");
     let fate = |row: Row| {
         let fate = match row.word("fate") {

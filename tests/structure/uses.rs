@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 type Module = Vec<String>;
 
 /// The files that each file uses, apart from its tests.
-pub fn graph(sources: &[PathBuf]) -> BTreeMap<PathBuf, BTreeSet<PathBuf>> {
+pub(crate) fn graph(sources: &[PathBuf]) -> BTreeMap<PathBuf, BTreeSet<PathBuf>> {
     let files: BTreeMap<Module, &PathBuf> = sources.iter().map(|p| (module(p), p)).collect();
     let used = |path: &PathBuf| {
         let own = module(path);
@@ -23,7 +23,7 @@ pub fn graph(sources: &[PathBuf]) -> BTreeMap<PathBuf, BTreeSet<PathBuf>> {
 }
 
 /// Circles: files that use one another, directly or by way of others.
-pub fn circles(graph: &BTreeMap<PathBuf, BTreeSet<PathBuf>>) -> BTreeSet<BTreeSet<PathBuf>> {
+pub(crate) fn circles(graph: &BTreeMap<PathBuf, BTreeSet<PathBuf>>) -> BTreeSet<BTreeSet<PathBuf>> {
     let reached = |from: &PathBuf| {
         let (mut seen, mut open) = (BTreeSet::new(), vec![from]);
         while let Some(next) = open.pop() {
@@ -65,6 +65,8 @@ fn without_tests(code: &str) -> String {
 /// Paths from the crate's root or from a module above, wherever they stand outside of `use` lines.
 fn paths_in(code: &str) -> Vec<String> {
     let in_path = |letter: char| letter.is_alphanumeric() || "_:".contains(letter);
+    // `pub(in crate::room)` uses nothing.
+    let code = code.replace("(in crate::", "(in ");
     let words = code.split(|letter| !in_path(letter));
     let paths = words.filter(|word| word.starts_with("crate::") || word.starts_with("super::"));
     // `use crate::{…}` leaves a path without an end.

@@ -62,7 +62,7 @@ impl Followed {
     }
 
     /// Where it is.
-    pub fn lambda(self) -> Complex64 {
+    pub(super) fn lambda(self) -> Complex64 {
         match self {
             Self::Root(lambda) | Self::DoublePair(lambda) => lambda,
             Self::DoubleReal(lambda) | Self::TripleReal(lambda) => lambda.into(),
@@ -80,7 +80,7 @@ impl Followed {
 
     /// How far rounding of D can move its real part: |m! ε/D^(m)|^(1/m) at a root of multiplicity
     /// m.
-    pub fn blur(self, search: &Search, place: Place) -> f64 {
+    pub(super) fn blur(self, search: &Search, place: Place) -> f64 {
         let lambda = self.lambda();
         let groups = search.groups(place.gain);
         let jet = Jet::at(groups, place.tau, lambda);
@@ -101,7 +101,7 @@ pub(super) struct Condition {
 
 impl Condition {
     /// What is active at a place nearby.
-    pub fn moved(&self, search: &Search, place: Place) -> Option<Self> {
+    pub(super) fn moved(&self, search: &Search, place: Place) -> Option<Self> {
         let followed = self.followed.iter().map(|f| f.moved(search, place));
         Some(Self {
             followed: followed.collect::<Option<_>>()?,
@@ -109,13 +109,13 @@ impl Condition {
     }
 
     /// The real part that is minimal.
-    pub fn abscissa(&self) -> f64 {
+    pub(super) fn abscissa(&self) -> f64 {
         let real_parts = self.followed.iter().map(|f| f.lambda().re);
         real_parts.fold(f64::NEG_INFINITY, f64::max)
     }
 
     /// What vanishes at an optimum inside the box: two numbers.
-    pub fn inside(&self, search: &Search, place: Place) -> Option<[f64; 2]> {
+    pub(super) fn inside(&self, search: &Search, place: Place) -> Option<[f64; 2]> {
         let gap = |i: usize| self.followed[i].lambda().re - self.followed[i + 1].lambda().re;
         let first = self.followed[0];
         Some(match (first, self.followed.len()) {
@@ -145,7 +145,7 @@ impl Condition {
 
     /// What vanishes at an optimum on an edge of the box, where only the gain (`along_gain`) or
     /// only the delay is free.
-    pub fn on_edge(&self, search: &Search, place: Place, along_gain: bool) -> Option<f64> {
+    pub(super) fn on_edge(&self, search: &Search, place: Place, along_gain: bool) -> Option<f64> {
         let first = self.followed[0];
         Some(match (first, self.followed.len()) {
             (Followed::DoubleReal(l), 1) => derivatives(search, place, l.into())[0].re,
@@ -156,7 +156,7 @@ impl Condition {
     }
 
     /// The number of roots that are followed, pairs and multiple roots counted in full.
-    pub fn roots(&self) -> u64 {
+    pub(super) fn roots(&self) -> u64 {
         let count = |f: &Followed| {
             let conjugates = if f.lambda().im == 0.0 { 1 } else { 2 };
             u64::from(conjugates * f.multiplicity())
@@ -165,7 +165,7 @@ impl Condition {
     }
 
     /// How far rounding can move the abscissa.
-    pub fn blur(&self, search: &Search, place: Place) -> f64 {
+    pub(super) fn blur(&self, search: &Search, place: Place) -> f64 {
         let blurs = self.followed.iter().map(|f| f.blur(search, place));
         blurs.fold(0.0, f64::max)
     }

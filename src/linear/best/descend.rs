@@ -25,7 +25,7 @@ pub(super) struct Frame {
 
 impl Frame {
     /// The place at `radius` from `centre`, at `angle` in the frame.
-    pub fn around(&self, centre: Place, radius: f64, angle: f64) -> Place {
+    pub(super) fn around(&self, centre: Place, radius: f64, angle: f64) -> Place {
         let (sin, cos) = sincos(angle);
         let gain = self.gain * radius * cos;
         Place {
@@ -35,7 +35,7 @@ impl Frame {
     }
 
     /// How far `place` is from `centre`: the radius at which [`Frame::around`] gives it.
-    pub fn apart(&self, centre: Place, place: Place) -> f64 {
+    pub(super) fn apart(&self, centre: Place, place: Place) -> f64 {
         let gain = place.gain - centre.gain;
         let tau = place.tau - centre.tau - self.slope * gain;
         hypot(gain / self.gain, tau / self.tau)
@@ -61,17 +61,14 @@ pub(super) fn descend(
                 let value = evaluator.abscissa(search, place);
                 (value < best.1).then_some(((place, value), angle))
             });
-        match found {
-            Some((better, angle)) => {
-                best = better;
-                // The way that went down is tried first the next time.
-                turn = angle;
-                radius = (radius * GROW).min(largest);
-            }
-            None => {
-                turn += GOLDEN_ANGLE;
-                radius *= SHRINK;
-            }
+        if let Some((better, angle)) = found {
+            best = better;
+            // The way that went down is tried first the next time.
+            turn = angle;
+            radius = (radius * GROW).min(largest);
+        } else {
+            turn += GOLDEN_ANGLE;
+            radius *= SHRINK;
         }
         if radius < smallest {
             break;

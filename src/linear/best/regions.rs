@@ -36,7 +36,7 @@ impl Stretch {
     }
 
     /// The place at the fraction `s` of the stretch.
-    pub fn at(&self, s: f64) -> Place {
+    pub(super) fn at(&self, s: f64) -> Place {
         Place {
             gain: self.gain,
             tau: self.from + s * (self.to - self.from),

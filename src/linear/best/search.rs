@@ -101,14 +101,14 @@ pub(super) struct Evaluator {
 impl Evaluator {
     /// The largest real part of a root, right of which none is missed; infinite where roots could
     /// not be found, so that no search goes there.
-    pub fn abscissa(&mut self, search: &Search, place: Place) -> f64 {
+    pub(super) fn abscissa(&mut self, search: &Search, place: Place) -> f64 {
         let roots = self.roots(search, place, 1);
         roots.first().map_or(f64::INFINITY, |r| r.lambda.re)
     }
 
     /// The rightmost roots, at least `wanted` counted with their pairs where there are so many;
     /// empty where they could not be found.
-    pub fn roots(&mut self, search: &Search, place: Place, wanted: u64) -> &[Root] {
+    pub(super) fn roots(&mut self, search: &Search, place: Place, wanted: u64) -> &[Root] {
         let groups = search.groups(place.gain);
         self.finder
             .rightmost(groups, place.tau, wanted, f64::NEG_INFINITY)

@@ -65,6 +65,7 @@ fn nothing_around_an_optimum_is_better() {
 
 /// A grid that is zoomed in around its best cell, on the box of a region alone.
 fn zoomed(search: &Search, region: &Region) -> (f64, f64, f64) {
+    const CELLS: i32 = 40;
     let mut centre = (f64::NAN, f64::NAN, f64::INFINITY);
     let (mut from, mut size) = (
         (region.gains.0, region.delays.0),
@@ -73,7 +74,6 @@ fn zoomed(search: &Search, region: &Region) -> (f64, f64, f64) {
             region.delays.1 - region.delays.0,
         ),
     );
-    const CELLS: i32 = 40;
     for _ in 0..16 {
         for i in 0..=CELLS {
             for j in 0..=CELLS {

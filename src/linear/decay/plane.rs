@@ -56,12 +56,12 @@ pub(super) struct Local {
 }
 
 impl Local {
-    pub fn vanishes(&self) -> bool {
+    pub(super) fn vanishes(&self) -> bool {
         elementary::norm(self.value) <= ROUNDINGS * self.rounding
     }
 
     /// The rows of Re D and Im D over (p, τ, ω).
-    pub fn rows(&self) -> [[f64; 3]; 2] {
+    pub(super) fn rows(&self) -> [[f64; 3]; 2] {
         let by_omega = Complex64::i() * self.by_lambda;
         [
             [self.by_p.re, self.by_tau.re, by_omega.re],
@@ -76,7 +76,7 @@ impl DecayPlane<'_> {
         p.clamp(*self.window.p.start(), *self.window.p.end())
     }
 
-    pub fn groups(&self, p: f64) -> (Groups, f64) {
+    pub(super) fn groups(&self, p: f64) -> (Groups, f64) {
         (self.groups_at)(self.clamped(p))
     }
 
@@ -89,7 +89,7 @@ impl DecayPlane<'_> {
 
     /// D and its derivatives at `v`. Beyond the window, where the model may not be valid, D is
     /// continued linearly in p.
-    pub fn local(&self, v: Vertex) -> Local {
+    pub(super) fn local(&self, v: Vertex) -> Local {
         let (jet, rounding, unit) = self.jet(v.p, v.tau, v.omega);
         let h = DIFFERENCE * self.window.p_width();
         let here = self.clamped(v.p);
@@ -109,7 +109,7 @@ impl DecayPlane<'_> {
 
     /// The point of the curve that Newton's method reaches from `start` with `row` · (p, τ, ω) kept
     /// as it is.
-    pub fn correct(&self, start: Vertex, family: Family, row: [f64; 3]) -> Option<Vertex> {
+    pub(super) fn correct(&self, start: Vertex, family: Family, row: [f64; 3]) -> Option<Vertex> {
         let mut v = start;
         let mut last = f64::INFINITY;
         for _ in 0..MOST_ITERATIONS {
@@ -140,7 +140,7 @@ impl DecayPlane<'_> {
 
     /// Lengths along (p, τ, ω) over which a curve may bend: widths of the window, and what makes a
     /// turn of ωτ.
-    pub fn scales(&self, v: Vertex) -> [f64; 3] {
+    pub(super) fn scales(&self, v: Vertex) -> [f64; 3] {
         let unit = self.groups(v.p).1;
         let frequency = v.omega.abs() + 1.0 / unit;
         let turn = std::f64::consts::TAU;
@@ -155,7 +155,7 @@ impl DecayPlane<'_> {
     /// side on its left where p points right and τ up.
     ///
     /// It is the null vector of [`Local::rows`], whose sign is such that Re λ falls to the left.
-    pub fn tangent(&self, v: Vertex, family: Family) -> [f64; 3] {
+    pub(super) fn tangent(&self, v: Vertex, family: Family) -> [f64; 3] {
         let d = self.local(v);
         let tangent = match family {
             // The mirror image ω < 0 is the way on through ω = 0.
@@ -174,19 +174,19 @@ impl DecayPlane<'_> {
     }
 
     /// The number of roots right of the line besides those on it; none where that is undecided.
-    pub fn others(&self, v: Vertex) -> Option<u64> {
+    pub(super) fn others(&self, v: Vertex) -> Option<u64> {
         let (groups, unit) = self.groups(v.p);
         roots_right_of(groups, v.tau / unit, -self.sigma * unit + BESIDE)
     }
 
     /// All roots lie left of the line; false where that is undecided.
-    pub fn decays(&self, p: f64, tau: f64) -> bool {
+    pub(super) fn decays(&self, p: f64, tau: f64) -> bool {
         let (groups, unit) = self.groups(p);
         roots_right_of(groups, tau / unit, -self.sigma * unit) == Some(0)
     }
 
     /// Inside the window, to rounding.
-    pub fn inside(&self, v: Vertex) -> bool {
+    pub(super) fn inside(&self, v: Vertex) -> bool {
         let within = |x: f64, (from, to): (f64, f64)| {
             let slack = 1e-13 * (to - from);
             from - slack <= x && x <= to + slack
@@ -198,7 +198,7 @@ impl DecayPlane<'_> {
     /// The frequencies ω₋ ≤ ω₊ at which a root may lie on the line: the zeros of |P|² − κ²|Q|²,
     /// with D = P + Q e^(−λτ) and κ = e^(στ), a quadratic in ω². |P| < κ|Q| between them; none
     /// where that holds nowhere, ω₋ = 0 where it holds at ω = 0.
-    pub fn band(&self, p: f64, tau: f64) -> Option<(f64, f64)> {
+    pub(super) fn band(&self, p: f64, tau: f64) -> Option<(f64, f64)> {
         let (Groups { b, a_v, a_n }, unit) = self.groups(p);
         let line = -self.sigma * unit;
         let kappa = exp(self.sigma * tau);
@@ -221,7 +221,7 @@ impl DecayPlane<'_> {
     }
 
     /// The frequencies, at most three, at which a root can lie on the line at (p, τ).
-    pub fn candidates(&self, p: f64, tau: f64) -> Vec<f64> {
+    pub(super) fn candidates(&self, p: f64, tau: f64) -> Vec<f64> {
         let band = self.band(p, tau).map(|(lower, upper)| [lower, upper]);
         let mut all: Vec<f64> = band.into_iter().flatten().chain([0.0]).collect();
         let residual = |omega: &f64| elementary::norm(self.jet(p, tau, *omega).0.value);
@@ -231,7 +231,7 @@ impl DecayPlane<'_> {
     }
 
     /// The family of a root with the frequency `omega` at (p, τ).
-    pub fn family(&self, p: f64, tau: f64, omega: f64) -> Family {
+    pub(super) fn family(&self, p: f64, tau: f64, omega: f64) -> Family {
         if omega > 0.0 {
             return Family::Pair;
         }

@@ -110,13 +110,8 @@ impl DecayPlane<'_> {
         };
         let row = [0, 1, 2].map(|i| t[i] / scales[i]);
         let v = self.correct(predicted, from.family, row)?;
-        let off = norm(self.apart(predicted, v, scales));
+        let off = norm(apart(predicted, v, scales));
         (off <= MOST_CORRECTION * h).then(|| self.place(v, from.family, sense))
-    }
-
-    fn apart(&self, v: Vertex, w: Vertex, scales: [f64; 3]) -> [f64; 3] {
-        let difference = [w.p - v.p, w.tau - v.tau, w.omega - v.omega];
-        [0, 1, 2].map(|i| difference[i] / scales[i])
     }
 
     /// The longest step up to `h` along which the curve is followed safely and nearly straight.
@@ -140,8 +135,8 @@ impl DecayPlane<'_> {
     /// The step from `from` to `to` leads past `origin`, in its direction.
     fn passes(&self, from: Place, to: Place, origin: Place) -> bool {
         let scales = self.scales(from.v);
-        let step = self.apart(from.v, to.v, scales);
-        let there = self.apart(from.v, origin.v, scales);
+        let step = apart(from.v, to.v, scales);
+        let there = apart(from.v, origin.v, scales);
         let length = norm(step);
         let along = dot(step, there) / length;
         let off = (dot(there, there) - along * along).max(0.0).sqrt();
@@ -273,4 +268,10 @@ impl Way {
         }
         self.corners.push(turn);
     }
+}
+
+/// From `v` to `w`, each coordinate in its scale.
+fn apart(v: Vertex, w: Vertex, scales: [f64; 3]) -> [f64; 3] {
+    let difference = [w.p - v.p, w.tau - v.tau, w.omega - v.omega];
+    [0, 1, 2].map(|i| difference[i] / scales[i])
 }

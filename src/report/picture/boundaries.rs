@@ -35,7 +35,7 @@ struct Family<'a> {
 }
 
 /// Draws the boundaries; `curves` are all curves of the map.
-pub fn draw(
+pub(super) fn draw(
     map: &MapFile,
     view: &View,
     y: usize,
@@ -61,7 +61,7 @@ pub fn draw(
     };
     let panels = Panels::new(scene, body, scales, words);
     panels.draw_grid(scene);
-    let Some(panel) = panels.panels.first() else {
+    let Some(panel) = panels.list.first() else {
         return Ok(());
     };
     for family in &families {

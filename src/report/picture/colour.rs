@@ -4,22 +4,22 @@ use crate::sweep::Field;
 
 /// A colour of the screen.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub struct Rgb(pub u8, pub u8, pub u8);
+pub(super) struct Rgb(pub u8, pub u8, pub u8);
 
 /// Text and frames.
-pub const INK: Rgb = Rgb(0x22, 0x22, 0x22);
+pub(super) const INK: Rgb = Rgb(0x22, 0x22, 0x22);
 /// Text of less weight.
-pub const SOFT_INK: Rgb = Rgb(0x5a, 0x5a, 0x5a);
+pub(super) const SOFT_INK: Rgb = Rgb(0x5a, 0x5a, 0x5a);
 /// Grid lines.
-pub const GRID: Rgb = Rgb(0xe6, 0xe6, 0xe6);
+pub(super) const GRID: Rgb = Rgb(0xe6, 0xe6, 0xe6);
 /// Paper.
-pub const PAPER: Rgb = Rgb(0xff, 0xff, 0xff);
+pub(super) const PAPER: Rgb = Rgb(0xff, 0xff, 0xff);
 /// Cells without a value.
-pub const NO_VALUE: Rgb = Rgb(0xb9, 0xb9, 0xb9);
+pub(super) const NO_VALUE: Rgb = Rgb(0xb9, 0xb9, 0xb9);
 /// Stable cells.
-pub const STABLE: Rgb = Rgb(0x5f, 0xb9, 0xae);
+pub(super) const STABLE: Rgb = Rgb(0x5f, 0xb9, 0xae);
 /// Cells with 2, 4, 6 and at least 8 unstable roots.
-pub const UNSTABLE: [Rgb; 4] = [
+pub(super) const UNSTABLE: [Rgb; 4] = [
     Rgb(0xf6, 0xe8, 0xc3),
     Rgb(0xdf, 0xc2, 0x7d),
     Rgb(0xbf, 0x81, 0x2d),
@@ -102,7 +102,7 @@ const TINT: f64 = 0.1;
 const SIZE_STEPS: f64 = 64.0;
 
 /// The colour of line `i` of `n`, from dark to light.
-pub fn of_line(i: usize, n: usize) -> Rgb {
+pub(super) fn of_line(i: usize, n: usize) -> Rgb {
     let part = if n > 1 {
         i as f64 / (n - 1) as f64
     } else {
@@ -112,7 +112,7 @@ pub fn of_line(i: usize, n: usize) -> Rgb {
 }
 
 /// The colour of a number of unstable roots.
-pub fn of_count(n: f64) -> Rgb {
+pub(super) fn of_count(n: f64) -> Rgb {
     match n {
         n if n.is_nan() => NO_VALUE,
         n if n < 1.0 => STABLE,
@@ -121,7 +121,7 @@ pub fn of_count(n: f64) -> Rgb {
 }
 
 /// The colour of the kind of `field` with this number, or of a small count.
-pub fn of_kind(field: Field, number: f64) -> Rgb {
+pub(super) fn of_kind(field: Field, number: f64) -> Rgb {
     let colours: &[Rgb] = match field {
         Field::Outcome => &OUTCOMES,
         Field::Class => &CLASSES,
@@ -137,7 +137,7 @@ pub fn of_kind(field: Field, number: f64) -> Rgb {
 ///
 /// Colours go with the square root, and both sides begin with a tint: stable cells with little to
 /// spare are the most common ones, and must not look like unstable ones.
-pub fn diverging(value: f64, range: f64) -> Rgb {
+pub(super) fn diverging(value: f64, range: f64) -> Rgb {
     if value.is_nan() {
         return NO_VALUE;
     }
@@ -151,17 +151,17 @@ pub fn diverging(value: f64, range: f64) -> Rgb {
 }
 
 /// The colour of a size at a part of the way from small to large: from dark to light.
-pub fn of_size(part: f64) -> Rgb {
+pub(super) fn of_size(part: f64) -> Rgb {
     sample(&VIRIDIS, (part * SIZE_STEPS).round() / SIZE_STEPS)
 }
 
 /// `colour` mixed with paper; 0: paper.
-pub fn pale(colour: Rgb, part: f64) -> Rgb {
+pub(super) fn pale(colour: Rgb, part: f64) -> Rgb {
     mix(PAPER, colour, part)
 }
 
 /// `colour` for letters, which need more contrast than lines.
-pub fn darker(colour: Rgb) -> Rgb {
+pub(super) fn darker(colour: Rgb) -> Rgb {
     mix(colour, INK, 0.35)
 }
 

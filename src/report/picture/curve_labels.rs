@@ -13,7 +13,7 @@ const SQUARE: f64 = 40.0;
 const ENOUGH_ROOM: f64 = 60.0;
 
 /// The curves of one label, in pixels.
-pub type Curves = Vec<Vec<Point>>;
+pub(super) type Curves = Vec<Vec<Point>>;
 
 /// Distance of a text beside its curve.
 const BESIDE: f64 = 9.0;
@@ -27,7 +27,7 @@ const APART: f64 = 3.0;
 
 /// For each set of curves a place on one of them, or beside it, for the middle of a text of this
 /// size; none where there is no room.
-pub fn places(sets: &[(Curves, (f64, f64))], area: Area) -> Vec<Option<Point>> {
+pub(super) fn places(sets: &[(Curves, (f64, f64))], area: Area) -> Vec<Option<Point>> {
     let points = Points::of(sets);
     let mut taken: Vec<(Point, (f64, f64))> = Vec::new();
     // Short curves have the fewest places: they choose first.

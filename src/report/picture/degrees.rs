@@ -8,7 +8,7 @@ use crate::store::MapFile;
 use crate::store::map_file::MapCurve;
 
 /// Width of the curves, in units of the picture.
-pub const WIDTH: f64 = 1.6;
+pub(super) const WIDTH: f64 = 1.6;
 /// Length of the longest dashes and what each further degree leaves of it, in units of the picture.
 const LONGEST: f64 = 16.0;
 const SHRINKING: f64 = 0.5;
@@ -17,13 +17,13 @@ const SHORTEST: f64 = 0.5;
 const GAP: f64 = 6.0;
 
 /// The degrees of stability above zero of some curves, increasing.
-pub struct Degrees {
+pub(super) struct Degrees {
     values: Vec<f64>,
     unit: String,
 }
 
 impl Degrees {
-    pub fn of(map: &MapFile, curves: &[MapCurve]) -> Self {
+    pub(super) fn of(map: &MapFile, curves: &[MapCurve]) -> Self {
         let mut values: Vec<f64> = curves.iter().map(|c| c.degree_of_stability).collect();
         values.retain(|&sigma| sigma > 0.0);
         values.sort_by(f64::total_cmp);
@@ -35,7 +35,7 @@ impl Degrees {
     }
 
     /// Entries of a legend, one for each degree.
-    pub fn entries(&self, colour: Rgb) -> Vec<(Swatch, Rich)> {
+    pub(super) fn entries(&self, colour: Rgb) -> Vec<(Swatch, Rich)> {
         let unit = suffix(&self.unit, " ", "");
         let entry = |(i, sigma): (usize, &f64)| {
             let text = Rich::plain(&format!("σ = {}{unit}", number(*sigma)));
@@ -45,7 +45,7 @@ impl Degrees {
     }
 
     /// Draws the curve of one of the degrees.
-    pub fn draw(&self, degree: f64, points: &[Point], colour: Rgb, scene: &mut Scene) {
+    pub(super) fn draw(&self, degree: f64, points: &[Point], colour: Rgb, scene: &mut Scene) {
         let place = self.values.partition_point(|&sigma| sigma < degree);
         scene.dashed(points, colour, WIDTH * scene.unit(), dash(place));
     }

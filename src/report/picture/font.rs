@@ -14,7 +14,7 @@ const MEASURED_AT: f64 = 1000.0;
 const TYPICAL_WIDTH: f64 = 0.55;
 
 /// The font at a size in pixels; `None` if it cannot be used.
-pub fn sized(size: f64) -> Option<FontDesc<'static>> {
+pub(super) fn sized(size: f64) -> Option<FontDesc<'static>> {
     static REGISTERED: OnceLock<bool> = OnceLock::new();
     let register = || register_font(FAMILY, FontStyle::Normal, dejavu::sans::regular()).is_ok();
     REGISTERED
@@ -23,7 +23,7 @@ pub fn sized(size: f64) -> Option<FontDesc<'static>> {
 }
 
 /// Width of a text in pixels.
-pub fn width(text: &str, size: f64) -> f64 {
+pub(super) fn width(text: &str, size: f64) -> f64 {
     let measured = sized(MEASURED_AT).and_then(|font| font.box_size(text).ok());
     match measured {
         Some((width, _)) => f64::from(width) * size / MEASURED_AT,

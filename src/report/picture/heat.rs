@@ -20,7 +20,7 @@ const GAP: f64 = 34.0;
 
 /// Draws a heat map of `field` with at most `most` cells each way in all panels together, and the
 /// curves of `curves` that bound the stable region.
-pub fn draw(
+pub(super) fn draw(
     map: &MapFile,
     view: &View,
     y: usize,
@@ -52,7 +52,7 @@ pub fn draw(
         headings: view.panels.iter().map(|p| view.heading(map, p)).collect(),
     };
     let panels = Panels::new(scene, body, scales, words);
-    for ((panel, plane), index) in panels.panels.iter().zip(&planes).zip(&view.panels) {
+    for ((panel, plane), index) in panels.list.iter().zip(&planes).zip(&view.panels) {
         scene
             .marks
             .push(cells(panel, plane, |value| key.colour(value)));
@@ -62,7 +62,7 @@ pub fn draw(
         }
     }
     panels.draw_axes(scene);
-    if let (Some(first), Some(last)) = (panels.panels.first(), panels.panels.last()) {
+    if let (Some(first), Some(last)) = (panels.list.first(), panels.list.last()) {
         let (top, bottom) = (first.area.top, last.area.bottom);
         key.draw(
             scene,

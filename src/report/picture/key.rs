@@ -13,13 +13,13 @@ use crate::sweep::input::field::{Spread, Storage};
 use crate::sweep::input::source::{OfRoots, Source};
 
 /// Width of boundary lines.
-pub const BOUNDARY_WIDTH: f64 = 1.8;
+pub(super) const BOUNDARY_WIDTH: f64 = 1.8;
 /// The part of all slopes and further roots that the colours tell apart. Near double roots some
 /// slopes are beyond any scale, and as the delay vanishes all roots but the rightmost go to −∞.
 const TOLD_APART: f64 = 0.96;
 /// Decades of a velocity whose colours differ, and that a line shows: it falls to zero faster than
 /// any power.
-pub const DECADES: i32 = 5;
+pub(super) const DECADES: i32 = 5;
 /// The longest relaxation time that has a colour of its own, in units of the shortest one.
 const LONGEST_RELAXATION: f64 = 100.0;
 
@@ -144,7 +144,7 @@ impl Paint {
 }
 
 /// What the colours of a field mean, in the panels and beside them.
-pub struct Key {
+pub(super) struct Key {
     paint: Paint,
     /// Lines above the bar.
     heading: Vec<Rich>,
@@ -154,7 +154,7 @@ pub struct Key {
 
 impl Key {
     /// The key to all cells of `planes`; `curves`: boundaries are drawn as well.
-    pub fn new(field: Field, unit: &str, planes: &[Plane], curves: bool) -> Self {
+    pub(super) fn new(field: Field, unit: &str, planes: &[Plane], curves: bool) -> Self {
         let cells = planes.iter().flat_map(|plane| plane.cells.iter().copied());
         let values: Vec<f64> = cells.collect();
         let paint = Paint::of(field, &values);
@@ -180,25 +180,25 @@ impl Key {
     }
 
     /// The key with more entries at the end of its list.
-    pub fn with(mut self, more: Vec<(Swatch, Rich)>) -> Self {
+    pub(super) fn with(mut self, more: Vec<(Swatch, Rich)>) -> Self {
         self.legend.entries.extend(more);
         self
     }
 
     /// The colour of a value.
-    pub fn colour(&self, value: f64) -> Rgb {
+    pub(super) fn colour(&self, value: f64) -> Rgb {
         self.paint.colour(value)
     }
 
     /// Width in pixels.
-    pub fn width(&self, u: f64) -> f64 {
+    pub(super) fn width(&self, u: f64) -> f64 {
         let colour = |value| self.colour(value);
         let bar = self.bar(&colour).map_or(0.0, |bar| bar.width(u));
         bar.max(self.legend.width(u))
     }
 
     /// Draws the key into `area`.
-    pub fn draw(&self, scene: &mut Scene, area: Area) {
+    pub(super) fn draw(&self, scene: &mut Scene, area: Area) {
         let colour = |value| self.colour(value);
         let Some(bar) = self.bar(&colour) else {
             return self.legend.draw(scene, area);

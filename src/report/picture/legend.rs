@@ -14,7 +14,7 @@ const BAR_STEPS: usize = 256;
 
 /// How an entry is drawn.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Swatch {
+pub(super) enum Swatch {
     /// A line of this width, over an area of that colour if there is one.
     Line(Rgb, f64, Option<Rgb>),
     /// A dashed line of this width, with (length, gap) of its dashes.
@@ -25,7 +25,7 @@ pub enum Swatch {
 
 /// A list of colours with their meanings.
 #[derive(Debug, Clone, PartialEq, Default)]
-pub struct Legend {
+pub(super) struct Legend {
     /// Lines above the list.
     pub heading: Vec<Rich>,
     /// The list, from the top.
@@ -34,7 +34,7 @@ pub struct Legend {
 
 impl Legend {
     /// Width in pixels.
-    pub fn width(&self, u: f64) -> f64 {
+    pub(super) fn width(&self, u: f64) -> f64 {
         let headings = self.heading.iter().map(|line| line.width(SMALL * u));
         let entries = self.entries.iter();
         entries
@@ -44,13 +44,13 @@ impl Legend {
     }
 
     /// Height in pixels.
-    pub fn height(&self, u: f64) -> f64 {
+    pub(super) fn height(&self, u: f64) -> f64 {
         let headings = 1.3 * self.heading.len() as f64 + 0.3;
         (headings + LINE * self.entries.len() as f64) * SMALL * u
     }
 
     /// Draws the legend at the upper left corner of `area`.
-    pub fn draw(&self, scene: &mut Scene, area: Area) {
+    pub(super) fn draw(&self, scene: &mut Scene, area: Area) {
         let u = scene.unit();
         let mut y = heading(scene, area, &self.heading);
         for (swatch, text) in &self.entries {
@@ -93,7 +93,7 @@ fn heading(scene: &mut Scene, area: Area, lines: &[Rich]) -> f64 {
 }
 
 /// A bar of colours with numbers.
-pub struct Bar<'a> {
+pub(super) struct Bar<'a> {
     /// Lines above the bar.
     pub heading: Vec<Rich>,
     /// The values.
@@ -104,7 +104,7 @@ pub struct Bar<'a> {
 
 impl Bar<'_> {
     /// Width in pixels.
-    pub fn width(&self, u: f64) -> f64 {
+    pub(super) fn width(&self, u: f64) -> f64 {
         let ticks = self.scale.ticks(8);
         let labels = ticks.iter().filter_map(|t| t.label.as_deref());
         let numbers = labels
@@ -115,7 +115,7 @@ impl Bar<'_> {
     }
 
     /// Draws the bar over the height of `area`.
-    pub fn draw(&self, scene: &mut Scene, area: Area) {
+    pub(super) fn draw(&self, scene: &mut Scene, area: Area) {
         let u = scene.unit();
         let top = heading(scene, area, &self.heading) + 0.4 * SMALL * u;
         let (left, right) = (area.left, area.left + BAR_WIDTH * u);

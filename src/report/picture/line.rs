@@ -34,7 +34,7 @@ struct Line {
 
 /// Draws `fields` along the axis `view.x` at no more than `most` cells: a single one at every
 /// panel's values of the other axes, several ones, of the same unit, at those of the first.
-pub fn draw(
+pub(super) fn draw(
     map: &MapFile,
     view: &View,
     fields: &[Field],
@@ -58,7 +58,7 @@ pub fn draw(
     };
     let scales = (Scale::around(&axis.values), value_scale(field, &lines));
     let panels = Panels::new(scene, body, scales, words);
-    let Some(panel) = panels.panels.first() else {
+    let Some(panel) = panels.list.first() else {
         return Ok(());
     };
     let stability = map.stability_field().filter(|_| lines.len() == 1);
@@ -193,10 +193,10 @@ fn stretches(panel: &Panel, line: &Line) -> Vec<Vec<Point>> {
             done.push(std::mem::take(&mut open));
             continue;
         }
-        if line.field.storage() != Storage::Real {
-            open.extend([panel.at(edges[i], value), panel.at(edges[i + 1], value)]);
-        } else {
+        if line.field.storage() == Storage::Real {
             open.push(panel.at(x, value));
+        } else {
+            open.extend([panel.at(edges[i], value), panel.at(edges[i + 1], value)]);
         }
     }
     done.push(open);

@@ -5,11 +5,11 @@ use super::scene::{Align, Scene};
 use super::text::Rich;
 
 /// Font sizes in units, see [`Scene::unit`].
-pub const TITLE: f64 = 34.0;
+pub(super) const TITLE: f64 = 34.0;
 /// Axis titles.
-pub const LABEL: f64 = 29.0;
+pub(super) const LABEL: f64 = 29.0;
 /// Numbers and notes.
-pub const SMALL: f64 = 26.0;
+pub(super) const SMALL: f64 = 26.0;
 /// Space at the edges of the sheet.
 const EDGE: f64 = 34.0;
 const TITLE_LINES: usize = 2;
@@ -19,7 +19,7 @@ const LEADING: f64 = 1.3;
 
 /// A rectangle in pixels.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Area {
+pub(super) struct Area {
     /// Left edge.
     pub left: f64,
     /// Upper edge.
@@ -32,17 +32,17 @@ pub struct Area {
 
 impl Area {
     /// Width.
-    pub fn width(&self) -> f64 {
+    pub(super) fn width(&self) -> f64 {
         self.right - self.left
     }
 
     /// Height.
-    pub fn height(&self) -> f64 {
+    pub(super) fn height(&self) -> f64 {
         self.bottom - self.top
     }
 
     /// Cuts a column of this width off the right, with a gap; gives the column.
-    pub fn cut_right(&mut self, width: f64, gap: f64) -> Self {
+    pub(super) fn cut_right(&mut self, width: f64, gap: f64) -> Self {
         let column = Self {
             left: self.right - width,
             ..*self
@@ -53,7 +53,7 @@ impl Area {
 }
 
 /// Writes title and notes; gives the area left for the rest.
-pub fn head(scene: &mut Scene, title: &str, notes: &[Rich]) -> Area {
+pub(super) fn head(scene: &mut Scene, title: &str, notes: &[Rich]) -> Area {
     let u = scene.unit();
     let (width, height) = (f64::from(scene.size.0), f64::from(scene.size.1));
     let (left, right) = (EDGE * u, width - EDGE * u);

@@ -16,7 +16,7 @@ const MOST_TICKS: usize = 10;
 
 /// One panel: where it is, and its scales.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Panel {
+pub(super) struct Panel {
     /// Inside the frame.
     pub area: Area,
     /// From left to right.
@@ -27,17 +27,17 @@ pub struct Panel {
 
 impl Panel {
     /// The place of a value from left to right.
-    pub fn across(&self, x: f64) -> f64 {
+    pub(super) fn across(&self, x: f64) -> f64 {
         self.area.left + self.area.width() * self.x.part(x)
     }
 
     /// The place of a value from bottom to top.
-    pub fn up(&self, y: f64) -> f64 {
+    pub(super) fn up(&self, y: f64) -> f64 {
         self.area.bottom - self.area.height() * self.y.part(y)
     }
 
     /// The place of a pair of values.
-    pub fn at(&self, x: f64, y: f64) -> Point {
+    pub(super) fn at(&self, x: f64, y: f64) -> Point {
         (self.across(x), self.up(y))
     }
 }
@@ -45,7 +45,7 @@ impl Panel {
 /// How a panel looks, with ticks from left to right and from bottom to top.
 impl Panel {
     /// Draws a line at every tick with a label.
-    pub fn draw_grid(&self, scene: &mut Scene, across: &[Tick], up: &[Tick]) {
+    pub(super) fn draw_grid(&self, scene: &mut Scene, across: &[Tick], up: &[Tick]) {
         let width = 1.2 * scene.unit();
         let Area {
             left,
@@ -64,14 +64,14 @@ impl Panel {
     }
 
     /// Draws the frame.
-    pub fn draw_frame(&self, scene: &mut Scene) {
+    pub(super) fn draw_frame(&self, scene: &mut Scene) {
         let area = self.area;
         let width = FRAME_WIDTH * scene.unit();
         scene.outline((area.left, area.top), (area.right, area.bottom), INK, width);
     }
 
     /// Draws ticks below the panel, with their labels or without.
-    pub fn draw_x_ticks(&self, scene: &mut Scene, ticks: &[Tick], labels: bool) {
+    pub(super) fn draw_x_ticks(&self, scene: &mut Scene, ticks: &[Tick], labels: bool) {
         let u = scene.unit();
         let bottom = self.area.bottom;
         for tick in ticks {
@@ -86,7 +86,7 @@ impl Panel {
     }
 
     /// Draws ticks to the left of the panel, with their labels or without.
-    pub fn draw_y_ticks(&self, scene: &mut Scene, ticks: &[Tick], labels: bool) {
+    pub(super) fn draw_y_ticks(&self, scene: &mut Scene, ticks: &[Tick], labels: bool) {
         let u = scene.unit();
         let left = self.area.left;
         for tick in ticks {
@@ -103,7 +103,7 @@ impl Panel {
 
 /// What is written at the panels.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Words {
+pub(super) struct Words {
     /// Below all panels.
     pub x: Rich,
     /// To the left of all panels.
@@ -114,9 +114,9 @@ pub struct Words {
 
 /// Panels in rows.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Panels {
+pub(super) struct Panels {
     /// The panels, row by row from the top.
-    pub panels: Vec<Panel>,
+    pub list: Vec<Panel>,
     columns: usize,
     ticks: (Vec<Tick>, Vec<Tick>),
     words: Words,
@@ -125,7 +125,7 @@ pub struct Panels {
 
 impl Panels {
     /// Lays out one panel for each heading in `outside`.
-    pub fn new(scene: &Scene, outside: Area, (x, y): (Scale, Scale), words: Words) -> Self {
+    pub(super) fn new(scene: &Scene, outside: Area, (x, y): (Scale, Scale), words: Words) -> Self {
         let u = scene.unit();
         let n = words.headings.len().max(1);
         let (columns, rows) = shape(n, outside.width() / outside.height());
@@ -165,7 +165,7 @@ impl Panels {
             }
         };
         Self {
-            panels: (0..n).map(panel).collect(),
+            list: (0..n).map(panel).collect(),
             columns,
             ticks: (x_ticks, y_ticks),
             words,
@@ -174,18 +174,18 @@ impl Panels {
     }
 
     /// Draws grid lines, before the contents.
-    pub fn draw_grid(&self, scene: &mut Scene) {
-        for panel in &self.panels {
+    pub(super) fn draw_grid(&self, scene: &mut Scene) {
+        for panel in &self.list {
             panel.draw_grid(scene, &self.ticks.0, &self.ticks.1);
         }
     }
 
     /// Draws frames, ticks and all that is written, after the contents.
-    pub fn draw_axes(&self, scene: &mut Scene) {
+    pub(super) fn draw_axes(&self, scene: &mut Scene) {
         let u = scene.unit();
-        for (i, panel) in self.panels.iter().enumerate() {
+        for (i, panel) in self.list.iter().enumerate() {
             let area = panel.area;
-            let lowest = i + self.columns >= self.panels.len();
+            let lowest = i + self.columns >= self.list.len();
             panel.draw_frame(scene);
             panel.draw_x_ticks(scene, &self.ticks.0, lowest);
             panel.draw_y_ticks(scene, &self.ticks.1, i % self.columns == 0);
@@ -200,12 +200,10 @@ impl Panels {
 
     fn draw_titles(&self, scene: &mut Scene) {
         let u = scene.unit();
-        let (Some(first), Some(last)) = (self.panels.first(), self.panels.last()) else {
+        let (Some(first), Some(last)) = (self.list.first(), self.list.last()) else {
             return;
         };
-        let right = self.panels[self.columns.min(self.panels.len()) - 1]
-            .area
-            .right;
+        let right = self.list[self.columns.min(self.list.len()) - 1].area.right;
         let outside = self.outside;
         let words = &self.words;
         let size = words.x.fitting(LABEL * u, outside.width());
@@ -222,7 +220,7 @@ impl Panels {
 }
 
 /// The middle nearest to `middle` at which this width stays between two edges.
-pub fn inside(middle: f64, width: f64, from: f64, to: f64) -> f64 {
+pub(super) fn inside(middle: f64, width: f64, from: f64, to: f64) -> f64 {
     middle.min(to - 0.5 * width).max(from + 0.5 * width)
 }
 
@@ -249,19 +247,19 @@ fn shape(n: usize, area: f64) -> (usize, usize) {
 }
 
 /// Room for the title of an axis, these labels and ticks to the left of a panel.
-pub fn left_margin<'a>(labels: impl Iterator<Item = &'a str>, u: f64) -> f64 {
+pub(super) fn left_margin<'a>(labels: impl Iterator<Item = &'a str>, u: f64) -> f64 {
     let widths = labels.map(|l| Rich::plain(l).width(SMALL * u));
     1.4 * LABEL * u + widths.fold(0.0, f64::max) + (TICK + 8.0) * u
 }
 
 /// As many ticks as fit beside one another over a width.
-pub fn fitting_across(scale: &Scale, width: f64, u: f64) -> Vec<Tick> {
+pub(super) fn fitting_across(scale: &Scale, width: f64, u: f64) -> Vec<Tick> {
     let label_width = |l: &str| Rich::plain(l).width(SMALL * u) + 0.9 * SMALL * u;
     fitting(scale, label_width, width)
 }
 
 /// As many ticks as fit above one another over a height.
-pub fn fitting_up(scale: &Scale, height: f64, u: f64) -> Vec<Tick> {
+pub(super) fn fitting_up(scale: &Scale, height: f64, u: f64) -> Vec<Tick> {
     fitting(scale, |_| 1.7 * SMALL * u, height)
 }
 

@@ -22,7 +22,7 @@ const DEJAVU_HEIGHT: f64 = 1.164;
 const SVG_FONT_FACTOR: f64 = 1.24;
 
 /// The picture as a PNG file.
-pub fn png(scene: &Scene) -> Result<Vec<u8>, PictureError> {
+pub(super) fn png(scene: &Scene) -> Result<Vec<u8>, PictureError> {
     let (width, height) = scene.size;
     let (fine_width, fine_height) = (width * OVERSAMPLING, height * OVERSAMPLING);
     let mut fine = vec![255; fine_width as usize * fine_height as usize * 3];
@@ -57,13 +57,13 @@ pub fn png(scene: &Scene) -> Result<Vec<u8>, PictureError> {
 const SIGNATURE: (&str, &str) = ("Software", "slipmap");
 
 /// True for the start of a PNG file that [`png`] made.
-pub fn signed(start: &[u8]) -> bool {
+pub(super) fn signed(start: &[u8]) -> bool {
     let text = [SIGNATURE.0.as_bytes(), b"\0", SIGNATURE.1.as_bytes()].concat();
     start.windows(text.len()).any(|part| part == text)
 }
 
 /// The picture as an SVG file.
-pub fn svg(scene: &Scene) -> Result<Vec<u8>, PictureError> {
+pub(super) fn svg(scene: &Scene) -> Result<Vec<u8>, PictureError> {
     let (width, height) = (scene.size.0 * SVG_UNITS, scene.size.1 * SVG_UNITS);
     let mut text = String::new();
     {

@@ -9,7 +9,7 @@ const SMALLEST_SPAN: f64 = 3.0;
 
 /// A linear or logarithmic scale between two values.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Scale {
+pub(super) struct Scale {
     log: bool,
     from: f64,
     to: f64,
@@ -19,7 +19,7 @@ pub struct Scale {
 impl Scale {
     /// The scale from the smallest to the largest of `values`, logarithmic if they are spaced so,
     /// on either side of 0.
-    pub fn between(values: &[f64]) -> Self {
+    pub(super) fn between(values: &[f64]) -> Self {
         let (from, to) = ends(values);
         Self {
             log: log_spaced(values),
@@ -30,7 +30,7 @@ impl Scale {
     }
 
     /// The scale on which every one of `values` has its whole cell: half a step more at both ends.
-    pub fn around(values: &[f64]) -> Self {
+    pub(super) fn around(values: &[f64]) -> Self {
         let scale = Self::between(values);
         let edges = scale.edges(values);
         let (from, to) = ends(&edges);
@@ -38,7 +38,7 @@ impl Scale {
     }
 
     /// A linear scale between two different values.
-    pub fn linear(from: f64, to: f64) -> Self {
+    pub(super) fn linear(from: f64, to: f64) -> Self {
         Self {
             log: false,
             from,
@@ -48,7 +48,7 @@ impl Scale {
     }
 
     /// A logarithmic scale between two different positive values.
-    pub fn logarithmic(from: f64, to: f64) -> Self {
+    pub(super) fn logarithmic(from: f64, to: f64) -> Self {
         Self {
             log: true,
             ..Self::linear(from, to)
@@ -57,7 +57,7 @@ impl Scale {
 
     /// A logarithmic scale over all positive `values`, or over the uppermost `decades` and a part
     /// of one where they are spread wider; none where there is no positive one.
-    pub fn over_decades(values: impl Iterator<Item = f64>, decades: i32) -> Option<Self> {
+    pub(super) fn over_decades(values: impl Iterator<Item = f64>, decades: i32) -> Option<Self> {
         let positive = values.filter(|v| v.is_finite() && *v > 0.0);
         let (low, high) = positive.fold((f64::INFINITY, 0.0), |(low, high), v| {
             (f64::min(low, v), f64::max(high, v))
@@ -67,12 +67,12 @@ impl Scale {
     }
 
     /// True for a logarithmic scale.
-    pub fn is_logarithmic(&self) -> bool {
+    pub(super) fn is_logarithmic(&self) -> bool {
         self.log
     }
 
     /// This scale with ticks at least this far apart.
-    pub fn with_smallest_step(self, smallest_step: f64) -> Self {
+    pub(super) fn with_smallest_step(self, smallest_step: f64) -> Self {
         Self {
             smallest_step,
             ..self
@@ -80,7 +80,7 @@ impl Scale {
     }
 
     /// Where a value lies: 0 at the lower end, 1 at the upper one.
-    pub fn part(&self, value: f64) -> f64 {
+    pub(super) fn part(&self, value: f64) -> f64 {
         if self.log {
             (value / self.from).ln() / (self.to / self.from).ln()
         } else {
@@ -89,7 +89,7 @@ impl Scale {
     }
 
     /// The value at a part of the way.
-    pub fn value(&self, part: f64) -> f64 {
+    pub(super) fn value(&self, part: f64) -> f64 {
         if self.log {
             self.from * (self.to / self.from).powf(part)
         } else {
@@ -98,12 +98,12 @@ impl Scale {
     }
 
     /// True if the value lies on the scale.
-    pub fn holds(&self, value: f64) -> bool {
+    pub(super) fn holds(&self, value: f64) -> bool {
         (-1e-9..=1.0 + 1e-9).contains(&self.part(value))
     }
 
     /// Ticks at round values, about `most` of them with a label.
-    pub fn ticks(&self, most: usize) -> Vec<Tick> {
+    pub(super) fn ticks(&self, most: usize) -> Vec<Tick> {
         if self.log && self.to < 0.0 {
             let mirrored = ticks::logarithmic(-self.to, -self.from, most).into_iter();
             mirrored.rev().map(Tick::mirrored).collect()
@@ -116,7 +116,7 @@ impl Scale {
 
     /// The edges of the cells of `values`, one more than there are: midpoints on the scale, and as
     /// far beyond the ends.
-    pub fn edges(&self, values: &[f64]) -> Vec<f64> {
+    pub(super) fn edges(&self, values: &[f64]) -> Vec<f64> {
         let middle = |a: f64, b: f64| {
             if self.log {
                 (a * b).sqrt().copysign(a)
@@ -143,7 +143,7 @@ impl Scale {
     }
 
     /// The edges of cells that stand for all values on the scale: those at the ends reach the ends.
-    pub fn filling_edges(&self, values: &[f64]) -> Vec<f64> {
+    pub(super) fn filling_edges(&self, values: &[f64]) -> Vec<f64> {
         let mut edges = self.edges(values);
         let growing = values.first() <= values.last();
         let (first, last) = if growing {

@@ -4,11 +4,11 @@ use super::colour::Rgb;
 use super::text::Rich;
 
 /// Place in pixels: to the right, downwards.
-pub type Point = (f64, f64);
+pub(super) type Point = (f64, f64);
 
 /// One thing drawn.
 #[derive(Debug, Clone, PartialEq)]
-pub enum Mark {
+pub(super) enum Mark {
     /// A filled rectangle.
     Rect {
         /// Upper left corner.
@@ -64,7 +64,7 @@ pub enum Mark {
 
 /// Where a text stands relative to its place.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Align {
+pub(super) enum Align {
     /// The text starts there.
     Start,
     /// Its middle is there.
@@ -75,7 +75,7 @@ pub enum Align {
 
 /// A picture: marks in the order of drawing.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Scene {
+pub(super) struct Scene {
     /// Width and height in pixels.
     pub size: (u32, u32),
     /// What is drawn.
@@ -84,7 +84,7 @@ pub struct Scene {
 
 impl Scene {
     /// An empty, white picture.
-    pub fn new(size: (u32, u32)) -> Self {
+    pub(super) fn new(size: (u32, u32)) -> Self {
         Self {
             size,
             marks: Vec::new(),
@@ -93,12 +93,12 @@ impl Scene {
 
     /// The size of a pixel of a picture of 1600 × 1100 in this one: all fonts and gaps grow with
     /// it.
-    pub fn unit(&self) -> f64 {
+    pub(super) fn unit(&self) -> f64 {
         (f64::from(self.size.0) / 1600.0).min(f64::from(self.size.1) / 1100.0)
     }
 
     /// Adds a filled rectangle.
-    pub fn rect(&mut self, from: Point, to: Point, colour: Rgb) {
+    pub(super) fn rect(&mut self, from: Point, to: Point, colour: Rgb) {
         self.marks.push(Mark::Rect {
             from,
             to,
@@ -108,7 +108,7 @@ impl Scene {
     }
 
     /// Adds a horizontal or vertical line, sharp to the pixel.
-    pub fn ruler(&mut self, from: Point, to: Point, colour: Rgb, width: f64) {
+    pub(super) fn ruler(&mut self, from: Point, to: Point, colour: Rgb, width: f64) {
         let half = 0.5 * width;
         let corner = |a: Point, b: Point| (a.0.min(b.0) - half, a.1.min(b.1) - half);
         let (x0, y0) = corner(from, to);
@@ -117,7 +117,7 @@ impl Scene {
     }
 
     /// Adds the outline of a rectangle.
-    pub fn outline(&mut self, from: Point, to: Point, colour: Rgb, width: f64) {
+    pub(super) fn outline(&mut self, from: Point, to: Point, colour: Rgb, width: f64) {
         let (right, left) = ((to.0, from.1), (from.0, to.1));
         for (a, b) in [(from, right), (right, to), (left, to), (from, left)] {
             self.ruler(a, b, colour, width);
@@ -125,7 +125,7 @@ impl Scene {
     }
 
     /// Adds a polyline.
-    pub fn path(&mut self, points: Vec<Point>, colour: Rgb, width: f64) {
+    pub(super) fn path(&mut self, points: Vec<Point>, colour: Rgb, width: f64) {
         if points.len() > 1 {
             self.marks.push(Mark::Path {
                 points,
@@ -136,7 +136,7 @@ impl Scene {
     }
 
     /// Adds a polyline in dashes: (length, gap) in units of the picture.
-    pub fn dashed(&mut self, points: &[Point], colour: Rgb, width: f64, dash: (f64, f64)) {
+    pub(super) fn dashed(&mut self, points: &[Point], colour: Rgb, width: f64, dash: (f64, f64)) {
         let u = self.unit();
         let lengths = [dash.0 * u, dash.1 * u];
         let (mut on, mut left) = (true, lengths[0]);
@@ -169,7 +169,7 @@ impl Scene {
     }
 
     /// Adds a text whose baseline is at `at`.
-    pub fn text(&mut self, at: Point, align: Align, text: &Rich, size: f64, colour: Rgb) {
+    pub(super) fn text(&mut self, at: Point, align: Align, text: &Rich, size: f64, colour: Rgb) {
         let left = at.0 - shift(align, text.width(size));
         for (offset, drop, size, run) in text.placed(size) {
             self.marks.push(Mark::Text {
@@ -184,7 +184,7 @@ impl Scene {
 
     /// Adds a text that reads upwards, its middle at `at`, its baseline to the right of the
     /// letters.
-    pub fn upward_text(&mut self, at: Point, text: &Rich, size: f64, colour: Rgb) {
+    pub(super) fn upward_text(&mut self, at: Point, text: &Rich, size: f64, colour: Rgb) {
         let bottom = at.1 + 0.5 * text.width(size);
         for (offset, drop, size, run) in text.placed(size) {
             self.marks.push(Mark::Text {

@@ -4,14 +4,14 @@ use super::panels::Panel;
 use crate::linear::curves::{CurvePiece, StableSide, Vertex};
 
 /// Slices of a region: (x, y of its lower end, y of its upper end) in pixels, by growing x.
-pub type Region = Vec<(f64, f64, f64)>;
+pub(super) type Region = Vec<(f64, f64, f64)>;
 
 /// The stable regions of one plane within a panel, cut into parts that each are one interval at
 /// every x.
 ///
 /// `pieces` are those that bound the stable region. `without_crossing` says whether sliding is
 /// stable at the values of the panel's x axis where no piece lies.
-pub fn regions(
+pub(super) fn regions(
     panel: &Panel,
     pieces: &[&CurvePiece],
     without_crossing: impl Fn(f64) -> bool,

@@ -13,7 +13,7 @@ const GAP: f64 = 0.55;
 
 /// One panel of a stack.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Row {
+pub(super) struct Row {
     /// From bottom to top.
     pub scale: Scale,
     /// To the left of the panel.
@@ -22,7 +22,7 @@ pub struct Row {
 
 /// Panels of one height.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Stack {
+pub(super) struct Stack {
     /// The panels from the top.
     pub panels: Vec<Panel>,
     across: Vec<Tick>,
@@ -34,7 +34,7 @@ pub struct Stack {
 
 impl Stack {
     /// Lays out `rows` in `outside`, with `below` as the title of their common axis.
-    pub fn new(scene: &Scene, outside: Area, x: Scale, below: Rich, rows: Vec<Row>) -> Self {
+    pub(super) fn new(scene: &Scene, outside: Area, x: Scale, below: Rich, rows: Vec<Row>) -> Self {
         let u = scene.unit();
         let n = rows.len().max(1) as f64;
         let gap = GAP * SMALL * u;
@@ -72,14 +72,14 @@ impl Stack {
     }
 
     /// Draws grid lines, before the contents.
-    pub fn draw_grid(&self, scene: &mut Scene) {
+    pub(super) fn draw_grid(&self, scene: &mut Scene) {
         for (panel, up) in self.panels.iter().zip(&self.up) {
             panel.draw_grid(scene, &self.across, up);
         }
     }
 
     /// Draws frames, ticks and all that is written, after the contents.
-    pub fn draw_axes(&self, scene: &mut Scene) {
+    pub(super) fn draw_axes(&self, scene: &mut Scene) {
         let u = scene.unit();
         let outside = self.outside;
         for (i, (panel, up)) in self.panels.iter().zip(&self.up).enumerate() {

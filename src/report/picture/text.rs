@@ -15,21 +15,21 @@ const MOST_CHARACTERS: usize = 500;
 
 /// A line of text in which a letter may be a subscript.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
-pub struct Rich(Vec<(String, bool)>);
+pub(super) struct Rich(Vec<(String, bool)>);
 
 impl Rich {
     /// A text without subscripts. Characters that no picture can show are left out.
-    pub fn plain(text: &str) -> Self {
+    pub(super) fn plain(text: &str) -> Self {
         Self::default().and(text)
     }
 
     /// The symbol of a parameter.
-    pub fn symbol(parameter: Parameter) -> Self {
+    pub(super) fn symbol(parameter: Parameter) -> Self {
         Self::default().and_symbol(parameter)
     }
 
     /// The text followed by `text`.
-    pub fn and(mut self, text: &str) -> Self {
+    pub(super) fn and(mut self, text: &str) -> Self {
         let there: usize = self.0.iter().map(|(run, _)| run.chars().count()).sum();
         let shown = text.chars().filter(|c| !c.is_control());
         let text: String = shown.take(MOST_CHARACTERS.saturating_sub(there)).collect();
@@ -41,7 +41,7 @@ impl Rich {
     }
 
     /// The text followed by `other`.
-    pub fn then(mut self, other: Self) -> Self {
+    pub(super) fn then(mut self, other: Self) -> Self {
         for (run, lowered) in other.0 {
             if lowered {
                 self.0.push((run, true));
@@ -53,7 +53,7 @@ impl Rich {
     }
 
     /// The text followed by the symbol of a parameter; a 0 at its end is a subscript.
-    pub fn and_symbol(self, parameter: Parameter) -> Self {
+    pub(super) fn and_symbol(self, parameter: Parameter) -> Self {
         let symbol = parameter.symbol();
         match symbol.strip_suffix('0') {
             Some(base) => self.and_formula(&format!("{base}_0")),
@@ -62,7 +62,7 @@ impl Rich {
     }
 
     /// The text followed by `formula`, in which the letter behind each `_` is a subscript.
-    pub fn and_formula(self, formula: &str) -> Self {
+    pub(super) fn and_formula(self, formula: &str) -> Self {
         let mut parts = formula.split('_');
         let mut text = self.and(parts.next().unwrap_or_default());
         for part in parts {
@@ -76,19 +76,19 @@ impl Rich {
     }
 
     /// Width in pixels at a font size.
-    pub fn width(&self, size: f64) -> f64 {
+    pub(super) fn width(&self, size: f64) -> f64 {
         let runs = self.0.iter();
         runs.map(|(run, lowered)| font::width(run, run_size(size, *lowered)))
             .sum()
     }
 
     /// The font size, at most `size`, at which the text is no wider than `room`.
-    pub fn fitting(&self, size: f64, room: f64) -> f64 {
+    pub(super) fn fitting(&self, size: f64, room: f64) -> f64 {
         size * (room / self.width(size).max(f64::MIN_POSITIVE)).min(1.0)
     }
 
     /// The runs as (distance from the start, distance below the baseline, font size, text).
-    pub fn placed(&self, size: f64) -> Vec<(f64, f64, f64, String)> {
+    pub(super) fn placed(&self, size: f64) -> Vec<(f64, f64, f64, String)> {
         let mut offset = 0.0;
         let mut runs = Vec::with_capacity(self.0.len());
         for (run, lowered) in self.0.iter().filter(|(run, _)| !run.is_empty()) {
@@ -106,12 +106,12 @@ fn run_size(size: f64, lowered: bool) -> f64 {
 }
 
 /// "μ′ = −0.3 s m⁻¹".
-pub fn assignment(parameter: Parameter, value: f64, unit: &str) -> Rich {
+pub(super) fn assignment(parameter: Parameter, value: f64, unit: &str) -> Rich {
     Rich::symbol(parameter).and(&format!(" = {}{}", number(value), suffix(unit, " ", "")))
 }
 
 /// "gain of velocity control α_v (s⁻¹)".
-pub fn axis_title(axis: &MapAxis) -> Rich {
+pub(super) fn axis_title(axis: &MapAxis) -> Rich {
     Rich::plain(axis.parameter.long_name())
         .and("  ")
         .and_symbol(axis.parameter)
@@ -119,17 +119,17 @@ pub fn axis_title(axis: &MapAxis) -> Rich {
 }
 
 /// What a field is, in full.
-pub fn field_note(field: Field, unit: &str) -> Rich {
+pub(super) fn field_note(field: Field, unit: &str) -> Rich {
     Rich::plain(field.long_name()).and(&suffix(unit, "  (", ")"))
 }
 
 /// What a field is, in short.
-pub fn field_title(field: Field, unit: &str) -> Rich {
+pub(super) fn field_title(field: Field, unit: &str) -> Rich {
     field_name(field).and(&suffix(unit, "  (", ")"))
 }
 
 /// The short name of a field.
-pub fn field_name(field: Field) -> Rich {
+pub(super) fn field_name(field: Field) -> Rich {
     let name = field.short_name();
     match field.source() {
         Source::Roots(OfRoots::Derivative(slope)) => {
@@ -142,7 +142,7 @@ pub fn field_name(field: Field) -> Rich {
 }
 
 /// The unit between brackets; nothing for dimensionless quantities.
-pub fn suffix(unit: &str, open: &str, close: &str) -> String {
+pub(super) fn suffix(unit: &str, open: &str, close: &str) -> String {
     if unit == "1" || unit.is_empty() {
         return String::new();
     }
@@ -165,7 +165,7 @@ fn superscript(digit: char) -> char {
 }
 
 /// A number with at most six digits and a real minus sign.
-pub fn number(value: f64) -> String {
+pub(super) fn number(value: f64) -> String {
     if value == 0.0 {
         return "0".into();
     }
@@ -189,7 +189,7 @@ pub fn number(value: f64) -> String {
 
 /// A number with `decimals` digits behind the point, divided by a power of ten that is written
 /// behind it.
-pub fn tick_number(value: f64, decimals: usize, exponent: Option<i32>) -> String {
+pub(super) fn tick_number(value: f64, decimals: usize, exponent: Option<i32>) -> String {
     match exponent {
         None => with_minus(&format!("{value:.decimals$}")),
         Some(_) if value == 0.0 => "0".into(),
@@ -201,7 +201,7 @@ pub fn tick_number(value: f64, decimals: usize, exponent: Option<i32>) -> String
 }
 
 /// The power of ten of the first digit, after rounding to six digits.
-pub fn decimal_exponent(value: f64) -> i32 {
+pub(super) fn decimal_exponent(value: f64) -> i32 {
     let text = format!("{value:.5e}");
     let exponent = text.split_once('e').and_then(|(_, e)| e.parse().ok());
     exponent.unwrap_or(0)

@@ -42,7 +42,7 @@ struct Strip {
 }
 
 /// Draws a trace.
-pub fn draw(spec: &CaseSpec, trace: &Trace, scene: &mut Scene) {
+pub(super) fn draw(spec: &CaseSpec, trace: &Trace, scene: &mut Scene) {
     let title = match spec.title.trim() {
         "" => "Motion of the block",
         title => title,

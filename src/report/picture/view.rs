@@ -9,11 +9,11 @@ use crate::sweep::input::units::Units;
 use crate::sweep::{Parameter, SweepSpec};
 
 /// More panels, or more colours, than this are not told apart.
-pub const MOST_PANELS: usize = 12;
+pub(super) const MOST_PANELS: usize = 12;
 
 /// The part of a map that a picture shows.
 #[derive(Debug, Clone, PartialEq)]
-pub struct View {
+pub(super) struct View {
     /// Axis from left to right.
     pub x: usize,
     /// Axis from bottom to top; none where only one axis is left.
@@ -31,7 +31,7 @@ type Asked = Option<Vec<usize>>;
 
 impl View {
     /// The view of `map` at the values `at` (the nearest on their axes) of as many axes.
-    pub fn new(map: &MapFile, at: &[(Parameter, f64)]) -> Result<Self, PictureError> {
+    pub(super) fn new(map: &MapFile, at: &[(Parameter, f64)]) -> Result<Self, PictureError> {
         let asked = asked(map, at)?;
         let free: Vec<usize> = (0..map.axes().len())
             .filter(|&a| asked[a].is_none() && map.axes()[a].values.len() > 1)
@@ -83,20 +83,20 @@ impl View {
     }
 
     /// True if this is the plane of the map's crossing curves.
-    pub fn is_boundary_plane(&self, map: &MapFile) -> bool {
+    pub(super) fn is_boundary_plane(&self, map: &MapFile) -> bool {
         self.y
             .is_some_and(|y| map.boundary_plane() == Some((self.x, y)))
     }
 
     /// Number of axes outside the plane along which the map varies.
-    pub fn outer_axes(&self, map: &MapFile) -> usize {
+    pub(super) fn outer_axes(&self, map: &MapFile) -> usize {
         (0..map.axes().len())
             .filter(|&a| a != self.x && Some(a) != self.y && map.axes()[a].values.len() > 1)
             .count()
     }
 
     /// The values of the axes outside the plane in a panel, in the order of the axes.
-    pub fn outer_values(&self, map: &MapFile, panel: &[usize]) -> Vec<f64> {
+    pub(super) fn outer_values(&self, map: &MapFile, panel: &[usize]) -> Vec<f64> {
         (0..map.axes().len())
             .filter(|&a| a != self.x && Some(a) != self.y)
             .map(|a| map.axes()[a].values[panel[a]])
@@ -104,13 +104,13 @@ impl View {
     }
 
     /// Whether a panel shows the plane at these values of the axes outside of it.
-    pub fn shows(&self, map: &MapFile, outer: &[f64]) -> bool {
+    pub(super) fn shows(&self, map: &MapFile, outer: &[f64]) -> bool {
         let mut panels = self.panels.iter();
         panels.any(|panel| self.outer_values(map, panel) == outer)
     }
 
     /// What tells a panel from the others, "μ′ = −0.3"; none for a single panel.
-    pub fn heading(&self, map: &MapFile, panel: &[usize]) -> Option<Rich> {
+    pub(super) fn heading(&self, map: &MapFile, panel: &[usize]) -> Option<Rich> {
         let axis = self.along?;
         let MapAxis {
             parameter,
@@ -121,7 +121,7 @@ impl View {
     }
 
     /// What all panels have in common, and how many are left out.
-    pub fn notes(&self, map: &MapFile) -> Vec<Rich> {
+    pub(super) fn notes(&self, map: &MapFile) -> Vec<Rich> {
         let mut notes = Vec::new();
         if let Some(axis) = self.along.filter(|_| self.of > self.panels.len()) {
             let text = format!("{} of {} values of ", self.panels.len(), self.of);

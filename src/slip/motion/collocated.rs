@@ -59,12 +59,11 @@ impl Motion {
             let difference = a - delayed;
             let pull = control.v0 + control.alpha_v * difference;
             let load = 1.0 + control.alpha_n * difference;
-            match direction {
-                0.0 => (0.0, pull),
-                _ => {
-                    let friction = self.friction_at(direction * u) * load;
-                    (a - direction * friction, pull - u)
-                }
+            if let 0.0 = direction {
+                (0.0, pull)
+            } else {
+                let friction = self.friction_at(direction * u) * load;
+                (a - direction * friction, pull - u)
             }
         };
         let delayed = &self.step.delayed[..=order];

@@ -43,7 +43,11 @@ pub(super) struct Checked {
 
 impl Checked {
     /// Reads a file of a folder whose tiles have `layout` in common; none where it is gone.
-    pub fn read(path: &Path, layout: &Digest, pieces: Pieces) -> Result<Option<Self>, StoreError> {
+    pub(super) fn read(
+        path: &Path,
+        layout: &Digest,
+        pieces: Pieces,
+    ) -> Result<Option<Self>, StoreError> {
         let useless = |fault: String| {
             Ok(Some(Self {
                 bytes: Vec::new(),

@@ -51,7 +51,7 @@ pub(crate) enum Content<'a> {
 
 impl<'a> Content<'a> {
     /// Reads the payload of a piece; none where it is not what it should be.
-    pub fn read(piece: Piece, payload: &'a [u8]) -> Option<Self> {
+    pub(crate) fn read(piece: Piece, payload: &'a [u8]) -> Option<Self> {
         match piece {
             Piece::Curves(_) => {
                 let rows: Box<CurveRows> = whole(payload)?;

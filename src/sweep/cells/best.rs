@@ -70,7 +70,7 @@ impl Scales {
     }
 
     /// Inside `ranges`, which scaling could leave by rounding.
-    fn optimum(&self, found: Optimum, ranges: &Ranges) -> Optimum {
+    fn optimum(&self, found: &Optimum, ranges: &Ranges) -> Optimum {
         let (gain, tau) = (ranges.gain, ranges.tau);
         Optimum {
             gain: (found.gain * self.gain).clamp(gain.0, gain.1),
@@ -78,7 +78,7 @@ impl Scales {
             abscissa: found.abscissa / self.time,
             margin: found.margin / self.time,
             frequencies: found.frequencies.iter().map(|f| f / self.time).collect(),
-            ..found
+            ..found.clone()
         }
     }
 }
@@ -145,7 +145,7 @@ pub fn best_settings(
         delays: scaled(ranges.tau, 1.0 / scales.time),
     });
     Ok(BestSettings {
-        overall: scales.optimum(found.overall, ranges),
+        overall: scales.optimum(&found.overall, ranges),
         regions: found
             .regions
             .into_iter()
@@ -154,7 +154,7 @@ pub fn best_settings(
                     gain: scaled(region.gains, scales.gain),
                     tau: scaled(region.delays, scales.time),
                 },
-                best: scales.optimum(region.best, ranges),
+                best: scales.optimum(&region.best, ranges),
             })
             .collect(),
         regions_left_out: found.regions_left_out,

@@ -64,7 +64,7 @@ pub fn trace_plane(plan: &Plan, index: &[usize]) -> Result<BoundaryPlane, ModelE
             };
             let parameter = plan.spec.axes[p].parameter;
             let degrees = &plan.spec.degrees_of_stability;
-            trace_window(plan.setting(index), parameter, &window, degrees)?
+            trace_window(&plan.setting(index), parameter, &window, degrees)?
         }
         None => Vec::new(),
     };
@@ -79,7 +79,7 @@ fn ends((from, to): (f64, f64)) -> std::ops::RangeInclusive<f64> {
 }
 
 fn trace_window(
-    setting: Setting,
+    setting: &Setting,
     parameter: Parameter,
     window: &Window,
     degrees_of_stability: &[f64],
@@ -99,13 +99,13 @@ fn trace_window(
     };
     let traced = |sigma: f64| -> Result<DegreeCurves, ModelError> {
         let mut curves = Ok(PlaneCurves::default());
-        for part in split(window, &jumps(&setting, parameter)?) {
+        for part in split(window, &jumps(setting, parameter)?) {
             let more = match sigma {
                 0.0 => {
                     let start = valid_groups_at(*part.p.start());
                     let scanned =
                         || scan_breakpoints(|p| valid_groups_at(p).0, &part.p, SCAN_STEPS);
-                    let breakpoints = breakpoints(&setting, parameter, start, scanned)?;
+                    let breakpoints = breakpoints(setting, parameter, start, scanned)?;
                     trace(crossings_at, &breakpoints, &part)
                 }
                 _ => decay::trace(valid_groups_at, sigma, &part),
@@ -150,8 +150,10 @@ fn breakpoints(
 /// between them.
 fn jumps(setting: &Setting, parameter: Parameter) -> Result<Vec<[f64; 2]>, ModelError> {
     let law = setting.friction_law()?;
-    let (Parameter::V0, Some(Kind::Table(table))) = (parameter, law.as_ref().map(|l| l.kind()))
-    else {
+    let (Parameter::V0, Some(Kind::Table(table))) = (
+        parameter,
+        law.as_ref().map(crate::model::friction::FrictionLaw::kind),
+    ) else {
         return Ok(Vec::new());
     };
     let speeds = table.speeds();

@@ -29,7 +29,7 @@ pub(super) struct RootColumns {
 
 impl RootColumns {
     /// For these fields; none where none of them needs roots.
-    pub fn new(fields: &[Field]) -> Option<Self> {
+    pub(super) fn new(fields: &[Field]) -> Option<Self> {
         let wanted = fields.iter().map(|f| f.roots_needed()).max()?;
         let slope = |f: &Field| matches!(f.source(), Source::Roots(OfRoots::Derivative(_)));
         (wanted > 0).then(|| Self {
@@ -43,7 +43,7 @@ impl RootColumns {
     ///
     /// `counts` are the numbers of unstable roots; `status` gains what following the roots has to
     /// say.
-    pub fn fill(
+    pub(super) fn fill(
         &mut self,
         line: &Line,
         counts: &[u16],

@@ -38,7 +38,7 @@ struct Known {
 
 impl<'p> SlipColumns<'p> {
     /// For the fields of a sweep; none where none of them comes from motions.
-    pub fn new(spec: &'p SweepSpec) -> Option<Self> {
+    pub(super) fn new(spec: &'p SweepSpec) -> Option<Self> {
         spec.follows_motions().then(|| Self {
             simulation: &spec.simulation,
             motion: None,
@@ -50,7 +50,7 @@ impl<'p> SlipColumns<'p> {
     /// from place `at` on with `stride` places from delay to delay. The status gains
     /// [`NOT_CONVERGED`] where a motion stays undecided. After `stop` is set nothing more is
     /// followed.
-    pub fn fill(
+    pub(super) fn fill(
         &mut self,
         (setting, groups): (&Setting, Groups),
         delays: &[f64],

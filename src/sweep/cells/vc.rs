@@ -75,7 +75,7 @@ pub fn find_in(problem: &Problem, units: &CaseUnits, protocol: Protocol) -> Crit
             let phase = in_motion_units(phase, units);
             let windows = switch_on::windows(problem, phase, &scan, accuracy);
             let v_max = scan.v_max * problem.law.mu_s();
-            switched_on(windows, v_max, units.velocity)
+            switched_on(&windows, v_max, units.velocity)
         }
     }
 }
@@ -134,7 +134,7 @@ fn followed(found: &Critical, problem: &Problem, units: &CaseUnits) -> CriticalW
 
 /// v_c is the topmost edge of the windows; there is none where the topmost window ends at `v_max`
 /// only, or not all v0 were tried.
-fn switched_on(found: Windows, v_max: f64, velocity: f64) -> CriticalWindows {
+fn switched_on(found: &Windows, v_max: f64, velocity: f64) -> CriticalWindows {
     let top = found.top();
     let (vc, end) = match top {
         _ if !found.complete => (f64::NAN, End::Never),
@@ -176,7 +176,7 @@ fn in_units(found: &Critical, units: &CaseUnits) -> Critical {
 fn in_motion_units(phase: Phase, units: &CaseUnits) -> Phase {
     match phase {
         Phase::After(time) => Phase::After(time / units.time),
-        worst => worst,
+        Phase::Worst(_) => phase,
     }
 }
 
@@ -445,10 +445,10 @@ mod tests {
             complete: true,
         };
         let two = vec![[0.001, 0.2], [0.3, 0.4]];
-        let found = switched_on(windows(two, Some(0.25)), 10.0, 2.0);
+        let found = switched_on(&windows(two, Some(0.25)), 10.0, 2.0);
         assert_eq!((found.critical.vc, found.critical.end), (0.8, End::Lost));
         assert_eq!(found.windows, [[0.002, 0.4], [0.6, 0.8]]);
-        let found = switched_on(windows(vec![[0.1, 10.0]], None), 10.0, 1.0);
+        let found = switched_on(&windows(vec![[0.1, 10.0]], None), 10.0, 1.0);
         assert!(found.critical.vc.is_nan() && found.critical.end == End::Persists);
         assert_eq!(found.windows.len(), 1);
         let cut = Windows {
@@ -456,11 +456,11 @@ mod tests {
             complete: false,
             ..windows(vec![[0.1, 0.2]], None)
         };
-        let found = switched_on(cut, 10.0, 1.0);
+        let found = switched_on(&cut, 10.0, 1.0);
         assert!(found.critical.vc.is_nan() && !found.critical.decided);
-        let found = switched_on(windows(vec![], None), 10.0, 1.0);
+        let found = switched_on(&windows(vec![], None), 10.0, 1.0);
         assert!(found.critical.vc == 0.0 && found.critical.end == End::Never);
-        let found = switched_on(windows(vec![], Some(0.1)), 10.0, 1.0);
+        let found = switched_on(&windows(vec![], Some(0.1)), 10.0, 1.0);
         assert!(found.critical.vc.is_nan() && found.critical.end == End::LiftOff);
     }
 }

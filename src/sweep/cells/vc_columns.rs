@@ -58,7 +58,7 @@ pub(super) struct Cells {
 
 impl VcColumns {
     /// For the fields of a sweep; none where none of them is of the critical velocity.
-    pub fn new(spec: &SweepSpec) -> Option<Self> {
+    pub(super) fn new(spec: &SweepSpec) -> Option<Self> {
         Some(Self {
             search: spec.critical?,
             tolerance: spec.tolerance,
@@ -71,7 +71,7 @@ impl VcColumns {
     /// Looks for the critical velocities of a line at `setting` and at `delays`, into `buffers`.
     /// The status gains [`NOT_CONVERGED`] where it stays unknown, [`SAMPLED`] and [`DISAGREE`].
     /// After `stop` is set nothing more is looked for.
-    pub fn fill(
+    pub(super) fn fill(
         &mut self,
         setting: &Setting,
         delays: &[f64],

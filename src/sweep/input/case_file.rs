@@ -87,7 +87,7 @@ impl std::str::FromStr for CaseSpec {
         let mut draft = Draft::default();
         for entry in entries(document.get_ref(), "") {
             match entry.key {
-                "title" => draft.title = entry.line()?.to_owned(),
+                "title" => entry.line()?.clone_into(&mut draft.title),
                 "friction" => draft.given.read_friction(&entry)?,
                 "fixed" => draft.given.read_fixed(&entry)?,
                 "switch_on" => {

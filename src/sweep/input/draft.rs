@@ -35,7 +35,7 @@ impl std::str::FromStr for SweepSpec {
         for entry in entries(document.get_ref(), "") {
             draft.limit.note_key(&entry);
             match entry.key {
-                "title" => draft.title = entry.line()?.to_owned(),
+                "title" => entry.line()?.clone_into(&mut draft.title),
                 "protocol" if entry.string()? == LIMIT => {
                     draft.is_limit = true;
                 }
@@ -173,16 +173,15 @@ impl Draft {
                     .help("for example: [axes] tau = { from = 0, to = 12, points = 1201 }")
             });
         }
-        let (fixed, critical, default_fields) = match self.is_limit {
-            true => (
+        let (fixed, critical, default_fields) = if self.is_limit {
+            (
                 self.limit.check(&self.given, self.axes_place.as_ref())?,
                 None,
                 Field::all_of_limit().collect(),
-            ),
-            false => {
-                let (fixed, critical) = self.check()?;
-                (fixed, critical, vec![Field::NUnstable])
-            }
+            )
+        } else {
+            let (fixed, critical) = self.check()?;
+            (fixed, critical, vec![Field::NUnstable])
         };
         Ok(SweepSpec {
             title: self.title,

@@ -37,7 +37,7 @@ pub(super) struct GivenTable {
 
 impl GivenTable {
     /// Reads `entry` if it is a column. Says whether it is one.
-    pub fn read(&mut self, entry: &Entry) -> Result<bool, SpecError> {
+    pub(super) fn read(&mut self, entry: &Entry) -> Result<bool, SpecError> {
         let column = match entry.key {
             key if key == Column::Speeds.name() => &mut self.speeds,
             key if key == Column::MuK.name() => &mut self.mu_k,
@@ -48,18 +48,18 @@ impl GivenTable {
     }
 
     /// The place and name of a column that is given; none without columns.
-    pub fn any(&self) -> Option<(&Range<usize>, Column)> {
+    pub(super) fn any(&self) -> Option<(&Range<usize>, Column)> {
         let speeds = self.speeds.as_ref().map(|c| (&c.0, Column::Speeds));
         speeds.or(self.mu_k.as_ref().map(|c| (&c.0, Column::MuK)))
     }
 
     /// The place of μ_K at its first point.
-    pub fn at_rest(&self) -> Option<&Range<usize>> {
+    pub(super) fn at_rest(&self) -> Option<&Range<usize>> {
         self.mu_k.as_ref()?.1.places.first()
     }
 
     /// The table; what is missing is told at `law`.
-    pub fn table(&self, law: &Range<usize>) -> Result<Table, SpecError> {
+    pub(super) fn table(&self, law: &Range<usize>) -> Result<Table, SpecError> {
         let missing = |column: Column| {
             SpecError::at(law.clone(), format!("{} is not given", column.name()))
                 .help("the table law goes through points: speeds = [0.0, …], mu_k = [0.5, …]")

@@ -24,7 +24,7 @@ pub(super) struct GivenParameters {
 
 impl GivenParameters {
     /// Notes that the file gives `parameter`, as a value or as an axis.
-    pub fn give(&mut self, entry: &Entry, parameter: Parameter) -> Result<(), SpecError> {
+    pub(super) fn give(&mut self, entry: &Entry, parameter: Parameter) -> Result<(), SpecError> {
         if self.place(parameter).is_some() {
             let message = format!("{} is given twice", parameter.name());
             return Err(SpecError::at(entry.key_span.clone(), message)
@@ -35,7 +35,7 @@ impl GivenParameters {
     }
 
     /// Reads the table `[fixed]`.
-    pub fn read_fixed(&mut self, fixed: &Entry) -> Result<(), SpecError> {
+    pub(super) fn read_fixed(&mut self, fixed: &Entry) -> Result<(), SpecError> {
         for entry in fixed.table()? {
             let known = Parameter::ALL.into_iter().filter(|p| !p.of_friction_law());
             let names: Vec<_> = known.clone().map(Parameter::name).collect();
@@ -50,7 +50,7 @@ impl GivenParameters {
 
     /// Reads the table `[start]`: where a motion starts. The same parameters may stand in
     /// `[fixed]`.
-    pub fn read_start(&mut self, start: &Entry) -> Result<(), SpecError> {
+    pub(super) fn read_start(&mut self, start: &Entry) -> Result<(), SpecError> {
         for entry in start.table()? {
             let known = Parameter::from_name(entry.key).filter(|p| p.of_start());
             let parameter = known.ok_or_else(|| {
@@ -63,7 +63,7 @@ impl GivenParameters {
     }
 
     /// A motion starts in a state or at a phase, not both.
-    pub fn check_start(&self) -> Result<(), SpecError> {
+    pub(super) fn check_start(&self) -> Result<(), SpecError> {
         let state = [Parameter::XDot0, Parameter::A0];
         let state = state.into_iter().find(|p| self.place(*p).is_some());
         match (self.place(Parameter::SwitchOnPhase), state) {
@@ -89,7 +89,7 @@ impl GivenParameters {
     }
 
     /// Reads the table `[friction]`.
-    pub fn read_friction(&mut self, friction: &Entry) -> Result<(), SpecError> {
+    pub(super) fn read_friction(&mut self, friction: &Entry) -> Result<(), SpecError> {
         let of_laws = Parameter::ALL.into_iter().filter(|p| p.of_friction_law());
         let names: Vec<_> = ["law"]
             .into_iter()
@@ -134,28 +134,28 @@ impl GivenParameters {
     }
 
     /// Where to tell that the friction law is ill-posed: at what it is at rest, or at its name.
-    pub fn ill_posed_place(&self) -> Option<&Range<usize>> {
+    pub(super) fn ill_posed_place(&self) -> Option<&Range<usize>> {
         self.table.at_rest().or(self.law_place())
     }
 
     /// Where the friction law is named, if it is.
-    pub fn law_place(&self) -> Option<&Range<usize>> {
+    pub(super) fn law_place(&self) -> Option<&Range<usize>> {
         self.law.as_ref().map(|(_, place)| place)
     }
 
     /// The place of the key of a parameter that is given.
-    pub fn place(&self, parameter: Parameter) -> Option<&Range<usize>> {
+    pub(super) fn place(&self, parameter: Parameter) -> Option<&Range<usize>> {
         let found = self.places.iter().find(|(p, _)| *p == parameter);
         found.map(|(_, place)| place)
     }
 
     /// Every parameter that is given, with the place of its key, in the order of the file.
-    pub fn places(&self) -> impl Iterator<Item = &(Parameter, Range<usize>)> {
+    pub(super) fn places(&self) -> impl Iterator<Item = &(Parameter, Range<usize>)> {
         self.places.iter()
     }
 
     /// The values that are given, and the defaults of all others.
-    pub fn setting(&self) -> Setting {
+    pub(super) fn setting(&self) -> Setting {
         let mut setting = Setting::new(self.law.as_ref().map(|(law, _)| law.clone()));
         for (parameter, value) in &self.values {
             setting.set(*parameter, *value);
@@ -165,7 +165,7 @@ impl GivenParameters {
 
     /// Every parameter that is needed is there, none that would be ignored. `optional` can be left
     /// out; what is missing is told at the friction law, or at `place`.
-    pub fn check(
+    pub(super) fn check(
         &self,
         optional: Option<Parameter>,
         place: Option<&Range<usize>>,

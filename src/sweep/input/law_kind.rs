@@ -29,7 +29,7 @@ catalogue! {
             formula: "μ_K = μ0",
             parameters: &[Parameter::Mu0],
             needed: 1,
-            law: |at| FrictionLaw::coulomb(at.get(Parameter::Mu0), at.get(Parameter::MuS)),
+            law: |at| FrictionLaw::coulomb(mu0_and_v_s(at).0, at.get(Parameter::MuS)),
         };
         /// [`FrictionLaw::weakening`].
         Weakening = Row {
@@ -49,8 +49,8 @@ catalogue! {
             parameters: &[Parameter::Mu0, Parameter::VS],
             needed: 2,
             law: |at| {
-                let [mu0, v_s, mu_s] = [Parameter::Mu0, Parameter::VS, Parameter::MuS].map(|p| at.get(p));
-                FrictionLaw::stribeck(mu0, v_s, mu_s)
+                let (mu0, v_s) = mu0_and_v_s(at);
+                FrictionLaw::stribeck(mu0, v_s, at.get(Parameter::MuS))
             },
         };
     }

@@ -23,14 +23,14 @@ pub(super) struct LimitDraft {
 
 impl LimitDraft {
     /// Notes a key at the top of the file.
-    pub fn note_key(&mut self, entry: &Entry) {
+    pub(super) fn note_key(&mut self, entry: &Entry) {
         if self.foreign_key.is_none() && !KEYS.contains(&entry.key) {
             self.foreign_key = Some((entry.key.to_owned(), entry.key_span.clone()));
         }
     }
 
     /// Notes the list of fields, which has been read.
-    pub fn note_fields(&mut self, list: &Entry) -> Result<(), SpecError> {
+    pub(super) fn note_fields(&mut self, list: &Entry) -> Result<(), SpecError> {
         for element in list.array()? {
             if let Some(field) = Field::from_name(element.string()?) {
                 self.fields.push((field, element.span));
@@ -40,7 +40,7 @@ impl LimitDraft {
     }
 
     /// The parameters of a sweep of the limit that are no axes; what is missing is told at `axes`.
-    pub fn check(
+    pub(super) fn check(
         &self,
         given: &GivenParameters,
         axes: Option<&Range<usize>>,
@@ -72,7 +72,7 @@ impl LimitDraft {
     }
 
     /// No field of the limit is asked for.
-    pub fn check_absent(&self) -> Result<(), SpecError> {
+    pub(super) fn check_absent(&self) -> Result<(), SpecError> {
         match self.fields.iter().find(|(field, _)| field.of_limit()) {
             Some((field, place)) => {
                 let message = format!("{} is a field of protocol = \"limit\"", field.name());

@@ -87,7 +87,7 @@ pub(super) fn entries<'t>(table: &'t DeTable<'t>, path: &str) -> Vec<Entry<'t>> 
 
 impl<'t> Entry<'t> {
     /// An error about the value.
-    pub fn error(&self, message: impl Into<String>) -> SpecError {
+    pub(super) fn error(&self, message: impl Into<String>) -> SpecError {
         SpecError::at(
             self.span.clone(),
             format!("{}: {}", self.path, message.into()),
@@ -95,7 +95,7 @@ impl<'t> Entry<'t> {
     }
 
     /// An error that says the key is not known, with those that are.
-    pub fn unknown(&self, known: &[&str]) -> SpecError {
+    pub(super) fn unknown(&self, known: &[&str]) -> SpecError {
         let error = SpecError::at(
             self.key_span.clone(),
             format!("unknown key `{}`", self.path),
@@ -107,19 +107,19 @@ impl<'t> Entry<'t> {
         self.error(format!("expected {what}, found {}", kind(self.value)))
     }
 
-    pub fn table(&self) -> Result<Vec<Entry<'t>>, SpecError> {
+    pub(super) fn table(&self) -> Result<Vec<Entry<'t>>, SpecError> {
         match self.value {
             DeValue::Table(table) => Ok(entries(table, &self.path)),
             _ => Err(self.expected("a table")),
         }
     }
 
-    pub fn is_table(&self) -> bool {
+    pub(super) fn is_table(&self) -> bool {
         matches!(self.value, DeValue::Table(_))
     }
 
     /// The elements of an array, each with its own place.
-    pub fn array(&self) -> Result<Vec<Entry<'t>>, SpecError> {
+    pub(super) fn array(&self) -> Result<Vec<Entry<'t>>, SpecError> {
         let DeValue::Array(array) = self.value else {
             return Err(self.expected("an array"));
         };
@@ -134,7 +134,7 @@ impl<'t> Entry<'t> {
     }
 
     /// A finite number.
-    pub fn number(&self) -> Result<f64, SpecError> {
+    pub(super) fn number(&self) -> Result<f64, SpecError> {
         let value: f64 = match self.value {
             DeValue::Float(float) => float.as_str().parse().ok(),
             DeValue::Integer(integer) => i64::from_str_radix(integer.as_str(), integer.radix())
@@ -151,7 +151,7 @@ impl<'t> Entry<'t> {
     }
 
     /// A number of a range.
-    pub fn number_within(&self, range: RangeInclusive<f64>) -> Result<f64, SpecError> {
+    pub(super) fn number_within(&self, range: RangeInclusive<f64>) -> Result<f64, SpecError> {
         let value = self.number()?;
         if range.contains(&value) {
             return Ok(value);
@@ -164,7 +164,7 @@ impl<'t> Entry<'t> {
     }
 
     /// A whole number, not negative.
-    pub fn whole(&self) -> Result<u64, SpecError> {
+    pub(super) fn whole(&self) -> Result<u64, SpecError> {
         match self.value {
             DeValue::Integer(integer) => u64::from_str_radix(integer.as_str(), integer.radix())
                 .map_err(|_| self.error("expected a whole number between 0 and 2^64 − 1")),
@@ -172,14 +172,14 @@ impl<'t> Entry<'t> {
         }
     }
 
-    pub fn boolean(&self) -> Result<bool, SpecError> {
+    pub(super) fn boolean(&self) -> Result<bool, SpecError> {
         match self.value {
             DeValue::Boolean(value) => Ok(*value),
             _ => Err(self.expected("true or false")),
         }
     }
 
-    pub fn string(&self) -> Result<&'t str, SpecError> {
+    pub(super) fn string(&self) -> Result<&'t str, SpecError> {
         match self.value {
             DeValue::String(value) => Ok(value),
             _ => Err(self.expected("a string")),
@@ -187,7 +187,7 @@ impl<'t> Entry<'t> {
     }
 
     /// A string that stands on one line, of no more characters than pictures have room for.
-    pub fn line(&self) -> Result<&'t str, SpecError> {
+    pub(super) fn line(&self) -> Result<&'t str, SpecError> {
         let text = self.string()?;
         if text.chars().count() > LONGEST_LINE || text.chars().any(char::is_control) {
             return Err(self.error(format!(

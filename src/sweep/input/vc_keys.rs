@@ -22,10 +22,10 @@ pub(super) struct VcKeys {
 
 impl VcKeys {
     /// Names of the keys.
-    pub const KEYS: [&'static str; 3] = ["protocol", "phase", "verify"];
+    pub(super) const KEYS: [&'static str; 3] = ["protocol", "phase", "verify"];
 
     /// Takes the value of an entry that is one of the keys; false where it is none.
-    pub fn read(&mut self, entry: &Entry) -> Result<bool, SpecError> {
+    pub(super) fn read(&mut self, entry: &Entry) -> Result<bool, SpecError> {
         match entry.key {
             "protocol" => {
                 let name = entry.string()?;
@@ -55,14 +55,14 @@ impl VcKeys {
     }
 
     /// The keys that are given, with their places.
-    pub fn given(&self) -> impl Iterator<Item = (&'static str, &Range<usize>)> {
+    pub(super) fn given(&self) -> impl Iterator<Item = (&'static str, &Range<usize>)> {
         let places = [&self.protocol_place, &self.worst_place, &self.verify_place];
         let keys = Self::KEYS.into_iter().zip(places);
         keys.filter_map(|(key, place)| Some((key, place.as_ref()?)))
     }
 
     /// What is looked for, where `phase` is the place of a phase of switch-on that is given.
-    pub fn search(&self, phase: Option<&Range<usize>>) -> Result<Search, SpecError> {
+    pub(super) fn search(&self, phase: Option<&Range<usize>>) -> Result<Search, SpecError> {
         let refuse = |place: &Range<usize>, message: &str, help: &str| {
             Err(SpecError::at(place.clone(), message).help(help))
         };

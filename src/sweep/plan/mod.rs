@@ -87,7 +87,11 @@ impl Plan {
     /// # Errors
     /// As [`Plan::new`].
     pub fn with_tiles_of(cells_per_tile: usize, spec: SweepSpec) -> Result<Self, SpecError> {
-        let shape: Vec<usize> = spec.axes.iter().map(|axis| axis.len()).collect();
+        let shape: Vec<usize> = spec
+            .axes
+            .iter()
+            .map(super::input::axis::Axis::len)
+            .collect();
         let cells = shape
             .iter()
             .try_fold(1_u64, |n, &len| n.checked_mul(len as u64))
@@ -115,10 +119,10 @@ impl Plan {
             )));
         }
         let plan = Self {
+            spec,
             tiles,
             tau_axis,
             boundary_plane,
-            spec,
         };
         let planes = plan.boundary_planes() + plan.best_planes();
         if planes > MOST_PLANES {

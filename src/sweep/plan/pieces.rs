@@ -194,7 +194,7 @@ impl Todo {
                 Order::Forward => turn,
                 Order::Backward => total - 1 - turn,
                 Order::Spread => {
-                    (turn as u128 * u128::from(stride(total)) % u128::from(total)) as u64
+                    (u128::from(turn) * u128::from(stride(total)) % u128::from(total)) as u64
                 }
             };
             if self.wanted(place) {
@@ -226,7 +226,9 @@ pub fn mixed(number: u64) -> u64 {
 /// place once.
 fn stride(total: u64) -> u64 {
     let golden = (total as f64 * GOLDEN) as u64;
-    (golden.max(1)..).find(|&n| gcd(n, total) == 1).unwrap_or(1)
+    (golden.max(1)..=total.max(1))
+        .find(|&n| gcd(n, total) == 1)
+        .unwrap_or(1)
 }
 
 fn gcd(a: u64, b: u64) -> u64 {

@@ -35,7 +35,7 @@ static FOLDER: LazyLock<tempfile::TempDir> = LazyLock::new(|| {
 });
 
 /// Makes a map as the bytes say, and reads all of it.
-pub fn map(data: &[u8]) {
+pub(super) fn map(data: &[u8]) {
     // Tests run side by side.
     let path: PathBuf = FOLDER
         .path()

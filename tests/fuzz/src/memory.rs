@@ -4,12 +4,12 @@ use std::alloc::{GlobalAlloc, Layout, System};
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// Bytes that may be held at once.
-pub const CAP: usize = 1 << 30;
+pub(crate) const CAP: usize = 1 << 30;
 
 static HELD: AtomicUsize = AtomicUsize::new(0);
 
 /// The system's allocator, with a cap.
-pub struct Capped;
+pub(crate) struct Capped;
 
 fn take(bytes: usize) {
     if HELD.fetch_add(bytes, Ordering::Relaxed) + bytes > CAP {

@@ -5,7 +5,7 @@ use slipmap::store::curve_reader::curves_of;
 use slipmap::store::curve_rows::CurveRows;
 
 /// Columns of any lengths with any numbers.
-pub fn rows(data: &[u8]) {
+pub(super) fn rows(data: &[u8]) {
     let mut bytes = Bytes(data);
     let curves = usize::from(bytes.byte() % 16);
     let outer = usize::from(bytes.byte() % 3);

@@ -10,10 +10,10 @@ mod texts;
 mod tiles;
 
 /// A target.
-pub type Target = fn(&[u8]);
+pub(crate) type Target = fn(&[u8]);
 
 /// All targets by name.
-pub const ALL: [(&str, Target); 6] = [
+pub(crate) const ALL: [(&str, Target); 6] = [
     ("sweep", texts::sweep),
     ("case", texts::case),
     ("manifest", texts::manifest),

@@ -10,7 +10,7 @@ use slipmap::sweep::{CaseSpec, Plan, Shard, SpecError, SweepSpec, Todo};
 const LONG: usize = 20_000;
 
 /// A sweep file, and its plan.
-pub fn sweep(data: &[u8]) {
+pub(super) fn sweep(data: &[u8]) {
     let Some(text) = short_axes(data) else { return };
     match planned(text) {
         Ok(plan) => look_at(&plan),
@@ -19,7 +19,7 @@ pub fn sweep(data: &[u8]) {
 }
 
 /// A case file with its motion; the same text as columns of a friction law.
-pub fn case(data: &[u8]) {
+pub(super) fn case(data: &[u8]) {
     let Ok(text) = std::str::from_utf8(data) else {
         return;
     };
@@ -38,7 +38,7 @@ pub fn case(data: &[u8]) {
 
 /// A manifest, what it says differs from its own plan, and the same with the hash that its sweep
 /// has.
-pub fn manifest(data: &[u8]) {
+pub(super) fn manifest(data: &[u8]) {
     let Ok(text) = std::str::from_utf8(data) else {
         return;
     };

@@ -10,7 +10,7 @@ const LAYOUT: [u8; 32] = [7; 32];
 const CELLS: usize = 4096;
 
 /// The first byte says how the others are meant.
-pub fn tiles(data: &[u8]) {
+pub(super) fn tiles(data: &[u8]) {
     let Some((&how, rest)) = data.split_first() else {
         return;
     };
