@@ -5,7 +5,6 @@
 //! and manifests than 30.
 
 #![allow(clippy::too_many_lines, reason = "a test tells one story")]
-
 #![cfg(unix)]
 
 #[path = "common/chance.rs"]

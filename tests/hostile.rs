@@ -2,7 +2,6 @@
 //! message, with little memory, and shows nothing of another file.
 
 #![allow(clippy::too_many_lines, reason = "a test tells one story")]
-
 #![cfg(unix)]
 
 #[path = "common/limited.rs"]

@@ -5,7 +5,6 @@
 //! damages more files than 60.
 
 #![allow(clippy::too_many_lines, reason = "a test tells one story")]
-
 #![cfg(unix)]
 
 #[path = "common/chance.rs"]

@@ -1,9 +1,11 @@
 //! The elongation over the last delay, as the polynomials of the steps that made it.
 
-use crate::model::elementary::rough_root;
+mod extrapolated;
+
 use std::collections::VecDeque;
 
-use super::series::{Coefficients, MOST_ORDER, shift, shifted, value};
+use super::series::{Coefficients, MOST_ORDER, shift, value};
+use crate::model::elementary::rough_root;
 
 /// One step's elongation.
 #[derive(Debug, Clone)]
@@ -44,9 +46,6 @@ pub struct Stretch {
     /// Its length, and those in the last past and in the one before.
     pub lengths: [f64; 3],
 }
-
-/// Pasts correspond to one another to this, compared with all of their span.
-const SLIVER: f64 = 1e-7;
 
 /// The most steps that a past is kept of, two delays: 14 MB. A search for a critical velocity has
 /// up to ten pasts.
@@ -123,85 +122,6 @@ impl History {
         self.pieces.extend(other.pieces.iter().cloned());
         (self.at, self.felt) = (other.at, other.felt);
         (self.ahead, self.apart) = (other.ahead, other.apart);
-    }
-
-    /// Becomes, over `span` until time 0, `last` and `share` of the way from `before` to it beyond
-    /// it, both as of their ends; false where that has no room.
-    ///
-    /// What is alike in the two pasts stands at the same place of stretches of time that follow one
-    /// another, back and back again through `stretches`, the last one first.
-    pub(super) fn extrapolate(
-        &mut self,
-        (last, before): (&mut Self, &mut Self),
-        share: f64,
-        span: f64,
-        stretches: &[Stretch],
-    ) -> bool {
-        (self.at, self.felt) = (0, last.felt);
-        (self.ahead, self.apart) = (last.ahead, last.apart);
-        self.pieces.clear();
-        let orders = |h: &Self| h.pieces.iter().map(|p| p.order).max().unwrap_or(0);
-        let order = orders(last).max(orders(before));
-        // The ends of the present stretch.
-        let ends = [&*last, &*before].map(|h| h.pieces.back().map_or(0.0, |p| p.to));
-        let mut end = [0.0, ends[0], ends[1]];
-        let mut back = 0;
-        let stretch = |back: usize| &stretches[back % stretches.len()].lengths;
-        while end[0] - stretch(back)[0] > -span {
-            end = std::array::from_fn(|i| end[i] - stretch(back)[i]);
-            back += 1;
-        }
-        let shortest = SLIVER * span;
-        let mut from = -span;
-        loop {
-            let lengths = stretch(back);
-            let rates = [1, 2].map(|i| lengths[i] / lengths[0]);
-            // A stretch begins where something happened.
-            let mut kink = 2;
-            while from < end[0] {
-                // A little later: where a stretch begins, what is alike does so to rounding only.
-                let ahead = (from + shortest).min(end[0]);
-                let mut c = [[0.0; MOST_ORDER + 1]; 2];
-                let mut until = [0.0; 2];
-                let mut next = [SMOOTH; 2];
-                for (i, past) in [&mut *last, &mut *before].into_iter().enumerate() {
-                    let time = |t: f64| end[i + 1] - (end[0] - t) * rates[i];
-                    let reach = past.read(time(ahead), SMOOTH, &mut c[i]);
-                    c[i] = shifted(&c[i][..=order], (from - ahead) * rates[i]);
-                    until[i] = ahead + (reach.until - time(ahead)) / rates[i];
-                    next[i] = reach.kink;
-                }
-                let sooner = usize::from(until[1] < until[0]);
-                let to = match until[sooner].max(ahead) {
-                    to if to > end[0] - shortest => end[0],
-                    to => to,
-                };
-                let mut powers = [1.0; 2];
-                let mut a = [0.0; MOST_ORDER + 1];
-                for (k, a) in a.iter_mut().enumerate().take(order + 1) {
-                    let [one, other] = [0, 1].map(|i| c[i][k] * powers[i]);
-                    *a = one + share * (one - other);
-                    powers = [0, 1].map(|i| powers[i] * rates[i]);
-                }
-                let piece = Piece {
-                    from,
-                    to,
-                    radius: to - from,
-                    order,
-                    a,
-                    kink,
-                };
-                if !self.add(piece) {
-                    return false;
-                }
-                (from, kink) = (to, next[sooner]);
-            }
-            if back == 0 {
-                return true;
-            }
-            back -= 1;
-            end = std::array::from_fn(|i| end[i] + stretch(back)[i]);
-        }
     }
 
     /// Moves everything by `time`.

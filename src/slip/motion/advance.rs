@@ -1,0 +1,231 @@
+//! One step after the other.
+
+use super::{Event, Integrator, Mode, Motion};
+use crate::slip::history::SMOOTH;
+use crate::slip::series::value;
+
+/// The part of what a polynomial looks ahead that steps take where they outlast the delay: they
+/// need the one before beyond its end.
+const BALANCED: f64 = 0.53;
+
+/// How well what was foreseen has to be what comes, in units of the tolerance; a step that goes on
+/// for too long becomes shorter by this, so often at most.
+const FORESEEN: f64 = 2.0;
+const SHORTER: f64 = 0.7;
+const MOST_SHORTER: u32 = 12;
+
+/// How long a step may be for the delayed elongation, and the order of the kink there.
+#[derive(Debug, Clone, Copy)]
+struct DelayLimit {
+    length: f64,
+    kink: u32,
+}
+
+impl Motion {
+    /// One step, not beyond `horizon`, and the event that ends it, if one does.
+    pub fn advance(&mut self, horizon: f64) -> Option<Event> {
+        let controlled = self.t >= self.parameters.switch_on;
+        let evenly = self.sticks_evenly();
+        let delay = self.read_delayed(controlled, evenly);
+        let limit = self.limit(&delay, horizon, (controlled, evenly));
+        let radius = self.expand_within(limit, (controlled, evenly));
+        if self.step.n[0] <= 0.0 {
+            self.step.length = 0.0;
+            return Some(Event::LiftOff);
+        }
+        let length = self.length(radius, limit, &delay, controlled);
+        let found = self.first_event(length);
+        let mut length = found.map_or(length, |(s, _)| s);
+        let mut event = found.map(|(_, event)| event);
+        let crossing = self.friction_crossing(length);
+        if let Some(crossing) = &crossing {
+            length = crossing.s;
+            event = None;
+        }
+        let until_switch = self.parameters.switch_on - self.t;
+        self.finish(length, radius);
+        if self.mode == Mode::Stick {
+            self.note_evenness();
+        }
+        self.kink = SMOOTH;
+        if let Some(crossing) = crossing {
+            self.kink = crossing.kink;
+        } else if event.is_some() {
+            self.kink = 2;
+        } else if !controlled && length == until_switch {
+            self.t = self.parameters.switch_on;
+            self.kink = if self.parameters.alpha_v == 0.0 { 2 } else { 1 };
+            return Some(Event::SwitchOn);
+        } else if length == delay.length && delay.kink != SMOOTH {
+            self.kink = self.passed_on(delay.kink);
+        }
+        event.map(|event| self.change_mode(event))
+    }
+
+    /// The longest step that delay, switch-on and `horizon` allow.
+    fn limit(&self, delay: &DelayLimit, horizon: f64, (controlled, evenly): (bool, bool)) -> f64 {
+        let limit = delay.length.min(horizon - self.t);
+        let p = &self.parameters;
+        if !controlled {
+            limit.min(p.switch_on - self.t)
+        } else if self.mode == Mode::Stick && p.alpha_v != 0.0 && !evenly {
+            // What the last polynomial foresees is not held by anything while the block does not
+            // move.
+            limit.min(p.tau)
+        } else {
+            limit
+        }
+    }
+
+    /// Works out the polynomials of a step; how long they hold.
+    fn expand_within(&mut self, limit: f64, (controlled, evenly): (bool, bool)) -> f64 {
+        match (self.even_rate(), self.integrator) {
+            (Some(rate), _) if controlled && evenly => self.stick_evenly(rate),
+            (_, Integrator::Taylor) => {
+                self.step.order = self.order_within(limit);
+                self.expand(controlled);
+                self.free_length()
+            }
+            (_, Integrator::Collocation) => self.collocate(controlled, limit),
+        }
+    }
+
+    /// How long a step of polynomials that hold for `radius` is, if no event ends it.
+    fn length(&self, radius: f64, limit: f64, delay: &DelayLimit, controlled: bool) -> f64 {
+        let foreseen = controlled && self.integrator == Integrator::Taylor;
+        let balanced = BALANCED * self.history.ahead() * radius;
+        let free = match foreseen && self.parameters.tau < balanced {
+            // The next step, one delay behind, uses the polynomial of this one beyond its end.
+            true => balanced,
+            false => radius,
+        };
+        // Two halves rather than a long and a tiny step.
+        let length = match free / limit {
+            r if r >= 1.0 => limit,
+            r if r > 0.5 && delay.kink != SMOOTH => 0.5 * limit,
+            _ => free,
+        };
+        match foreseen {
+            true => self.as_foreseen(length),
+            false => length,
+        }
+    }
+
+    /// Fills the delayed polynomial. Tells how long a step may be for it, and the kink there.
+    fn read_delayed(&mut self, controlled: bool, evenly: bool) -> DelayLimit {
+        // Also before control acts, so that memory does not grow with time.
+        self.history
+            .forget_before(self.t - 2.0 * self.parameters.tau);
+        if !controlled {
+            return DelayLimit {
+                length: f64::INFINITY,
+                kink: SMOOTH,
+            };
+        }
+        if evenly {
+            return DelayLimit {
+                length: self.longest_stick(),
+                kink: SMOOTH,
+            };
+        }
+        let time = self.t - self.parameters.tau;
+        let reach = self.history.read(time, self.kink, &mut self.step.delayed);
+        DelayLimit {
+            length: reach.until - time,
+            kink: reach.kink,
+        }
+    }
+
+    /// `length`, or less of it where it outlasts the delay: the polynomial of the last step stood
+    /// in for what was yet to come, and the step may go on for as long as that is what has come.
+    ///
+    /// The last terms of a series do not tell this. Errors of the terms in its middle grow from
+    /// step to step where a polynomial is used far beyond its end, as those of a stick do, which
+    /// has no terms of its own to hold against them.
+    fn as_foreseen(&self, length: f64) -> f64 {
+        let mut beyond = length - self.parameters.tau;
+        if beyond <= 0.0 {
+            return length;
+        }
+        let a = &self.step.a[..=self.step.order];
+        let stretch = a[0].abs().max(self.parameters.law.mu_s());
+        let holds = |s: f64| {
+            let off = value(a, s) - self.history.foreseen(self.t + s);
+            // What is not a number ends the motion elsewhere, not here.
+            off.is_nan() || off.abs() <= FORESEEN * self.tolerance * stretch
+        };
+        if holds(beyond) {
+            return length;
+        }
+        for _ in 0..MOST_SHORTER {
+            beyond *= SHORTER;
+            if holds(beyond) {
+                return beyond + self.parameters.tau;
+            }
+        }
+        self.parameters.tau
+    }
+
+    /// The order of a kink of the delayed elongation after it has passed into the motion.
+    fn passed_on(&self, kink: u32) -> u32 {
+        let smoother = match (self.mode, self.parameters.alpha_v != 0.0) {
+            (_, true) => 1,
+            // A stuck block feels the load only when it is released.
+            (Mode::Stick, false) => return SMOOTH,
+            (_, false) => 2,
+        };
+        kink + smoother
+    }
+
+    /// Moves on by `length`; the polynomials hold for `radius`.
+    fn finish(&mut self, length: f64, radius: f64) {
+        let order = self.step.order;
+        let (u, a) = (&self.step.u[..=order], &self.step.a[..=order]);
+        self.u = value(u, length);
+        self.a = value(a, length);
+        self.t += length;
+        let around = match self.integrator {
+            Integrator::Taylor => radius.max(length),
+            // Nothing holds a polynomial by its values outside of its step.
+            Integrator::Collocation => 0.0,
+        };
+        if !self.history.push(self.t, around, a, self.kink) {
+            (self.u, self.a) = (f64::NAN, f64::NAN);
+        }
+        self.step.length = length;
+        self.step.radius = radius;
+    }
+
+    /// The mode after `event`, which may turn out to be another one.
+    fn change_mode(&mut self, event: Event) -> Event {
+        let n = value(&self.step.n[..=self.step.order], self.step.length);
+        match event {
+            Event::Release => {
+                self.u = 0.0;
+                self.even_since = f64::INFINITY;
+                self.friction.restart(0.0);
+                self.mode = if self.a > 0.0 {
+                    Mode::Forwards
+                } else {
+                    Mode::Backwards
+                };
+                Event::Release
+            }
+            Event::Stick => {
+                let before = self.mode;
+                self.u = 0.0;
+                self.friction.restart(0.0);
+                self.mode = self.mode_at(n);
+                if self.mode == Mode::Stick {
+                    self.even_since = self.t;
+                }
+                if self.mode == Mode::Stick || self.mode == before {
+                    Event::Stick
+                } else {
+                    Event::Reversal
+                }
+            }
+            other => other,
+        }
+    }
+}

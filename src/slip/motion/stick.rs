@@ -1,0 +1,61 @@
+//! A stuck block whose elongation grows evenly: its steps have no end but release.
+
+use super::{Motion, Parameters, ROUNDING};
+use crate::slip::series::spread;
+
+/// The part of the error of a step within which the elongation of a stuck block grows evenly.
+const EVEN: f64 = 0.1;
+
+impl Motion {
+    /// The rate v at which the elongation of a stuck block grows evenly: v = v0 + α_v v τ. Other
+    /// ways to grow die out where α_v τ < 1; else they do not, and there is none.
+    pub(super) fn even_rate(&self) -> Option<f64> {
+        let p = &self.parameters;
+        let share = p.alpha_v * p.tau;
+        (share < 1.0).then(|| p.v0 / (1.0 - share))
+    }
+
+    /// A stuck block's elongation has grown evenly for a delay, and so it goes on until release.
+    pub(super) fn sticks_evenly(&self) -> bool {
+        self.even_since + self.parameters.tau <= self.t
+    }
+
+    /// Works out the coefficients of a block that sticks evenly, which hold without end.
+    pub(super) fn stick_evenly(&mut self, rate: f64) -> f64 {
+        let Parameters { alpha_n, tau, .. } = self.parameters;
+        let step = &mut self.step;
+        for c in [&mut step.u, &mut step.a, &mut step.n, &mut step.delayed] {
+            c.fill(0.0);
+        }
+        step.order = 1;
+        (step.a[0], step.a[1]) = (self.a, rate);
+        (step.delayed[0], step.delayed[1]) = (self.a - rate * tau, rate);
+        step.n[0] = 1.0 + alpha_n * (step.a[0] - step.delayed[0]);
+        f64::INFINITY
+    }
+
+    /// Notes whether the elongation of a stuck block has grown evenly in the last step. What it may
+    /// be off adds up to less than the error of a step in a delay, and the nearer α_v τ is to 1,
+    /// the slower it dies out and the less it may be.
+    pub(super) fn note_evenness(&mut self) {
+        let step = &self.step;
+        let even = self.even_rate().is_some_and(|rate| {
+            let share = (step.length / self.parameters.tau).min(1.0);
+            let dies_out = (self.parameters.v0 / rate).min(1.0);
+            let allowed = (EVEN * self.tolerance * share * dies_out).max(ROUNDING);
+            let a = &step.a[1..=step.order];
+            let off = ((a[0] - rate).abs() + spread(a, step.length)) * step.length;
+            off <= allowed * step.a[0].abs().max(self.parameters.law.mu_s())
+        });
+        if !even {
+            self.even_since = self.t;
+        }
+    }
+
+    /// More than the time until release of a block whose elongation has grown evenly for a delay.
+    pub(super) fn longest_stick(&self) -> f64 {
+        let p = &self.parameters;
+        let load = 1.0 + (p.alpha_n * p.v0 * p.tau).abs();
+        2.0 * (self.a.abs() + p.law.mu_s() * load) / p.v0.abs()
+    }
+}
