@@ -22,7 +22,7 @@ use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::time::Instant;
 
 use slipmap::maps::maker::{Job, make, make_in_memory};
-use slipmap::store::map_writer::Provenance;
+use slipmap::store::describe::Provenance;
 use slipmap::sweep::engine::{TileBuffers, Worker};
 use slipmap::sweep::events::Silent;
 use slipmap::sweep::{Plan, SweepSpec};

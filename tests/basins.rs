@@ -11,7 +11,8 @@ use serde_json::Value;
 use slipmap::model::FrictionLaw;
 use slipmap::slip::cycle::after_release;
 use slipmap::slip::motion::{Accuracy, Parameters};
-use slipmap::slip::outcome::{Limits, Outcome, REPEATED, follow};
+use slipmap::slip::outcome::{Limits, Outcome};
+use slipmap::slip::watch::{REPEATED, follow};
 use slipmap::sweep::{Plan, SweepSpec};
 
 #[path = "common/map.rs"]

@@ -12,7 +12,8 @@ use slipmap::linear::{Crossings, MarginalTolerance};
 use slipmap::model::friction::Kind;
 use slipmap::model::{FrictionLaw, Groups, Table};
 use slipmap::slip::motion::{Accuracy, Event, Mode, Motion, Parameters};
-use slipmap::slip::outcome::{Limits, Observer, Outcome, REPEATED, Summary, follow};
+use slipmap::slip::outcome::{Limits, Observer, Outcome, Summary};
+use slipmap::slip::watch::{REPEATED, follow};
 
 fn at_tolerance(tolerance: f64) -> Accuracy {
     Accuracy {

@@ -26,7 +26,7 @@ use map::datasets;
 use program::{Folder, expect, out};
 use slipmap::maps::assembly::Missing;
 use slipmap::maps::maker::{Job, Merge, make, make_in_memory, make_shard, merge};
-use slipmap::store::map_writer::Provenance;
+use slipmap::store::describe::Provenance;
 use slipmap::store::tiles::{Manifest, shards};
 use slipmap::sweep::events::Silent;
 use slipmap::sweep::{Order, Plan, RunError, Shard};

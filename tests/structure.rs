@@ -91,6 +91,26 @@ fn no_circles_but_pairs_in_one_room() {
     }
 }
 
+/// Files of one job are short; a longer one says why it is.
+#[test]
+fn files_are_short_or_say_why() {
+    for path in sources(Path::new("src")) {
+        let text = std::fs::read_to_string(&path).unwrap();
+        let text = text.split("#[cfg(test)]\nmod tests {").next().unwrap();
+        let lines = text.lines().count();
+        let says = text
+            .lines()
+            .any(|l| l.starts_with("//! Longer than most files: "));
+        let tests = path.ends_with("tests.rs");
+        assert!(
+            lines <= 400 || says || tests,
+            "{}: {lines} lines",
+            path.display()
+        );
+        assert!(lines > 400 || !says, "{} is short by now", path.display());
+    }
+}
+
 /// Lines that fit beside one another on a screen.
 #[test]
 fn lines_are_within_100_columns() {

@@ -5,7 +5,7 @@ use std::time::SystemTime;
 
 use slipmap::maps::assembly::Assembled;
 use slipmap::report::numbers::{grouped, representable};
-use slipmap::store::map_writer::Provenance;
+use slipmap::store::describe::Provenance;
 
 use super::failure::Failure;
 use super::say;

@@ -1,7 +1,8 @@
 //! What becomes of a block just beyond the velocity at which its stick-slip ends.
 
 use super::climb::Road;
-use super::follow::{self, Fate};
+use super::follow::Fate;
+use super::hold;
 use super::problem::Problem;
 use super::stops::{Stops, Waiting};
 use crate::slip::motion::{Event, Mode, Motion};
@@ -75,7 +76,7 @@ pub(super) fn beyond(problem: &Problem, (v0, slip): (f64, f64), road: &mut impl 
 /// What becomes of a motion in the end.
 pub(super) fn kind(problem: &Problem, motion: &mut Motion) -> Beyond {
     let v0 = motion.parameters().v0;
-    let sustained = follow::fate(problem, motion, v0);
+    let sustained = hold::fate(problem, motion, v0);
     match sustained.fate {
         Fate::Slips => Beyond::Ends(0.0),
         Fate::Lost(Outcome::Undecided) | Fate::LiftOff => Beyond::Unknown,

@@ -1,5 +1,7 @@
 //! Raising v0 towards where a number vanishes that is seen in every period of stick-slip: the depth
 //! of a stop, the load, or a stick.
+//!
+//! Longer than most files: one way up, whose steps, places and ends make sense together alone.
 
 use crate::model::elementary::power;
 use crate::slip::motion::{Accuracy, Motion};

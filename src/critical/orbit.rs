@@ -8,7 +8,7 @@
 
 use super::climb::{Place, Ran, Road, SETTLED, Seen};
 use super::cycle::{Cycle, GAUGES, MOST_SLIPS, Period, Ride, Stop, ride};
-use super::follow::Pace;
+use super::pace::Pace;
 use super::problem::Problem;
 use crate::slip::motion::{Accuracy, Motion, Stretch};
 

@@ -6,7 +6,8 @@ use super::sticking::Sticking;
 use crate::model::elementary::pow;
 use crate::slip::cycle::{NoCycle, UncontrolledCycle, restart_after_release};
 use crate::slip::motion::{Accuracy, Motion};
-use crate::slip::outcome::{Limits, Outcome, follow};
+use crate::slip::outcome::{Limits, Outcome};
+use crate::slip::watch::follow;
 
 /// When control is switched on.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -2,7 +2,7 @@
 //! expected to end.
 
 use super::climb::thrown;
-use super::follow::Sustained;
+use super::pace::Sustained;
 
 /// Whether a relative `step` of v0 threw the motion from one kind of periodic stick-slip to
 /// another: the mean cycle or the mean slip of its period changed by more than such a step

@@ -35,6 +35,8 @@
 //! Strong gains with a short delay make P and κQ large and nearly opposite: D is what little they
 //! leave. So B, in which the gains are not, and κ − 1 stand for P and κ wherever the two cancel,
 //! and (2) rounds by the small angle of (3).
+//!
+//! Longer than most files: one derivation, in its order.
 
 use std::f64::consts::TAU;
 

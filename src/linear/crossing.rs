@@ -18,6 +18,8 @@
 //!
 //! With growing τ a pair of roots crosses to the right at every τ_k(ω₊) and to the left at every
 //! τ_k(ω₋): the sign of dRe λ/dτ there is that of dF/dx, F(x) being the left side of (1).
+//!
+//! Longer than most files: one derivation, in its order.
 
 use std::f64::consts::TAU;
 

@@ -36,6 +36,7 @@ pub mod sensitivity;
 pub mod spectrum;
 pub mod stable_delays;
 pub mod status;
+mod stretch;
 pub mod track;
 
 pub use count::{Count, MarginalTolerance};

@@ -4,7 +4,8 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use crate::store::StoreError;
 use crate::store::best_writer::BestRow;
-use crate::store::map_writer::{MapWriter, Provenance};
+use crate::store::describe::Provenance;
+use crate::store::map_writer::MapWriter;
 use crate::store::output::Output;
 use crate::store::source::Source;
 use crate::store::tiles::record::Content;

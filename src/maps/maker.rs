@@ -8,8 +8,8 @@ use std::time::Duration;
 
 use super::assembly::{Assembled, Missing, assemble};
 use crate::store::StoreError;
+use crate::store::describe::Provenance;
 use crate::store::map_file::MapFile;
-use crate::store::map_writer::Provenance;
 use crate::store::output::Output;
 use crate::store::schema::root;
 use crate::store::source::InMemory;

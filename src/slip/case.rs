@@ -2,7 +2,8 @@
 
 use super::cycle::{NoCycle, after_release, restart_after_release};
 use super::motion::{Accuracy, Motion, Parameters};
-use super::outcome::{Limits, Observer, REPEATED, Summary, follow};
+use super::outcome::{Limits, Observer, Summary};
+use super::watch::{REPEATED, follow};
 use crate::linear::rightmost::Rightmost;
 use crate::linear::{Crossings, MarginalTolerance};
 use crate::model::{Control, FrictionLaw, ModelError, Oscillator, SlidingPoint};

@@ -18,3 +18,4 @@ pub mod outcome;
 pub mod series;
 pub mod step;
 mod table_series;
+pub mod watch;

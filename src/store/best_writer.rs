@@ -10,7 +10,7 @@ use serde::{Deserialize, Serialize};
 
 use super::attributes::{put_numbers, put_text};
 use super::boundary_writer::put_flags;
-use super::map_writer::describe_parameter;
+use super::describe::describe_parameter;
 use super::netcdf::{DimensionId, Dimensions, named};
 use super::schema::{BEST, BEST_FLAG_FILL, PLANE, best as names};
 use crate::linear::best::Kind;

@@ -77,7 +77,10 @@ pub(super) trait FillColumn {
 }
 
 macro_rules! boundary_columns {
-    ($(#[$about:meta])* $Rows:ident { $($(#[$doc:meta])* $name:ident: $kind:ty = $row:expr;)+ }) => {
+    (
+        $(#[$about:meta])*
+        $Rows:ident { $($(#[$doc:meta])* $name:ident: $kind:ty = $row:expr;)+ }
+    ) => {
         $(#[$about])*
         #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
         pub struct $Rows {

@@ -1,4 +1,6 @@
 //! Reads maps.
+//!
+//! Longer than most files: one type, and what it can be asked.
 
 use std::path::{Path, PathBuf};
 use std::sync::atomic::AtomicBool;

@@ -5,45 +5,27 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use hdf5::plist::file_access::LibraryVersion;
 use hdf5::plist::file_create::{AttrCreationOrder, LinkCreationOrder};
-use hdf5::{Dataset, File, Group, H5Type};
+use hdf5::{Dataset, File};
 use hdf5_sys::h5d::H5Dwrite_chunk;
 use hdf5_sys::h5p::H5P_DEFAULT;
 use sha2::{Digest, Sha256};
 
-use super::attributes::{put_flags, put_numbers, put_text};
+use super::attributes::{put_numbers, put_text};
 use super::best_writer::{BestRow, BestWriter};
 use super::boundary_writer::BoundaryWriter;
-use super::codec::DEFLATE_LEVEL;
 use super::contents_hash::contents_hash;
 use super::curve_rows::{CurveRows, outer_values};
+use super::describe::{Provenance, describe_parameter, put_root, put_scalars};
 use super::error::StoreError;
-use super::netcdf::{DimensionId, Dimensions, named};
+use super::netcdf::{Dimensions, named};
 use super::output::Output;
 use super::schema::{self, STATUS, root};
 use super::seal;
 use super::soundness::as_written;
-use crate::critical::switch_on::Phase;
-use crate::linear::status::FLAGS;
-use crate::sweep::engine::{FEW_FILL, N_UNSTABLE_FILL, STATUS_FILL};
-use crate::sweep::input::field::Storage;
-use crate::sweep::input::law_kind::LawKind;
-use crate::sweep::input::search::LIMIT;
-use crate::sweep::input::search::{Protocol, Search};
-use crate::sweep::input::units::Units;
+use super::variables::Variables;
+use crate::sweep::Plan;
 use crate::sweep::plan::in_hexadecimal;
 use crate::sweep::plan::tile::Tile;
-use crate::sweep::{Field, Parameter, Plan, Setting};
-
-/// Who made a map, for its root attributes.
-#[derive(Debug, Clone, Default)]
-pub struct Provenance {
-    /// Version of the program.
-    pub program_version: String,
-    /// Git revision of the program.
-    pub git_revision: String,
-    /// When and by which command; the one thing in a map that differs from run to run.
-    pub history: String,
-}
 
 /// A map on its way to disk: under its final name after [`MapWriter::finish`], gone if dropped
 /// before.
@@ -264,168 +246,6 @@ fn fill_file(
         .map(|plane| BestWriter::create(file, dimensions, &axes, plan, plane))
         .transpose()?;
     Ok((datasets, boundaries, best))
-}
-
-/// The root attributes of every file: title and who made it.
-pub(super) fn put_provenance(
-    file: &File,
-    title: &str,
-    provenance: &Provenance,
-) -> hdf5::Result<()> {
-    put_text(file, "Conventions", schema::CONVENTIONS)?;
-    put_text(file, root::TITLE, title)?;
-    let source = format!("slipmap {}", provenance.program_version);
-    put_text(file, root::SOURCE, &source)?;
-    put_text(file, root::HISTORY, &provenance.history)?;
-    put_text(
-        file,
-        "references",
-        "F.-J. Elmer, Controlling friction (1997)",
-    )?;
-    put_text(file, root::PROGRAM_VERSION, &provenance.program_version)?;
-    put_text(file, root::GIT_REVISION, &provenance.git_revision)
-}
-
-fn put_root(file: &File, plan: &Plan, provenance: &Provenance) -> hdf5::Result<()> {
-    let names: Vec<&str> = plan.spec.axes.iter().map(|a| a.parameter.name()).collect();
-    put_provenance(file, &plan.spec.title, provenance)?;
-    put_numbers(file, root::FORMAT_VERSION, &[schema::FORMAT_VERSION])?;
-    put_text(file, root::AXES, &names.join(" "))?;
-    put_text(file, root::PLAN_HASH, &plan.hash())?;
-    put_text(file, root::SWEEP, &plan.spec.text)?;
-    put_numbers(file, root::MARGINAL_TOLERANCE, &[plan.spec.tolerance.0])?;
-    if plan.spec.limit {
-        put_text(file, root::PROTOCOL, LIMIT)?;
-    }
-    put_friction(file, &plan.spec.fixed)
-}
-
-/// What the scalar coordinates leave open of the friction law, if there is one.
-pub(super) fn put_friction(file: &File, setting: &Setting) -> hdf5::Result<()> {
-    let Some(law) = setting.law() else {
-        return Ok(());
-    };
-    put_text(file, root::FRICTION_LAW, law.name())?;
-    if let LawKind::Table(table) = law {
-        put_numbers(file, root::FRICTION_SPEEDS, table.speeds())?;
-        put_numbers(file, root::FRICTION_MU_K, table.mu_k())?;
-    }
-    Ok(())
-}
-
-/// The values in `setting` of the parameters that are `scalar`, as scalar coordinates. Returns
-/// their names.
-pub(super) fn put_scalars(
-    file: &File,
-    setting: &Setting,
-    units: &Units,
-    scalar: impl Fn(Parameter) -> bool,
-) -> hdf5::Result<String> {
-    let mut names = Vec::new();
-    for parameter in Parameter::ALL.into_iter().filter(|&p| scalar(p)) {
-        let dataset = named(file.new_dataset_builder())
-            .empty::<f64>()
-            .create(parameter.name())?;
-        dataset.write_scalar(&setting.get(parameter))?;
-        describe_parameter(&dataset, parameter, units)?;
-        names.push(parameter.name());
-    }
-    Ok(names.join(" "))
-}
-
-pub(super) fn describe_parameter(
-    dataset: &Dataset,
-    parameter: Parameter,
-    units: &Units,
-) -> hdf5::Result<()> {
-    put_text(dataset, "long_name", parameter.long_name())?;
-    put_text(dataset, "units", &units.of_parameter(parameter))
-}
-
-/// How critical velocities were looked for.
-fn put_search(dataset: &Dataset, search: &Search) -> hdf5::Result<()> {
-    let protocol = search.protocol;
-    put_text(dataset, schema::vc::PROTOCOL, protocol.name())?;
-    if let Protocol::SwitchOn(Phase::Worst(phases)) = protocol {
-        put_numbers(dataset, schema::vc::PHASES, &[phases])?;
-    }
-    put_numbers(dataset, schema::vc::V_MAX, &[protocol.v_max()])?;
-    let unit = "mu_s * normal_load / sqrt(stiffness * mass)";
-    put_text(dataset, schema::vc::V_MAX_UNIT, unit)?;
-    put_numbers(dataset, schema::vc::PRECISION, &[protocol.precision()])
-}
-
-/// Creates the datasets of the cells.
-struct Variables<'a> {
-    file: &'a Group,
-    plan: &'a Plan,
-    dimensions: &'a mut Dimensions,
-    axes: Vec<DimensionId>,
-    scalars: String,
-}
-
-impl Variables<'_> {
-    fn field(&mut self, field: Field) -> hdf5::Result<Dataset> {
-        let dataset = match field.storage() {
-            Storage::Count => self.variable(field.name(), N_UNSTABLE_FILL)?,
-            Storage::Kind | Storage::Few => self.variable(field.name(), FEW_FILL)?,
-            Storage::Real => self.variable(field.name(), f64::NAN)?,
-        };
-        let spec = &self.plan.spec;
-        let (long_name, comment) = match spec.critical {
-            Some(_) => field.described_at_vc(),
-            None => (field.long_name(), field.comment()),
-        };
-        match field.kinds() {
-            Some(kinds) => put_flags(&dataset, long_name, &kinds)?,
-            None => put_text(&dataset, "long_name", long_name)?,
-        }
-        put_text(&dataset, "units", &field.unit(&spec.units))?;
-        if let Some(comment) = comment {
-            put_text(&dataset, "comment", comment)?;
-        }
-        if let Some(search) = spec.critical.filter(|_| !field.of_sliding()) {
-            put_search(&dataset, &search)?;
-        }
-        put_text(&dataset, "ancillary_variables", STATUS)?;
-        Ok(dataset)
-    }
-
-    fn status(&mut self) -> hdf5::Result<Dataset> {
-        let dataset = self.variable(STATUS, STATUS_FILL)?;
-        put_text(&dataset, "long_name", "status of the cell")?;
-        put_text(&dataset, "units", "1")?;
-        put_numbers(&dataset, "flag_masks", &FLAGS.map(|(mask, _)| mask))?;
-        put_text(
-            &dataset,
-            "flag_meanings",
-            &FLAGS.map(|(_, name)| name).join(" "),
-        )?;
-        Ok(dataset)
-    }
-
-    fn variable<T>(&mut self, name: &str, fill: T) -> hdf5::Result<Dataset>
-    where
-        T: H5Type + Copy + Into<hdf5::types::OwnedDynValue>,
-    {
-        let mut builder = named(self.file.new_dataset_builder());
-        if size_of::<T>() > 1 {
-            builder = builder.shuffle();
-        }
-        let dataset = builder
-            .deflate(DEFLATE_LEVEL)
-            .fill_value(fill)
-            .empty::<T>()
-            .shape(self.plan.shape())
-            .chunk(self.plan.tiles.tile_shape())
-            .create(name)?;
-        put_numbers(&dataset, "_FillValue", &[fill])?;
-        if !self.scalars.is_empty() {
-            put_text(&dataset, "coordinates", &self.scalars)?;
-        }
-        self.dimensions.attach(&dataset, &self.axes)?;
-        Ok(dataset)
-    }
 }
 
 /// Hands a whole compressed chunk to the library.

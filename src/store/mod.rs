@@ -16,6 +16,7 @@ mod codec;
 mod contents_hash;
 pub mod curve_reader;
 pub mod curve_rows;
+pub mod describe;
 mod durable;
 mod error;
 mod lock;
@@ -33,6 +34,7 @@ pub mod source;
 pub mod tiles;
 pub mod trace_file;
 mod values;
+mod variables;
 
 pub use best_reader::MapBest;
 pub use error::StoreError;

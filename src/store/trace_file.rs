@@ -9,8 +9,9 @@ use hdf5::{Dataset, File, Group, H5Type};
 
 use super::attributes::{one_number, put_flags, put_numbers, put_text, text};
 use super::codec::DEFLATE_LEVEL;
+use super::describe::{Provenance, put_friction, put_provenance, put_scalars};
 use super::error::StoreError;
-use super::map_writer::{Provenance, create_file, put_friction, put_provenance, put_scalars};
+use super::map_writer::create_file;
 use super::netcdf::{DimensionId, Dimensions, named};
 use super::open;
 use super::output::Output;

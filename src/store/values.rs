@@ -2,6 +2,9 @@
 //!
 //! Chunks are inflated here: the library inflates whatever a chunk holds, a thousand times its
 //! bytes, before it compares that with the chunk's own size.
+//!
+//! Longer than most files: all that stands between the bytes of a chunk and numbers is checked as
+//! one.
 
 use std::ops::Range;
 

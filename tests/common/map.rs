@@ -9,7 +9,7 @@ use std::sync::Arc;
 use hdf5::types::{FloatSize, IntSize, TypeDescriptor};
 use hdf5::{Dataset, Group};
 use slipmap::maps::maker::make_in_memory;
-use slipmap::store::map_writer::Provenance;
+use slipmap::store::describe::Provenance;
 use slipmap::sweep::Plan;
 
 /// Computes the map of a plan.

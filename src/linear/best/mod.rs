@@ -13,6 +13,8 @@
 //! sampled: 193 evenly over the box, and ever more densely towards gains at which the crossings
 //! change their number. A lobe between two neighbouring samples is missed; lobes that end in a
 //! point at such a gain are not, however small, down to 1e-16 of the box.
+//!
+//! Longer than most files: the three stages of one search.
 
 mod condition;
 mod descend;

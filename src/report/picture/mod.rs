@@ -323,7 +323,7 @@ mod tests {
 
     use super::*;
     use crate::maps::maker::make_in_memory;
-    use crate::store::map_writer::Provenance;
+    use crate::store::describe::Provenance;
     use crate::sweep::{Plan, SweepSpec};
 
     const FIG2: &str = "

@@ -8,9 +8,9 @@ use std::path::Path;
 
 use serde::{Deserialize, Serialize};
 
+use super::super::describe::Provenance;
 use super::super::durable::{NotRead, read_regular};
 use super::super::error::StoreError;
-use super::super::map_writer::Provenance;
 use super::super::schema;
 use super::record::{Digest, digest};
 use crate::sweep::plan::{Plan, in_hexadecimal};

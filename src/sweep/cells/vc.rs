@@ -418,8 +418,8 @@ mod tests {
         assert!(windows(&lifted).is_empty());
     }
 
-    /// A simulation that gave up says nothing of stick-slip that persists or never is; one that came
-    /// to an end says where.
+    /// A simulation that gave up says nothing of stick-slip that persists or never is; one that
+    /// came to an end says where.
     #[test]
     fn who_gives_up_does_not_agree() {
         for (end, alone) in [

@@ -1,6 +1,6 @@
 //! Texts: sweep files, case files, columns of a friction law, manifests.
 
-use slipmap::store::map_writer::Provenance;
+use slipmap::store::describe::Provenance;
 use slipmap::store::tiles::Manifest;
 use slipmap::sweep::input::friction_table::table_of_columns;
 use slipmap::sweep::{CaseSpec, Plan, Shard, SpecError, SweepSpec, Todo};

@@ -1,0 +1,112 @@
+//! What a file says of itself: who made it, the sweep, the friction law, parameters.
+
+use hdf5::{Dataset, File};
+
+use super::attributes::{put_numbers, put_text};
+use super::netcdf::named;
+use super::schema::{self, root};
+use crate::critical::switch_on::Phase;
+use crate::sweep::input::law_kind::LawKind;
+use crate::sweep::input::search::{LIMIT, Protocol, Search};
+use crate::sweep::input::units::Units;
+use crate::sweep::{Parameter, Plan, Setting};
+
+/// Who made a map, for its root attributes.
+#[derive(Debug, Clone, Default)]
+pub struct Provenance {
+    /// Version of the program.
+    pub program_version: String,
+    /// Git revision of the program.
+    pub git_revision: String,
+    /// When and by which command; the one thing in a map that differs from run to run.
+    pub history: String,
+}
+
+/// The root attributes of every file: title and who made it.
+pub(super) fn put_provenance(
+    file: &File,
+    title: &str,
+    provenance: &Provenance,
+) -> hdf5::Result<()> {
+    put_text(file, "Conventions", schema::CONVENTIONS)?;
+    put_text(file, root::TITLE, title)?;
+    let source = format!("slipmap {}", provenance.program_version);
+    put_text(file, root::SOURCE, &source)?;
+    put_text(file, root::HISTORY, &provenance.history)?;
+    put_text(
+        file,
+        "references",
+        "F.-J. Elmer, Controlling friction (1997)",
+    )?;
+    put_text(file, root::PROGRAM_VERSION, &provenance.program_version)?;
+    put_text(file, root::GIT_REVISION, &provenance.git_revision)
+}
+
+pub(super) fn put_root(file: &File, plan: &Plan, provenance: &Provenance) -> hdf5::Result<()> {
+    let names: Vec<&str> = plan.spec.axes.iter().map(|a| a.parameter.name()).collect();
+    put_provenance(file, &plan.spec.title, provenance)?;
+    put_numbers(file, root::FORMAT_VERSION, &[schema::FORMAT_VERSION])?;
+    put_text(file, root::AXES, &names.join(" "))?;
+    put_text(file, root::PLAN_HASH, &plan.hash())?;
+    put_text(file, root::SWEEP, &plan.spec.text)?;
+    put_numbers(file, root::MARGINAL_TOLERANCE, &[plan.spec.tolerance.0])?;
+    if plan.spec.limit {
+        put_text(file, root::PROTOCOL, LIMIT)?;
+    }
+    put_friction(file, &plan.spec.fixed)
+}
+
+/// What the scalar coordinates leave open of the friction law, if there is one.
+pub(super) fn put_friction(file: &File, setting: &Setting) -> hdf5::Result<()> {
+    let Some(law) = setting.law() else {
+        return Ok(());
+    };
+    put_text(file, root::FRICTION_LAW, law.name())?;
+    if let LawKind::Table(table) = law {
+        put_numbers(file, root::FRICTION_SPEEDS, table.speeds())?;
+        put_numbers(file, root::FRICTION_MU_K, table.mu_k())?;
+    }
+    Ok(())
+}
+
+/// The values in `setting` of the parameters that are `scalar`, as scalar coordinates. Returns
+/// their names.
+pub(super) fn put_scalars(
+    file: &File,
+    setting: &Setting,
+    units: &Units,
+    scalar: impl Fn(Parameter) -> bool,
+) -> hdf5::Result<String> {
+    let mut names = Vec::new();
+    for parameter in Parameter::ALL.into_iter().filter(|&p| scalar(p)) {
+        let dataset = named(file.new_dataset_builder())
+            .empty::<f64>()
+            .create(parameter.name())?;
+        dataset.write_scalar(&setting.get(parameter))?;
+        describe_parameter(&dataset, parameter, units)?;
+        names.push(parameter.name());
+    }
+    Ok(names.join(" "))
+}
+
+pub(super) fn describe_parameter(
+    dataset: &Dataset,
+    parameter: Parameter,
+    units: &Units,
+) -> hdf5::Result<()> {
+    put_text(dataset, "long_name", parameter.long_name())?;
+    put_text(dataset, "units", &units.of_parameter(parameter))
+}
+
+/// How critical velocities were looked for.
+pub(super) fn put_search(dataset: &Dataset, search: &Search) -> hdf5::Result<()> {
+    let protocol = search.protocol;
+    put_text(dataset, schema::vc::PROTOCOL, protocol.name())?;
+    if let Protocol::SwitchOn(Phase::Worst(phases)) = protocol {
+        put_numbers(dataset, schema::vc::PHASES, &[phases])?;
+    }
+    put_numbers(dataset, schema::vc::V_MAX, &[protocol.v_max()])?;
+    let unit = "mu_s * normal_load / sqrt(stiffness * mass)";
+    put_text(dataset, schema::vc::V_MAX_UNIT, unit)?;
+    put_numbers(dataset, schema::vc::PRECISION, &[protocol.precision()])
+}
