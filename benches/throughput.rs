@@ -24,7 +24,7 @@ use std::time::Instant;
 use slipmap::maps::maker::{Job, make, make_in_memory};
 use slipmap::store::describe::Provenance;
 use slipmap::sweep::engine::{TileBuffers, Worker};
-use slipmap::sweep::events::Silent;
+use slipmap::sweep::events::Attended;
 use slipmap::sweep::{Plan, SweepSpec};
 
 const ROUNDS: usize = 5;
@@ -130,7 +130,7 @@ fn store(plan: &Arc<Plan>, folder: &Path, threads: usize) -> f64 {
     let job = Job::new(&map, threads, &provenance);
     let stop = Arc::new(AtomicBool::new(false));
     let start = Instant::now();
-    make(plan, &job, &Silent, &stop).expect("the sweep runs");
+    make(plan, &job, Attended::silently(&stop)).expect("the sweep runs");
     start.elapsed().as_secs_f64()
 }
 

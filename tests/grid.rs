@@ -113,10 +113,13 @@ fn lines_in_pieces_and_kinds_have_their_place() {
 
 #[test]
 fn what_does_not_fit_into_memory_is_refused() {
-    let text = "[axes]\nalpha_v = { from = -1.0, to = 1.0, points = 10000000 }\n\
+    // Some systems promise any memory, and end whoever takes it.
+    if Vec::<u8>::new().try_reserve_exact(900_000_000_000).is_ok() {
+        return;
+    }
+    let text = "[axes]\nalpha_v = { from = -1.0, to = 1.0, points = 30000 }\n\
         tau = { from = 0.1, to = 9.0, points = 10000000 }\n[fixed]\nmu_prime = -0.3\n";
-    let plan = Plan::new(text.parse().unwrap());
-    let Ok(plan) = plan else { panic!("{plan:?}") };
+    let plan = Plan::new(text.parse().unwrap()).unwrap();
     let refused = Grid::compute(&Arc::new(plan), 1).unwrap_err();
     assert!(
         refused.to_string().contains("do not fit into memory"),

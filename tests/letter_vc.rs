@@ -10,7 +10,7 @@ use slipmap::slip::case::{Case, Start};
 use slipmap::slip::cycle::after_release;
 use slipmap::slip::motion::Accuracy;
 use slipmap::slip::outcome::{Outcome, Summary};
-use slipmap::sweep::cells::vc::{self, class_at};
+use slipmap::sweep::cells::vc;
 use slipmap::sweep::input::class::Class;
 use slipmap::sweep::input::search::Protocol;
 use slipmap::sweep::{Parameter, Plan, SweepSpec};
@@ -106,7 +106,7 @@ fn nor_where_sliding_is_stable_there() {
     let mut stable = 0;
     for index in cells(&plan) {
         let setting = plan.setting(&index);
-        let (problem, _) = vc::problem(&setting).unwrap();
+        let problem = vc::asked(&setting).unwrap().problem;
         if problem.count(0.1).stable() {
             stable += 1;
             let outcome = followed(&plan, &index, 3000.0).outcome;
@@ -124,7 +124,7 @@ fn nor_where_sliding_is_stable_there() {
         a0: 0.5 / 1.2,
     };
     assert_eq!(case.run(&mut ()).unwrap().outcome, Outcome::Sliding);
-    let (problem, _) = vc::problem(&setting).unwrap();
+    let problem = vc::asked(&setting).unwrap().problem;
     // By brute force, at α_v = −0.316 and τ = 4.3: v0 raised in small steps by a program of its
     // own.
     let found = critical_velocity(&problem);
@@ -145,19 +145,14 @@ fn share(text: &str, v0: f64, points: u32) -> f64 {
     for index in cells(&plan) {
         all += 1.0;
         let setting = plan.setting(&index);
-        let (problem, units) = vc::problem(&setting).unwrap();
+        let asked = vc::asked(&setting).unwrap();
         // Looking for v_c takes long, and is in vain where sliding is unstable.
-        if !problem.count(v0).stable() {
+        if !asked.problem.count(v0).stable() {
             continue;
         }
-        let found = vc::find_in(&problem, &units, Protocol::Follow);
-        let of = (&problem, &units);
-        let class = class_at(
-            v0,
-            of,
-            (Protocol::Follow, &found),
-            MarginalTolerance::default(),
-        );
+        let found = asked.find(Protocol::Follow);
+        let tolerance = MarginalTolerance::default();
+        let class = asked.class_at(v0, Protocol::Follow, &found, tolerance);
         if class == Class::Stable {
             stable += 1.0;
         }

@@ -28,7 +28,7 @@ use slipmap::maps::assembly::Missing;
 use slipmap::maps::maker::{Job, Merge, make, make_in_memory, make_shard, merge};
 use slipmap::store::describe::Provenance;
 use slipmap::store::tiles::{Manifest, shards};
-use slipmap::sweep::events::Silent;
+use slipmap::sweep::events::Attended;
 use slipmap::sweep::{Order, Plan, RunError, Shard};
 
 /// Curves, best settings and decay rates: every kind of piece, a second or two of work.
@@ -111,8 +111,8 @@ fn merge_all(plan: &Plan, folders: &[PathBuf], map: &Path, provenance: &Provenan
         replace_complete: false,
         remove_beside: Some(map),
     };
-    let stop = AtomicBool::new(false);
-    merge(plan, &asked, provenance, (&Silent, &stop)).unwrap();
+    let stop = Arc::new(AtomicBool::new(false));
+    merge(plan, &asked, provenance, Attended::silently(&stop)).unwrap();
 }
 
 fn uninterrupted() -> (Folder, Arc<Plan>) {
@@ -194,7 +194,7 @@ fn threads_shards_and_order_make_no_difference() {
             order,
             ..Job::new(&map, threads, &provenance)
         };
-        make(&plan, &job, &Silent, &stop).unwrap();
+        make(&plan, &job, Attended::silently(&stop)).unwrap();
         assert!(
             std::fs::read(&map).unwrap() == expected,
             "{threads} {order:?}"
@@ -207,7 +207,7 @@ fn threads_shards_and_order_make_no_difference() {
             order: Order::Spread,
             ..Job::new(&map, 2, &provenance)
         };
-        make_shard(&plan, &job, shard, &Silent, &stop).unwrap();
+        make_shard(&plan, &job, shard, Attended::silently(&stop)).unwrap();
     }
     let folders: Vec<PathBuf> = shards::present(&map)
         .unwrap()
@@ -422,8 +422,14 @@ fn damaged_tiles_are_noticed_and_computed_again() {
         save_every: Duration::ZERO,
         ..Job::new(&map, 2, &provenance)
     };
-    make_shard(&plan, &job, one, &Silent, &stop).unwrap();
-    make_shard(&plan, &job, "2/2".parse().unwrap(), &Silent, &stop).unwrap();
+    make_shard(&plan, &job, one, Attended::silently(&stop)).unwrap();
+    make_shard(
+        &plan,
+        &job,
+        "2/2".parse().unwrap(),
+        Attended::silently(&stop),
+    )
+    .unwrap();
     let kept = folder.path().join("kept");
     copy(&shards::folder_of(&map, one), &kept);
     let folders: Vec<PathBuf> = shards::present(&map)
@@ -446,7 +452,16 @@ fn damaged_tiles_are_noticed_and_computed_again() {
         damage(file, &mut chance);
         tried += 1;
         let told = Told::default();
-        make_shard(&plan, &job, one, &told, &stop).unwrap();
+        make_shard(
+            &plan,
+            &job,
+            one,
+            Attended {
+                observer: &told,
+                stop: &stop,
+            },
+        )
+        .unwrap();
         noticed += told.0.take();
     }
     println!("{tried} files damaged, {noticed} noticed");
@@ -834,13 +849,13 @@ fn a_stop_while_the_map_is_put_together() {
     let provenance = Provenance::default();
     let job = Job::new(&map, 2, &provenance);
     let stop = Arc::new(AtomicBool::new(false));
-    make_shard(&plan, &job, Shard::WHOLE, &Silent, &stop).unwrap();
+    make_shard(&plan, &job, Shard::WHOLE, Attended::silently(&stop)).unwrap();
     stop.store(true, std::sync::atomic::Ordering::Relaxed);
-    let stopped = make(&plan, &job, &Silent, &stop);
+    let stopped = make(&plan, &job, Attended::silently(&stop));
     assert!(matches!(stopped, Err(RunError::Interrupted)));
     assert!(!map.exists() && !tile_files(&map).is_empty());
     stop.store(false, std::sync::atomic::Ordering::Relaxed);
-    make(&plan, &job, &Silent, &stop).unwrap();
+    make(&plan, &job, Attended::silently(&stop)).unwrap();
     let whole = std::fs::read(folder.path().join("whole.h5")).unwrap();
     assert!(std::fs::read(&map).unwrap() == whole);
 }

@@ -15,7 +15,7 @@ use slipmap::critical::GRAZE_PRECISION;
 use slipmap::linear::status::{DISAGREE, NOT_CONVERGED, SAMPLED};
 use slipmap::store::MapFile;
 use slipmap::store::source::InMemory;
-use slipmap::sweep::events::Silent;
+use slipmap::sweep::events::Attended;
 use slipmap::sweep::input::field::OUTCOMES;
 use slipmap::sweep::{Field, Parameter, Plan, RunError, SweepSpec, Todo, engine};
 
@@ -356,8 +356,7 @@ fn a_stop_is_heeded_between_cells() {
         Todo::all(plan.pieces()),
         1,
         &mut pieces,
-        &Silent,
-        &stop,
+        Attended::silently(&stop),
     );
     assert!(matches!(stopped, Err(RunError::Interrupted)));
     let mut worker = engine::Worker::new(&plan);

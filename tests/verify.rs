@@ -13,7 +13,7 @@ use std::str::FromStr;
 use map::edit;
 use program::{Folder, expect, out};
 use slipmap::linear::status::{DISAGREE, MARGINAL, NOT_CONVERGED};
-use slipmap::maps::check::{Effort, check};
+use slipmap::maps::check::{Effort, Program, check};
 use slipmap::store::MapFile;
 use slipmap::sweep::cells::second_look::{Answer, Question, Stored, second_look};
 use slipmap::sweep::{Field, Plan};
@@ -322,6 +322,7 @@ fn a_search_that_large_steps_have_thrown_contradicts_nothing() {
 
 #[test]
 fn a_map_of_another_revision_is_not_compared_bit_by_bit() {
+    let program = |version, revision| Program { version, revision };
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("map.h5");
     map::write(&plan(DECAY), 2, &path);
@@ -329,10 +330,15 @@ fn a_map_of_another_revision_is_not_compared_bit_by_bit() {
         cells: 50,
         tiles: 1,
     };
-    let report = check(&MapFile::open(&path).unwrap(), ("0.0.1", "abc"), effort).unwrap();
+    let report = check(
+        &MapFile::open(&path).unwrap(),
+        program("0.0.1", "abc"),
+        effort,
+    )
+    .unwrap();
     assert!(report.faults.is_empty(), "{report:?}");
     assert_eq!((report.tiles, report.cells), (0, 50));
     assert!(report.remarks[0].contains("another revision"));
-    let report = check(&MapFile::open(&path).unwrap(), ("", ""), effort).unwrap();
+    let report = check(&MapFile::open(&path).unwrap(), program("", ""), effort).unwrap();
     assert_eq!(report.tiles_equal, 1, "{report:?}");
 }

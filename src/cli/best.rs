@@ -72,7 +72,7 @@ impl Control {
 
 /// The JSON of a search. Infinite numbers are written as null.
 #[derive(Debug, Serialize)]
-struct Found {
+struct BestAnswer {
     mu_prime: f64,
     mu_k: f64,
     control: Control,
@@ -203,13 +203,13 @@ fn json(
     setting: &Setting,
     ranges: &Ranges,
     found: &BestSettings,
-) -> Result<Found, Failure> {
+) -> Result<BestAnswer, Failure> {
     let sliding = setting.sliding_point()?;
     let region = |region: &BestRegion| RegionOut {
         region: (&region.ranges).into(),
         best: (&region.best).into(),
     };
-    Ok(Found {
+    Ok(BestAnswer {
         mu_prime: sliding.mu_prime,
         mu_k: sliding.mu_k,
         control: args.control,

@@ -9,6 +9,7 @@ use slipmap::report::numbers::{bytes, grouped};
 use slipmap::report::progress::Progress;
 use slipmap::store::StoreError;
 use slipmap::store::tiles::shards;
+use slipmap::sweep::events::Attended;
 use slipmap::sweep::{Plan, Shard};
 
 use super::failure::Failure;
@@ -68,7 +69,11 @@ pub(super) fn main(args: &Args) -> Result<(), Failure> {
         replace_complete: args.fresh,
         remove_beside: (!keep).then_some(&*args.map),
     };
-    let merged = maker::merge(&plan, &asked, &provenance, (&observer, &signals.stop));
+    let attended = Attended {
+        observer: &observer,
+        stop: &signals.stop,
+    };
+    let merged = maker::merge(&plan, &asked, &provenance, attended);
     let assembled = merged.map_err(|error| failure(error, &args.map, &signals))?;
     tell(target, &plan, &assembled)?;
     run::show(target, false, &signals);

@@ -5,6 +5,7 @@ use std::sync::atomic::AtomicBool;
 
 use slipmap::maps::assembly::{Missing, assemble};
 use slipmap::report::numbers::grouped;
+use slipmap::store::output::hidden_beside;
 use slipmap::store::tiles::{TileReader, shards};
 use slipmap::store::{MapFile, Output};
 
@@ -43,13 +44,10 @@ fn so_far(path: &Path, folders: &[PathBuf], stop: &AtomicBool) -> Result<MapFile
     for folder in folders {
         source.push(TileReader::of(folder, manifest.layout(), plan.pieces(), stop)?.0);
     }
-    let file = path.with_file_name(format!(
-        ".{}.slipmap-so-far",
-        path.file_name().unwrap_or_default().display()
-    ));
+    let file = hidden_beside(path, "so-far");
     let output = Output::claim(&file)?;
-    let how = (Missing::Leave, stop);
-    let assembled = assemble(&plan, output, &provenance("merge", path), &mut source, how)?;
+    let (provenance, missing) = (provenance("merge", path), Missing::Leave);
+    let assembled = assemble(&plan, output, &provenance, &mut source, missing, stop)?;
     tell_partial(path, assembled.cells_missing, plan.cells());
     let map = MapFile::open(&file);
     // The open file outlives its name.

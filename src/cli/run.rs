@@ -15,6 +15,7 @@ use slipmap::report::progress::Progress;
 use slipmap::store::schema::root;
 use slipmap::store::tiles::{Manifest, shards};
 use slipmap::store::{MapFile, StoreError};
+use slipmap::sweep::events::Attended;
 use slipmap::sweep::{Memory, Plan, RunError, Shard};
 
 use super::failure::Failure;
@@ -144,24 +145,41 @@ pub(super) fn main(args: &Args) -> Result<(), Failure> {
         ..Job::new(&path, threads, &provenance)
     };
     let plan = Arc::new(plan);
+    let watched = Watched {
+        observers: &observers,
+        signals: &signals,
+    };
     match args.shard.filter(|shard| !shard.is_whole()) {
-        Some(shard) => run_shard(&plan, &job, shard, (&observers, &signals), args.fresh),
-        None => run_whole(&plan, &job, (&observers, &signals), args),
+        Some(shard) => run_shard(&plan, &job, shard, &watched, args.fresh),
+        None => run_whole(&plan, &job, &watched, args),
     }
 }
 
-type Watched<'a> = (&'a Both<'a>, &'a Signals);
+/// Who takes note of a run, and what ends it.
+struct Watched<'a> {
+    observers: &'a Both<'a>,
+    signals: &'a Signals,
+}
+
+impl Watched<'_> {
+    fn attended(&self) -> Attended<'_> {
+        Attended {
+            observer: self.observers,
+            stop: &self.signals.stop,
+        }
+    }
+}
 
 fn run_shard(
     plan: &Arc<Plan>,
     job: &Job,
     shard: Shard,
-    (observers, signals): Watched,
+    watched: &Watched,
     fresh: bool,
 ) -> Result<(), Failure> {
     refuse_other_way(job.map, shard)?;
-    let made = maker::make_shard(plan, job, shard, observers, &signals.stop);
-    made.map_err(|error| failure(error, (job.map, fresh), (observers, signals)))?;
+    let made = maker::make_shard(plan, job, shard, watched.attended());
+    made.map_err(|error| failure(error, job.map, fresh, watched))?;
     let (number, of) = shard.numbers();
     let map = job.map.display();
     say::result(format_args!(
@@ -169,16 +187,12 @@ fn run_shard(
     ))
 }
 
-fn run_whole(
-    plan: &Arc<Plan>,
-    job: &Job,
-    (observers, signals): Watched,
-    args: &Args,
-) -> Result<(), Failure> {
+fn run_whole(plan: &Arc<Plan>, job: &Job, watched: &Watched, args: &Args) -> Result<(), Failure> {
     let (fresh, quiet) = (args.fresh, args.quiet);
     refuse_other_way(job.map, Shard::WHOLE)?;
-    let made = maker::make(plan, job, observers, &signals.stop);
-    let assembled = made.map_err(|error| failure(error, (job.map, fresh), (observers, signals)))?;
+    let made = maker::make(plan, job, watched.attended());
+    let assembled = made.map_err(|error| failure(error, job.map, fresh, watched))?;
+    let observers = watched.observers;
     let (elapsed, cells) = (observers.0.elapsed(), observers.0.computed());
     output::tell_assembled(&assembled, quiet);
     let path = job.map;
@@ -190,7 +204,7 @@ fn run_whole(
         prefixed(cells as f64 / elapsed),
         bytes(std::fs::metadata(path).map_or(0, |m| m.len())),
     ));
-    show(path, quiet, signals);
+    show(path, quiet, watched.signals);
     told
 }
 
@@ -338,11 +352,8 @@ fn what_differs(map: &MapFile, plan: &Plan) -> String {
     }
 }
 
-fn failure(
-    error: RunError<StoreError>,
-    (path, fresh): (&Path, bool),
-    (observers, signals): Watched,
-) -> Failure {
+fn failure(error: RunError<StoreError>, path: &Path, fresh: bool, watched: &Watched) -> Failure {
+    let &Watched { observers, signals } = watched;
     observers.0.clear();
     observers.1.ended(&error.to_string());
     let nothing = shards::present(path).unwrap_or_default().is_empty();

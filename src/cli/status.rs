@@ -7,7 +7,7 @@ use std::time::SystemTime;
 
 use serde_json::{Value, json};
 use slipmap::linear::status::FLAGS;
-use slipmap::report::log::{self, Entry, Line};
+use slipmap::report::log::{self, Entry, LogLine};
 use slipmap::report::numbers::{grouped, prefixed, seconds};
 use slipmap::store::tiles::Survey;
 use slipmap::store::tiles::survey::ShardSurvey;
@@ -112,7 +112,7 @@ fn rate(map: &Path, found: &ShardSurvey) -> Option<f64> {
     }
     let log = File::open(path).ok()?.take(MOST_OF_LOG);
     let lines = BufReader::new(log).lines().map_while(Result::ok);
-    let lines = lines.filter_map(|line| serde_json::from_str::<Line>(&line).ok());
+    let lines = lines.filter_map(|line| serde_json::from_str::<LogLine>(&line).ok());
     let started = lines.filter_map(|line| match line.entry {
         Entry::Started { cells_left, .. } => Some((line.time, cells_left)),
         _ => None,

@@ -27,8 +27,8 @@ pub(super) struct Args {
     #[command(flatten)]
     parameters: ParameterArgs,
     /// Which question is asked
-    #[arg(long, value_enum, default_value_t = Protocol::Follow)]
-    protocol: Protocol,
+    #[arg(long, value_enum, default_value_t = ProtocolName::Follow)]
+    protocol: ProtocolName,
     /// Time from a release to switch-on, or `worst` for the worst of 32 phases (with --protocol
     /// switch-on) [default: 0]
     #[arg(long, value_name = "T", allow_hyphen_values = true)]
@@ -43,7 +43,7 @@ pub(super) struct Args {
 /// Protocols by name.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum, Serialize)]
 #[serde(rename_all = "kebab-case")]
-enum Protocol {
+enum ProtocolName {
     /// From controlled stick-slip at low v0, raised until stick-slip ends
     Follow,
     /// Control switched on at a phase of uncontrolled stick-slip
@@ -54,7 +54,7 @@ enum Protocol {
 
 /// The JSON of a critical velocity. What there is not is null.
 #[derive(Debug, Serialize)]
-struct Found {
+struct VcAnswer {
     vc: Option<f64>,
     protocol: &'static str,
     outcome: &'static str,
@@ -70,7 +70,7 @@ struct Found {
 /// The JSON of the limit: its parameters, and the fields of its maps by their names.
 #[derive(Debug, Serialize)]
 struct Limit {
-    protocol: Protocol,
+    protocol: ProtocolName,
     gamma: f64,
     mu_ratio: f64,
     #[serde(flatten)]
@@ -82,11 +82,11 @@ pub(super) fn main(args: &Args) -> Result<(), Failure> {
     args.check()?;
     let mut out = std::io::stdout().lock();
     match args.protocol {
-        Protocol::Limit => print(&mut out, args.json, &args.limit()?),
+        ProtocolName::Limit => print(&mut out, args.json, &args.limit()?),
         protocol => {
             let setting = args.parameters.setting_without_v0()?;
             let protocol = match protocol {
-                Protocol::SwitchOn => search::Protocol::SwitchOn(args.phase()?),
+                ProtocolName::SwitchOn => search::Protocol::SwitchOn(args.phase()?),
                 _ => search::Protocol::Follow,
             };
             let found = vc::find(&setting, protocol).map_err(|e| args.parameters.refused(&e))?;
@@ -118,9 +118,9 @@ fn finite(value: f64) -> Option<f64> {
 }
 
 /// What is found by a protocol of motions.
-fn told(found: CriticalWindows, protocol: search::Protocol) -> Found {
+fn told(found: CriticalWindows, protocol: search::Protocol) -> VcAnswer {
     let critical = found.critical;
-    Found {
+    VcAnswer {
         vc: finite(critical.vc),
         protocol: protocol.name(),
         outcome: OUTCOMES[usize::from(number_of_outcome(&critical))],
@@ -143,10 +143,10 @@ impl Args {
                 format!("it belongs to --protocol {protocol}"),
             ))
         };
-        if self.phase.is_some() && self.protocol != Protocol::SwitchOn {
+        if self.phase.is_some() && self.protocol != ProtocolName::SwitchOn {
             return refuse("--phase", "switch-on");
         }
-        if self.protocol != Protocol::Limit {
+        if self.protocol != ProtocolName::Limit {
             if let Some(parameter) = self.limit.any_given() {
                 return refuse(&flag(parameter), "limit");
             }
@@ -185,7 +185,7 @@ impl Args {
                 _ => None,
             });
         Ok(Limit {
-            protocol: Protocol::Limit,
+            protocol: ProtocolName::Limit,
             gamma,
             mu_ratio,
             fields: fields.collect(),

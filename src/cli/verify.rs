@@ -4,7 +4,7 @@
 use std::path::PathBuf;
 
 use serde_json::{Value, json};
-use slipmap::maps::check::{Effort, Report, check};
+use slipmap::maps::check::{Effort, Program, Report, check};
 use slipmap::report::numbers::grouped;
 use slipmap::store::MapFile;
 
@@ -38,7 +38,10 @@ pub(super) fn main(args: &Args) -> Result<(), Failure> {
         cells: args.cells,
         tiles: args.tiles,
     };
-    let program = (env!("CARGO_PKG_VERSION"), env!("SLIPMAP_GIT_REVISION"));
+    let program = Program {
+        version: env!("CARGO_PKG_VERSION"),
+        revision: env!("SLIPMAP_GIT_REVISION"),
+    };
     let report = check(&map, program, effort)?;
     let told = match args.json {
         true => say::json(&to_json(&report)),

@@ -12,6 +12,7 @@ use num_complex::Complex64;
 
 use super::characteristic::root_bound;
 use super::newton::divide;
+use super::roots::narrowed;
 use crate::model::Groups;
 use crate::model::elementary::{arg, exp, ln};
 
@@ -145,6 +146,9 @@ pub(super) fn slow_starts(groups: Groups, tau: f64) -> impl Iterator<Item = Comp
         .map(|z| Complex64::new(z.re, z.im.abs()))
 }
 
+/// Halvings of such a part: Newton's method does the rest.
+const HALVINGS: u32 = 8;
+
 /// A start in each part of the real axis right of `line` in which D changes its sign.
 fn real_starts(pair: &Pair, tau: f64, line: f64, radius: f64, starts: &mut Vec<Complex64>) {
     let value = |s: f64| {
@@ -156,15 +160,13 @@ fn real_starts(pair: &Pair, tau: f64, line: f64, radius: f64, starts: &mut Vec<C
     for i in 1..=REAL_PARTS {
         let here = value(place(i));
         if (before > 0.0) != (here > 0.0) {
-            let (mut from, mut to) = (place(i - 1), place(i));
-            for _ in 0..8 {
-                let middle = 0.5 * (from + to);
-                if (value(middle) > 0.0) == (before > 0.0) {
-                    from = middle;
-                } else {
-                    to = middle;
-                }
-            }
+            let mut halvings = 0;
+            let enough = |_, _| {
+                halvings += 1;
+                halvings > HALVINGS
+            };
+            let like_before = |s| (value(s) > 0.0) == (before > 0.0);
+            let (from, to) = narrowed(place(i - 1), place(i), enough, like_before);
             starts.push(Complex64::from(0.5 * (from + to)));
         }
         before = here;

@@ -51,7 +51,7 @@ use crate::model::elementary::{atan2, expm1};
 #[inline]
 #[must_use]
 pub fn roots_right_of(groups: Groups, tau: f64, line: f64) -> Option<u64> {
-    Line::new(groups, tau, line)?.turning()?.count(tau)
+    VerticalLine::new(groups, tau, line)?.turning()?.count(tau)
 }
 
 /// The number of roots right of the imaginary axis, at any delay of a line: there κ = 1 and only
@@ -63,7 +63,7 @@ impl UnstableCount {
     /// For the line of `groups`.
     #[must_use]
     pub fn new(groups: Groups) -> Self {
-        let line = Line::new(groups, 0.0, 0.0);
+        let line = VerticalLine::new(groups, 0.0, 0.0);
         Self(line.and_then(|line| line.turning()))
     }
 
@@ -76,7 +76,7 @@ impl UnstableCount {
 }
 
 /// D on a vertical line, in the symbols of the module.
-struct Line {
+struct VerticalLine {
     s: Rounded,
     r: Rounded,
     c: Rounded,
@@ -110,7 +110,7 @@ struct Switch {
     ahead: f64,
 }
 
-impl Line {
+impl VerticalLine {
     #[inline(always)]
     fn new(groups: Groups, tau: f64, line: f64) -> Option<Self> {
         let Groups { b, a_v, a_n } = groups;

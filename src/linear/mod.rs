@@ -29,7 +29,7 @@ pub mod gains;
 pub mod lobes;
 pub mod newton;
 pub mod rightmost;
-mod roots;
+pub(crate) mod roots;
 mod rounded;
 pub mod row;
 pub mod sensitivity;

@@ -1,21 +1,31 @@
-//! A bracketing root finder for the scalar conditions of this module.
+//! Bisection: where scalar conditions change. Every use evaluates a smooth closed form a few dozen
+//! times in all, and this cannot fail.
 
 /// The root of `f` in [`lo`, `hi`], where f(lo) and f(hi) differ in sign, to the last bit that
 /// bisection resolves.
-///
-/// Bisection: every use here evaluates a smooth closed form a few dozen times in all, and this
-/// cannot fail.
-pub(super) fn bisect(mut lo: f64, mut hi: f64, f: impl Fn(f64) -> f64) -> f64 {
+pub(crate) fn bisect(lo: f64, hi: f64, f: impl Fn(f64) -> f64) -> f64 {
     let sign_lo = f(lo) > 0.0;
+    let (lo, hi) = narrowed(lo, hi, |_, _| false, |x| (f(x) > 0.0) == sign_lo);
+    0.5 * (lo + hi)
+}
+
+/// Where between `from` and `to` it changes whether numbers are `like_from`, as `from` is and `to`
+/// is not: two numbers that enclose it, near `enough`, or with none in between.
+pub(crate) fn narrowed(
+    mut from: f64,
+    mut to: f64,
+    mut enough: impl FnMut(f64, f64) -> bool,
+    like_from: impl Fn(f64) -> bool,
+) -> (f64, f64) {
     loop {
-        let mid = 0.5 * (lo + hi);
-        if mid <= lo.min(hi) || mid >= lo.max(hi) {
-            return mid;
+        let middle = 0.5 * (from + to);
+        if enough(from, to) || middle <= from.min(to) || middle >= from.max(to) {
+            return (from, to);
         }
-        if (f(mid) > 0.0) == sign_lo {
-            lo = mid;
+        if like_from(middle) {
+            from = middle;
         } else {
-            hi = mid;
+            to = middle;
         }
     }
 }

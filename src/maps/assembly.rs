@@ -51,7 +51,8 @@ pub fn assemble(
     output: Output,
     provenance: &Provenance,
     source: &mut dyn Source,
-    (missing, stop): (Missing, &AtomicBool),
+    missing: Missing,
+    stop: &AtomicBool,
 ) -> Result<Assembled, StoreError> {
     let mut writer = MapWriter::create(plan, output, provenance)?;
     let mut assembled = Assembled::default();

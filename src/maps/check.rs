@@ -26,12 +26,20 @@ pub struct Effort {
     pub tiles: u64,
 }
 
-/// Checks a map: its schema against its own sweep, its checksums, and samples of its cells;
-/// `program` is the version and revision of the program that runs.
+/// The program that runs.
+#[derive(Debug, Clone, Copy)]
+pub struct Program<'a> {
+    /// Its version.
+    pub version: &'a str,
+    /// Its git revision.
+    pub revision: &'a str,
+}
+
+/// Checks a map: its schema against its own sweep, its checksums, and samples of its cells.
 ///
 /// # Errors
 /// When the map cannot be read at all.
-pub fn check(map: &MapFile, program: (&str, &str), effort: Effort) -> Result<Report, StoreError> {
+pub fn check(map: &MapFile, program: Program, effort: Effort) -> Result<Report, StoreError> {
     let mut report = Report::default();
     let Some(plan) = planned(map, &mut report) else {
         return Ok(report);
@@ -151,15 +159,9 @@ fn tally(plan: &Plan, index: &[usize], answers: &[(Question, Answer)], report: &
     }
 }
 
-fn compute_tiles(
-    map: &MapFile,
-    plan: &Plan,
-    (version, revision): (&str, &str),
-    tiles: u64,
-    report: &mut Report,
-) {
+fn compute_tiles(map: &MapFile, plan: &Plan, program: Program, tiles: u64, report: &mut Report) {
     let by = |name, this| map.root_text(name).as_deref() == Some(this);
-    if !by(root::PROGRAM_VERSION, version) || !by(root::GIT_REVISION, revision) {
+    if !by(root::PROGRAM_VERSION, program.version) || !by(root::GIT_REVISION, program.revision) {
         let remark = "no tiles are compared bit by bit: another revision of slipmap computed them";
         report.remarks.push(remark.to_owned());
         return;

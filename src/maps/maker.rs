@@ -16,7 +16,7 @@ use crate::store::source::InMemory;
 use crate::store::tiles::folder::BETWEEN_FILES;
 use crate::store::tiles::shards::{self, Shards};
 use crate::store::tiles::{Damaged, Manifest, TileFolder};
-use crate::sweep::events::{Event, Observer, Silent};
+use crate::sweep::events::{Attended, Event, Observer};
 use crate::sweep::plan::Plan;
 use crate::sweep::plan::pieces::{Order, Piece, Shard, Todo};
 use crate::sweep::{RunError, engine};
@@ -61,16 +61,15 @@ const MOST_REPAIRS: u32 = 3;
 pub fn make(
     plan: &Arc<Plan>,
     job: &Job,
-    observer: &dyn Observer,
-    stop: &Arc<AtomicBool>,
+    attended: Attended,
 ) -> Result<Assembled, RunError<StoreError>> {
     let mut output = Output::claim(job.map).map_err(RunError::Sink)?;
-    let mut folder = claimed(plan, job, Shard::WHOLE, (observer, stop))?;
+    let mut folder = claimed(plan, job, Shard::WHOLE, attended)?;
     let mut repairs = 0;
     loop {
-        compute(plan, job, Shard::WHOLE, &mut folder, (observer, stop))?;
-        let how = (Missing::Refuse, &**stop);
-        match assemble(plan, output, job.provenance, &mut folder, how) {
+        compute(plan, job, Shard::WHOLE, &mut folder, attended)?;
+        let (missing, stop) = (Missing::Refuse, attended.stop);
+        match assemble(plan, output, job.provenance, &mut folder, missing, stop) {
             Ok(assembled) => {
                 folder
                     .remove()
@@ -82,7 +81,10 @@ pub fn make(
                 if repairs < MOST_REPAIRS =>
             {
                 repairs += 1;
-                tell(&folder.scan(stop).map_err(ended)?, observer);
+                tell(
+                    &folder.scan(attended.stop).map_err(ended)?,
+                    attended.observer,
+                );
                 output = Output::claim(job.map).map_err(RunError::Sink)?;
             }
             Err(error) => return Err(ended(error)),
@@ -98,11 +100,10 @@ pub fn make_shard(
     plan: &Arc<Plan>,
     job: &Job,
     shard: Shard,
-    observer: &dyn Observer,
-    stop: &Arc<AtomicBool>,
+    attended: Attended,
 ) -> Result<(), RunError<StoreError>> {
-    let mut folder = claimed(plan, job, shard, (observer, stop))?;
-    compute(plan, job, shard, &mut folder, (observer, stop))
+    let mut folder = claimed(plan, job, shard, attended)?;
+    compute(plan, job, shard, &mut folder, attended)
 }
 
 /// What is merged.
@@ -130,7 +131,7 @@ pub fn merge(
     plan: &Plan,
     asked: &Merge,
     provenance: &Provenance,
-    (observer, stop): (&dyn Observer, &AtomicBool),
+    attended: Attended,
 ) -> Result<Assembled, StoreError> {
     let &Merge {
         folders,
@@ -140,8 +141,8 @@ pub fn merge(
     } = asked;
     let output = Output::claim(map)?;
     let expected = Manifest::of(plan, Shard::WHOLE, provenance);
-    let (mut source, damaged) = Shards::claim(folders, &expected, plan.pieces(), stop)?;
-    tell(&damaged, observer);
+    let (mut source, damaged) = Shards::claim(folders, &expected, plan.pieces(), attended.stop)?;
+    tell(&damaged, attended.observer);
     let lacking = source.missing(plan.pieces().total());
     if lacking > 0
         && missing == Missing::Leave
@@ -153,7 +154,14 @@ pub fn merge(
             pieces: lacking,
         });
     }
-    let assembled = assemble(plan, output, provenance, &mut source, (missing, stop))?;
+    let assembled = assemble(
+        plan,
+        output,
+        provenance,
+        &mut source,
+        missing,
+        attended.stop,
+    )?;
     if let Some(beside) = asked
         .remove_beside
         .filter(|_| assembled.pieces_missing == 0)
@@ -199,26 +207,25 @@ pub fn make_in_memory(
         Todo::all(plan.pieces()),
         threads,
         &mut pieces,
-        &Silent,
-        &stop,
+        Attended::silently(&stop),
     )?;
-    let how = (Missing::Refuse, &*stop);
-    assemble(plan, output, provenance, &mut pieces, how).map_err(RunError::Sink)
+    let missing = Missing::Refuse;
+    assemble(plan, output, provenance, &mut pieces, missing, &stop).map_err(RunError::Sink)
 }
 
 fn claimed(
     plan: &Plan,
     job: &Job,
     shard: Shard,
-    (observer, stop): (&dyn Observer, &AtomicBool),
+    attended: Attended,
 ) -> Result<TileFolder, RunError<StoreError>> {
     let manifest = Manifest::of(plan, shard, job.provenance);
     shards::make_root(job.map).map_err(ended)?;
     let path = shards::folder_of(job.map, shard);
-    let claimed = TileFolder::claim(&path, &manifest, plan.pieces(), stop);
+    let claimed = TileFolder::claim(&path, &manifest, plan.pieces(), attended.stop);
     let (mut folder, damaged) = claimed.map_err(ended)?;
     folder.save_every(job.save_every);
-    tell(&damaged, observer);
+    tell(&damaged, attended.observer);
     Ok(folder)
 }
 
@@ -227,14 +234,14 @@ fn compute(
     job: &Job,
     shard: Shard,
     folder: &mut TileFolder,
-    (observer, stop): (&dyn Observer, &Arc<AtomicBool>),
+    attended: Attended,
 ) -> Result<(), RunError<StoreError>> {
     let mut todo = Todo::new(plan.pieces(), shard, job.order);
     let done: Vec<Piece> = folder.done().collect();
     for piece in done {
         todo.mark_done(piece);
     }
-    engine::run(plan, todo, job.threads, folder, observer, stop)
+    engine::run(plan, todo, job.threads, folder, attended)
 }
 
 /// The end of a run by an error, or by a stop while files were read or written.

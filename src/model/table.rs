@@ -47,14 +47,14 @@ struct Points {
 
 /// The columns of a table, by their names in files.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Column {
+pub enum TableColumn {
     /// Speeds.
     Speeds,
     /// μ_K at these.
     MuK,
 }
 
-impl Column {
+impl TableColumn {
     /// The name.
     #[must_use]
     pub const fn name(self) -> &'static str {
@@ -82,7 +82,7 @@ pub enum TableError {
     #[error("{} = {} is outside its range: {allowed}", column.name(), Shown(*value))]
     Value {
         /// Where it stands.
-        column: Column,
+        column: TableColumn,
         /// Its place in the column, from 0 on.
         index: usize,
         /// The value.
@@ -131,7 +131,7 @@ impl Table {
         }
         check_speeds(&speeds)?;
         let allowed = "greater than 0, between 1e-12 and 1e12";
-        check(Column::MuK, &mu_k, allowed, |mu| SIZES.contains(&mu))?;
+        check(TableColumn::MuK, &mu_k, allowed, |mu| SIZES.contains(&mu))?;
         let slopes = slopes(&speeds, &mu_k);
         Ok(Self(Arc::new(Points {
             speeds,
@@ -215,7 +215,7 @@ impl Table {
 
 /// `allowed_when` holds for every value.
 fn check(
-    column: Column,
+    column: TableColumn,
     values: &[f64],
     allowed: &'static str,
     allowed_when: impl Fn(f64) -> bool,
@@ -234,13 +234,13 @@ fn check(
 
 fn check_speeds(speeds: &[f64]) -> Result<(), TableError> {
     let allowed = "0, or between 1e-12 and 1e12";
-    check(Column::Speeds, speeds, allowed, |speed| {
+    check(TableColumn::Speeds, speeds, allowed, |speed| {
         speed == 0.0 || SIZES.contains(&speed)
     })?;
     let near = |pair: &[f64]| pair[1] - pair[0] <= NEAREST * pair[1];
     match speeds.windows(2).position(near) {
         Some(before) => Err(TableError::Value {
-            column: Column::Speeds,
+            column: TableColumn::Speeds,
             index: before + 1,
             value: speeds[before + 1],
             allowed: "speeds increase, each by more than a part in 1e6 of it",
@@ -409,13 +409,17 @@ mod tests {
         assert!(count(wrong(&[0.0, 1.0], &[0.5])));
         assert!(count(wrong(&vec![0.0; 5000], &vec![0.5; 5000])));
         for (speeds, mu_k, at) in [
-            ([0.0, 1.0, 1.0], [0.5; 3], (Column::Speeds, 2)),
-            ([-1.0, 1.0, 2.0], [0.5; 3], (Column::Speeds, 0)),
-            ([0.0, f64::NAN, 2.0], [0.5; 3], (Column::Speeds, 1)),
-            ([0.0, 1.0, f64::INFINITY], [0.5; 3], (Column::Speeds, 2)),
-            ([0.0, 1.0, 1.0 + 1e-7], [0.5; 3], (Column::Speeds, 2)),
-            ([0.0, 1.0, 2.0], [0.5, 0.0, 0.5], (Column::MuK, 1)),
-            ([0.0, 1.0, 2.0], [0.5, 0.5, f64::NAN], (Column::MuK, 2)),
+            ([0.0, 1.0, 1.0], [0.5; 3], (TableColumn::Speeds, 2)),
+            ([-1.0, 1.0, 2.0], [0.5; 3], (TableColumn::Speeds, 0)),
+            ([0.0, f64::NAN, 2.0], [0.5; 3], (TableColumn::Speeds, 1)),
+            (
+                [0.0, 1.0, f64::INFINITY],
+                [0.5; 3],
+                (TableColumn::Speeds, 2),
+            ),
+            ([0.0, 1.0, 1.0 + 1e-7], [0.5; 3], (TableColumn::Speeds, 2)),
+            ([0.0, 1.0, 2.0], [0.5, 0.0, 0.5], (TableColumn::MuK, 1)),
+            ([0.0, 1.0, 2.0], [0.5, 0.5, f64::NAN], (TableColumn::MuK, 2)),
         ] {
             match wrong(&speeds, &mu_k) {
                 TableError::Value { column, index, .. } => assert_eq!((column, index), at),

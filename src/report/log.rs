@@ -17,7 +17,7 @@ const BETWEEN_LINES: Duration = Duration::from_secs(10);
 
 /// One line.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct Line {
+pub struct LogLine {
     /// When, RFC 3339 in UTC.
     pub time: String,
     /// What happened.
@@ -138,7 +138,7 @@ impl Log {
     }
 
     fn put(&self, entry: Entry) {
-        let line = Line {
+        let line = LogLine {
             time: humantime::format_rfc3339_millis(representable(SystemTime::now())).to_string(),
             entry,
         };

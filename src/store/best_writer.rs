@@ -55,12 +55,12 @@ impl BestRow {
 }
 
 /// A variable with the values of the planes so far.
-struct Column<T> {
+struct Variable<T> {
     dataset: Dataset,
     values: Vec<T>,
 }
 
-impl<T: H5Type + Copy> Column<T> {
+impl<T: H5Type + Copy> Variable<T> {
     fn write(&self) -> hdf5::Result<()> {
         match self.values[..] {
             [value] if self.dataset.ndim() == 0 => self.dataset.write_scalar(&value),
@@ -71,9 +71,9 @@ impl<T: H5Type + Copy> Column<T> {
 
 /// The group of best settings of a map that is being written.
 pub(super) struct BestWriter {
-    numbers: Vec<Column<f64>>,
-    flags: Vec<Column<i8>>,
-    regions: Column<i32>,
+    numbers: Vec<Variable<f64>>,
+    flags: Vec<Variable<i8>>,
+    regions: Variable<i32>,
 }
 
 /// Makes the variables of the group.
@@ -90,7 +90,7 @@ impl Variables<'_> {
         name: &str,
         (long_name, unit): (&str, &str),
         fill: T,
-    ) -> hdf5::Result<Column<T>>
+    ) -> hdf5::Result<Variable<T>>
     where
         T: H5Type + Copy + Into<OwnedDynValue>,
     {
@@ -107,13 +107,13 @@ impl Variables<'_> {
         put_numbers(&dataset, "_FillValue", &[fill])?;
         put_text(&dataset, "long_name", long_name)?;
         put_text(&dataset, "units", unit)?;
-        Ok(Column {
+        Ok(Variable {
             dataset,
             values: Vec::new(),
         })
     }
 
-    fn numbers(&mut self, plan: &Plan, gain: Parameter) -> hdf5::Result<Vec<Column<f64>>> {
+    fn numbers(&mut self, plan: &Plan, gain: Parameter) -> hdf5::Result<Vec<Variable<f64>>> {
         let units = &plan.spec.units;
         let rate = units.of([0, 0, -1]);
         let (time, frequency) = (units.time(), units.angular_frequency());
@@ -138,7 +138,7 @@ impl Variables<'_> {
         ])
     }
 
-    fn flags(&mut self) -> hdf5::Result<Vec<Column<i8>>> {
+    fn flags(&mut self) -> hdf5::Result<Vec<Variable<i8>>> {
         let kind = self.make(
             names::KIND,
             ("what makes the setting the best", "1"),
@@ -214,8 +214,8 @@ impl BestWriter {
 
     /// Writes what was taken. To be called once, when all planes are there.
     pub(super) fn finish(&self) -> hdf5::Result<()> {
-        self.numbers.iter().try_for_each(Column::write)?;
-        self.flags.iter().try_for_each(Column::write)?;
+        self.numbers.iter().try_for_each(Variable::write)?;
+        self.flags.iter().try_for_each(Variable::write)?;
         self.regions.write()
     }
 }

@@ -19,7 +19,8 @@ pub struct Output {
 }
 
 /// A hidden neighbour of `path` by a name that nobody else gives.
-fn beside(path: &Path, purpose: &str) -> PathBuf {
+#[must_use]
+pub fn hidden_beside(path: &Path, purpose: &str) -> PathBuf {
     let name = path.file_name().unwrap_or_default().to_string_lossy();
     path.with_file_name(format!(".{name}.slipmap-{purpose}"))
 }
@@ -36,7 +37,7 @@ impl Output {
             let source = std::io::Error::from(std::io::ErrorKind::IsADirectory);
             return Err(StoreError::io("write", path)(source));
         }
-        let lock_path = beside(path, "lock");
+        let lock_path = hidden_beside(path, "lock");
         let lock = lock::acquire(&lock_path).map_err(|error| match error.kind() {
             ErrorKind::AlreadyExists => StoreError::io("lock", &lock_path)(error),
             _ => StoreError::io("write", path)(error),
@@ -46,7 +47,7 @@ impl Output {
                 path: path.to_owned(),
             });
         };
-        let part = beside(path, "part");
+        let part = hidden_beside(path, "part");
         // What a run that died left, or a link: the file that is written to is always a new one.
         if part.symlink_metadata().is_ok() {
             fs::remove_file(&part).map_err(StoreError::io("replace", &part))?;
@@ -123,8 +124,8 @@ mod tests {
     fn a_dead_runs_lock_does_not_block() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("map.h5");
-        fs::write(beside(&path, "lock"), "").unwrap();
-        fs::write(beside(&path, "part"), "torn").unwrap();
+        fs::write(hidden_beside(&path, "lock"), "").unwrap();
+        fs::write(hidden_beside(&path, "part"), "torn").unwrap();
         assert!(Output::claim(&path).is_ok());
     }
 }

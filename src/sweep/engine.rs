@@ -11,7 +11,7 @@ use super::cells::best::{BestSettings, best_of_plane, best_plane};
 use super::cells::boundaries::{BoundaryPlane, plane, trace_plane};
 pub use super::cells::buffers::{Column, FEW_FILL, N_UNSTABLE_FILL, STATUS_FILL, TileBuffers};
 pub use super::cells::worker::Worker;
-use super::events::{Event, Observer};
+use super::events::{Attended, Event, Observer};
 use super::plan::Plan;
 use super::plan::pieces::{Piece, Todo};
 use crate::model::ModelError;
@@ -118,9 +118,9 @@ pub fn run<S: Sink>(
     todo: Todo,
     threads: usize,
     sink: &mut S,
-    observer: &dyn Observer,
-    stop: &Arc<AtomicBool>,
+    attended: Attended,
 ) -> Result<(), RunError<S::Error>> {
+    let Attended { observer, stop } = attended;
     let left = todo.left().fold((0, 0), |(pieces, cells), piece| {
         (pieces + 1, cells + plan.cells_of(piece))
     });

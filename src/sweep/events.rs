@@ -1,6 +1,8 @@
 //! What a running sweep tells whoever watches it.
 
 use std::path::PathBuf;
+use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
 
 /// A step of a running sweep.
 #[derive(Debug, Clone, PartialEq)]
@@ -35,6 +37,26 @@ pub enum Event {
 pub trait Observer {
     /// Takes note of an event.
     fn event(&self, event: &Event);
+}
+
+/// Who follows a run, and what stops it.
+#[derive(Clone, Copy)]
+pub struct Attended<'a> {
+    /// Takes note of what happens.
+    pub observer: &'a dyn Observer,
+    /// Once it is set, the run ends as soon as it can.
+    pub stop: &'a Arc<AtomicBool>,
+}
+
+impl<'a> Attended<'a> {
+    /// A run that nobody takes note of.
+    #[must_use]
+    pub fn silently(stop: &'a Arc<AtomicBool>) -> Self {
+        Self {
+            observer: &Silent,
+            stop,
+        }
+    }
 }
 
 /// An observer that takes no note.

@@ -7,7 +7,7 @@ use super::cells::best::BestSettings;
 use super::cells::boundaries::BoundaryPlane;
 use super::cells::buffers::TileBuffers;
 use super::engine::{self, Computed, Encode, RunError, Sink};
-use super::events::Silent;
+use super::events::Attended;
 use super::plan::Plan;
 use super::plan::pieces::{Piece, Todo};
 use super::plan::tile::{for_each_index, place_of, strides_of};
@@ -78,8 +78,7 @@ impl Grid {
             todo,
             threads.max(1),
             &mut Taken(&mut grid),
-            &Silent,
-            &stop,
+            Attended::silently(&stop),
         )?;
         Ok(grid)
     }

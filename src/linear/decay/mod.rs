@@ -38,7 +38,7 @@ use super::curves::{
 use crate::model::Groups;
 use corner::Turn;
 use plane::{DecayPlane, Family};
-use seeds::{COLUMNS, Line, Seed};
+use seeds::{Across, COLUMNS, Seed};
 use walk::{Arc, Way};
 
 /// Steps along all boundaries of one window.
@@ -65,7 +65,7 @@ pub fn trace(
         window,
     };
     let mut tracer = Tracer {
-        found: Found::default(),
+        found: Traced::default(),
         curves: PlaneCurves::default(),
         steps: MOST_STEPS,
         plane,
@@ -80,34 +80,34 @@ pub fn trace(
 
 /// Where the boundaries traced so far meet the lines of the seeds.
 #[derive(Default)]
-struct Found {
+struct Traced {
     /// Delays, for each column.
     columns: Vec<Vec<f64>>,
     /// Values of p on the edges of shortest and longest delay.
     edges: [Vec<f64>; 2],
 }
 
-impl Found {
-    fn on(&mut self, line: Line) -> &mut Vec<f64> {
+impl Traced {
+    fn on(&mut self, line: Across) -> &mut Vec<f64> {
         match line {
-            Line::Column(i) => {
+            Across::Column(i) => {
                 self.columns.resize(COLUMNS + 1, Vec::new());
                 &mut self.columns[i]
             }
-            Line::Edge { longest } => &mut self.edges[usize::from(longest)],
+            Across::Edge { longest } => &mut self.edges[usize::from(longest)],
         }
     }
 
     fn holds(&mut self, seed: &Seed) -> bool {
         let slack = 1e-6 * (seed.to - seed.from);
         let range = seed.from - slack..=seed.to + slack;
-        self.on(seed.line).iter().any(|x| range.contains(x))
+        self.on(seed.across).iter().any(|x| range.contains(x))
     }
 }
 
 struct Tracer<'a> {
     plane: DecayPlane<'a>,
-    found: Found,
+    found: Traced,
     curves: PlaneCurves,
     steps: usize,
 }
@@ -158,7 +158,7 @@ impl Tracer<'_> {
         for pair in arc.vertices.windows(2) {
             for i in self.columns_between(pair[0].p, pair[1].p) {
                 let tau = self.at_column(arc.family, (pair[0], pair[1]), self.plane.column(i));
-                self.found.on(Line::Column(i)).push(tau);
+                self.found.on(Across::Column(i)).push(tau);
             }
         }
         let slack = 1e-9 * window.tau_width();
@@ -168,7 +168,7 @@ impl Tracer<'_> {
         {
             for (longest, edge) in [(false, window.tau.start()), (true, window.tau.end())] {
                 if (end.tau - edge).abs() <= slack {
-                    self.found.on(Line::Edge { longest }).push(end.p);
+                    self.found.on(Across::Edge { longest }).push(end.p);
                 }
             }
         }

@@ -4,6 +4,7 @@ use std::f64::consts::TAU;
 
 use super::plane::{DecayPlane, Family};
 use crate::linear::curves::Vertex;
+use crate::linear::roots::narrowed;
 
 /// Stretches of equal width into which columns divide the window.
 pub(super) const COLUMNS: usize = 256;
@@ -21,7 +22,7 @@ const ENCLOSED: f64 = 1e-9;
 
 /// A line across the window.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Line {
+pub(super) enum Across {
     /// All delays at one value of the parameter.
     Column(usize),
     /// The shortest or the longest delay: one edge of the window.
@@ -34,7 +35,7 @@ pub(super) enum Line {
 /// A stretch of a line at whose ends the predicate "all roots decay" differs.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Seed {
-    pub line: Line,
+    pub across: Across,
     /// Delays on a column, values of the parameter on an edge.
     pub from: f64,
     pub to: f64,
@@ -62,7 +63,7 @@ impl DecayPlane<'_> {
             let decays = |i: usize| self.decays(self.column(i), self.edge(longest));
             for i in (0..COLUMNS).filter(|&i| decays(i) != decays(i + 1)) {
                 seeds.push(Seed {
-                    line: Line::Edge { longest },
+                    across: Across::Edge { longest },
                     from: self.column(i),
                     to: self.column(i + 1),
                 });
@@ -93,7 +94,7 @@ impl DecayPlane<'_> {
             let decays_next = self.decays(p, next);
             if decays_next != decays {
                 seeds.push(Seed {
-                    line: Line::Column(column),
+                    across: Across::Column(column),
                     from: tau,
                     to: next,
                 });
@@ -104,38 +105,28 @@ impl DecayPlane<'_> {
 
     /// The point of the boundary that `seed` encloses.
     pub(super) fn locate(&self, seed: &Seed) -> Option<(Vertex, Family)> {
-        let (mut from, mut to) = (seed.from, seed.to);
-        let at = |x: f64| match seed.line {
-            Line::Column(i) => (self.column(i), x),
-            Line::Edge { longest } => (x, self.edge(longest)),
+        let at = |x: f64| match seed.across {
+            Across::Column(i) => (self.column(i), x),
+            Across::Edge { longest } => (x, self.edge(longest)),
         };
         let decays = |x: f64| {
             let (p, tau) = at(x);
             self.decays(p, tau)
         };
-        let first = decays(from);
-        while to - from > ENCLOSED * (seed.to - seed.from) {
-            let middle = 0.5 * (from + to);
-            if middle <= from || middle >= to {
-                break;
-            }
-            if decays(middle) == first {
-                from = middle;
-            } else {
-                to = middle;
-            }
-        }
+        let first = decays(seed.from);
+        let enough = |from: f64, to: f64| to - from <= ENCLOSED * (seed.to - seed.from);
+        let (from, to) = narrowed(seed.from, seed.to, enough, |x| decays(x) == first);
         let (p, tau) = at(0.5 * (from + to));
-        let row = match seed.line {
-            Line::Column(_) => [1.0, 0.0, 0.0],
-            Line::Edge { .. } => [0.0, 1.0, 0.0],
+        let row = match seed.across {
+            Across::Column(_) => [1.0, 0.0, 0.0],
+            Across::Edge { .. } => [0.0, 1.0, 0.0],
         };
         self.candidates(p, tau).into_iter().find_map(|omega| {
             let family = self.family(p, tau, omega);
             let v = self.correct(Vertex { p, tau, omega }, family, row)?;
-            let along = match seed.line {
-                Line::Column(_) => v.tau,
-                Line::Edge { .. } => v.p,
+            let along = match seed.across {
+                Across::Column(_) => v.tau,
+                Across::Edge { .. } => v.p,
             };
             let slack = 1e-6 * (seed.to - seed.from);
             let bounds = self.others(v).is_none_or(|n| n == 0) && v.omega >= 0.0;

@@ -23,7 +23,7 @@ const SHADE: f64 = 0.25;
 const LARGEST_ERROR: f64 = 1.0;
 
 /// The cells along one line, and how they are drawn.
-struct Line {
+struct Graph {
     field: Field,
     at: Vec<f64>,
     values: Vec<f64>,
@@ -91,7 +91,7 @@ fn read_lines(
     view: &View,
     fields: &[Field],
     most: usize,
-) -> Result<Vec<Line>, StoreError> {
+) -> Result<Vec<Graph>, StoreError> {
     let several = fields.len() > 1;
     let panels = if several { 1 } else { view.panels.len() };
     let n = fields.len() * panels;
@@ -99,7 +99,7 @@ fn read_lines(
     for &field in fields {
         for index in view.panels.iter().take(panels) {
             let cells = map.plane(field, index, (view.x, view.x), most)?;
-            lines.push(Line {
+            lines.push(Graph {
                 field,
                 at: cells.columns,
                 values: cells.cells,
@@ -135,7 +135,7 @@ fn ordinate(map: &MapFile, fields: &[Field]) -> Rich {
     }
 }
 
-fn value_scale(field: Field, lines: &[Line]) -> Scale {
+fn value_scale(field: Field, lines: &[Graph]) -> Scale {
     let finite = || {
         let values = lines.iter().flat_map(|l| &l.values).copied();
         values.filter(|v| v.is_finite())
@@ -167,7 +167,7 @@ fn value_scale(field: Field, lines: &[Line]) -> Scale {
     Scale::linear(low - 0.05 * span, high + 0.05 * span)
 }
 
-fn draw_line(panel: &Panel, line: &Line, scene: &mut Scene) {
+fn draw_line(panel: &Panel, line: &Graph, scene: &mut Scene) {
     let u = scene.unit();
     for stretch in stretches(panel, line) {
         for points in between(&stretch, panel.area.top, panel.area.bottom) {
@@ -184,7 +184,7 @@ fn draw_line(panel: &Panel, line: &Line, scene: &mut Scene) {
 
 /// The line in pixels, broken where there is no value on the scale: steps for counts, straight
 /// lines otherwise.
-fn stretches(panel: &Panel, line: &Line) -> Vec<Vec<Point>> {
+fn stretches(panel: &Panel, line: &Graph) -> Vec<Vec<Point>> {
     let edges = panel.x.filling_edges(&line.at);
     let mut done = Vec::new();
     let mut open: Vec<Point> = Vec::new();
@@ -236,7 +236,7 @@ fn between(points: &[Point], top: f64, bottom: f64) -> Vec<Vec<Point>> {
 }
 
 /// Shades the cells in which sliding is stable.
-fn shade(panel: &Panel, line: &Line, scene: &mut Scene) {
+fn shade(panel: &Panel, line: &Graph, scene: &mut Scene) {
     let tint = colour::pale(STABLE, 2.0 * SHADE);
     let colour = |&value: &f64| match line.field.tells_stable(value) {
         Some(true) => tint,
@@ -250,7 +250,7 @@ fn shade(panel: &Panel, line: &Line, scene: &mut Scene) {
     });
 }
 
-fn legend(map: &MapFile, view: &View, lines: &[Line]) -> Legend {
+fn legend(map: &MapFile, view: &View, lines: &[Graph]) -> Legend {
     let mut legend = Legend::default();
     if let Some(kinds) = lines.iter().find_map(|line| line.field.kinds()) {
         // What the numbers on the axis mean.

@@ -14,6 +14,14 @@ const FORESEEN: f64 = 2.0;
 const SHORTER: f64 = 0.7;
 const MOST_SHORTER: u32 = 12;
 
+/// What acts on the block as a step begins.
+#[derive(Debug, Clone, Copy)]
+struct Now {
+    controlled: bool,
+    /// It is stuck, and its elongation has grown evenly for a delay.
+    evenly: bool,
+}
+
 /// How long a step may be for the delayed elongation, and the order of the kink there.
 #[derive(Debug, Clone, Copy)]
 struct DelayLimit {
@@ -25,10 +33,13 @@ impl Motion {
     /// One step, not beyond `horizon`, and the event that ends it, if one does.
     pub fn advance(&mut self, horizon: f64) -> Option<Event> {
         let controlled = self.t >= self.parameters.switch_on;
-        let evenly = self.sticks_evenly();
-        let delay = self.read_delayed(controlled, evenly);
-        let limit = self.limit(&delay, horizon, (controlled, evenly));
-        let radius = self.expand_within(limit, (controlled, evenly));
+        let now = Now {
+            controlled,
+            evenly: self.sticks_evenly(),
+        };
+        let delay = self.read_delayed(now);
+        let limit = self.limit(now, &delay, horizon);
+        let radius = self.expand_within(now, limit);
         if self.step.n[0] <= 0.0 {
             self.step.length = 0.0;
             return Some(Event::LiftOff);
@@ -63,12 +74,12 @@ impl Motion {
     }
 
     /// The longest step that delay, switch-on and `horizon` allow.
-    fn limit(&self, delay: &DelayLimit, horizon: f64, (controlled, evenly): (bool, bool)) -> f64 {
+    fn limit(&self, now: Now, delay: &DelayLimit, horizon: f64) -> f64 {
         let limit = delay.length.min(horizon - self.t);
         let p = &self.parameters;
-        if !controlled {
+        if !now.controlled {
             limit.min(p.switch_on - self.t)
-        } else if self.mode == Mode::Stick && p.alpha_v != 0.0 && !evenly {
+        } else if self.mode == Mode::Stick && p.alpha_v != 0.0 && !now.evenly {
             // What the last polynomial foresees is not held by anything while the block does not
             // move.
             limit.min(p.tau)
@@ -78,7 +89,8 @@ impl Motion {
     }
 
     /// Works out the polynomials of a step; how long they hold.
-    fn expand_within(&mut self, limit: f64, (controlled, evenly): (bool, bool)) -> f64 {
+    fn expand_within(&mut self, now: Now, limit: f64) -> f64 {
+        let Now { controlled, evenly } = now;
         match (self.even_rate(), self.integrator) {
             (Some(rate), _) if controlled && evenly => self.stick_evenly(rate),
             (_, Integrator::Taylor) => {
@@ -112,17 +124,17 @@ impl Motion {
     }
 
     /// Fills the delayed polynomial. Tells how long a step may be for it, and the kink there.
-    fn read_delayed(&mut self, controlled: bool, evenly: bool) -> DelayLimit {
+    fn read_delayed(&mut self, now: Now) -> DelayLimit {
         // Also before control acts, so that memory does not grow with time.
         self.history
             .forget_before(self.t - 2.0 * self.parameters.tau);
-        if !controlled {
+        if !now.controlled {
             return DelayLimit {
                 length: f64::INFINITY,
                 kink: SMOOTH,
             };
         }
-        if evenly {
+        if now.evenly {
             return DelayLimit {
                 length: self.longest_stick(),
                 kink: SMOOTH,

@@ -4,6 +4,7 @@ pub mod best;
 pub mod boundaries;
 pub mod buffers;
 mod limit_columns;
+mod line;
 pub mod root_columns;
 pub mod second_look;
 mod slip_columns;

@@ -2,6 +2,7 @@
 //! physical values.
 
 use super::buffers::Column;
+use super::line::Places;
 use crate::linear::sensitivity::Sensitivity;
 use crate::linear::track::{Cell, RootTracker};
 use crate::model::Groups;
@@ -38,8 +39,7 @@ impl RootColumns {
         })
     }
 
-    /// Computes the cells of a line into `columns`, from place `at` on with `stride` places from
-    /// delay to delay.
+    /// Computes the cells of a line into `columns`, at `places`.
     ///
     /// `counts` are the numbers of unstable roots; `status` gains what following the roots has to
     /// say.
@@ -49,7 +49,7 @@ impl RootColumns {
         counts: &[u16],
         status: &mut [u8],
         columns: &mut [Column],
-        (at, stride): (usize, usize),
+        places: Places,
     ) {
         let sensitive = self.sensitive;
         let delays = (line.delays, line.time_unit);
@@ -69,9 +69,9 @@ impl RootColumns {
                 f64::NAN
             };
             for column in columns.iter_mut() {
-                let value = value(column.field, &cell, &slopes, (line.time_unit, beyond));
+                let value = value(column.field, &cell, &slopes, line.time_unit, beyond);
                 if let Some(value) = value {
-                    column.cells[at + i * stride] = value;
+                    column.cells[places.of(i)] = value;
                 }
             }
         };
@@ -86,12 +86,7 @@ impl RootColumns {
 ///
 /// NaN where nothing converged; a root beyond the last one has the real part `beyond`.
 #[inline]
-fn value(
-    field: Field,
-    cell: &Cell,
-    slopes: &[f64; 4],
-    (time_unit, beyond): (f64, f64),
-) -> Option<f64> {
+fn value(field: Field, cell: &Cell, slopes: &[f64; 4], time_unit: f64, beyond: f64) -> Option<f64> {
     let converged = !cell.roots.is_empty();
     let real_part = |rank: usize| match cell.roots.get(rank) {
         Some(root) => root.lambda.re / time_unit,

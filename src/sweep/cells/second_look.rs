@@ -199,7 +199,7 @@ fn critical_velocity(
     if end == End::LiftOff && !holds_liftoff {
         return Ok(Answer::Open);
     }
-    let (problem, units) = vc::problem(setting)?;
+    let asked = vc::asked(setting)?;
     let found = Critical {
         vc: (stored.value)(Field::Vc),
         end,
@@ -214,8 +214,7 @@ fn critical_velocity(
         sustained: end != End::Never,
         decided: true,
     };
-    let integrator = Integrator::Collocation;
-    let agrees = vc::simulation_agrees(&problem, &units, &found, integrator);
+    let agrees = asked.simulation_agrees(&found, Integrator::Collocation);
     Ok(agrees.map_or(Answer::Open, told))
 }
 
@@ -231,9 +230,8 @@ fn switched_on(setting: &Setting, stored: &Stored, phase: Phase) -> Result<Answe
     if !told_here || matches!(phase, Phase::Worst(_)) || (stored.value)(Field::Outcome) != lost {
         return Ok(Answer::Open);
     }
-    let (problem, units) = vc::problem(setting)?;
-    let integrator = Integrator::Collocation;
-    let [below, above] = vc::survives_beside(&problem, &units, (vc, BESIDE), phase, integrator);
+    let asked = vc::asked(setting)?;
+    let [below, above] = asked.survives_beside(vc, BESIDE, phase, Integrator::Collocation);
     Ok(match (below, above) {
         (Survival::Irregular | Survival::Undecided, _) => Answer::Open,
         (_, Survival::Irregular | Survival::Undecided) => Answer::Open,

@@ -1,16 +1,13 @@
 //! The fields that come from motions: every cell's block is followed to its outcome.
 
-use std::sync::atomic::{AtomicBool, Ordering};
-
 use super::buffers::TileBuffers;
+use super::line::{Here, SlowLine};
 use crate::linear::status::NOT_CONVERGED;
 use crate::model::Groups;
 use crate::slip::case::{Case, CaseError};
 use crate::slip::cycle::NoCycle;
 use crate::slip::motion::Motion;
 use crate::slip::outcome::{Outcome, Summary};
-use crate::sweep::input::parameter::Parameter;
-use crate::sweep::input::setting::Setting;
 use crate::sweep::input::simulation::Simulation;
 use crate::sweep::input::source::Source;
 use crate::sweep::input::spec::SweepSpec;
@@ -46,39 +43,24 @@ impl<'p> SlipColumns<'p> {
         })
     }
 
-    /// Follows the motions of a line at `setting`, with its groups, and at `delays`, into `buffers`
-    /// from place `at` on with `stride` places from delay to delay. The status gains
-    /// [`NOT_CONVERGED`] where a motion stays undecided. After `stop` is set nothing more is
-    /// followed.
-    pub(super) fn fill(
-        &mut self,
-        (setting, groups): (&Setting, Groups),
-        delays: &[f64],
-        buffers: &mut TileBuffers,
-        (at, stride): (usize, usize),
-        stop: &AtomicBool,
-    ) {
-        let mut setting = setting.clone();
-        for (i, tau) in delays.iter().enumerate() {
-            if stop.load(Ordering::Relaxed) {
-                return;
-            }
-            setting.set(Parameter::Tau, *tau);
-            let motion = self.motion_at((&setting, groups), i);
-            let place = at + i * stride;
+    /// Follows the motions of a line with these groups into `buffers`. The status gains
+    /// [`NOT_CONVERGED`] where a motion stays undecided.
+    pub(super) fn fill(&mut self, line: &SlowLine, groups: Groups, buffers: &mut TileBuffers) {
+        line.each(|here| {
+            let motion = self.motion_at(&here, groups);
             if motion.outcome == Outcome::Undecided {
-                buffers.status[place] |= NOT_CONVERGED;
+                buffers.status[here.place] |= NOT_CONVERGED;
             }
-            buffers.put(place, |field| match field.source() {
+            buffers.put(here.place, |field| match field.source() {
                 Source::Motion(value) | Source::MotionOrCritical(value, _) => Some(value(&motion)),
                 _ => None,
             });
-        }
+        });
     }
 
-    /// What becomes of the motion at `setting`, the `i`-th of its line.
-    fn motion_at(&mut self, at: (&Setting, Groups), i: usize) -> Summary {
-        match self.follow(at, i) {
+    /// What becomes of the motion in a cell.
+    fn motion_at(&mut self, here: &Here, groups: Groups) -> Summary {
+        match self.follow(here, groups) {
             Ok(Some(summary)) => summary,
             Err(CaseError::NoCycle(NoCycle::NoStickSlip)) => Summary::without(Outcome::NoCycle),
             // The sweep's values were checked: what is refused here is beyond what can be followed.
@@ -86,12 +68,8 @@ impl<'p> SlipColumns<'p> {
         }
     }
 
-    fn follow(
-        &mut self,
-        (setting, groups): (&Setting, Groups),
-        i: usize,
-    ) -> Result<Option<Summary>, CaseError> {
-        let Some(case) = self.simulation.case(setting, 0.0)? else {
+    fn follow(&mut self, here: &Here, groups: Groups) -> Result<Option<Summary>, CaseError> {
+        let Some(case) = self.simulation.case(here.setting, 0.0)? else {
             return Ok(None);
         };
         let motion = match &mut self.motion {
@@ -101,7 +79,7 @@ impl<'p> SlipColumns<'p> {
             }
             none => none.insert(case.motion()?),
         };
-        let abscissa = self.sliding.at(groups, &case, i)?;
+        let abscissa = self.sliding.at(groups, &case, here.i)?;
         Ok(Some(case.follow(motion, abscissa, &mut ())))
     }
 }

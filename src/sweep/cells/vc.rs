@@ -5,6 +5,7 @@ use crate::critical::switch_on::{self, Phase, Scan, Survival, Trials, Windows};
 use crate::critical::{
     Critical, CriticalWindows, End, Method, Problem, by_simulation, critical_velocity, line,
 };
+use crate::linear::roots::narrowed;
 use crate::linear::{Crossings, MarginalTolerance};
 use crate::model::ModelError;
 use crate::model::elementary::pow;
@@ -22,11 +23,20 @@ const SWITCH_ON_ACCURACY: f64 = 1e-9;
 pub const MORE_STEPS: u64 = 100;
 
 /// What is asked of a setting: its problem in the units of a motion, and those units.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Asked {
+    /// The controlled oscillator.
+    pub problem: Problem,
+    /// The units of its motions, in units of the setting.
+    pub units: CaseUnits,
+}
+
+/// What is asked of a setting; its v0 means nothing.
 ///
 /// # Errors
 /// When the setting has no friction law, or a value is out of the model's range: a gain needs a
 /// delay τ > 0.
-pub fn problem(setting: &Setting) -> Result<(Problem, CaseUnits), ModelError> {
+pub fn asked(setting: &Setting) -> Result<Asked, ModelError> {
     let oscillator = setting.oscillator()?;
     let units = CaseUnits::of(&oscillator);
     let Some(law) = setting.friction_law()? else {
@@ -52,53 +62,157 @@ pub fn problem(setting: &Setting) -> Result<(Problem, CaseUnits), ModelError> {
         alpha_n: control.alpha_n / oscillator.stiffness(),
         tau: tau / units.time,
     };
-    Ok((problem, units))
+    Ok(Asked { problem, units })
 }
 
 /// The critical velocity of a setting; its v0 means nothing.
 ///
 /// # Errors
-/// See [`problem`].
+/// See [`asked`].
 pub fn find(setting: &Setting, protocol: Protocol) -> Result<CriticalWindows, ModelError> {
-    let (problem, units) = problem(setting)?;
-    Ok(find_in(&problem, &units, protocol))
+    Ok(asked(setting)?.find(protocol))
 }
 
-/// The critical velocity of a problem, in `units`.
-#[must_use]
-pub fn find_in(problem: &Problem, units: &CaseUnits, protocol: Protocol) -> CriticalWindows {
-    match protocol {
-        Protocol::Follow => followed(&critical_velocity(problem), problem, units),
-        Protocol::SwitchOn(phase) => {
-            let accuracy = Accuracy::of(SWITCH_ON_ACCURACY);
-            let scan = Scan::default();
-            let phase = in_motion_units(phase, units);
-            let windows = switch_on::windows(problem, phase, &scan, accuracy);
-            let v_max = scan.v_max * problem.law.mu_s();
-            switched_on(&windows, v_max, units.velocity)
+impl Asked {
+    /// The critical velocity by a protocol.
+    #[must_use]
+    pub fn find(&self, protocol: Protocol) -> CriticalWindows {
+        let Self { problem, units } = self;
+        match protocol {
+            Protocol::Follow => followed(&critical_velocity(problem), problem, units),
+            Protocol::SwitchOn(phase) => {
+                let accuracy = Accuracy::of(SWITCH_ON_ACCURACY);
+                let scan = Scan::default();
+                let phase = in_motion_units(phase, units);
+                let windows = switch_on::windows(problem, phase, &scan, accuracy);
+                let v_max = scan.v_max * problem.law.mu_s();
+                switched_on(&windows, v_max, units.velocity)
+            }
         }
     }
-}
 
-/// What becomes of stick-slip that is switched on at `phase`, in units of the setting, at
-/// velocities beside `vc`: lower and higher by this share of it.
-#[must_use]
-pub fn survives_beside(
-    problem: &Problem,
-    units: &CaseUnits,
-    (vc, beside): (f64, f64),
-    phase: Phase,
-    integrator: Integrator,
-) -> [Survival; 2] {
-    let accuracy = Accuracy {
-        integrator,
-        ..Accuracy::of(SWITCH_ON_ACCURACY)
-    };
-    let phase = in_motion_units(phase, units);
-    let steps = MORE_STEPS * Scan::default().steps;
-    let mut trials = Trials::new(problem, phase, accuracy, steps);
-    let speed = vc / units.velocity;
-    [1.0 - beside, 1.0 + beside].map(|share| trials.at(share * speed))
+    /// What becomes of stick-slip that is switched on at `phase`, in units of the setting, at
+    /// velocities beside `vc`: lower and higher by this share of it.
+    #[must_use]
+    pub fn survives_beside(
+        &self,
+        vc: f64,
+        beside: f64,
+        phase: Phase,
+        integrator: Integrator,
+    ) -> [Survival; 2] {
+        let Self { problem, units } = self;
+        let accuracy = Accuracy {
+            integrator,
+            ..Accuracy::of(SWITCH_ON_ACCURACY)
+        };
+        let phase = in_motion_units(phase, units);
+        let steps = MORE_STEPS * Scan::default().steps;
+        let mut trials = Trials::new(problem, phase, accuracy, steps);
+        let speed = vc / units.velocity;
+        [1.0 - beside, 1.0 + beside].map(|share| trials.at(share * speed))
+    }
+
+    /// Whether simulation alone, with steps of v0 of its own by this `integrator`, agrees with
+    /// `found`, the answer by the protocol `follow`: it has to see stick-slip end at the same
+    /// velocity, see [`Critical::ends_like`].
+    ///
+    /// Large steps may throw stick-slip from one kind to another, which ends elsewhere: it differs
+    /// where the smallest steps say so, or two larger ones come to the same other end. None where
+    /// that does not tell, or the cell is not decided and claims nothing.
+    #[must_use]
+    pub fn simulation_agrees(&self, found: &Critical, integrator: Integrator) -> Option<bool> {
+        let Self { problem, units } = self;
+        if !found.decided {
+            return None;
+        }
+        let mut others = [None; SAMPLE_STEPS.len()];
+        let tolerances = sample_tolerances(integrator);
+        let steps = SAMPLE_STEPS.into_iter().zip(tolerances);
+        for (([first, unseen], tolerance), other) in steps.zip(&mut others) {
+            let pace = Pace {
+                first,
+                largest: first,
+                unseen,
+                patient: true,
+                total_steps: SAMPLE_TOTAL_STEPS,
+                ..Pace::default()
+            };
+            let accuracy = Accuracy {
+                integrator,
+                ..Accuracy::of(tolerance)
+            };
+            let again = by_simulation(problem, &pace, accuracy);
+            if found.ends_like(&in_units(&again, units)) && tells(&again) {
+                return Some(true);
+            }
+            *other = Some(again).filter(|again| again.decided);
+        }
+        differs(&others).then_some(false)
+    }
+
+    /// The class of `v0`, in units of the setting, where the critical velocity is `found` by
+    /// `protocol`.
+    #[must_use]
+    pub fn class_at(
+        &self,
+        v0: f64,
+        protocol: Protocol,
+        found: &CriticalWindows,
+        tolerance: MarginalTolerance,
+    ) -> Class {
+        let Self { problem, units } = self;
+        let speed = v0 / units.velocity;
+        let count = Crossings::of(problem.groups(speed)).count(problem.tau, tolerance);
+        if count.marginal {
+            return Class::Undecided;
+        }
+        if !count.stable() {
+            return Class::Unstable;
+        }
+        match protocol {
+            Protocol::Follow => {
+                let v_max = protocol.v_max() * problem.law.mu_s() * units.velocity;
+                beside_sliding(v0, &found.critical, v_max)
+            }
+            Protocol::SwitchOn(phase) => {
+                let phase = in_motion_units(phase, units);
+                let accuracy = Accuracy::of(SWITCH_ON_ACCURACY);
+                let steps = Scan::default().steps;
+                match Trials::new(problem, phase, accuracy, steps).at(speed) {
+                    Survival::Survives | Survival::Irregular => Class::Bistable,
+                    Survival::Ends | Survival::NoStickSlip => Class::Stable,
+                    Survival::LiftOff => Class::LiftOff,
+                    Survival::Undecided => Class::Undecided,
+                }
+            }
+        }
+    }
+
+    /// The velocity above which, up to `v_max` (in units of μ_S N0/√(κM)), sliding is linearly
+    /// stable and free of stick-slip, whose critical velocity is `vc`; in units of the setting, as
+    /// `vc`. NaN where sliding is not stable at `v_max`, or there is no `vc`.
+    #[must_use]
+    pub fn v_smooth(&self, vc: f64, v_max: f64) -> f64 {
+        let Self { problem, units } = self;
+        let unit = problem.law.mu_s();
+        let stable = |v0: f64| problem.count(v0).stable();
+        let (lowest, mut above) = (vc / units.velocity, v_max * unit);
+        if lowest.is_nan() || !stable(above) {
+            return f64::NAN;
+        }
+        let ratio = pow(10.0, -1.0 / COUNTS_PER_DECADE);
+        while above > lowest && above > SMALLEST_COUNTED * unit {
+            let below = (above * ratio).max(lowest);
+            if !stable(below) {
+                let enough = |below: f64, above: f64| above - below <= f64::EPSILON * 8.0 * above;
+                let (_, above) = narrowed(below, above, enough, |v0| !stable(v0));
+                return above * units.velocity;
+            }
+            above = below;
+        }
+        vc
+    }
 }
 
 /// The critical velocities of a block of a line by the protocol `follow`, see
@@ -184,8 +298,6 @@ fn in_motion_units(phase: Phase, units: &CaseUnits) -> Phase {
 /// other ones than where it was computed; and small ones, which throw stick-slip from one kind to
 /// another least, where these lead elsewhere.
 const SAMPLE_STEPS: [[f64; 2]; 3] = [[0.35, 0.1], [0.05, 0.02], [0.02, 0.005]];
-/// Larger ones may throw stick-slip to where it ends elsewhere: they contradict nothing.
-const TOO_LARGE: f64 = 0.1;
 /// The most steps of the integrator there.
 const SAMPLE_TOTAL_STEPS: u64 = 10_000_000;
 /// The errors of a step of the integrator there.
@@ -196,86 +308,19 @@ const fn sample_tolerances(integrator: Integrator) -> [f64; 3] {
     }
 }
 
-/// Whether simulation alone, with steps of v0 of its own by this `integrator`, agrees with `found`,
-/// the answer for `problem` by the protocol `follow`, in `units`: it has to see stick-slip end at
-/// the same velocity, see [`Critical::ends_like`]. None where it cannot tell: the smallest steps do
-/// not decide, and larger ones, which may throw stick-slip from one kind to another, end elsewhere;
-/// or where the cell is not decided and claims nothing.
-#[must_use]
-pub fn simulation_agrees(
-    problem: &Problem,
-    units: &CaseUnits,
-    found: &Critical,
-    integrator: Integrator,
-) -> Option<bool> {
-    if !found.decided {
-        return None;
-    }
-    let mut told = None;
-    let tolerances = sample_tolerances(integrator);
-    for ([first, unseen], tolerance) in SAMPLE_STEPS.into_iter().zip(tolerances) {
-        let pace = Pace {
-            first,
-            largest: first,
-            unseen,
-            patient: true,
-            total_steps: SAMPLE_TOTAL_STEPS,
-            ..Pace::default()
-        };
-        let accuracy = Accuracy {
-            integrator,
-            ..Accuracy::of(tolerance)
-        };
-        let again = by_simulation(problem, &pace, accuracy);
-        if found.ends_like(&in_units(&again, units)) && tells(&again) {
-            return Some(true);
-        }
-        // The smallest steps have the last word.
-        told = (again.decided && first < TOO_LARGE).then_some(false);
-    }
-    told
+/// Whether searches by smaller and smaller steps that came to other ends contradict a cell.
+fn differs(others: &[Option<Critical>]) -> bool {
+    let alike = |pair: &[Option<Critical>]| match pair {
+        [Some(one), Some(other)] => one.ends_like(other),
+        _ => false,
+    };
+    others.last().is_some_and(Option::is_some) || others.windows(2).any(alike)
 }
 
 /// Whether what a simulation came to says anything: one that gave up has found an end, but not that
 /// there is none.
 fn tells(again: &Critical) -> bool {
     again.decided || !matches!(again.end, End::Persists | End::Never)
-}
-
-/// The class of `v0`, in units of the setting, where the critical velocity is `found` by
-/// `protocol`.
-#[must_use]
-pub fn class_at(
-    v0: f64,
-    (problem, units): (&Problem, &CaseUnits),
-    (protocol, found): (Protocol, &CriticalWindows),
-    tolerance: MarginalTolerance,
-) -> Class {
-    let speed = v0 / units.velocity;
-    let count = Crossings::of(problem.groups(speed)).count(problem.tau, tolerance);
-    if count.marginal {
-        return Class::Undecided;
-    }
-    if !count.stable() {
-        return Class::Unstable;
-    }
-    match protocol {
-        Protocol::Follow => {
-            let v_max = protocol.v_max() * problem.law.mu_s() * units.velocity;
-            beside_sliding(v0, &found.critical, v_max)
-        }
-        Protocol::SwitchOn(phase) => {
-            let phase = in_motion_units(phase, units);
-            let accuracy = Accuracy::of(SWITCH_ON_ACCURACY);
-            let steps = Scan::default().steps;
-            match Trials::new(problem, phase, accuracy, steps).at(speed) {
-                Survival::Survives | Survival::Irregular => Class::Bistable,
-                Survival::Ends | Survival::NoStickSlip => Class::Stable,
-                Survival::LiftOff => Class::LiftOff,
-                Survival::Undecided => Class::Undecided,
-            }
-        }
-    }
 }
 
 /// The class of `v0` by the protocol `follow`, up to `v_max`, where sliding at `v0` is linearly
@@ -297,41 +342,6 @@ fn beside_sliding(v0: f64, critical: &Critical, v_max: f64) -> Class {
 const COUNTS_PER_DECADE: f64 = 64.0;
 /// The smallest velocity at which it is, in units of μ_S N0/√(κM).
 const SMALLEST_COUNTED: f64 = 1e-6;
-
-/// The velocity above which, up to `v_max` (in units of μ_S N0/√(κM)), sliding is linearly stable
-/// and free of stick-slip, whose critical velocity is `vc`; in units of the setting, as `vc`. NaN
-/// where sliding is not stable at `v_max`, or there is no `vc`.
-#[must_use]
-pub fn v_smooth((problem, units): (&Problem, &CaseUnits), vc: f64, v_max: f64) -> f64 {
-    let unit = problem.law.mu_s();
-    let stable = |v0: f64| problem.count(v0).stable();
-    let (lowest, mut above) = (vc / units.velocity, v_max * unit);
-    if lowest.is_nan() || !stable(above) {
-        return f64::NAN;
-    }
-    let ratio = pow(10.0, -1.0 / COUNTS_PER_DECADE);
-    while above > lowest && above > SMALLEST_COUNTED * unit {
-        let below = (above * ratio).max(lowest);
-        if !stable(below) {
-            return change(below, above, stable) * units.velocity;
-        }
-        above = below;
-    }
-    vc
-}
-
-/// Where between `below`, at which `holds` does not, and `above`, at which it does, that changes.
-fn change(mut below: f64, mut above: f64, holds: impl Fn(f64) -> bool) -> f64 {
-    while above - below > f64::EPSILON * 8.0 * above {
-        let middle = 0.5 * (below + above);
-        if holds(middle) {
-            above = middle;
-        } else {
-            below = middle;
-        }
-    }
-    above
-}
 
 #[cfg(test)]
 mod tests {
@@ -432,6 +442,23 @@ mod tests {
             assert!(tells(&again));
             again.decided = false;
             assert_eq!(tells(&again), alone, "{end:?}");
+        }
+    }
+
+    /// The smallest steps contradict, and two of larger ones together; one of these alone may have
+    /// been thrown to where it ends.
+    #[test]
+    fn ends_elsewhere_contradict_together() {
+        let at = |vc: f64| Some(critical(End::Grazing, vc, f64::NAN));
+        for (others, contradict) in [
+            ([at(0.1), at(0.3), None], false),
+            ([at(0.3), None, None], false),
+            ([at(0.3), at(0.3), None], true),
+            ([None, None, at(0.3)], true),
+            ([at(0.1), at(0.3), at(0.3)], true),
+            ([None; 3], false),
+        ] {
+            assert_eq!(differs(&others), contradict, "{others:?}");
         }
     }
 

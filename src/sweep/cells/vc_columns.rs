@@ -2,10 +2,10 @@
 //! second time.
 
 use std::ops::Range;
-use std::sync::atomic::{AtomicBool, Ordering};
 
 use super::buffers::TileBuffers;
-use super::vc::{self, class_at};
+use super::line::{Here, SlowLine};
+use super::vc::{self, Asked};
 use crate::critical::line::BLOCK;
 use crate::critical::{CriticalWindows, Problem};
 use crate::linear::MarginalTolerance;
@@ -16,7 +16,6 @@ use crate::slip::motion::Integrator;
 use crate::sweep::input::field::Field;
 use crate::sweep::input::parameter::Parameter;
 use crate::sweep::input::search::{Protocol, Search};
-use crate::sweep::input::setting::Setting;
 use crate::sweep::input::source::{Source, VcCell};
 use crate::sweep::input::spec::SweepSpec;
 use crate::sweep::plan::pieces::mixed;
@@ -33,27 +32,17 @@ pub(super) struct VcColumns {
 
 /// An answer, and to what.
 struct Known {
-    problem: Problem,
-    units: CaseUnits,
+    asked: Asked,
     phase: f64,
     found: CriticalWindows,
 }
 
 impl Known {
     fn is_of(&self, problem: &Problem, units: &CaseUnits, phase: f64) -> bool {
-        self.problem == *problem && self.units == *units && self.phase.to_bits() == phase.to_bits()
+        self.asked.problem == *problem
+            && self.asked.units == *units
+            && self.phase.to_bits() == phase.to_bits()
     }
-}
-
-/// Where a line of cells is.
-#[derive(Clone, Copy)]
-pub(super) struct Cells {
-    /// In the buffers: the first cell, and the distance from cell to cell.
-    pub at: usize,
-    pub stride: usize,
-    /// In the whole map, all cells counted row by row: likewise.
-    pub first: u64,
-    pub step: u64,
 }
 
 impl VcColumns {
@@ -68,102 +57,71 @@ impl VcColumns {
         })
     }
 
-    /// Looks for the critical velocities of a line at `setting` and at `delays`, into `buffers`.
-    /// The status gains [`NOT_CONVERGED`] where it stays unknown, [`SAMPLED`] and [`DISAGREE`].
-    /// After `stop` is set nothing more is looked for.
-    pub(super) fn fill(
-        &mut self,
-        setting: &Setting,
-        delays: &[f64],
-        buffers: &mut TileBuffers,
-        cells: Cells,
-        stop: &AtomicBool,
-    ) {
-        let mut setting = setting.clone();
+    /// Looks for the critical velocities of a line, into `buffers`. The status gains
+    /// [`NOT_CONVERGED`] where it stays unknown, [`SAMPLED`] and [`DISAGREE`].
+    pub(super) fn fill(&mut self, line: &SlowLine, buffers: &mut TileBuffers) {
+        let count = line.delays.len();
         if self.search.protocol == Protocol::Follow {
-            for first in (0..delays.len()).step_by(BLOCK) {
-                let block = first..delays.len().min(first + BLOCK);
-                self.find_block(&mut setting, delays, block, stop);
+            for first in (0..count).step_by(BLOCK) {
+                self.find_block(line, first..count.min(first + BLOCK));
             }
         }
-        for (i, tau) in delays.iter().enumerate() {
-            if stop.load(Ordering::Relaxed) {
-                return;
+        line.each(|here| match self.cell(&here) {
+            Ok((cell, status)) => {
+                buffers.status[here.place] |= status;
+                store(&cell, buffers, here.place);
             }
-            setting.set(Parameter::Tau, *tau);
-            let place = cells.at + i * cells.stride;
-            let number = cells.first + i as u64 * cells.step;
-            match self.cell(&setting, i, number) {
-                Ok((cell, status)) => {
-                    buffers.status[place] |= status;
-                    store(&cell, buffers, place);
-                }
-                // The sweep's values were checked: what is refused here is beyond what can be
-                // followed.
-                Err(_) => store_nothing(buffers, place),
-            }
-        }
+            // The sweep's values were checked: what is refused here is beyond what can be followed.
+            Err(_) => store_nothing(buffers, here.place),
+        });
     }
 
     /// Looks for the answers in a block of a line, which starts where blocks of the whole line do,
     /// unless they are known.
-    fn find_block(
-        &mut self,
-        setting: &mut Setting,
-        delays: &[f64],
-        block: Range<usize>,
-        stop: &AtomicBool,
-    ) {
+    fn find_block(&mut self, line: &SlowLine, block: Range<usize>) {
         if self.known.len() < block.end {
             self.known.resize_with(block.end, || None);
         }
+        let mut setting = line.setting.clone();
         let mut cells = Vec::new();
         let mut problems = Vec::new();
         let mut units = None;
         for i in block {
-            setting.set(Parameter::Tau, delays[i]);
-            if let Ok((problem, own)) = vc::problem(setting) {
+            setting.set(Parameter::Tau, line.delays[i]);
+            if let Ok(asked) = vc::asked(&setting) {
                 cells.push(i);
-                problems.push(problem);
-                units = Some(own);
+                problems.push(asked.problem);
+                units = Some(asked.units);
             }
         }
         let Some(units) = units else { return };
         let phase = setting.get(Parameter::SwitchOnPhase);
         let known = |(i, problem): (&usize, &Problem)| {
-            self.known[*i]
-                .as_ref()
-                .is_some_and(|k| k.is_of(problem, &units, phase))
+            let known = self.known[*i].as_ref();
+            known.is_some_and(|k| k.is_of(problem, &units, phase))
         };
         if cells.iter().zip(&problems).all(known) {
             return;
         }
-        let found = vc::find_in_line(&problems, &units, || stop.load(Ordering::Relaxed));
+        let found = vc::find_in_line(&problems, &units, || line.stopped());
         for ((i, problem), found) in cells.into_iter().zip(problems).zip(found) {
             self.known[i] = found.map(|found| Known {
-                problem,
-                units,
+                asked: Asked { problem, units },
                 phase,
                 found,
             });
         }
     }
 
-    /// The cell at `setting`, the `i`-th of its line and the `number`-th of the map, with its
-    /// status.
-    fn cell(
-        &mut self,
-        setting: &Setting,
-        i: usize,
-        number: u64,
-    ) -> Result<(VcCell<'_>, u8), ModelError> {
-        let (problem, units) = vc::problem(setting)?;
-        let protocol = self.search.protocol.at(setting);
-        let v0 = setting.get(Parameter::V0);
+    /// What is known in a cell, with its status.
+    fn cell(&mut self, here: &Here) -> Result<(VcCell<'_>, u8), ModelError> {
+        let asked = vc::asked(here.setting)?;
+        let protocol = self.search.protocol.at(here.setting);
+        let v0 = here.setting.get(Parameter::V0);
         let (tolerance, classed, smooth) = (self.tolerance, self.classed, self.smooth);
-        let sampled = is_sampled(number, self.search.verify);
-        let at = (&problem, &units);
-        let found = self.found(at, protocol, setting.get(Parameter::SwitchOnPhase), i);
+        let sampled = is_sampled(here.number, self.search.verify);
+        let phase = here.setting.get(Parameter::SwitchOnPhase);
+        let found = self.found(&asked, protocol, phase, here.i);
         let vc = found.critical.vc;
         let mut status = if found.critical.decided {
             0
@@ -172,16 +130,15 @@ impl VcColumns {
         };
         if sampled {
             status |= SAMPLED;
-            let critical = &found.critical;
-            let agrees = vc::simulation_agrees(&problem, &units, critical, Integrator::Taylor);
+            let agrees = asked.simulation_agrees(&found.critical, Integrator::Taylor);
             if agrees == Some(false) {
                 status |= DISAGREE;
             }
         }
         let cell = VcCell {
-            class: classed.then(|| class_at(v0, at, (protocol, found), tolerance)),
+            class: classed.then(|| asked.class_at(v0, protocol, found, tolerance)),
             v_smooth: match smooth {
-                true => vc::v_smooth(at, vc, protocol.v_max()),
+                true => asked.v_smooth(vc, protocol.v_max()),
                 false => f64::NAN,
             },
             found,
@@ -189,10 +146,10 @@ impl VcColumns {
         Ok((cell, status))
     }
 
-    /// The answer to a problem, the `i`-th of its line.
+    /// The answer to what is asked in the `i`-th cell of a line.
     fn found(
         &mut self,
-        (problem, units): (&Problem, &CaseUnits),
+        asked: &Asked,
         protocol: Protocol,
         phase: f64,
         i: usize,
@@ -201,17 +158,14 @@ impl VcColumns {
             self.known.resize_with(i + 1, || None);
         }
         let known = &mut self.known[i];
-        if known
-            .as_ref()
-            .is_some_and(|k| !k.is_of(problem, units, phase))
-        {
+        let of_this = |k: &Known| k.is_of(&asked.problem, &asked.units, phase);
+        if known.as_ref().is_some_and(|k| !of_this(k)) {
             *known = None;
         }
         let known = known.get_or_insert_with(|| Known {
-            problem: problem.clone(),
-            units: *units,
+            asked: asked.clone(),
             phase,
-            found: vc::find_in(problem, units, protocol),
+            found: asked.find(protocol),
         });
         &known.found
     }

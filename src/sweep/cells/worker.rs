@@ -5,9 +5,10 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use super::buffers::{Column, FEW_FILL, N_UNSTABLE_FILL, TileBuffers, one_zero_and_one_nan};
 use super::limit_columns;
+use super::line::{Numbers, Places, SlowLine};
 use super::root_columns::{Line, RootColumns};
 use super::slip_columns::SlipColumns;
-use super::vc_columns::{Cells, VcColumns};
+use super::vc_columns::VcColumns;
 use crate::linear::Crossings;
 use crate::linear::row::Delays;
 use crate::linear::status::NOT_CONVERGED;
@@ -197,15 +198,18 @@ impl<'p> Worker<'p> {
         for_each_index(&tile.extent, self.plan.tau_axis, |inside| {
             let at = place_of(inside, &self.strides);
             self.lines.move_to(&tile.offset, inside);
-            match self.lines.groups() {
-                _ if !self.slides => self.fill_without_sliding(at),
+            let groups = match self.lines.groups() {
+                _ if !self.slides => {
+                    self.fill_without_sliding(at);
+                    None
+                }
                 Ok((groups, time_unit)) => {
                     self.fill_line(groups, time_unit, at);
-                    self.fill_motions(groups, at, stop);
+                    Some(groups)
                 }
                 Err(_) => return self.refuse_line(at),
-            }
-            self.fill_critical(&tile.offset, inside, at, stop);
+            };
+            self.fill_slowly(&tile.offset, inside, groups, stop);
         });
         let complete = self.slip.is_none() && self.vc.is_none();
         complete || !stop.load(Ordering::Relaxed)
@@ -290,19 +294,14 @@ impl<'p> Worker<'p> {
             first: self.delay_range.start,
         };
         let columns = &mut buffers.columns;
-        roots.fill(&line, counts, status, columns, (at, self.stride));
+        let places = Places {
+            at,
+            stride: self.stride,
+        };
+        roots.fill(&line, counts, status, columns, places);
         if !in_place {
             scatter(&row.status[..len], &mut buffers.status[at..], self.stride);
         }
-        self.unflagged = false;
-    }
-
-    /// Computes the fields of motions, in a line whose status is there.
-    fn fill_motions(&mut self, groups: Groups, at: usize, stop: &AtomicBool) {
-        let Some(slip) = &mut self.slip else { return };
-        let line = (&self.lines.setting, groups);
-        let place = (at, self.stride);
-        slip.fill(line, self.delays.values(), &mut self.buffers, place, stop);
         self.unflagged = false;
     }
 
@@ -314,30 +313,44 @@ impl<'p> Worker<'p> {
         }
     }
 
-    /// Computes the fields of the critical velocity, in a line whose status is there.
-    fn fill_critical(&mut self, offset: &[usize], inside: &[usize], at: usize, stop: &AtomicBool) {
-        let Some(vc) = &mut self.vc else { return };
+    /// Computes the fields of motions and of the critical velocity, in a line whose status is
+    /// there; motions where there is a sliding state, with its groups.
+    fn fill_slowly(
+        &mut self,
+        offset: &[usize],
+        inside: &[usize],
+        groups: Option<Groups>,
+        stop: &AtomicBool,
+    ) {
+        if self.slip.is_none() && self.vc.is_none() {
+            return;
+        }
         let index = offset.iter().zip(inside).map(|(o, i)| o + i);
-        let cells = Cells {
-            at,
-            stride: self.stride,
-            first: index
-                .zip(&self.map_strides)
-                .map(|(i, s)| (i * s) as u64)
-                .sum(),
-            step: self
-                .plan
-                .tau_axis
-                .map_or(1, |axis| self.map_strides[axis] as u64),
-        };
-        let setting = &self.lines.setting;
-        vc.fill(
-            setting,
-            self.delays.values(),
-            &mut self.buffers,
-            cells,
+        let line = SlowLine {
+            setting: &self.lines.setting,
+            delays: self.delays.values(),
+            places: Places {
+                at: place_of(inside, &self.strides),
+                stride: self.stride,
+            },
+            numbers: Numbers {
+                first: index
+                    .zip(&self.map_strides)
+                    .map(|(i, s)| (i * s) as u64)
+                    .sum(),
+                step: self
+                    .plan
+                    .tau_axis
+                    .map_or(1, |axis| self.map_strides[axis] as u64),
+            },
             stop,
-        );
+        };
+        if let (Some(slip), Some(groups)) = (&mut self.slip, groups) {
+            slip.fill(&line, groups, &mut self.buffers);
+        }
+        if let Some(vc) = &mut self.vc {
+            vc.fill(&line, &mut self.buffers);
+        }
         self.unflagged = false;
     }
 

@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use super::toml_reader::{Entry, SpecError};
 use crate::model::Table;
-use crate::model::table::{Column, TableError};
+use crate::model::table::{TableColumn, TableError};
 
 /// The numbers of one column with their places in the text.
 #[derive(Debug, Default)]
@@ -39,8 +39,8 @@ impl GivenTable {
     /// Reads `entry` if it is a column. Says whether it is one.
     pub(super) fn read(&mut self, entry: &Entry) -> Result<bool, SpecError> {
         let column = match entry.key {
-            key if key == Column::Speeds.name() => &mut self.speeds,
-            key if key == Column::MuK.name() => &mut self.mu_k,
+            key if key == TableColumn::Speeds.name() => &mut self.speeds,
+            key if key == TableColumn::MuK.name() => &mut self.mu_k,
             _ => return Ok(false),
         };
         *column = Some((entry.key_span.clone(), Numbers::of_array(entry)?));
@@ -48,9 +48,9 @@ impl GivenTable {
     }
 
     /// The place and name of a column that is given; none without columns.
-    pub(super) fn any(&self) -> Option<(&Range<usize>, Column)> {
-        let speeds = self.speeds.as_ref().map(|c| (&c.0, Column::Speeds));
-        speeds.or(self.mu_k.as_ref().map(|c| (&c.0, Column::MuK)))
+    pub(super) fn any(&self) -> Option<(&Range<usize>, TableColumn)> {
+        let speeds = self.speeds.as_ref().map(|c| (&c.0, TableColumn::Speeds));
+        speeds.or(self.mu_k.as_ref().map(|c| (&c.0, TableColumn::MuK)))
     }
 
     /// The place of μ_K at its first point.
@@ -60,12 +60,15 @@ impl GivenTable {
 
     /// The table; what is missing is told at `law`.
     pub(super) fn table(&self, law: &Range<usize>) -> Result<Table, SpecError> {
-        let missing = |column: Column| {
+        let missing = |column: TableColumn| {
             SpecError::at(law.clone(), format!("{} is not given", column.name()))
                 .help("the table law goes through points: speeds = [0.0, …], mu_k = [0.5, …]")
         };
-        let speeds = self.speeds.as_ref().ok_or_else(|| missing(Column::Speeds));
-        let mu_k = self.mu_k.as_ref().ok_or_else(|| missing(Column::MuK));
+        let speeds = self
+            .speeds
+            .as_ref()
+            .ok_or_else(|| missing(TableColumn::Speeds));
+        let mu_k = self.mu_k.as_ref().ok_or_else(|| missing(TableColumn::MuK));
         let ((_, speeds), (place, mu_k)) = (speeds?, mu_k?);
         built(speeds, mu_k, place)
     }
@@ -77,8 +80,8 @@ fn built(speeds: &Numbers, mu_k: &Numbers, place: &Range<usize>) -> Result<Table
         let span = match error {
             TableError::Count { .. } => place,
             TableError::Value { column, index, .. } => match column {
-                Column::Speeds => &speeds.places[index],
-                Column::MuK => &mu_k.places[index],
+                TableColumn::Speeds => &speeds.places[index],
+                TableColumn::MuK => &mu_k.places[index],
             },
         };
         SpecError::at(span.clone(), error.to_string())

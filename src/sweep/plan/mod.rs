@@ -11,7 +11,7 @@ use sha2::{Digest, Sha256};
 use self::pieces::{Piece, Pieces};
 use self::tile::{Tile, TileGrid};
 use crate::critical::switch_on::Phase;
-use crate::model::table::Column;
+use crate::model::table::TableColumn;
 use crate::sweep::input::axis::plane_of_curves;
 use crate::sweep::input::best_plane::gain_plane;
 use crate::sweep::input::law_kind::LawKind;
@@ -107,7 +107,7 @@ impl Plan {
             .axes
             .iter()
             .position(|axis| axis.parameter == Parameter::Tau);
-        let tile_shape = tile_shape(&shape, (tau_axis, block(&spec)), cells_per_tile);
+        let tile_shape = tile_shape(&shape, tau_axis, block(&spec), cells_per_tile);
         let boundary_plane = boundary_plane(&spec);
         let tiles = TileGrid::new(shape, tile_shape);
         if tiles.len() > MOST_TILES {
@@ -245,8 +245,8 @@ impl Plan {
         let one = |value: f64| Cow::Owned(vec![value]);
         let mut facts = vec![(fixed.law().map_or("no law", LawKind::name), none())];
         if let Some(LawKind::Table(table)) = fixed.law() {
-            facts.push((Column::Speeds.name(), table.speeds().into()));
-            facts.push((Column::MuK.name(), table.mu_k().into()));
+            facts.push((TableColumn::Speeds.name(), table.speeds().into()));
+            facts.push((TableColumn::MuK.name(), table.mu_k().into()));
         }
         facts.push(("axes", one(spec.axes.len() as f64)));
         for axis in &spec.axes {
@@ -355,11 +355,7 @@ fn follows_roots(spec: &SweepSpec) -> bool {
 
 /// Whole lines as far as they go, else whole blocks of so many delays; then as many neighbouring
 /// lines as fit into `cells`.
-fn tile_shape(
-    shape: &[usize],
-    (tau_axis, block): (Option<usize>, usize),
-    cells: usize,
-) -> Vec<usize> {
+fn tile_shape(shape: &[usize], tau_axis: Option<usize>, block: usize, cells: usize) -> Vec<usize> {
     let mut tile = vec![1; shape.len()];
     let mut room = cells;
     if let Some(axis) = tau_axis {
@@ -414,7 +410,7 @@ mod tests {
         ) {
             let mut shape = vec![lines, 7];
             shape.insert(place, delays);
-            let tile = tile_shape(&shape, (Some(place), BLOCK_OF_DELAYS), cells);
+            let tile = tile_shape(&shape, Some(place), BLOCK_OF_DELAYS, cells);
             prop_assert!(tile[place] == delays || tile[place].is_multiple_of(BLOCK_OF_DELAYS));
             prop_assert!(tile.iter().zip(&shape).all(|(t, n)| (1..=*n).contains(t)));
             let block = delays.min(BLOCK_OF_DELAYS);
@@ -424,11 +420,11 @@ mod tests {
 
     #[test]
     fn tiles_without_delays_hold_as_many_cells() {
-        let shape = |shape: &[usize], tau| tile_shape(shape, (tau, BLOCK_OF_DELAYS), 1 << 14);
+        let shape = |shape: &[usize], tau| tile_shape(shape, tau, BLOCK_OF_DELAYS, 1 << 14);
         assert_eq!(shape(&[600, 700], None), [23, 700]);
         assert_eq!(shape(&[5, 1001, 4097], Some(2)), [1, 3, 4097]);
         assert_eq!(shape(&[1001, 20_000], Some(1)), [1, 12_288]);
-        assert_eq!(tile_shape(&[300, 1000], (Some(1), 1), 256), [1, 250]);
-        assert_eq!(tile_shape(&[300, 100], (Some(1), 1), 256), [2, 100]);
+        assert_eq!(tile_shape(&[300, 1000], Some(1), 1, 256), [1, 250]);
+        assert_eq!(tile_shape(&[300, 100], Some(1), 1, 256), [2, 100]);
     }
 }

@@ -9,7 +9,7 @@ use std::sync::LazyLock;
 
 use hdf5::types::{FixedAscii, FixedUnicode, VarLenUnicode};
 use hdf5::{Dataset, File, Group, H5Type, Location};
-use slipmap::maps::check::{Effort, check};
+use slipmap::maps::check::{Effort, Program, check};
 use slipmap::report::preview::preview;
 use slipmap::store::MapFile;
 use slipmap::sweep::{Plan, SweepSpec};
@@ -86,7 +86,11 @@ fn read(map: &MapFile, sound: bool, cells: u64) {
     let _ = (map.degree_unit(), map.scalars(), map.is_partial());
     ok &= preview(map, 60, false).is_ok();
     let effort = Effort { cells, tiles: 0 };
-    let report = check(map, ("", ""), effort);
+    let program = Program {
+        version: "",
+        revision: "",
+    };
+    let report = check(map, program, effort);
     ok &= report.is_ok();
     assert!(ok || !sound, "{report:?}");
 }

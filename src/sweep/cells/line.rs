@@ -1,0 +1,78 @@
+//! A line of cells: where they are in the buffers of a tile and in the map.
+
+use std::sync::atomic::{AtomicBool, Ordering};
+
+use crate::sweep::input::parameter::Parameter;
+use crate::sweep::input::setting::Setting;
+
+/// Places of the cells of a line in the buffers.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Places {
+    /// That of the first cell.
+    pub at: usize,
+    /// From cell to cell.
+    pub stride: usize,
+}
+
+impl Places {
+    /// That of the `i`-th cell.
+    #[inline]
+    pub(super) const fn of(self, i: usize) -> usize {
+        self.at + i * self.stride
+    }
+}
+
+/// Numbers of the cells of a line in the whole map, all cells counted row by row.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Numbers {
+    /// That of the first cell.
+    pub first: u64,
+    /// From cell to cell.
+    pub step: u64,
+}
+
+/// A line whose cells take so long that a stop is heeded between them.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct SlowLine<'a> {
+    /// All parameters but the delay.
+    pub setting: &'a Setting,
+    pub delays: &'a [f64],
+    pub places: Places,
+    pub numbers: Numbers,
+    /// Once it is set, no more cells are computed.
+    pub stop: &'a AtomicBool,
+}
+
+/// A cell of such a line.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Here<'s> {
+    pub setting: &'s Setting,
+    /// Its number on the line.
+    pub i: usize,
+    pub place: usize,
+    /// Its number in the whole map.
+    pub number: u64,
+}
+
+impl SlowLine<'_> {
+    pub(super) fn stopped(&self) -> bool {
+        self.stop.load(Ordering::Relaxed)
+    }
+
+    /// Visits the cells one after the other, until a stop.
+    pub(super) fn each(&self, mut visit: impl FnMut(Here)) {
+        let mut setting = self.setting.clone();
+        for (i, tau) in self.delays.iter().enumerate() {
+            if self.stopped() {
+                return;
+            }
+            setting.set(Parameter::Tau, *tau);
+            visit(Here {
+                setting: &setting,
+                i,
+                place: self.places.of(i),
+                number: self.numbers.first + i as u64 * self.numbers.step,
+            });
+        }
+    }
+}
