@@ -105,8 +105,8 @@ impl From<StoreError> for Failure {
                 Some("--fresh starts over, dropping the tiles; -o writes elsewhere")
             }
             StoreError::Manifest { .. } => Some(
-                "the `slipmap run` that began these tiles writes it anew and goes on; \
-                 --fresh starts over, dropping them; -o writes elsewhere",
+                "the `slipmap run` that began these tiles writes it anew and goes on; --fresh \
+                 starts over, dropping them; -o writes elsewhere",
             ),
             _ => None,
         };

@@ -27,8 +27,10 @@ use clap::{Parser, Subcommand};
 
 /// Exact stability maps of delayed-feedback control of dry friction.
 #[derive(Parser)]
-#[command(version, long_version = concat!(env!("CARGO_PKG_VERSION"), " \
-    (", env!("SLIPMAP_GIT_REVISION"), ")"))]
+#[command(
+    version,
+    long_version = concat!(env!("CARGO_PKG_VERSION"), " (", env!("SLIPMAP_GIT_REVISION"), ")")
+)]
 #[command(
     after_help = "Exit codes: 0 done, 1 failed, 2 bad input or usage, 129, 130 or 143 interrupted."
 )]

@@ -105,7 +105,7 @@ enum Next {
     /// One with so many slips in a period.
     Periodic(Motion, usize),
     Irregular(Motion),
-    /// None: it was lost by a relative step of v0.
+    /// Stick-slip was lost, by this relative step of v0.
     Ends(f64),
     Unknown,
 }

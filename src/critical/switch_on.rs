@@ -12,7 +12,7 @@ use crate::slip::watch::follow;
 /// When control is switched on.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Phase {
-    /// That long after a release, modulo the uncontrolled period; in units of √(M/κ).
+    /// At this time after a release, modulo the uncontrolled period; in units of √(M/κ).
     After(f64),
     /// At each of so many phases, evenly over the uncontrolled period: stick-slip survives if it
     /// does for one of them.

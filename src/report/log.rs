@@ -55,7 +55,7 @@ pub enum Entry {
     Progress {
         /// By this run so far.
         cells_computed: u64,
-        /// That it has still to compute.
+        /// Cells that the run has still to compute.
         cells_left: u64,
         /// Since its start, on average.
         cells_per_second: f64,

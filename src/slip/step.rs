@@ -153,7 +153,7 @@ impl Step {
         self.controlled(control, order);
     }
 
-    /// Those in slip.
+    /// Works out the coefficients of a block in slip.
     pub(super) fn slip(&mut self, control: Control, direction: f64, series: &mut impl Series) {
         let order = self.order.min(MOST_ORDER);
         for (k, per_next) in PER_NEXT.iter().enumerate().take(order) {

@@ -40,7 +40,7 @@ struct Maker<'a> {
     plan: &'a Plan,
     /// The parameter of the planes.
     parameter: Parameter,
-    /// Those of the axes outside of them.
+    /// The parameters of the axes outside the planes.
     outer: Vec<Parameter>,
     dimensions: &'a mut Dimensions,
     ids: Ids,
@@ -68,7 +68,7 @@ impl Maker<'_> {
         Ok(dataset)
     }
 
-    /// That of a column.
+    /// The dataset of a column.
     fn column<T: H5Type>(&mut self, about: &BoundaryColumn) -> hdf5::Result<Dataset> {
         let units = &self.plan.spec.units;
         let dataset = match about.named {

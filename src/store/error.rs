@@ -99,8 +99,10 @@ pub enum StoreError {
         why: String,
     },
     /// A map with missing cells would take the place of a complete one.
-    #[error("{} is complete, and {pieces} pieces of what would replace it are \
-        missing", path.display())]
+    #[error(
+        "{} is complete, and {pieces} pieces of what would replace it are missing",
+        path.display()
+    )]
     WouldLose {
         /// The map.
         path: PathBuf,

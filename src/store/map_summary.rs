@@ -25,9 +25,9 @@ pub struct FieldSummary {
 pub struct StatusCounts {
     /// Cells that are computed.
     pub computed: u64,
-    /// Those without any flag.
+    /// Cells without any flag.
     pub unflagged: u64,
-    /// Those with each flag, in the order of [`FLAGS`].
+    /// Cells with each flag, in the order of [`FLAGS`].
     pub flagged: [u64; FLAGS.len()],
 }
 

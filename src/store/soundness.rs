@@ -36,7 +36,7 @@ pub struct Report {
     pub answers: Vec<(Question, [u64; 3])>,
     /// Tiles that were computed again.
     pub tiles: u64,
-    /// Those of them of which all bytes are equal.
+    /// Tiles computed again of which all bytes are equal.
     pub tiles_equal: u64,
 }
 

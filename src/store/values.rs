@@ -48,7 +48,7 @@ pub(super) fn is_of<T: H5Type>(kind: &hdf5::Result<Datatype>) -> bool {
     Datatype::from_type::<T>().is_ok_and(|asked| asked == *kind)
 }
 
-/// Those of the indices along an axis that are read.
+/// Indices along an axis that are read.
 #[derive(Debug, Clone, Copy)]
 struct Picked {
     start: usize,
@@ -106,7 +106,7 @@ pub(super) struct Chunks<'d> {
 }
 
 impl<'d> Chunks<'d> {
-    /// None where the dataset is not stored in chunks.
+    /// The chunks of a dataset; none where it is not stored in chunks.
     pub(super) fn of(dataset: &'d Dataset) -> hdf5::Result<Option<Self>> {
         let Some(chunk) = dataset.chunk() else {
             return Ok(None);

@@ -19,7 +19,7 @@ pub enum Event {
     Started {
         /// Cells of the map.
         cells: u64,
-        /// Those of them that this run has to compute.
+        /// Cells that this run has to compute.
         left: u64,
         /// Threads that compute them.
         threads: usize,

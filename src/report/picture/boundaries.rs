@@ -29,7 +29,7 @@ struct Family<'a> {
     short: Option<Rich>,
     bounding: Vec<&'a CurvePiece>,
     others: Vec<&'a CurvePiece>,
-    /// Those of a degree of stability above zero.
+    /// Curves of a degree of stability above zero.
     decaying: Vec<&'a MapCurve>,
     index: &'a [usize],
 }

@@ -38,11 +38,11 @@ pub struct ShardSurvey {
     pub running: bool,
     /// Cells of the shard.
     pub cells: u64,
-    /// Those that are there.
+    /// Cells that are there.
     pub cells_done: u64,
     /// Pieces of the shard.
     pub pieces: u64,
-    /// Those that are there.
+    /// Pieces that are there.
     pub pieces_done: u64,
     /// Files that are not as they were written; the next run computes what they held.
     pub damaged: Vec<PathBuf>,

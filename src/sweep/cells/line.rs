@@ -8,14 +8,14 @@ use crate::sweep::input::setting::Setting;
 /// Places of the cells of a line in the buffers.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Places {
-    /// That of the first cell.
+    /// Place of the first cell.
     pub at: usize,
     /// From cell to cell.
     pub stride: usize,
 }
 
 impl Places {
-    /// That of the `i`-th cell.
+    /// Place of the `i`-th cell.
     #[inline]
     pub(super) const fn of(self, i: usize) -> usize {
         self.at + i * self.stride
@@ -25,7 +25,7 @@ impl Places {
 /// Numbers of the cells of a line in the whole map, all cells counted row by row.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Numbers {
-    /// That of the first cell.
+    /// Number of the first cell.
     pub first: u64,
     /// From cell to cell.
     pub step: u64,

@@ -211,8 +211,8 @@ catalogue! {
             source: Source::Critical(|cell| cell.class.map_or(f64::NAN, |of| f64::from(of as u8))),
             comment: Some(
                 "stable: sliding is linearly stable, without stick-slip beside it; bistable: \
-                 stick-slip persists beside it; lift-off: linearly stable, but stick-slip leads \
-                 to N <= 0 at v0 or below; undecided: marginal, or not known",
+                 stick-slip persists beside it; lift-off: linearly stable, but stick-slip leads to \
+                 N <= 0 at v0 or below; undecided: marginal, or not known",
             ),
             ..ROW
         };
@@ -233,8 +233,7 @@ catalogue! {
         /// Signed distance in τ to the nearest change of stability.
         DelayMargin = Row {
             name: "delay_margin",
-            long_name: "distance in delay to the nearest change of stability, positive where \
-                        stable",
+            long_name: "distance in delay to the nearest change of stability, positive where stable",
             short_name: "delay margin",
             measure: TIME,
             source: Source::Line,
@@ -310,7 +309,7 @@ catalogue! {
             short_name: "∂ abscissa / ∂ τ",
             ..slope(Slope::Tau)
         };
-        /// That with respect to α_v.
+        /// The derivative of the spectral abscissa with respect to α_v.
         DAbscissaDAlphaV = Row {
             name: "d_abscissa_d_alpha_v",
             long_name: "derivative of the spectral abscissa with respect to the gain of velocity \
@@ -318,7 +317,7 @@ catalogue! {
             short_name: "∂ abscissa / ∂ α_v",
             ..slope(Slope::AlphaV)
         };
-        /// That with respect to α_N.
+        /// The derivative of the spectral abscissa with respect to α_N.
         DAbscissaDAlphaN = Row {
             name: "d_abscissa_d_alpha_n",
             long_name: "derivative of the spectral abscissa with respect to the gain of load \
@@ -326,7 +325,7 @@ catalogue! {
             short_name: "∂ abscissa / ∂ α_N",
             ..slope(Slope::AlphaN)
         };
-        /// That with respect to μ_K′, at fixed μ_K.
+        /// The derivative of the spectral abscissa with respect to μ_K′, at fixed μ_K.
         DAbscissaDMuPrime = Row {
             name: "d_abscissa_d_mu_prime",
             long_name: "derivative of the spectral abscissa with respect to the slope of the \
@@ -464,8 +463,7 @@ catalogue! {
         /// The pulling velocity from which the block lifts off there, over ṽ.
         LiftoffOverVtilde = Row {
             name: "liftoff_over_vtilde",
-            long_name: "pulling velocity over vtilde from which the block lifts off while it \
-                        sticks",
+            long_name: "pulling velocity over vtilde from which the block lifts off while it sticks",
             short_name: "lift-off",
             source: Source::Limit(|cell| cell.exact.liftoff_over_vtilde),
             spread: Spread::Decades,
@@ -812,14 +810,11 @@ mod tests {
         assert_eq!(
             known_fields(),
             "n_unstable, outcome, method, class, windows, delay_margin, abscissa, abscissa_2 … \
-            abscissa_8, frequency, \
-             frequency_2 … frequency_8, relaxation_time, d_abscissa_d_tau, d_abscissa_d_alpha_v, \
-             d_abscissa_d_alpha_n, d_abscissa_d_mu_prime, certificate_margin, settle_time, n_min, \
-             peak_force, \
-             vc, v_liftoff, stick_time, slip_time, v_smooth, \
-             vc_over_vtilde, omega0_T, liftoff_over_vtilde, vc_weak_control, vc_strong_control, \
-             weak_control_error, \
-             strong_control_error"
+            abscissa_8, frequency, frequency_2 … frequency_8, relaxation_time, d_abscissa_d_tau, \
+            d_abscissa_d_alpha_v, d_abscissa_d_alpha_n, d_abscissa_d_mu_prime, certificate_margin, \
+            settle_time, n_min, peak_force, vc, v_liftoff, stick_time, slip_time, v_smooth, \
+            vc_over_vtilde, omega0_T, liftoff_over_vtilde, vc_weak_control, vc_strong_control, \
+            weak_control_error, strong_control_error"
         );
     }
 }

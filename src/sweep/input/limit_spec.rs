@@ -77,8 +77,8 @@ impl LimitDraft {
             Some((field, place)) => {
                 let message = format!("{} is a field of protocol = \"limit\"", field.name());
                 Err(SpecError::at(place.clone(), message).help(
-                    "protocol = \"limit\" asks for v_c as the delay vanishes; its parameters \
-                        are gamma and mu_ratio",
+                    "protocol = \"limit\" asks for v_c as the delay vanishes; its parameters are \
+                        gamma and mu_ratio",
                 ))
             }
             None => Ok(()),
@@ -96,7 +96,6 @@ fn no_meaning(name: &str, place: &Range<usize>) -> SpecError {
     )
     .help(format!(
         "the limit is Coulomb friction under load control as the delay vanishes; all it takes is \
-        gamma, mu_ratio and the \
-         fields {fields}"
+        gamma, mu_ratio and the fields {fields}"
     ))
 }

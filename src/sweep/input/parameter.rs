@@ -48,7 +48,7 @@ pub struct Flag {
 
 /// What there is to know of a parameter.
 struct Row {
-    /// The same word everywhere; flags write `-` for `_`.
+    /// The name, one word everywhere; flags write `-` for `_`.
     name: &'static str,
     /// The symbol of the letter.
     symbol: &'static str,

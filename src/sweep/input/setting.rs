@@ -73,8 +73,7 @@ impl GivenError {
             Self::Unused(_) => {
                 let [mu_prime, mu_k, v0] = [MuPrime, MuK, V0].map(name);
                 format!(
-                    "give either {mu_prime} (with {mu_k}) or a friction law with {v0}, not \
-                    both"
+                    "give either {mu_prime} (with {mu_k}) or a friction law with {v0}, not both"
                 )
             }
         }

@@ -128,8 +128,7 @@ impl Plan {
         if planes > MOST_PLANES {
             return Err(SpecError::whole(format!(
                 "curves or best settings in {planes} planes; at most {MOST_PLANES} are allowed: \
-                leave out boundaries, \
-                 degree_of_stability and best, or split the sweep"
+                leave out boundaries, degree_of_stability and best, or split the sweep"
             )));
         }
         Ok(plan)

@@ -57,8 +57,8 @@ impl Draft {
                 let message =
                     "best needs an axis of a gain and one of the delay, with two points or more";
                 Err(SpecError::at(place.clone(), message).help(
-                    "alpha_v or alpha_n, and tau, in [axes]; the best setting is looked for \
-                        within their ranges",
+                    "alpha_v or alpha_n, and tau, in [axes]; the best setting is looked for within \
+                        their ranges",
                 ))
             }
             _ => Ok(()),
@@ -149,8 +149,7 @@ impl Draft {
             Some((name, place)) => {
                 let message = format!("{name} has no effect on the fields that are asked for");
                 Err(SpecError::at(place.clone(), message).help(
-                    "motions are followed for the fields outcome, settle_time, n_min and \
-                    peak_force",
+                    "motions are followed for the fields outcome, settle_time, n_min and peak_force",
                 ))
             }
             None => Ok(()),
