@@ -4,7 +4,7 @@
 #   scripts/fuzz.sh TARGET [EXECUTIONS] [LIBFUZZER-FLAGS…]
 #
 # TARGET: sweep, case, manifest, tiles, rows or map; 10 million executions by default. It starts from the inputs that are kept in
-# tests/fuzz/corpus and adds what it finds to target/fuzz/found/TARGET; inputs that are answered wrongly go to
+# the archives of tests/fuzz/corpus and adds what it finds to target/fuzz/found/TARGET; inputs that are answered wrongly go to
 # tests/fuzz/regressions, where the test suite replays them. No execution may take longer than 10 s or more than 1 GiB.
 #
 #   scripts/fuzz.sh TARGET keep      replaces the kept inputs by the smallest set that covers as much as all that was found
@@ -34,16 +34,20 @@ RUSTFLAGS="${instrument[*]}" cargo build --release --manifest-path tests/fuzz/Ca
 program=$PWD/target/fuzz/$host/release/slipmap-fuzz
 
 export SLIPMAP_FUZZ_TARGET=$target
-kept=tests/fuzz/corpus/$target
+archive=tests/fuzz/corpus/$target.tar
+kept=target/fuzz/kept/$target
 found=target/fuzz/found/$target
+rm -rf "$kept"
 mkdir -p "$kept" "$found" tests/fuzz/regressions
+tar -xf "$archive" -C "$kept"
 
 if [ "$executions" = keep ]; then
     smallest=$(mktemp -d)
     "$program" -merge=1 "$smallest" "$kept" "$found"
-    rm -rf "$kept"
-    mv "$smallest" "$kept"
-    chmod 755 "$kept"
+    # The same inputs make the same archive.
+    find "$smallest" -type f -printf '%f\n' | LC_ALL=C sort |
+        tar -cf "$archive" -C "$smallest" --mtime=@0 --owner=0 --group=0 --numeric-owner --mode=644 --no-recursion -T -
+    rm -rf "$smallest"
     exit
 fi
 flags=(-runs="$executions" -timeout=10 -rss_limit_mb=2048 -max_len=4096 -print_final_stats=1)

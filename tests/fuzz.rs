@@ -7,6 +7,7 @@ mod memory;
 mod targets;
 
 use std::fs;
+use std::io::Read as _;
 use std::path::{Path, PathBuf};
 
 use slipmap::sweep::{Field, Parameter, Plan, SweepSpec};
@@ -27,16 +28,34 @@ fn files(folder: &Path) -> Vec<PathBuf> {
     files
 }
 
+/// The inputs that are kept for a target, by name.
+fn kept(name: &str) -> Vec<(String, Vec<u8>)> {
+    let archive = fs::File::open(format!("tests/fuzz/corpus/{name}.tar")).unwrap();
+    let mut archive = tar::Archive::new(archive);
+    let read = |entry: std::io::Result<tar::Entry<fs::File>>| {
+        let mut entry = entry.unwrap();
+        let file = entry.path().unwrap().display().to_string();
+        let mut bytes = Vec::new();
+        entry.read_to_end(&mut bytes).unwrap();
+        (file, bytes)
+    };
+    archive.entries().unwrap().map(read).collect()
+}
+
 fn replay(name: &str) {
     let (_, target) = targets::ALL.into_iter().find(|(n, _)| *n == name).unwrap();
-    let kept = files(&Path::new("tests/fuzz/corpus").join(name));
-    assert!(!kept.is_empty(), "{name}");
+    let kept = kept(name);
+    assert!(kept.len() > 10, "{name}: {}", kept.len());
+    for (file, bytes) in kept {
+        println!("{name}: {file}");
+        target(&bytes);
+    }
     let wrong = files(Path::new("tests/fuzz/regressions"));
     let wrong = wrong.into_iter().filter(|path| {
         let file = path.file_name().unwrap().to_str().unwrap();
         file.split('-').next() == Some(name)
     });
-    for path in kept.into_iter().chain(wrong) {
+    for path in wrong {
         println!("{}", path.display());
         target(&fs::read(path).unwrap());
     }
