@@ -147,7 +147,9 @@ fn killed_runs_go_on_and_end_as_uninterrupted_ones() {
         child.wait().unwrap();
         if map.exists() {
             complete += 1;
-            expect(&folder.run(&args), 0, "already complete");
+            // Complete; or killed after the map got its name and before its tiles were gone, which
+            // are put together once more.
+            expect(&folder.run(&args), 0, "night.h5");
             assert_eq!(datasets(&map), expected, "after {killed} kills");
             assert!(shards::present(&map).unwrap().is_empty());
             std::fs::remove_file(&map).unwrap();
