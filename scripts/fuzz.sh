@@ -39,14 +39,16 @@ kept=target/fuzz/kept/$target
 found=target/fuzz/found/$target
 rm -rf "$kept"
 mkdir -p "$kept" "$found" tests/fuzz/regressions
-tar -xf "$archive" -C "$kept"
+[ ! -e "$archive" ] || tar -xf "$archive" -C "$kept"
 
 if [ "$executions" = keep ]; then
     smallest=$(mktemp -d)
     "$program" -merge=1 "$smallest" "$kept" "$found"
-    # The same inputs make the same archive.
-    find "$smallest" -type f -printf '%f\n' | LC_ALL=C sort |
-        tar -cf "$archive" -C "$smallest" --mtime=@0 --owner=0 --group=0 --numeric-owner --mode=644 --no-recursion -T -
+    # The same inputs make the same archive, with GNU's tar.
+    (cd "$smallest" && ls) | LC_ALL=C sort |
+        tar -cf "$archive.part" --format=ustar -C "$smallest" --mtime=@0 --owner=0 --group=0 --numeric-owner --mode=644 \
+            --no-recursion -T -
+    mv "$archive.part" "$archive"
     rm -rf "$smallest"
     exit
 fi

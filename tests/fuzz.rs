@@ -45,7 +45,7 @@ fn kept(name: &str) -> Vec<(String, Vec<u8>)> {
 fn replay(name: &str) {
     let (_, target) = targets::ALL.into_iter().find(|(n, _)| *n == name).unwrap();
     let kept = kept(name);
-    assert!(kept.len() > 10, "{name}: {}", kept.len());
+    assert!(kept.len() > 60, "{name}: {}", kept.len());
     for (file, bytes) in kept {
         println!("{name}: {file}");
         target(&bytes);

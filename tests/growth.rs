@@ -18,7 +18,8 @@ const PATCHES: [(&str, usize, usize); 3] = [
 ];
 
 fn run(command: &mut Command) {
-    let ended = command.status().unwrap();
+    let ended = command.status();
+    let ended = ended.unwrap_or_else(|error| panic!("{command:?} cannot be run: {error}"));
     assert!(ended.success(), "{command:?}");
 }
 
@@ -37,8 +38,17 @@ fn copy(from: &Path, to: &Path) {
 /// A copy of what a build takes, patched.
 fn grown(folder: &Path) {
     let own = Path::new(env!("CARGO_MANIFEST_DIR"));
-    for file in ["Cargo.toml", "Cargo.lock", "build.rs"] {
-        fs::copy(own.join(file), folder.join(file)).unwrap();
+    fs::copy(own.join("build.rs"), folder.join("build.rs")).unwrap();
+    // Another version, so that nothing of it is taken for the crate's own.
+    let package = format!(
+        "name = \"slipmap\"\nversion = \"{}\"",
+        env!("CARGO_PKG_VERSION")
+    );
+    for file in ["Cargo.toml", "Cargo.lock"] {
+        let text = fs::read_to_string(own.join(file)).unwrap();
+        assert!(text.contains(&package), "{file}");
+        let grown = "name = \"slipmap\"\nversion = \"0.0.0-grown\"";
+        fs::write(folder.join(file), text.replace(&package, grown)).unwrap();
     }
     copy(&own.join("src"), &folder.join("src"));
     // Benches and tests that the manifest names.
@@ -67,8 +77,20 @@ fn grown(folder: &Path) {
         let added = added.filter(|l| !l.starts_with("+++"));
         let touched = patch.lines().filter(|l| l.starts_with("+++"));
         assert_eq!((touched.count(), added.count()), (files, lines), "{name}");
+        // Inside a repository git would pass over what is not in it.
         let mut apply = Command::new("git");
+        apply.env("GIT_CEILING_DIRECTORIES", folder);
+        let first = patch
+            .lines()
+            .find_map(|l| l.strip_prefix("+++ b/"))
+            .unwrap();
+        let before = fs::read_to_string(folder.join(first)).unwrap();
         run(apply.arg("apply").arg("-C1").arg(path).current_dir(folder));
+        assert_ne!(
+            fs::read_to_string(folder.join(first)).unwrap(),
+            before,
+            "{name}"
+        );
     }
 }
 

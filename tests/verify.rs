@@ -302,8 +302,8 @@ fn wrong_values_are_seen_by_second_methods() {
 }
 
 /// Where large steps of v0 throw stick-slip to a kind that ends earlier, nothing is contradicted,
-/// whether smaller ones come to the right end within their budget or not. v_c by the program of `tests/referee` in four kinds of steps:
-/// 0.0288921.
+/// whether smaller ones come to the right end within their budget or not. v_c by the program of
+/// `tests/referee` in four kinds of steps: 0.0288921.
 #[test]
 fn a_search_that_large_steps_have_thrown_contradicts_nothing() {
     let folder = tempfile::tempdir().unwrap();

@@ -164,7 +164,6 @@ impl FillColumn for Reading<'_> {
 struct Fitting<'a> {
     columns: std::slice::Iter<'a, Option<Dataset>>,
     curves: usize,
-    /// Vertices that are there at least.
     vertices: usize,
     fits: bool,
 }
@@ -174,7 +173,7 @@ impl EachColumn for Fitting<'_> {
         if let Some(Some(dataset)) = self.columns.next() {
             self.fits &= match about.per {
                 Per::Curve => dataset.size() == self.curves,
-                Per::Vertex => dataset.size() >= self.vertices,
+                Per::Vertex => dataset.size() == self.vertices,
                 Per::Corner => true,
             };
         }
@@ -237,11 +236,11 @@ impl CurveColumns {
         let mut fitting = Fitting {
             columns: self.columns.iter(),
             curves: self.curves(),
-            vertices: vertices.end,
+            vertices: self.vertices,
             fits: self.outer.iter().all(|c| c.size() == self.curves()),
         };
         CurveRows::default().each(&mut fitting)?;
-        if !fitting.fits {
+        if !fitting.fits || vertices.end > self.vertices {
             return Ok(None);
         }
         let outer = self.outer.iter().map(|column| part(column, curves.clone()));

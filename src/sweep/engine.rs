@@ -120,6 +120,43 @@ pub fn run<S: Sink>(
     sink: &mut S,
     attended: Attended,
 ) -> Result<(), RunError<S::Error>> {
+    let on = match cfg!(target_family = "wasm") {
+        true => On::This,
+        false => On::Threads(threads),
+    };
+    conduct(plan, todo, on, sink, attended)
+}
+
+/// Computes the pieces of `plan` that `todo` lists on this thread and hands them to `sink`, until
+/// it is stopped, which is heeded between pieces and, where cells take long, between cells.
+///
+/// # Errors
+/// See [`RunError`].
+pub fn run_here<S: Sink>(
+    plan: &Arc<Plan>,
+    todo: Todo,
+    sink: &mut S,
+    attended: Attended,
+) -> Result<(), RunError<S::Error>> {
+    conduct(plan, todo, On::This, sink, attended)
+}
+
+/// Where pieces are computed.
+#[derive(Clone, Copy)]
+enum On {
+    /// On the thread that asks.
+    This,
+    /// On so many others.
+    Threads(usize),
+}
+
+fn conduct<S: Sink>(
+    plan: &Arc<Plan>,
+    todo: Todo,
+    on: On,
+    sink: &mut S,
+    attended: Attended,
+) -> Result<(), RunError<S::Error>> {
     let Attended { observer, stop } = attended;
     let left = todo.left().fold((0, 0), |(pieces, cells), piece| {
         (pieces + 1, cells + plan.cells_of(piece))
@@ -127,15 +164,18 @@ pub fn run<S: Sink>(
     observer.event(&Event::Started {
         cells: plan.cells(),
         left: left.1,
-        threads,
+        threads: match on {
+            On::This => 1,
+            On::Threads(threads) => threads,
+        },
     });
-    let received = if left.0 > 0 && cfg!(target_family = "wasm") {
-        here(plan, &todo, sink, observer, stop)
-    } else if left.0 > 0 {
-        let receiver = start(plan, todo, threads, sink, stop)?;
-        receive(plan, &receiver, sink, observer, stop)
-    } else {
-        Ok(0)
+    let received = match on {
+        _ if left.0 == 0 => Ok(0),
+        On::This => here(plan, &todo, sink, attended),
+        On::Threads(threads) => {
+            let receiver = start(plan, todo, threads, sink, stop)?;
+            receive(plan, &receiver, sink, observer, stop)
+        }
     };
     let flushed = sink.flush().map_err(RunError::Sink);
     if received? < left.0 {
@@ -229,14 +269,14 @@ fn next<C: Encode>(
     Some(encoded.map(|encoded| (piece, encoded)))
 }
 
-/// Computes all pieces on this thread, where there can be no others, and says how many.
+/// Computes pieces on this thread, and says how many.
 fn here<S: Sink>(
     plan: &Plan,
     todo: &Todo,
     sink: &mut S,
-    observer: &dyn Observer,
-    stop: &AtomicBool,
+    attended: Attended,
 ) -> Result<u64, RunError<S::Error>> {
+    let Attended { observer, stop } = attended;
     let (mut worker, mut encoder, mut received) = (Worker::new(plan), sink.encoder(), 0);
     while let Some(sent) = next(plan, todo, &mut worker, &mut encoder, stop) {
         take(plan, sent, sink, observer)?;

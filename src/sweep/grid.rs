@@ -61,17 +61,10 @@ impl Grid {
     /// at once.
     ///
     /// # Errors
-    /// When that is more than there is, a parameter is outside the model's range, or the threads
+    /// When that is more than the system promises, a parameter is outside the model's range, or the threads
     /// cannot be started.
     pub fn compute(plan: &Arc<Plan>, threads: usize) -> Result<Self, RunError<TooLarge>> {
-        let cells = room_for(plan).map_err(RunError::Sink)?;
-        let mut grid = Self {
-            cells: TileBuffers::of_cells(plan, cells),
-            curves: vec![BoundaryPlane::default(); plan.boundary_planes() as usize],
-            best: vec![None; plan.best_planes() as usize],
-            strides: strides_of(plan.shape()),
-            plan: Arc::clone(plan),
-        };
+        let mut grid = Self::empty(plan)?;
         let (todo, stop) = (Todo::all(plan.pieces()), Arc::new(AtomicBool::new(false)));
         engine::run(
             plan,
@@ -81,6 +74,33 @@ impl Grid {
             Attended::silently(&stop),
         )?;
         Ok(grid)
+    }
+
+    /// Computes all of `plan` on this thread, until `stop` is set, which is heeded between its
+    /// pieces.
+    ///
+    /// # Errors
+    /// As [`Grid::compute`], and when it was stopped.
+    pub fn compute_here(
+        plan: &Arc<Plan>,
+        stop: &Arc<AtomicBool>,
+    ) -> Result<Self, RunError<TooLarge>> {
+        let mut grid = Self::empty(plan)?;
+        let attended = Attended::silently(stop);
+        let todo = Todo::all(plan.pieces());
+        engine::run_here(plan, todo, &mut Taken(&mut grid), attended)?;
+        Ok(grid)
+    }
+
+    fn empty(plan: &Arc<Plan>) -> Result<Self, RunError<TooLarge>> {
+        let cells = room_for(plan).map_err(RunError::Sink)?;
+        Ok(Self {
+            cells: TileBuffers::of_cells(plan, cells),
+            curves: vec![BoundaryPlane::default(); plan.boundary_planes() as usize],
+            best: vec![None; plan.best_planes() as usize],
+            strides: memory_strides(plan.shape()),
+            plan: Arc::clone(plan),
+        })
     }
 
     /// The sweep.
@@ -100,7 +120,13 @@ impl Grid {
     }
 }
 
-/// The number of cells of a sweep, if the system has memory for them.
+/// Places between neighbours along each axis of cells that are in memory all.
+fn memory_strides(shape: &[usize]) -> Vec<usize> {
+    let strides = strides_of(shape).into_iter();
+    strides.map(|stride| stride as usize).collect()
+}
+
+/// The number of cells of a sweep, if the system promises memory for them.
 fn room_for(plan: &Plan) -> Result<usize, TooLarge> {
     let fields = plan.spec.fields.iter().map(|field| field.bytes());
     let status = size_of::<u8>();

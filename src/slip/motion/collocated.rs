@@ -59,7 +59,7 @@ impl Motion {
             let difference = a - delayed;
             let pull = control.v0 + control.alpha_v * difference;
             let load = 1.0 + control.alpha_n * difference;
-            if let 0.0 = direction {
+            if direction == 0.0 {
                 (0.0, pull)
             } else {
                 let friction = self.friction_at(direction * u) * load;

@@ -5,7 +5,7 @@ use crate::linear::Crossings;
 use crate::linear::curves::{PlaneCurves, TooManyCurves, Window, scan_breakpoints, trace};
 use crate::linear::decay;
 use crate::linear::gains::{load_gain_breakpoints, velocity_gain_breakpoints};
-use crate::model::friction::Kind;
+use crate::model::friction::{FrictionLaw, Kind};
 use crate::model::{Groups, ModelError};
 use crate::sweep::input::parameter::Parameter;
 use crate::sweep::input::setting::Setting;
@@ -150,10 +150,9 @@ fn breakpoints(
 /// between them.
 fn jumps(setting: &Setting, parameter: Parameter) -> Result<Vec<[f64; 2]>, ModelError> {
     let law = setting.friction_law()?;
-    let (Parameter::V0, Some(Kind::Table(table))) = (
-        parameter,
-        law.as_ref().map(crate::model::friction::FrictionLaw::kind),
-    ) else {
+    let (Parameter::V0, Some(Kind::Table(table))) =
+        (parameter, law.as_ref().map(FrictionLaw::kind))
+    else {
         return Ok(Vec::new());
     };
     let speeds = table.speeds();

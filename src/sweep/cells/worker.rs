@@ -47,7 +47,7 @@ pub struct Worker<'p> {
     /// Looks for critical velocities, where a field needs them.
     vc: Option<VcColumns>,
     /// Cells between neighbours along each axis in the whole map.
-    map_strides: Vec<usize>,
+    map_strides: Vec<u64>,
     /// Whether cells have a sliding state.
     slides: bool,
 }
@@ -336,12 +336,9 @@ impl<'p> Worker<'p> {
             numbers: Numbers {
                 first: index
                     .zip(&self.map_strides)
-                    .map(|(i, s)| (i * s) as u64)
+                    .map(|(i, s)| i as u64 * s)
                     .sum(),
-                step: self
-                    .plan
-                    .tau_axis
-                    .map_or(1, |axis| self.map_strides[axis] as u64),
+                step: self.plan.tau_axis.map_or(1, |axis| self.map_strides[axis]),
             },
             stop,
         };

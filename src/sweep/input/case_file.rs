@@ -168,7 +168,7 @@ impl Draft {
         };
         let mut setting = self.given.setting();
         let optional = (setting.control() == Control::default()).then_some(Parameter::Tau);
-        self.given.check(optional, Some(&law_place))?;
+        self.given.check(optional.as_slice(), Some(&law_place))?;
         if setting.get(Parameter::Tau).is_nan() {
             setting.set(Parameter::Tau, 0.0);
         }

@@ -163,15 +163,15 @@ impl GivenParameters {
         setting
     }
 
-    /// Every parameter that is needed is there, none that would be ignored. `optional` can be left
-    /// out; what is missing is told at the friction law, or at `place`.
+    /// Every parameter that is needed is there, none that would be ignored. Those of `optional`
+    /// can be left out; what is missing is told at the friction law, or at `place`.
     pub(super) fn check(
         &self,
-        optional: Option<Parameter>,
+        optional: &[Parameter],
         place: Option<&Range<usize>>,
     ) -> Result<(), SpecError> {
         let law = self.law.as_ref().map(|(law, _)| law);
-        let there = |p: Parameter| self.place(p).is_some() || optional == Some(p);
+        let there = |p: Parameter| self.place(p).is_some() || optional.contains(&p);
         Setting::check_given(law, there).map_err(|error| {
             let span = match error {
                 GivenError::Unused(p) | GivenError::Follows(p) => self.place(p),

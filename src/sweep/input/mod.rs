@@ -12,6 +12,7 @@ mod given;
 pub mod law_kind;
 mod limit_spec;
 pub mod parameter;
+pub mod point_file;
 pub mod search;
 pub mod setting;
 pub mod simulation;

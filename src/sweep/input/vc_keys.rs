@@ -1,4 +1,4 @@
-//! What a sweep file says of the critical velocity, and what fields of it need.
+//! What a sweep file says of the critical velocity.
 
 use std::ops::Range;
 

@@ -12,7 +12,7 @@ use self::pieces::{Piece, Pieces};
 use self::tile::{Tile, TileGrid};
 use crate::critical::switch_on::Phase;
 use crate::model::table::TableColumn;
-use crate::sweep::input::axis::plane_of_curves;
+use crate::sweep::input::axis::{Axis, plane_of_curves};
 use crate::sweep::input::best_plane::gain_plane;
 use crate::sweep::input::law_kind::LawKind;
 use crate::sweep::input::parameter::Parameter;
@@ -87,11 +87,7 @@ impl Plan {
     /// # Errors
     /// As [`Plan::new`].
     pub fn with_tiles_of(cells_per_tile: usize, spec: SweepSpec) -> Result<Self, SpecError> {
-        let shape: Vec<usize> = spec
-            .axes
-            .iter()
-            .map(super::input::axis::Axis::len)
-            .collect();
+        let shape: Vec<usize> = spec.axes.iter().map(Axis::len).collect();
         let cells = shape
             .iter()
             .try_fold(1_u64, |n, &len| n.checked_mul(len as u64))

@@ -87,15 +87,16 @@ impl TileGrid {
     /// shape.
     #[must_use]
     pub fn strides(&self) -> Vec<usize> {
-        strides_of(&self.tile_shape)
+        let strides = strides_of(&self.tile_shape).into_iter();
+        strides.map(|stride| stride as usize).collect()
     }
 }
 
 /// Cells between neighbours along each axis of a box, last axis fastest.
-pub(crate) fn strides_of(shape: &[usize]) -> Vec<usize> {
+pub(crate) fn strides_of(shape: &[usize]) -> Vec<u64> {
     let mut strides = vec![1; shape.len()];
     for axis in (1..shape.len()).rev() {
-        strides[axis - 1] = strides[axis] * shape[axis];
+        strides[axis - 1] = strides[axis] * shape[axis] as u64;
     }
     strides
 }

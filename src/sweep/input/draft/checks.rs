@@ -18,7 +18,8 @@ impl Draft {
         self.limit.check_absent()?;
         let without_v0 = self.given.law_place().is_some() && !self.needs_v0();
         let optional = without_v0.then_some(Parameter::V0);
-        self.given.check(optional, self.axes_place.as_ref())?;
+        self.given
+            .check(optional.as_slice(), self.axes_place.as_ref())?;
         self.check_degrees()?;
         self.check_best()?;
         let fixed = self.given.setting();
@@ -148,9 +149,13 @@ impl Draft {
         match start.chain(simulation).next() {
             Some((name, place)) => {
                 let message = format!("{name} has no effect on the fields that are asked for");
-                Err(SpecError::at(place.clone(), message).help(
-                    "motions are followed for the fields outcome, settle_time, n_min and peak_force",
-                ))
+                let fields = Field::ALL.into_iter().filter(|f| f.of_motion());
+                let names: Vec<_> = fields.map(Field::name).collect();
+                let (last, others) = names.split_last().unwrap_or((&"", &[]));
+                Err(SpecError::at(place.clone(), message).help(format!(
+                    "motions are followed for the fields {} and {last}",
+                    others.join(", ")
+                )))
             }
             None => Ok(()),
         }

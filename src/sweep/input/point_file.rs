@@ -1,0 +1,139 @@
+//! A point of parameter space as text: the tables that sweep and case files share.
+//!
+//! ```toml
+//! [fixed]                         # as in sweep files
+//! v0 = 0.35
+//! alpha_v = -0.33
+//! tau = 4.15
+//!
+//! [friction]                      # optional, as in sweep files
+//! law = "weakening"
+//! mu0 = 0.5
+//! v_s = 0.5
+//!
+//! [units]                         # optional, as in sweep files
+//! ```
+
+use super::given::{GivenParameters, read_units};
+use super::parameter::Parameter;
+use super::setting::Setting;
+use super::toml_reader::{SpecError, entries, parse};
+use super::units::Units;
+use crate::model::Control;
+
+/// What is asked of a point.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum PointOf {
+    /// Sliding at it: all parameters that its stability depends on.
+    Sliding,
+    /// Its critical velocity: a friction law, no v0, a delay only where control acts.
+    CriticalVelocity,
+}
+
+/// A point: every value in range, every name known.
+#[derive(Debug, Clone, PartialEq)]
+pub struct PointSpec {
+    /// All parameters.
+    pub setting: Setting,
+    /// Their units.
+    pub units: Units,
+}
+
+impl PointSpec {
+    /// Reads a point.
+    ///
+    /// # Errors
+    /// Points at the first place that is not understood, out of range or contradictory.
+    pub fn read(text: &str, of: PointOf) -> Result<Self, SpecError> {
+        let document = parse(text)?;
+        let mut given = GivenParameters::default();
+        let mut units = Units::default();
+        for entry in entries(document.get_ref(), "") {
+            match entry.key {
+                "fixed" => given.read_fixed(&entry)?,
+                "friction" => given.read_friction(&entry)?,
+                "units" => units = read_units(&entry)?,
+                _ => return Err(entry.unknown(&["fixed", "friction", "units"])),
+            }
+        }
+        let mut setting = given.setting();
+        match of {
+            PointOf::Sliding => given.check(&[], None)?,
+            PointOf::CriticalVelocity => check_critical(&given, &mut setting)?,
+        }
+        // Without v0 the law itself has to be well posed.
+        let posed = match of {
+            PointOf::Sliding => setting.sliding_point().map(drop),
+            PointOf::CriticalVelocity => setting.friction_law().map(drop),
+        };
+        posed.map_err(|error| SpecError {
+            span: given.ill_posed_place().cloned(),
+            ..SpecError::whole(error.to_string())
+        })?;
+        Ok(Self { setting, units })
+    }
+}
+
+/// A friction law is given, no v0, and a delay unless both gains are 0.
+fn check_critical(given: &GivenParameters, setting: &mut Setting) -> Result<(), SpecError> {
+    if given.law_place().is_none() {
+        let message = "the critical velocity depends on the whole friction law";
+        return Err(SpecError::whole(message)
+            .help("for example: [friction] law = \"weakening\", mu0 = 0.5, v_s = 0.5"));
+    }
+    if let Some(place) = given.place(Parameter::V0) {
+        let message = "v0 is what is looked for";
+        return Err(SpecError::at(place.clone(), message).help("leave it out"));
+    }
+    let mut optional = vec![Parameter::V0];
+    if setting.control() == Control::default() {
+        optional.push(Parameter::Tau);
+    }
+    given.check(&optional, given.law_place())?;
+    if setting.get(Parameter::Tau).is_nan() {
+        setting.set(Parameter::Tau, 0.0);
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const LAW: &str = "[friction]\nlaw = \"weakening\"\nmu0 = 0.5\nv_s = 0.5\n";
+
+    #[test]
+    fn a_point_is_read_for_what_is_asked_of_it() {
+        let sliding = format!("[fixed]\nv0 = 0.35\nalpha_v = -0.33\ntau = 4.15\n{LAW}");
+        let point = PointSpec::read(&sliding, PointOf::Sliding).unwrap();
+        assert_eq!(point.setting.get(Parameter::Tau), 4.15);
+        let point = PointSpec::read(LAW, PointOf::CriticalVelocity).unwrap();
+        assert_eq!(point.setting.get(Parameter::Tau), 0.0);
+    }
+
+    #[test]
+    fn what_does_not_fit_is_told_in_its_place() {
+        let place = |text: &str, of: PointOf| {
+            let error = PointSpec::read(text, of).unwrap_err();
+            (error.span.map(|span| text[span].to_owned()), error.message)
+        };
+        let with_v0 = format!("[fixed]\nv0 = 0.35\n{LAW}");
+        let (span, message) = place(&with_v0, PointOf::CriticalVelocity);
+        assert_eq!(
+            (span.as_deref(), &*message),
+            (Some("v0"), "v0 is what is looked for")
+        );
+        let gained = format!("[fixed]\nalpha_v = -0.33\n{LAW}");
+        let (_, message) = place(&gained, PointOf::CriticalVelocity);
+        assert_eq!(message, "tau is not given");
+        let (span, _) = place("[axes]\n", PointOf::Sliding);
+        assert_eq!(span.as_deref(), Some("axes"));
+        let (span, message) = place("[fixed]\ntau = -1\nmu_prime = 0.1\n", PointOf::Sliding);
+        assert!(
+            span.as_deref() == Some("-1") && message.contains("tau"),
+            "{message}"
+        );
+        let ill = "[fixed]\nv0 = 0.1\ntau = 1\n[friction]\nlaw = \"coulomb\"\nmu0 = 2\n";
+        assert!(place(ill, PointOf::Sliding).1.contains("mu0"));
+    }
+}
