@@ -14,8 +14,10 @@
 //! | [`slip`] | the nonlinear oscillator: stick, slip, lift-off, delayed feedback | |
 //! | [`critical`] | the critical velocity below which stick-slip survives | |
 //! | [`sweep`] | sweep files, plans, the engine that computes maps | `sweep` |
+//! | [`explore`] | what is asked at a point or in a plane, as plain data | `explore` |
 //! | [`store`] | maps on disk: their files | `store` |
 //! | [`maps`] | from a plan to its map; whether a map is true | `store` |
+//! | [`serve`] | a page in a browser, and the interface behind it | `serve` |
 //! | [`report`] | progress, pictures | `store`, `picture`, `cli` |
 //!
 //! `cli`, the default, has everything. With `default-features = false` the rest stands alone,
@@ -45,6 +47,9 @@
 
 #[cfg_attr(not(test), warn(clippy::disallowed_methods))]
 pub mod critical;
+#[cfg(feature = "explore")]
+#[cfg_attr(not(test), warn(clippy::disallowed_methods))]
+pub mod explore;
 #[cfg_attr(not(test), warn(clippy::disallowed_methods))]
 pub mod linear;
 #[cfg(feature = "store")]
@@ -56,6 +61,8 @@ pub mod model;
 pub mod report;
 #[cfg(test)]
 mod revision;
+#[cfg(feature = "serve")]
+pub mod serve;
 #[cfg_attr(not(test), warn(clippy::disallowed_methods))]
 pub mod slip;
 #[cfg(feature = "store")]

@@ -5,8 +5,9 @@ mod uses;
 
 use std::path::{Path, PathBuf};
 
-const LAYERS: [&str; 9] = [
-    "model", "linear", "slip", "critical", "sweep", "store", "maps", "report", "cli",
+const LAYERS: [&str; 11] = [
+    "model", "linear", "slip", "critical", "sweep", "explore", "store", "maps", "report", "serve",
+    "cli",
 ];
 /// The rooms of a sweep, each above those before it; beside them stands what a sweep tells.
 const ROOMS: [&str; 6] = ["events", "input", "plan", "cells", "engine", "grid"];

@@ -13,6 +13,7 @@ mod plot;
 mod point;
 mod run;
 mod say;
+mod serve;
 mod signals;
 mod simulate;
 mod status;
@@ -55,6 +56,8 @@ enum Command {
     Point(point::Args),
     /// The gain and delay of fastest decay, for every stable region
     Best(best::Args),
+    /// Show charts in a browser, computed while you look
+    Serve(serve::Args),
     /// The critical velocity at one point
     Vc(vc::Args),
     /// One motion in time: from a case file to HDF5 and a picture, with its events and outcome
@@ -96,6 +99,7 @@ pub(crate) fn main() -> ExitCode {
         Command::Plan(args) => plan::main(&args),
         Command::Point(args) => point::main(&args),
         Command::Best(args) => best::main(&args),
+        Command::Serve(args) => serve::main(&args),
         Command::Vc(args) => vc::main(&args),
         Command::Simulate(args) => simulate::main(&args),
         Command::Plot(args) => plot::main(&args),

@@ -2,21 +2,15 @@
 
 use std::io::Write;
 
-use serde::Serialize;
-use slipmap::linear::rightmost::Rightmost;
-use slipmap::linear::stable_delays::StableInterval;
-use slipmap::linear::{Crossings, MarginalTolerance};
-use slipmap::sweep::{Parameter, Setting, relaxation_time};
+use slipmap::explore::point::{Point, Spectrum};
+use slipmap::sweep::relaxation_time;
 
 use super::failure::Failure;
 use super::parameters::ParameterArgs;
 use super::say;
 
-/// Stable intervals printed for people; the JSON output has them all, up to `MOST_INTERVALS`.
+/// Stable intervals printed for people; the JSON output has them all, up to a hundred thousand.
 const INTERVALS_SHOWN: usize = 12;
-/// Near a tangency there can be millions of stable intervals; more than this are cut, and the
-/// output says so.
-const MOST_INTERVALS: usize = 100_000;
 
 #[derive(Debug, clap::Args)]
 #[command(after_help = "Example: slipmap point --mu-prime -0.7 --alpha-v -0.3174 --tau 4.313")]
@@ -32,101 +26,6 @@ pub(super) struct Args {
     json: bool,
 }
 
-/// The JSON of a point. Infinite numbers are written as null.
-#[derive(Debug, Serialize)]
-struct Point {
-    mu_prime: f64,
-    mu_k: f64,
-    alpha_v: f64,
-    alpha_n: f64,
-    tau: f64,
-    n_unstable: u64,
-    stable: bool,
-    marginal: bool,
-    stable_delays: Vec<[Option<f64>; 2]>,
-    stable_delays_truncated: bool,
-    delay_margin: Option<f64>,
-    crossings: Vec<CrossingOut>,
-    #[serde(flatten)]
-    spectrum: Spectrum,
-}
-
-/// The rightmost roots in physical units; null where nothing converged.
-#[derive(Debug, Serialize)]
-struct Spectrum {
-    abscissa: Option<f64>,
-    frequency: Option<f64>,
-    roots: Vec<[f64; 2]>,
-    certified: bool,
-    certificate_margin: Option<f64>,
-    /// Why there are fewer roots than asked for.
-    #[serde(skip)]
-    fewer: Option<String>,
-    /// Some were not found that are there.
-    #[serde(skip)]
-    incomplete: bool,
-}
-
-impl Spectrum {
-    /// The `wanted` rightmost roots, and a remark where some were not found.
-    fn new(setting: &Setting, wanted: u8) -> Result<Self, Failure> {
-        let (groups, time_unit) = setting.groups()?;
-        let tau = setting.get(Parameter::Tau) / time_unit;
-        let count = Crossings::of(groups).count(tau, MarginalTolerance::default());
-        let found = Rightmost::at(groups, tau, wanted.into(), count);
-        let incomplete = found.missing.is_some();
-        let roots: Vec<[f64; 2]> = found
-            .roots
-            .iter()
-            .map(|root| [root.lambda.re / time_unit, root.lambda.im / time_unit])
-            .collect();
-        let fewer = match found.missing {
-            Some(missing) => Some(missing.to_string()),
-            None if tau == 0.0 => Some("there are no others: the delay is 0".into()),
-            None if groups.uncontrolled() => Some("there are no others without control".into()),
-            None => Some("no others can be told from -infinity".into()),
-        };
-        Ok(Self {
-            abscissa: roots.first().map(|root| root[0]),
-            frequency: roots.first().map(|root| root[1]),
-            fewer: fewer.filter(|_| roots.len() < wanted.into()),
-            roots,
-            certified: found.certified,
-            certificate_margin: finite(found.margin),
-            incomplete,
-        })
-    }
-
-    fn print(
-        &self,
-        mut row: impl FnMut(&str, String) -> std::io::Result<()>,
-    ) -> std::io::Result<()> {
-        let certified = match (self.certified, self.certificate_margin) {
-            (true, Some(margin)) => format!(
-                "yes: no root farther right than abscissa + {margin:e} max(1/sqrt(M/kappa), \
-                |abscissa|)"
-            ),
-            _ => "no".into(),
-        };
-        row("certified", certified)?;
-        let head = ["re lambda", "im lambda", "relaxation time"];
-        row("roots", head.map(|title| format!("{title:>22}")).concat())?;
-        for [re, im] in &self.roots {
-            let pair = if *im == 0.0 { "" } else { "±" };
-            let cells = [
-                digits(*re),
-                format!("{pair}{}", digits(*im)),
-                digits(relaxation_time(*re)),
-            ];
-            row("", cells.map(|cell| format!("{cell:>22}")).concat())?;
-        }
-        match &self.fewer {
-            Some(why) => row("", why.clone()),
-            None => Ok(()),
-        }
-    }
-}
-
 /// A number with about twelve digits, for a table.
 fn digits(value: f64) -> String {
     match value.abs() {
@@ -137,52 +36,38 @@ fn digits(value: f64) -> String {
     }
 }
 
-#[derive(Debug, Serialize)]
-struct CrossingOut {
-    omega: f64,
-    first_delay: f64,
-    direction: &'static str,
+fn print_spectrum(
+    spectrum: &Spectrum,
+    mut row: impl FnMut(&str, String) -> std::io::Result<()>,
+) -> std::io::Result<()> {
+    let certified = match (spectrum.certified, spectrum.certificate_margin) {
+        (true, Some(margin)) => format!(
+            "yes: no root farther right than abscissa + {margin:e} max(1/sqrt(M/kappa), \
+            |abscissa|)"
+        ),
+        _ => "no".into(),
+    };
+    row("certified", certified)?;
+    let head = ["re lambda", "im lambda", "relaxation time"];
+    row("roots", head.map(|title| format!("{title:>22}")).concat())?;
+    for [re, im] in &spectrum.roots {
+        let pair = if *im == 0.0 { "" } else { "±" };
+        let cells = [
+            digits(*re),
+            format!("{pair}{}", digits(*im)),
+            digits(relaxation_time(*re)),
+        ];
+        row("", cells.map(|cell| format!("{cell:>22}")).concat())?;
+    }
+    match &spectrum.fewer {
+        Some(why) => row("", why.clone()),
+        None => Ok(()),
+    }
 }
 
 pub(super) fn main(args: &Args) -> Result<(), Failure> {
     let setting = args.parameters.setting()?;
-    let sliding = setting.sliding_point()?;
-    let (groups, time_unit) = setting.groups()?;
-    let crossings = Crossings::of(groups).in_physical_time(time_unit);
-    let tau = setting.get(Parameter::Tau);
-    let count = crossings.count(tau, MarginalTolerance::default());
-    let mut intervals = crossings.stable_delays();
-    let stable: Vec<StableInterval> = intervals.by_ref().take(MOST_INTERVALS).collect();
-    let margin = crossings.delay_margin(tau);
-    let point = Point {
-        mu_prime: sliding.mu_prime,
-        mu_k: sliding.mu_k,
-        alpha_v: setting.get(Parameter::AlphaV),
-        alpha_n: setting.get(Parameter::AlphaN),
-        tau,
-        n_unstable: count.n_unstable,
-        stable: count.stable(),
-        marginal: count.marginal,
-        stable_delays: stable
-            .iter()
-            .map(|s| [Some(s.from), finite(s.to)])
-            .collect(),
-        stable_delays_truncated: intervals.next().is_some(),
-        delay_margin: finite(margin),
-        crossings: crossings
-            .iter()
-            .map(|c| CrossingOut {
-                omega: c.omega,
-                first_delay: c.delay(c.first_branch),
-                direction: match c.direction {
-                    slipmap::linear::Direction::Left => "left",
-                    slipmap::linear::Direction::Right => "right",
-                    slipmap::linear::Direction::Touch => "touch",
-                },
-            })
-            .collect(),
-        spectrum: Spectrum::new(&setting, args.roots)?,
-    };
+    let point = Point::at(&setting, args.roots)?;
     let spectrum = &point.spectrum;
     if let Some(why) = spectrum.fewer.as_ref().filter(|_| spectrum.incomplete) {
         say::remark(format_args!("warning: {why}"));
@@ -195,10 +80,6 @@ pub(super) fn main(args: &Args) -> Result<(), Failure> {
         print(&mut out, &point)?;
     }
     Ok(())
-}
-
-fn finite(value: f64) -> Option<f64> {
-    value.is_finite().then_some(value)
 }
 
 fn print(out: &mut impl Write, point: &Point) -> std::io::Result<()> {
@@ -253,5 +134,5 @@ fn print(out: &mut impl Write, point: &Point) -> std::io::Result<()> {
             format!("and {more} further intervals (--json lists them)"),
         )?;
     }
-    point.spectrum.print(row)
+    print_spectrum(&point.spectrum, row)
 }

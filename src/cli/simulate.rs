@@ -4,12 +4,13 @@ use std::io::Write;
 use std::path::{Path, PathBuf};
 
 use serde::Serialize;
+use slipmap::explore::motion::MotionSummary;
 use slipmap::report::numbers::grouped;
 use slipmap::report::picture::{self, Picture};
 use slipmap::slip::motion::MOST_KEPT;
 use slipmap::slip::outcome::{Outcome, Summary};
 use slipmap::store::{Output, StoreError, trace_file};
-use slipmap::sweep::cells::trace::{TraceError, TraceEvent};
+use slipmap::sweep::cells::trace::TraceError;
 use slipmap::sweep::{CaseSpec, Trace};
 
 use super::failure::Failure;
@@ -42,54 +43,12 @@ pub(super) struct Args {
     json: bool,
 }
 
-/// The JSON of a motion. NaN and infinity are written as null.
+/// The JSON of a motion, with the file of its trace.
 #[derive(Debug, Serialize)]
 struct MotionOut {
-    outcome: &'static str,
-    decided: f64,
-    settle_time: f64,
-    n_min: f64,
-    peak_force: f64,
-    period: f64,
-    stick_time: f64,
-    slip_time: f64,
-    last_release: f64,
-    steps: u64,
-    events: Vec<EventOut>,
+    #[serde(flatten)]
+    summary: MotionSummary,
     trace: String,
-}
-
-#[derive(Debug, Serialize)]
-struct EventOut {
-    t: f64,
-    kind: &'static str,
-    a: f64,
-}
-
-impl MotionOut {
-    fn new(trace: &Trace, path: &Path) -> Self {
-        let summary = &trace.summary;
-        let event = |e: &TraceEvent| EventOut {
-            t: e.t,
-            kind: e.name(),
-            a: e.a,
-        };
-        Self {
-            outcome: summary.outcome.name(),
-            decided: summary.decided,
-            settle_time: summary.settle_time,
-            // Not −0.
-            n_min: summary.n_min + 0.0,
-            peak_force: summary.peak,
-            period: summary.period,
-            stick_time: summary.stick_time,
-            slip_time: summary.slip_time,
-            last_release: summary.last_release,
-            steps: summary.steps,
-            events: trace.events.iter().map(event).collect(),
-            trace: path.display().to_string(),
-        }
-    }
 }
 
 pub(super) fn main(args: &Args) -> Result<(), Failure> {
@@ -103,7 +62,10 @@ pub(super) fn main(args: &Args) -> Result<(), Failure> {
     let output = Output::claim(&path)?;
     trace_file::write(&spec, &trace, output, &provenance("simulate", &args.case))?;
     if args.json {
-        say::json(&MotionOut::new(&trace, &path))?;
+        say::json(&MotionOut {
+            summary: MotionSummary::of(&trace),
+            trace: path.display().to_string(),
+        })?;
     } else {
         print(&mut std::io::stdout().lock(), &spec, &trace)?;
         let samples = grouped(trace.samples.len() as u64);

@@ -1,18 +1,13 @@
 //! `slipmap vc`: the critical velocity at one point.
 
-use std::collections::BTreeMap;
 use std::io::Write;
 
 use clap::ValueEnum;
 use serde::Serialize;
-use slipmap::critical::CriticalWindows;
-use slipmap::critical::limit::LimitCell;
 use slipmap::critical::switch_on::Phase;
+use slipmap::explore::vc::{CriticalVelocity, ShortDelay};
 use slipmap::sweep::Parameter;
-use slipmap::sweep::cells::vc;
-use slipmap::sweep::input::field::{Field, OUTCOMES, number_of_outcome};
 use slipmap::sweep::input::search::{self, PHASES};
-use slipmap::sweep::input::source::Source;
 
 use super::failure::Failure;
 use super::parameters::{LimitArgs, ParameterArgs, flag};
@@ -41,8 +36,7 @@ pub(super) struct Args {
 }
 
 /// Protocols by name.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum, Serialize)]
-#[serde(rename_all = "kebab-case")]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 enum ProtocolName {
     /// From controlled stick-slip at low v0, raised until stick-slip ends
     Follow,
@@ -50,31 +44,6 @@ enum ProtocolName {
     SwitchOn,
     /// Coulomb friction, load control, τ → 0: closed form
     Limit,
-}
-
-/// The JSON of a critical velocity. What there is not is null.
-#[derive(Debug, Serialize)]
-struct VcAnswer {
-    vc: Option<f64>,
-    protocol: &'static str,
-    outcome: &'static str,
-    windows: Vec<[f64; 2]>,
-    v_liftoff: Option<f64>,
-    stick_time: Option<f64>,
-    slip_time: Option<f64>,
-    n_min: Option<f64>,
-    method: &'static str,
-    decided: bool,
-}
-
-/// The JSON of the limit: its parameters, and the fields of its maps by their names.
-#[derive(Debug, Serialize)]
-struct Limit {
-    protocol: ProtocolName,
-    gamma: f64,
-    mu_ratio: f64,
-    #[serde(flatten)]
-    fields: BTreeMap<&'static str, Option<f64>>,
 }
 
 /// Runs the subcommand.
@@ -89,8 +58,9 @@ pub(super) fn main(args: &Args) -> Result<(), Failure> {
                 ProtocolName::SwitchOn => search::Protocol::SwitchOn(args.phase()?),
                 _ => search::Protocol::Follow,
             };
-            let found = vc::find(&setting, protocol).map_err(|e| args.parameters.refused(&e))?;
-            print(&mut out, args.json, &told(found, protocol))
+            let found = CriticalVelocity::of(&setting, protocol);
+            let found = found.map_err(|e| args.parameters.refused(&e))?;
+            print(&mut out, args.json, &found)
         }
     }
 }
@@ -111,27 +81,6 @@ fn print(out: &mut impl Write, json: bool, found: &impl Serialize) -> Result<(),
         writeln!(out, "{key:<20} {shown}")?;
     }
     Ok(())
-}
-
-fn finite(value: f64) -> Option<f64> {
-    value.is_finite().then_some(value)
-}
-
-/// What is found by a protocol of motions.
-fn told(found: CriticalWindows, protocol: search::Protocol) -> VcAnswer {
-    let critical = found.critical;
-    VcAnswer {
-        vc: finite(critical.vc),
-        protocol: protocol.name(),
-        outcome: OUTCOMES[usize::from(number_of_outcome(&critical))],
-        windows: found.windows,
-        v_liftoff: finite(critical.v_liftoff),
-        stick_time: finite(critical.stick_time),
-        slip_time: finite(critical.slip_time),
-        n_min: finite(critical.n_min),
-        method: critical.method.name(),
-        decided: critical.decided,
-    }
 }
 
 impl Args {
@@ -159,7 +108,7 @@ impl Args {
         Ok(())
     }
 
-    fn limit(&self) -> Result<Limit, Failure> {
+    fn limit(&self) -> Result<ShortDelay, Failure> {
         let needed = |parameter| {
             self.limit.get(parameter).ok_or_else(|| {
                 Failure::bad_input_with_help(
@@ -170,25 +119,13 @@ impl Args {
         };
         let gamma = needed(Parameter::Gamma)?;
         let mu_ratio = needed(Parameter::MuRatio)?;
-        let found = LimitCell::at(gamma, mu_ratio).map_err(|e| {
+        ShortDelay::at(gamma, mu_ratio).map_err(|e| {
             let given = [Parameter::Gamma, Parameter::MuRatio];
             let of = given.into_iter().find(|p| p.name() == e.parameter);
             of.map_or_else(
                 || Failure::from(e.clone()),
                 |p| Failure::out_of_range(&flag(p), &e),
             )
-        })?;
-        let fields = Field::ALL
-            .into_iter()
-            .filter_map(|field| match field.source() {
-                Source::Limit(value) => Some((field.name(), finite(value(&found)))),
-                _ => None,
-            });
-        Ok(Limit {
-            protocol: ProtocolName::Limit,
-            gamma,
-            mu_ratio,
-            fields: fields.collect(),
         })
     }
 

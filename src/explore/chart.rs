@@ -1,0 +1,200 @@
+//! What a chart shows: the cells and curves of a sweep, computed into memory at once.
+
+use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
+
+use crate::linear::Direction;
+use crate::linear::curves::StableSide;
+use crate::sweep::engine::RunError;
+use crate::sweep::grid::{Grid, TooLarge};
+use crate::sweep::{Plan, SpecError, SweepSpec};
+
+/// How much a chart may take.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Limits {
+    /// The most cells whose fields come from the closed form of a line.
+    pub counted: u64,
+    /// The most cells whose roots are followed.
+    pub rooted: u64,
+    /// The most cells whose motion is followed, or whose critical velocity is looked for.
+    pub followed: u64,
+}
+
+impl Default for Limits {
+    /// What takes about a second on one core.
+    fn default() -> Self {
+        Self {
+            counted: 4_000_000,
+            rooted: 1_000_000,
+            followed: 1000,
+        }
+    }
+}
+
+/// Why there is no chart.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum ChartError {
+    /// The sweep is not understood.
+    #[error(transparent)]
+    Spec(#[from] SpecError),
+    /// It has more cells than a chart may have.
+    #[error("a chart of these fields has at most {most} cells, this one has {cells}")]
+    TooManyCells {
+        /// How many it has.
+        cells: u64,
+        /// How many it may have.
+        most: u64,
+    },
+    /// It was stopped before it was complete.
+    #[error("stopped")]
+    Stopped,
+    /// It cannot be computed.
+    #[error("{0}")]
+    Failed(String),
+}
+
+/// A curve of a chart.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ChartCurve {
+    /// σ: roots on the curve have Re λ = −σ.
+    pub degree_of_stability: f64,
+    /// Where a pair crosses with growing delay: −1 to the left, 0 it touches, 1 to the right.
+    pub direction: i8,
+    /// On which side sliding is stable: −1 at shorter delays, 0 on neither, 1 at longer ones.
+    pub stable_side: i8,
+    /// Parameter and delay, vertex by vertex.
+    pub vertices: Vec<[f64; 2]>,
+}
+
+/// A sweep in memory.
+#[derive(Debug, Clone)]
+pub struct Chart {
+    /// Its cells.
+    pub grid: Grid,
+    /// The curves of all its planes.
+    pub curves: Vec<ChartCurve>,
+}
+
+impl Chart {
+    /// Computes the sweep that `text` describes on this thread; a `stop` is heeded between tiles.
+    ///
+    /// # Errors
+    /// When the text is not understood, it has too many cells, or it was stopped.
+    pub fn of(text: &str, limits: Limits, stop: &Arc<AtomicBool>) -> Result<Self, ChartError> {
+        let spec: SweepSpec = text.parse()?;
+        let plan = Arc::new(Plan::new(spec)?);
+        let (cells, most) = (plan.cells(), limits.most(&plan.spec));
+        if cells > most {
+            return Err(ChartError::TooManyCells { cells, most });
+        }
+        let grid = Grid::compute_here(&plan, stop).map_err(|error| match error {
+            RunError::Interrupted => ChartError::Stopped,
+            RunError::Sink(TooLarge { .. }) => ChartError::TooManyCells { cells, most },
+            other => ChartError::Failed(other.to_string()),
+        })?;
+        let curves = curves(&grid);
+        Ok(Self { grid, curves })
+    }
+}
+
+impl Limits {
+    /// The most cells of a sweep with these fields.
+    fn most(&self, spec: &SweepSpec) -> u64 {
+        if spec.follows_motions() || spec.critical.is_some() {
+            self.followed
+        } else if spec.fields.iter().any(|field| field.roots_needed() > 0) {
+            self.rooted
+        } else {
+            self.counted
+        }
+    }
+}
+
+fn curves(grid: &Grid) -> Vec<ChartCurve> {
+    let of_planes = grid.curves.iter().flat_map(|plane| &plane.curves);
+    let mut curves = Vec::new();
+    for of in of_planes {
+        let Ok(traced) = &of.curves else { continue };
+        curves.extend(traced.pieces.iter().map(|piece| ChartCurve {
+            degree_of_stability: of.degree_of_stability,
+            direction: match piece.direction {
+                Direction::Left => -1,
+                Direction::Touch => 0,
+                Direction::Right => 1,
+            },
+            stable_side: match piece.stable_side {
+                StableSide::Shorter => -1,
+                StableSide::Neither => 0,
+                StableSide::Longer => 1,
+            },
+            vertices: piece.vertices.iter().map(|v| [v.p, v.tau]).collect(),
+        }));
+    }
+    curves
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::linear::Crossings;
+    use std::sync::atomic::Ordering;
+
+    const PLANE: &str = "[axes]\nmu_prime = { from = -0.9, to = 0.1, points = 40 }\n\
+        tau = { from = 0.0, to = 9.0, points = 50 }\n[fixed]\nalpha_v = -0.33\n";
+
+    fn chart(text: &str) -> Result<Chart, ChartError> {
+        let stop = Arc::new(AtomicBool::new(false));
+        Chart::of(text, Limits::default(), &stop)
+    }
+
+    #[test]
+    fn cells_are_those_of_the_closed_form_and_curves_bound_them() {
+        let found = chart(&format!("boundaries = true\n{PLANE}")).unwrap();
+        let counts = found.grid.cells.n_unstable.as_deref().unwrap();
+        let plan = found.grid.plan();
+        for (i, &n) in counts.iter().enumerate() {
+            let setting = plan.setting(&[i / 50, i % 50]);
+            let (groups, _) = setting.groups().unwrap();
+            let tau = plan.spec.axes[1].values[i % 50];
+            assert_eq!(u64::from(n), Crossings::of(groups).n_unstable(tau));
+        }
+        assert!(counts.contains(&0) && counts.contains(&2));
+        assert!(found.curves.iter().any(|curve| curve.stable_side != 0));
+        assert!(found.curves.iter().all(|curve| curve.vertices.len() > 1));
+    }
+
+    #[test]
+    fn too_much_is_refused_before_anything_is_computed() {
+        for (fields, points, most) in [
+            ("", 100_001, 4_000_000),
+            ("fields = [\"abscissa\"]\n", 30_000, 1_000_000),
+        ] {
+            let longer = PLANE.replace("points = 50", &format!("points = {points}"));
+            let refused = chart(&format!("{fields}{longer}")).unwrap_err();
+            let cells = 40 * points;
+            assert_eq!(refused, ChartError::TooManyCells { cells, most });
+        }
+        let axis = "[axes]\ntau = { from = 0.1, to = 9, points = 1001 }\n[fixed]\nv0 = 0.2\n\
+            [friction]\nlaw = \"coulomb\"\nmu0 = 0.5\n";
+        let followed = chart(&format!("fields = [\"outcome\"]\n{axis}")).unwrap_err();
+        assert_eq!(
+            followed,
+            ChartError::TooManyCells {
+                cells: 1001,
+                most: 1000
+            }
+        );
+    }
+
+    #[test]
+    fn mistakes_say_where_and_a_stop_ends_it() {
+        let ChartError::Spec(error) = chart("[axes]\ntau = [1, 0]\n").unwrap_err() else {
+            panic!("another error")
+        };
+        assert!(error.span.is_some());
+        let stop = Arc::new(AtomicBool::new(false));
+        stop.store(true, Ordering::Relaxed);
+        let stopped = Chart::of(PLANE, Limits::default(), &stop);
+        assert_eq!(stopped.unwrap_err(), ChartError::Stopped);
+    }
+}

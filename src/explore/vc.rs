@@ -1,0 +1,98 @@
+//! The critical velocity at a point of parameter space.
+
+use std::collections::BTreeMap;
+
+use serde::Serialize;
+
+use super::finite;
+use crate::critical::limit::LimitCell;
+use crate::model::ModelError;
+use crate::sweep::Setting;
+use crate::sweep::cells::vc;
+use crate::sweep::input::field::{Field, OUTCOMES, number_of_outcome};
+use crate::sweep::input::search::{LIMIT, Protocol};
+use crate::sweep::input::source::Source;
+
+/// How stick-slip ends, in units of the setting.
+#[derive(Debug, Clone, Serialize)]
+pub struct CriticalVelocity {
+    /// v_c.
+    pub vc: Option<f64>,
+    /// Which question it answers: `follow` or `switch-on`.
+    pub protocol: &'static str,
+    /// How stick-slip ends there.
+    pub outcome: &'static str,
+    /// Where it survives: v0 from and to.
+    pub windows: Vec<[f64; 2]>,
+    /// The smallest v0 at which N ≤ 0 occurs, where that ends stick-slip.
+    pub v_liftoff: Option<f64>,
+    /// Time stuck in a period at v_c.
+    pub stick_time: Option<f64>,
+    /// Time in slip in a period at v_c.
+    pub slip_time: Option<f64>,
+    /// The smallest load at v_c.
+    pub n_min: Option<f64>,
+    /// What gave the answer.
+    pub method: &'static str,
+    /// Whether it is known what becomes of the motion beyond v_c.
+    pub decided: bool,
+}
+
+impl CriticalVelocity {
+    /// Of a setting, whose v0 means nothing.
+    ///
+    /// # Errors
+    /// When the setting has no friction law, or a value is out of the model's range.
+    pub fn of(setting: &Setting, protocol: Protocol) -> Result<Self, ModelError> {
+        let found = vc::find(setting, protocol)?;
+        let critical = found.critical;
+        Ok(Self {
+            vc: finite(critical.vc),
+            protocol: protocol.name(),
+            outcome: OUTCOMES[usize::from(number_of_outcome(&critical))],
+            windows: found.windows,
+            v_liftoff: finite(critical.v_liftoff),
+            stick_time: finite(critical.stick_time),
+            slip_time: finite(critical.slip_time),
+            n_min: finite(critical.n_min),
+            method: critical.method.name(),
+            decided: critical.decided,
+        })
+    }
+}
+
+/// The limit of a short delay: its parameters, and the fields of its maps by their names.
+#[derive(Debug, Clone, Serialize)]
+pub struct ShortDelay {
+    /// [`LIMIT`].
+    pub protocol: &'static str,
+    /// γ.
+    pub gamma: f64,
+    /// μ_K/μ_S.
+    pub mu_ratio: f64,
+    /// The values of the fields.
+    #[serde(flatten)]
+    pub fields: BTreeMap<&'static str, Option<f64>>,
+}
+
+impl ShortDelay {
+    /// At γ > 0 and μ_K/μ_S in (0, 1].
+    ///
+    /// # Errors
+    /// When one of them is out of its range.
+    pub fn at(gamma: f64, mu_ratio: f64) -> Result<Self, ModelError> {
+        let found = LimitCell::at(gamma, mu_ratio)?;
+        let fields = Field::ALL
+            .into_iter()
+            .filter_map(|field| match field.source() {
+                Source::Limit(value) => Some((field.name(), finite(value(&found)))),
+                _ => None,
+            });
+        Ok(Self {
+            protocol: LIMIT,
+            gamma,
+            mu_ratio,
+            fields: fields.collect(),
+        })
+    }
+}

@@ -1,0 +1,192 @@
+//! Who may use the server: whoever has its token, from its own page.
+//!
+//! Login nodes are shared, so a port that anybody can reach is no protection; and any page in a
+//! browser can send requests to a port of this machine, so neither is its address.
+
+use std::io;
+
+use axum::http::header::{AUTHORIZATION, COOKIE, HOST, ORIGIN};
+use axum::http::{HeaderMap, Method};
+
+/// Bytes of a token.
+const BYTES: usize = 32;
+
+/// What requests have to bring.
+#[derive(Debug)]
+pub(super) struct Access {
+    token: String,
+    port: u16,
+}
+
+/// Why a request is refused.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Refusal {
+    /// It is for another host: a name that leads here by a trick.
+    Host,
+    /// It brings no token, or another one.
+    Token,
+    /// Another page sends it.
+    Origin,
+}
+
+impl Access {
+    /// With a new token.
+    pub(super) fn new(port: u16) -> io::Result<Self> {
+        let mut bytes = [0; BYTES];
+        getrandom::fill(&mut bytes).map_err(io::Error::other)?;
+        let token = crate::sweep::plan::in_hexadecimal(&bytes);
+        Ok(Self { token, port })
+    }
+
+    pub(super) fn token(&self) -> &str {
+        &self.token
+    }
+
+    /// The name of the cookie. Ports of one host share their cookies.
+    fn cookie_name(&self) -> String {
+        format!("slipmap-{}", self.port)
+    }
+
+    /// The cookie that takes the place of the token in the link.
+    pub(super) fn cookie(&self) -> String {
+        let (name, token) = (self.cookie_name(), &self.token);
+        format!("{name}={token}; HttpOnly; SameSite=Strict; Path=/")
+    }
+
+    /// Whether `offered` is the token, in a time that does not tell how much of it is right.
+    pub(super) fn is_token(&self, offered: &str) -> bool {
+        let (offered, token) = (offered.as_bytes(), self.token.as_bytes());
+        let differ = offered
+            .iter()
+            .zip(token)
+            .fold(0, |all, (a, b)| all | (a ^ b));
+        offered.len() == token.len() && differ == 0
+    }
+
+    /// Whether a request is for this host, by one of the names that a browser on this machine has
+    /// for it.
+    pub(super) fn check_host(&self, headers: &HeaderMap) -> Result<(), Refusal> {
+        let mut hosts = headers.get_all(HOST).iter();
+        let (Some(host), None) = (hosts.next(), hosts.next()) else {
+            return Err(Refusal::Host);
+        };
+        let port = self.port;
+        let own = ["127.0.0.1", "localhost", "[::1]"].map(|name| format!("{name}:{port}"));
+        match own.iter().any(|own| own.as_bytes() == host.as_bytes()) {
+            true => Ok(()),
+            false => Err(Refusal::Host),
+        }
+    }
+
+    /// Whether a request brings the token, as a cookie or as a bearer's, and, where it is more than
+    /// a look, comes from the page itself or from no page.
+    pub(super) fn check(&self, method: &Method, headers: &HeaderMap) -> Result<(), Refusal> {
+        let bearer = headers
+            .get(AUTHORIZATION)
+            .and_then(|value| value.to_str().ok());
+        let bearer = bearer.and_then(|value| value.strip_prefix("Bearer "));
+        let prefix = format!("{}=", self.cookie_name());
+        let cookies = headers.get_all(COOKIE).iter();
+        let cookies = cookies.filter_map(|value| value.to_str().ok());
+        let mut cookies = cookies.flat_map(|value| value.split("; "));
+        let cookie = cookies.find_map(|cookie| cookie.strip_prefix(&prefix));
+        let known = [bearer, cookie]
+            .into_iter()
+            .flatten()
+            .any(|token| self.is_token(token));
+        if !known {
+            return Err(Refusal::Token);
+        }
+        match method == Method::GET || method == Method::HEAD || Self::is_own(headers) {
+            true => Ok(()),
+            false => Err(Refusal::Origin),
+        }
+    }
+
+    /// Whether no other page sends a request.
+    fn is_own(headers: &HeaderMap) -> bool {
+        let text = |value: &axum::http::HeaderValue| value.to_str().unwrap_or("").to_owned();
+        let site = headers.get("sec-fetch-site").map(text);
+        let origin = headers.get(ORIGIN).map(text);
+        let host = headers.get(HOST).map(text).unwrap_or_default();
+        site.is_none_or(|site| site == "same-origin")
+            && origin.is_none_or(|origin| origin == format!("http://{host}"))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use axum::http::HeaderValue;
+
+    fn headers(list: &[(&'static str, String)]) -> HeaderMap {
+        let mut headers = HeaderMap::new();
+        for (name, value) in list {
+            headers.append(*name, HeaderValue::from_str(value).unwrap());
+        }
+        headers
+    }
+
+    #[test]
+    fn tokens_are_long_and_never_the_same() {
+        let [one, other] = [(); 2].map(|()| Access::new(80).unwrap());
+        assert_eq!(one.token().len(), 2 * BYTES);
+        assert!(one.is_token(one.token()) && !one.is_token(other.token()));
+        assert!(!one.is_token("") && !one.is_token(&one.token()[1..]));
+    }
+
+    #[test]
+    fn only_own_names_are_answered() {
+        let access = Access::new(8080).unwrap();
+        let check = |hosts: &[&str]| {
+            let list: Vec<_> = hosts
+                .iter()
+                .map(|host| ("host", (*host).to_owned()))
+                .collect();
+            access.check_host(&headers(&list))
+        };
+        for host in ["127.0.0.1:8080", "localhost:8080", "[::1]:8080"] {
+            assert_eq!(check(&[host]), Ok(()));
+        }
+        for hosts in [
+            &["evil.example:8080"][..],
+            &["127.0.0.1"],
+            &["127.0.0.1:8081"],
+            &["127.0.0.1:8080", "evil.example"],
+            &["localhost:8080.evil.example"],
+            &[],
+        ] {
+            assert_eq!(check(hosts), Err(Refusal::Host), "{hosts:?}");
+        }
+    }
+
+    #[test]
+    fn writes_come_from_the_page_itself() {
+        let access = Access::new(8080).unwrap();
+        let cookie = ("cookie", format!("a=b; slipmap-8080={}", access.token()));
+        let host = ("host", "localhost:8080".to_owned());
+        let own = ("origin", "http://localhost:8080".to_owned());
+        let other = ("origin", "http://localhost:9090".to_owned());
+        let cross = ("sec-fetch-site", "cross-site".to_owned());
+        let check = |method, list: &[&(&'static str, String)]| {
+            let list: Vec<_> = list.iter().map(|pair| (*pair).clone()).collect();
+            access.check(&method, &headers(&list))
+        };
+        assert_eq!(check(Method::POST, &[&host, &cookie, &own]), Ok(()));
+        assert_eq!(check(Method::POST, &[&host, &cookie]), Ok(()));
+        assert_eq!(
+            check(Method::POST, &[&host, &cookie, &other]),
+            Err(Refusal::Origin)
+        );
+        assert_eq!(
+            check(Method::POST, &[&host, &cookie, &cross]),
+            Err(Refusal::Origin)
+        );
+        assert_eq!(check(Method::GET, &[&host, &cookie, &cross]), Ok(()));
+        assert_eq!(check(Method::GET, &[&host]), Err(Refusal::Token));
+        let bearer = ("authorization", format!("Bearer {}", access.token()));
+        assert_eq!(check(Method::GET, &[&host, &bearer]), Ok(()));
+        let wrong = ("authorization", format!("Bearer {}", "0".repeat(64)));
+        assert_eq!(check(Method::GET, &[&host, &wrong]), Err(Refusal::Token));
+    }
+}
