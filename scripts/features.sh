@@ -26,11 +26,11 @@ if cargo clippy --version >/dev/null 2>&1; then
     check=(cargo clippy)
     strict=(-- -D warnings)
 fi
-for features in "" sweep store picture cli; do
+for features in "" sweep explore store picture serve cli; do
     say "features: ${features:-none}, $(packages "$features" | wc -l) packages"
     with=$features
     # Where libhdf5 is built from source, whatever needs it says so.
-    case $features in "" | sweep) ;; *) [ -z "$SLIPMAP_CARGO_FEATURES" ] || with=$features,static-hdf5 ;; esac
+    case $features in "" | sweep | explore | serve) ;; *) [ -z "$SLIPMAP_CARGO_FEATURES" ] || with=$features,static-hdf5 ;; esac
     "${check[@]}" --quiet --locked --lib --no-default-features --features "$with" ${strict[@]+"${strict[@]}"}
 done
 
@@ -42,7 +42,7 @@ if have rustup; then
     rustup --quiet target add $wasm >&2 || true
 fi
 if [ -e "$(rustc --print sysroot)/lib/rustlib/$wasm" ]; then
-    for features in "" sweep; do
+    for features in "" sweep explore; do
         cargo check --quiet --locked --lib --no-default-features --features "$features" --target $wasm
     done
 else
