@@ -61,8 +61,8 @@ impl Grid {
     /// at once.
     ///
     /// # Errors
-    /// When that is more than the system promises, a parameter is outside the model's range, or the threads
-    /// cannot be started.
+    /// When that is more than the system promises, a parameter is outside the model's range, or the
+    /// threads cannot be started.
     pub fn compute(plan: &Arc<Plan>, threads: usize) -> Result<Self, RunError<TooLarge>> {
         let mut grid = Self::empty(plan)?;
         let (todo, stop) = (Todo::all(plan.pieces()), Arc::new(AtomicBool::new(false)));

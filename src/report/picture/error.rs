@@ -71,7 +71,11 @@ pub enum PictureError {
         to: f64,
     },
     /// Several values are asked for along more than one axis.
-    #[error("several values are asked for of both {} and {}; one of them may have several", first.name(), second.name())]
+    #[error(
+        "several values are asked for of both {} and {}; one of them may have several",
+        first.name(),
+        second.name()
+    )]
     SeveralValues {
         /// The one.
         first: Parameter,

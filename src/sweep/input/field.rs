@@ -233,7 +233,8 @@ catalogue! {
         /// Signed distance in τ to the nearest change of stability.
         DelayMargin = Row {
             name: "delay_margin",
-            long_name: "distance in delay to the nearest change of stability, positive where stable",
+            long_name: "distance in delay to the nearest change of stability, \
+                        positive where stable",
             short_name: "delay margin",
             measure: TIME,
             source: Source::Line,
@@ -463,7 +464,8 @@ catalogue! {
         /// The pulling velocity from which the block lifts off there, over ṽ.
         LiftoffOverVtilde = Row {
             name: "liftoff_over_vtilde",
-            long_name: "pulling velocity over vtilde from which the block lifts off while it sticks",
+            long_name: "pulling velocity over vtilde from which the block lifts off \
+                        while it sticks",
             short_name: "lift-off",
             source: Source::Limit(|cell| cell.exact.liftoff_over_vtilde),
             spread: Spread::Decades,
