@@ -4,7 +4,7 @@
 //! link with a token → cookie → page → /api/v1/chart, point, vc, motion → explore
 //! ```
 //!
-//! Requests are TOML as in files, answers JSON or, for charts, arrays of numbers ([`chart`]). What
+//! Requests are TOML as in files, answers JSON or, for charts, arrays of numbers (`chart`). What
 //! is computed is [`crate::explore`]'s.
 
 mod access;
