@@ -26,7 +26,7 @@ impl Values {
         wanted.filter_map(|parameter| {
             let flag = parameter.flag()?;
             let arg = Arg::new(parameter.name())
-                .long(parameter.name().replace('_', "-"))
+                .long(long(parameter))
                 .value_name(flag.value)
                 .help(flag.help)
                 .value_parser(value_parser!(f64))
@@ -153,9 +153,14 @@ impl FromArgMatches for LimitArgs {
     }
 }
 
+/// The name of a parameter as flags write it.
+fn long(parameter: Parameter) -> String {
+    parameter.name().replace('_', "-")
+}
+
 /// The flag that gives a parameter.
 pub(super) fn flag(parameter: Parameter) -> String {
-    format!("--{}", parameter.name().replace('_', "-"))
+    format!("--{}", long(parameter))
 }
 
 impl ParameterArgs {

@@ -6,6 +6,7 @@ use std::net::{IpAddr, Ipv4Addr};
 use slipmap::serve::{Server, Serving};
 
 use super::failure::Failure;
+use super::run::default_threads;
 use super::say;
 use super::signals::Signals;
 
@@ -26,7 +27,7 @@ pub(super) fn main(args: &Args) -> Result<(), Failure> {
     let serving = Serving {
         address: IpAddr::V4(Ipv4Addr::LOCALHOST),
         port: args.port,
-        threads: args.threads.map_or_else(threads, usize::from),
+        threads: args.threads.map_or_else(default_threads, usize::from),
     };
     let server = Server::listen(&serving).map_err(|error| {
         Failure::bad_input_with_help(
@@ -39,8 +40,4 @@ pub(super) fn main(args: &Args) -> Result<(), Failure> {
     let stop = std::sync::Arc::clone(&signals.stop);
     server.run(move || stop.load(std::sync::atomic::Ordering::Relaxed))?;
     Ok(())
-}
-
-fn threads() -> usize {
-    std::thread::available_parallelism().map_or(1, usize::from)
 }

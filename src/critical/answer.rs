@@ -23,7 +23,7 @@ pub enum End {
 }
 
 impl End {
-    /// All.
+    /// Every end, in order.
     pub const ALL: [Self; 8] = [
         Self::Grazing,
         Self::Fold,

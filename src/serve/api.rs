@@ -14,12 +14,14 @@ use axum::routing::{get, post};
 use serde::Deserialize;
 
 use super::access::Access;
-use super::problem::Problem;
+use super::problem::{Problem, nothing_here};
 use super::work::Work;
 use super::{chart, page};
 use crate::explore::chart::{Chart, Limits};
 use crate::explore::point::Point;
 use crate::explore::vc::CriticalVelocity;
+use crate::model::ModelError;
+use crate::sweep::Setting;
 use crate::sweep::input::point_file::{PointOf, PointSpec};
 use crate::sweep::input::search::Protocol;
 
@@ -38,7 +40,25 @@ struct Served {
     work: Work,
 }
 
-/// All addresses.
+impl Served {
+    /// What `answer` says of the point that the text of a request describes.
+    async fn at_point<T: Send + 'static>(
+        &self,
+        headers: &HeaderMap,
+        body: &Bytes,
+        of: PointOf,
+        answer: impl FnOnce(&Setting) -> Result<T, ModelError> + Send + 'static,
+    ) -> Result<axum::Json<T>, Problem> {
+        let text = text(headers, body)?;
+        let computed = self.work.run(move |_| {
+            let spec = PointSpec::read(&text, of)?;
+            Ok(answer(&spec.setting)?)
+        });
+        computed.await.map(axum::Json)
+    }
+}
+
+/// The router of all addresses.
 pub(super) fn routes(access: Arc<Access>, work: Work) -> Router {
     let served = Served { access, work };
     let api = Router::new()
@@ -151,12 +171,8 @@ async fn point(
     headers: HeaderMap,
     body: Bytes,
 ) -> Result<axum::Json<Point>, Problem> {
-    let text = text(&headers, &body)?;
-    let computed = served.work.run(move |_| {
-        let spec = PointSpec::read(&text, PointOf::Sliding)?;
-        Ok(Point::at(&spec.setting, ROOTS)?)
-    });
-    computed.await.map(axum::Json)
+    let at = |setting: &Setting| Point::at(setting, ROOTS);
+    served.at_point(&headers, &body, PointOf::Sliding, at).await
 }
 
 /// The critical velocity of a point, by the protocol `follow`.
@@ -165,16 +181,14 @@ async fn vc(
     headers: HeaderMap,
     body: Bytes,
 ) -> Result<axum::Json<CriticalVelocity>, Problem> {
-    let text = text(&headers, &body)?;
-    let computed = served.work.run(move |_| {
-        let spec = PointSpec::read(&text, PointOf::CriticalVelocity)?;
-        Ok(CriticalVelocity::of(&spec.setting, Protocol::Follow)?)
-    });
-    computed.await.map(axum::Json)
+    let of = |setting: &Setting| CriticalVelocity::of(setting, Protocol::Follow);
+    served
+        .at_point(&headers, &body, PointOf::CriticalVelocity, of)
+        .await
 }
 
 async fn nothing() -> Problem {
-    Problem::of(StatusCode::NOT_FOUND, "there is nothing at this address")
+    nothing_here()
 }
 
 async fn no_such_method() -> Problem {

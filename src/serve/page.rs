@@ -1,11 +1,10 @@
 //! The page and its files, which are part of the program.
 
 use axum::extract::Path;
-use axum::http::StatusCode;
 use axum::http::header::CONTENT_TYPE;
 use axum::response::{IntoResponse, Response};
 
-use super::problem::Problem;
+use super::problem::{Problem, nothing_here};
 
 const FRONT: &str = include_str!("page/index.html");
 /// Name, type and text of the others.
@@ -36,7 +35,6 @@ pub(super) fn front() -> Response {
 /// One of its files.
 pub(super) async fn asset(Path(name): Path<String>) -> Result<Response, Problem> {
     let file = FILES.iter().find(|(known, ..)| *known == name);
-    let (_, kind, text) =
-        file.ok_or_else(|| Problem::of(StatusCode::NOT_FOUND, "there is nothing at this address"))?;
+    let (_, kind, text) = file.ok_or_else(nothing_here)?;
     Ok(([(CONTENT_TYPE, format!("{kind}; charset=utf-8"))], *text).into_response())
 }

@@ -40,6 +40,11 @@ impl Problem {
     }
 }
 
+/// What is told where there is nothing.
+pub(super) fn nothing_here() -> Problem {
+    Problem::of(StatusCode::NOT_FOUND, "there is nothing at this address")
+}
+
 impl IntoResponse for Problem {
     fn into_response(self) -> Response {
         let status = StatusCode::from_u16(self.status);

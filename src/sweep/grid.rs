@@ -10,7 +10,7 @@ use super::engine::{self, Computed, Encode, RunError, Sink};
 use super::events::Attended;
 use super::plan::Plan;
 use super::plan::pieces::{Piece, Todo};
-use super::plan::tile::{for_each_index, place_of, strides_of};
+use super::plan::tile::{for_each_index, memory_strides, place_of};
 
 /// All values of a sweep in memory.
 ///
@@ -118,12 +118,6 @@ impl Grid {
             self.cells.take_cell(at, from, place_of(inside, &strides));
         });
     }
-}
-
-/// Places between neighbours along each axis of cells that are in memory all.
-fn memory_strides(shape: &[usize]) -> Vec<usize> {
-    let strides = strides_of(shape).into_iter();
-    strides.map(|stride| stride as usize).collect()
 }
 
 /// The number of cells of a sweep, if the system promises memory for them.

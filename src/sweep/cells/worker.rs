@@ -209,7 +209,7 @@ impl<'p> Worker<'p> {
                 }
                 Err(_) => return self.refuse_line(at),
             };
-            self.fill_slowly(&tile.offset, inside, groups, stop);
+            self.fill_slowly(&tile.offset, inside, at, groups, stop);
         });
         let complete = self.slip.is_none() && self.vc.is_none();
         complete || !stop.load(Ordering::Relaxed)
@@ -319,6 +319,7 @@ impl<'p> Worker<'p> {
         &mut self,
         offset: &[usize],
         inside: &[usize],
+        at: usize,
         groups: Option<Groups>,
         stop: &AtomicBool,
     ) {
@@ -330,7 +331,7 @@ impl<'p> Worker<'p> {
             setting: &self.lines.setting,
             delays: self.delays.values(),
             places: Places {
-                at: place_of(inside, &self.strides),
+                at,
                 stride: self.stride,
             },
             numbers: Numbers {

@@ -87,8 +87,7 @@ impl TileGrid {
     /// shape.
     #[must_use]
     pub fn strides(&self) -> Vec<usize> {
-        let strides = strides_of(&self.tile_shape).into_iter();
-        strides.map(|stride| stride as usize).collect()
+        memory_strides(&self.tile_shape)
     }
 }
 
@@ -99,6 +98,12 @@ pub(crate) fn strides_of(shape: &[usize]) -> Vec<u64> {
         strides[axis - 1] = strides[axis] * shape[axis] as u64;
     }
     strides
+}
+
+/// Places between neighbours along each axis of a box that is in memory, last axis fastest.
+pub(crate) fn memory_strides(shape: &[usize]) -> Vec<usize> {
+    let strides = strides_of(shape).into_iter();
+    strides.map(|stride| stride as usize).collect()
 }
 
 /// The place in memory of the cell at an index.
