@@ -169,10 +169,21 @@ fn a_chart_is_that_of_the_closed_form() {
     };
     let (gains, delays) = (values(0), values(1));
     assert_eq!((gains.len(), delays.len()), (60, 80));
-    let at = field["offset"].as_u64().unwrap() as usize;
-    let mut counts = arrays[at..]
-        .chunks(2)
-        .map(|n| u16::from_le_bytes([n[0], n[1]]));
+    // Counts come in runs: so many counts, and where each run ends.
+    let number = |key: &str| field[key].as_u64().unwrap() as usize;
+    let (at, runs) = (number("offset"), number("runs"));
+    assert_eq!(number("length"), 60 * 80);
+    let count = |run: usize| {
+        let bytes = &arrays[at + 2 * run..];
+        u16::from_le_bytes([bytes[0], bytes[1]])
+    };
+    let ends = arrays[at + (2 * runs).next_multiple_of(8)..].chunks(4);
+    let ends = ends.map(|n| u32::from_le_bytes(n.try_into().unwrap()) as usize);
+    let mut from = 0;
+    let mut counts = ends.take(runs).enumerate().flat_map(|(run, end)| {
+        let length = end - std::mem::replace(&mut from, end);
+        std::iter::repeat_n(count(run), length)
+    });
     for &gain in &gains {
         let crossings = Crossings::of(Groups::new(-0.3, gain, 0.0));
         for &tau in &delays {

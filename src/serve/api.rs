@@ -14,10 +14,11 @@ use axum::routing::{get, post};
 use serde::Deserialize;
 
 use super::access::Access;
+use super::page;
 use super::problem::{Problem, nothing_here};
 use super::work::Work;
-use super::{chart, page};
 use crate::explore::chart::{Chart, Limits};
+use crate::explore::chart_bytes;
 use crate::explore::point::Point;
 use crate::explore::vc::CriticalVelocity;
 use crate::model::ModelError;
@@ -146,7 +147,7 @@ fn text(headers: &HeaderMap, body: &Bytes) -> Result<String, Problem> {
     Ok(text.to_owned())
 }
 
-/// A sweep of few cells, as [`chart`] describes.
+/// A sweep of few cells, as [`chart_bytes`] describes.
 async fn chart_of(
     State(served): State<Served>,
     headers: HeaderMap,
@@ -157,7 +158,7 @@ async fn chart_of(
         let begun = Instant::now();
         let chart = Chart::of(&text, Limits::default(), stop)?;
         let took = begun.elapsed().as_secs_f64() * 1e3;
-        chart::encoded(&chart, took)
+        chart_bytes::encoded(&chart, took)
             .map_err(|error| Problem::of(StatusCode::INTERNAL_SERVER_ERROR, error.to_string()))
     });
     let bytes = computed.await?;

@@ -4,12 +4,11 @@
 //! link with a token → cookie → page → /api/v1/chart, point, vc, motion → explore
 //! ```
 //!
-//! Requests are TOML as in files, answers JSON or, for charts, arrays of numbers (`chart`). What
-//! is computed is [`crate::explore`]'s.
+//! Requests are TOML as in files, answers JSON or, for charts, arrays of numbers
+//! ([`crate::explore::encoded`]). What is computed is [`crate::explore`]'s.
 
 mod access;
 mod api;
-mod chart;
 mod page;
 mod problem;
 mod work;

@@ -1,19 +1,10 @@
-//! A chart as bytes: its shape in JSON, then its numbers.
-//!
-//! ```text
-//! length of the JSON, u32 | JSON | padding to a multiple of 8 | arrays, each padded likewise
-//! ```
-//!
-//! All numbers are little-endian, as browsers' typed arrays are on every machine that runs one. The
-//! JSON names each array with its type, its offset behind the padding and its length.
+//! A chart as bytes, see [`super::encoded`].
 
 use serde::Serialize;
 
-use crate::explore::chart::Chart;
+use super::chart::Chart;
+use super::encoded::{Array, Arrays};
 use crate::sweep::input::field::Storage;
-
-/// Arrays begin at multiples of this.
-const ALIGNED: usize = 8;
 
 #[derive(Debug, Serialize)]
 struct Head {
@@ -53,39 +44,11 @@ struct CurveHead {
     array: Array,
 }
 
-/// Where numbers are.
-#[derive(Debug, Serialize)]
-struct Array {
-    #[serde(rename = "type")]
-    kind: &'static str,
-    offset: usize,
-    length: usize,
-}
-
-/// The arrays, one behind the other.
-#[derive(Default)]
-struct Arrays(Vec<u8>);
-
-impl Arrays {
-    fn push<const N: usize>(
-        &mut self,
-        kind: &'static str,
-        numbers: impl Iterator<Item = [u8; N]>,
-    ) -> Array {
-        let offset = self.0.len();
-        self.0.extend(numbers.flatten());
-        let length = (self.0.len() - offset) / N;
-        self.0.resize(self.0.len().next_multiple_of(ALIGNED), 0);
-        Array {
-            kind,
-            offset,
-            length,
-        }
-    }
-}
-
 /// The bytes of a chart that took so long to compute.
-pub(super) fn encoded(chart: &Chart, milliseconds: f64) -> Result<Vec<u8>, serde_json::Error> {
+///
+/// # Errors
+/// When its head is no JSON.
+pub fn encoded(chart: &Chart, milliseconds: f64) -> Result<Vec<u8>, serde_json::Error> {
     let plan = chart.grid.plan();
     let units = &plan.spec.units;
     let mut arrays = Arrays::default();
@@ -105,22 +68,12 @@ pub(super) fn encoded(chart: &Chart, milliseconds: f64) -> Result<Vec<u8>, serde
                 degree_of_stability: curve.degree_of_stability,
                 direction: curve.direction,
                 stable_side: curve.stable_side,
-                array: arrays.push(
-                    "f64",
-                    curve.vertices.iter().flatten().map(|x| x.to_le_bytes()),
-                ),
+                array: arrays.push(curve.vertices.iter().flatten().copied()),
             })
             .collect(),
         milliseconds,
     };
-    let head = serde_json::to_vec(&head)?;
-    let begun = (4 + head.len()).next_multiple_of(ALIGNED);
-    let mut bytes = Vec::with_capacity(begun + arrays.0.len());
-    bytes.extend((head.len() as u32).to_le_bytes());
-    bytes.extend(head);
-    bytes.resize(begun, 0);
-    bytes.extend(arrays.0);
-    Ok(bytes)
+    arrays.behind(&head)
 }
 
 /// The fields of a chart, then its status.
@@ -130,17 +83,13 @@ fn fields(chart: &Chart, arrays: &mut Arrays) -> Vec<FieldHead> {
     let mut heads = Vec::new();
     for &field in &plan.spec.fields {
         let array = match field.storage() {
-            Storage::Count => {
-                let counts = cells.n_unstable.iter().flatten();
-                arrays.push("u16", counts.map(|n| n.to_le_bytes()))
-            }
+            Storage::Count => arrays.push_runs(cells.n_unstable.as_deref().unwrap_or_default()),
             Storage::Kind | Storage::Few => {
-                let column = kinds.next().into_iter().flat_map(|column| &column.cells);
-                arrays.push("u8", column.map(|kind| [*kind]))
+                arrays.push_runs(kinds.next().map_or(&[], |column| &column.cells[..]))
             }
             Storage::Real => {
                 let column = columns.next().into_iter().flat_map(|column| &column.cells);
-                arrays.push("f64", column.map(|value| value.to_le_bytes()))
+                arrays.push(column.copied())
             }
         };
         heads.push(FieldHead {
@@ -156,7 +105,7 @@ fn fields(chart: &Chart, arrays: &mut Arrays) -> Vec<FieldHead> {
         long_name: "flags of the cell",
         unit: "1".into(),
         kinds: None,
-        array: arrays.push("u8", cells.status.iter().map(|status| [*status])),
+        array: arrays.push_runs(&cells.status),
     });
     heads
 }
