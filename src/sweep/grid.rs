@@ -113,9 +113,12 @@ impl Grid {
         let tile = self.plan.tiles.tile(number);
         let strides = self.plan.tiles.strides();
         let first = place_of(&tile.offset, &self.strides);
-        for_each_index(&tile.extent, None, |inside| {
+        // Cells along the last axis are neighbours here and there.
+        let last = tile.extent.len() - 1;
+        for_each_index(&tile.extent, Some(last), |inside| {
             let at = first + place_of(inside, &self.strides);
-            self.cells.take_cell(at, from, place_of(inside, &strides));
+            let there = place_of(inside, &strides);
+            self.cells.take(at, from, there, tile.extent[last]);
         });
     }
 }

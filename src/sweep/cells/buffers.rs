@@ -53,17 +53,21 @@ impl TileBuffers {
         }
     }
 
-    /// Takes the cell at the place `there` of other buffers of the same plan to the place `at`.
-    pub(in crate::sweep) fn take_cell(&mut self, at: usize, from: &Self, there: usize) {
-        self.status[at] = from.status[there];
+    /// Takes `count` cells from the place `there` on of other buffers of the same plan to the place
+    /// `at` and behind it.
+    pub(in crate::sweep) fn take(&mut self, at: usize, from: &Self, there: usize, count: usize) {
+        fn copy<T: Copy>(to: &mut [T], at: usize, from: &[T], there: usize, count: usize) {
+            to[at..at + count].copy_from_slice(&from[there..there + count]);
+        }
+        copy(&mut self.status, at, &from.status, there, count);
         if let (Some(to), Some(from)) = (&mut self.n_unstable, &from.n_unstable) {
-            to[at] = from[there];
+            copy(to, at, from, there, count);
         }
         for (to, from) in self.kinds.iter_mut().zip(&from.kinds) {
-            to.cells[at] = from.cells[there];
+            copy(&mut to.cells, at, &from.cells, there, count);
         }
         for (to, from) in self.columns.iter_mut().zip(&from.columns) {
-            to.cells[at] = from.cells[there];
+            copy(&mut to.cells, at, &from.cells, there, count);
         }
     }
 
