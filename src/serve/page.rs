@@ -7,24 +7,41 @@ use axum::response::{IntoResponse, Response};
 use super::problem::{Problem, nothing_here};
 
 const FRONT: &str = include_str!("page/index.html");
-/// Name, type and text of the others.
-const FILES: [(&str, &str, &str); 4] = [
-    (
-        "explorer.js",
-        "text/javascript",
-        include_str!("page/explorer.js"),
-    ),
-    ("chart.js", "text/javascript", include_str!("page/chart.js")),
-    (
-        "request.js",
-        "text/javascript",
-        include_str!("page/request.js"),
-    ),
-    (
-        "explorer.css",
-        "text/css",
-        include_str!("page/explorer.css"),
-    ),
+
+/// Name and text of a file.
+macro_rules! files {
+    ($($name:literal),* $(,)?) => {
+        [$(($name, include_str!(concat!("page/", $name)))),*]
+    };
+}
+
+const FILES: &[(&str, &str)] = &files![
+    "cells.js",
+    "colours.js",
+    "controls.js",
+    "dom.js",
+    "explorer.css",
+    "explorer.js",
+    "frame.js",
+    "legend.js",
+    "live.js",
+    "motion.js",
+    "newest.js",
+    "panel.js",
+    "pen.js",
+    "plane.js",
+    "plots.js",
+    "pointing.js",
+    "saved.js",
+    "scale.js",
+    "source.js",
+    "state.js",
+    "sweep.js",
+    "table.js",
+    // The library uPlot, as it is published.
+    "uplot.css",
+    "uplot-license.txt",
+    "uplot.js",
 ];
 
 /// The page.
@@ -34,7 +51,12 @@ pub(super) fn front() -> Response {
 
 /// One of its files.
 pub(super) async fn asset(Path(name): Path<String>) -> Result<Response, Problem> {
-    let file = FILES.iter().find(|(known, ..)| *known == name);
-    let (_, kind, text) = file.ok_or_else(nothing_here)?;
-    Ok(([(CONTENT_TYPE, format!("{kind}; charset=utf-8"))], *text).into_response())
+    let file = FILES.iter().find(|(known, _)| *known == name);
+    let (name, text) = *file.ok_or_else(nothing_here)?;
+    let kind = match name.rsplit_once('.') {
+        Some((_, "js")) => "text/javascript; charset=utf-8",
+        Some((_, "css")) => "text/css; charset=utf-8",
+        _ => "text/plain; charset=utf-8",
+    };
+    Ok(([(CONTENT_TYPE, kind)], text).into_response())
 }

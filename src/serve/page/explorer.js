@@ -1,183 +1,319 @@
-// The page: what is set on it becomes a chart, and a point of it an answer.
+// The page: what is set, what is shown, and the point that is looked at.
 
-import { COLOURS, ChartView, NAMES } from "./chart.js";
-import { Problem, askChart, askPoint } from "./request.js";
+import { Controls } from "./controls.js";
+import { download, element } from "./dom.js";
+import { tellLegend } from "./legend.js";
+import { Live } from "./live.js";
+import { Panel } from "./panel.js";
+import { PlaneView } from "./plane.js";
+import { ZOOM, follow, zoomed } from "./pointing.js";
+import { Saved } from "./saved.js";
+import { Scale, told } from "./scale.js";
+import { openSource } from "./source.js";
+import { addressOf, stateOf } from "./state.js";
+import { VALUES, pointTexts } from "./sweep.js";
+import { tellTable } from "./table.js";
 
-/** Parameters with sliders: name, text, and the range of the slider. */
-const SLIDERS = [
-  ["mu_prime", "μ′, slope of the friction law", -0.95, 0.5, -0.3],
-  ["gain_from", "gain from", -4, 0, -1],
-  ["gain_to", "gain to", 0, 4, 0.2],
-  ["tau_to", "longest delay τ", 1, 40, 12],
-];
-/** Cells of a chart while something moves, and at rest. */
-const [MOVING, RESTING] = [[300, 300], [800, 600]];
-/** How long nothing moves before it rests, in milliseconds. */
-const REST = 150;
+/** How long after the last change the address and the panel follow, in milliseconds. */
+const REST = 200;
+/** How often it is tried whether the server is back. */
+const RETRY = 1500;
 
-const element = (id) => document.getElementById(id);
-const view = new ChartView(element("chart"));
-const state = { control: "alpha_v", point: null };
-let [pending, resting, looking] = [null, null, null];
+class Explorer {
+  constructor(source, catalogue) {
+    this.source = source;
+    this.catalogue = catalogue;
+    this.state = stateOf(location.hash);
+    this.plane = new PlaneView(element("chart"));
+    const failed = (error) => this.failed(error);
+    this.live = new Live(source, catalogue.laws, { shown: (plane) => this.#shown(plane), failed });
+    this.panel = new Panel(source, { moved: (start) => this.#started(start), failed });
+    this.controls = new Controls(this.state, catalogue, source, {
+      changed: () => this.changed(),
+      failed,
+    });
+    this.saved = new Saved(source, this.state, this.plane, {
+      shown: (plane) => this.#shown(plane),
+      opened: () => this.#mode(),
+      look: (texts, about) => this.panel.look(texts, { start: this.state.start, ...about }),
+      changed: () => this.#settle(),
+      failed,
+    });
+    this.#listen();
+    this.#mode();
+    if (source.maps) this.saved.begin();
+  }
 
-/** The sweep of the chart with so many cells. */
-function sweep([columns, rows]) {
-  const { control, mu_prime, gain_from, gain_to, tau_to } = state;
-  return `boundaries = true
-[axes]
-${control} = { from = ${gain_from}, to = ${gain_to}, points = ${columns} }
-tau = { from = 0.0, to = ${tau_to}, points = ${rows} }
-[fixed]
-mu_prime = ${mu_prime}
-`;
-}
+  /** Shows the chart or the map that the state names. */
+  #mode() {
+    const map = this.state.map !== null;
+    for (const [id, shown] of [["live", !map], ["map", map], ["slice-part", map]]) {
+      element(id).hidden = !shown;
+    }
+    element("to-live").setAttribute("aria-pressed", String(!map));
+    element("origin").textContent = map ? "from the file" : "computed now";
+    element("save-toml").title = map ? "The sweep file of this map" : "Run this overnight";
+    this.plane.plane = null;
+    if (map) {
+      this.live.stop();
+      this.saved.open();
+    } else {
+      this.saved.close();
+      this.#ownView();
+      this.plane.point = this.state.point ?? this.#usualPoint();
+      this.changed();
+    }
+  }
 
-function tell(error) {
-  if (error.name === "AbortError") return;
-  const help = error instanceof Problem && error.help ? ` (${error.help})` : "";
-  const gone = error instanceof TypeError ? "The server does not answer; it may have ended." : null;
-  element("problem").textContent = gone ?? error.message + help;
-}
+  /** The point of the letter's Fig. 3(a), where it is in view. */
+  #usualPoint() {
+    const view = this.plane.view;
+    const usual = [this.state.x, this.state.y].map(({ name }) => VALUES[name]);
+    const inside = view.every((scale, i) => scale.part(usual[i]) >= 0 && scale.part(usual[i]) <= 1);
+    return inside ? usual : view.map((scale) => scale.value(0.5));
+  }
 
-/** Asks for the chart, in place of one that was asked for before. */
-async function ask(cells) {
-  pending?.abort();
-  pending = new AbortController();
-  try {
-    const chart = await askChart(sweep(cells), pending.signal);
-    view.show(chart);
+  #ownView() {
+    const scale = ({ from, to, log }) => new Scale(from, to, log);
+    this.plane.view = [scale(this.state.x), scale(this.state.y)];
+  }
+
+  /** What is set has changed. */
+  changed() {
+    if (this.state.map) return;
+    this.#ownView();
+    if (!this.state.point) this.plane.point = this.#usualPoint();
+    this.live.changed(this.state);
+    this.#settle();
+  }
+
+  /** Address, panel and table follow when nothing changes any more. */
+  #settle() {
+    clearTimeout(this.settling);
+    this.settling = setTimeout(() => {
+      history.replaceState(null, "", addressOf(this.state));
+      if (!this.state.map) this.look();
+      this.#table();
+    }, REST);
+  }
+
+  #shown(plane) {
     element("problem").textContent = "";
-    const count = (cells[0] * cells[1]).toLocaleString("en");
-    element("speed").textContent = `${count} cells in ${chart.milliseconds.toFixed(1)} ms`;
-    if (!state.point) moveTo(middle());
-  } catch (error) {
-    tell(error);
+    this.#alive();
+    this.plane.show(plane);
+    tellLegend(element("legend"), plane);
+    element("chart-title").textContent = this.#title(plane);
+    const cells = (plane.nx * plane.ny).toLocaleString("en");
+    const time = `${cells} cells in ${plane.milliseconds.toFixed(1)} ms`;
+    element("speed").textContent = plane.note ?? time;
+    if (plane.rests) this.#say(this.plane.point);
+    if (plane.rests) this.#table();
+  }
+
+  #title({ field, axes }) {
+    const what = field.long_name ?? field.name;
+    return `${what[0].toUpperCase()}${what.slice(1)} over ${axes[0].symbol} and ${axes[1].symbol}`;
+  }
+
+  #table() {
+    const { plane, view } = this.plane;
+    if (plane && view && element("table-part").open) tellTable(element("table"), plane, view);
+  }
+
+  /** What the chart shows at a point, in words. */
+  #words(point) {
+    const { plane } = this.plane;
+    const index = point && plane && this.plane.indexAt(point);
+    if (!index) return "";
+    const n = index[0] * plane.ny + index[1];
+    const exact = plane.axes.map((axis, i) => (plane.exact ? axis.values[index[i]] : point[i]));
+    const where = plane.axes.map(({ symbol, unit }, i) =>
+      `${symbol} = ${told(exact[i], 7)}${unit === "1" ? "" : ` ${unit}`}`);
+    const value = plane.cells[n];
+    const { name, unit, long_name: long } = plane.field;
+    const count = value === 0 ? "stable" : `${value} unstable roots`;
+    const kinds = plane.field.kinds ? plane.colours.name(value) : null;
+    const number = `${long ?? name} ${told(value)}${!unit || unit === "1" ? "" : ` ${unit}`}`;
+    const parts = [name === "n_unstable" ? count : kinds ?? number];
+    const { abscissa } = plane.others ?? {};
+    if (abscissa && name !== "abscissa") parts.push(`spectral abscissa ${told(abscissa[n])}`);
+    if (plane.flags) parts.push(...plane.flags(n));
+    return `${where.join(", ")}: ${parts.join(", ")}`;
+  }
+
+  #say(point) {
+    const words = this.#words(point);
+    if (words) element("readout").textContent = words;
+  }
+
+  /** Looks closely at the point of the chart. */
+  look() {
+    const { state, plane } = this;
+    if (state.map) return this.saved.look();
+    try {
+      const texts = pointTexts(state, this.catalogue.laws, plane.point);
+      const symbol = (axis) => this.catalogue.parameters.find((p) => p.name === axis.name)?.symbol;
+      const where = [state.x, state.y].map((axis, i) => `${symbol(axis)} = ${told(plane.point[i], 9)}`);
+      const unit = state.units ? state.units.split(",")[2] : "1";
+      this.panel.look(texts, { where: where.join(", "), start: state.start, unit });
+    } catch (error) {
+      this.failed(error);
+    }
+    return undefined;
+  }
+
+  #move(point) {
+    const { state, plane } = this;
+    const kept = point.map((x) => Number(x.toPrecision(9)));
+    plane.point = state.map ? this.saved.move(kept) : kept;
+    if (!state.map) state.point = plane.point;
+    plane.draw();
+    this.#say(plane.point);
+  }
+
+  #view(view) {
+    const { state } = this;
+    if (state.map) return this.saved.view(view);
+    if (!view) {
+      this.#allOfAxes();
+    } else {
+      for (const [axis, scale] of [[state.x, view[0]], [state.y, view[1]]]) this.#setEnds(axis, scale);
+    }
+    this.controls.tellEnds();
+    this.changed();
+    this.plane.draw();
+    return undefined;
+  }
+
+  /** The ends of an axis, with no more digits than the eye tells apart. */
+  #setEnds(axis, { from, to }) {
+    const digits = (x) => {
+      const step = 10 ** (Math.floor(Math.log10(Math.abs(to - from))) - 4);
+      return Number((Math.round(x / step) * step).toPrecision(12));
+    };
+    const never = axis.name === "tau" ? 0 : -Infinity;
+    const ends = [Math.max(never, digits(from)), digits(to)];
+    if (ends[0] < ends[1] && Number.isFinite(ends[0])) [axis.from, axis.to] = ends;
+  }
+
+  #allOfAxes() {
+    const { x, y } = this.begun ?? {};
+    for (const [axis, was] of [[this.state.x, x], [this.state.y, y]]) {
+      if (was && was.name === axis.name) Object.assign(axis, was);
+    }
+  }
+
+  #started(start) {
+    this.state.start = start;
+    this.#settle();
+  }
+
+  failed(error) {
+    if (error instanceof TypeError && /fetch|network|load failed/i.test(error.message)) {
+      this.#lost();
+    } else {
+      const help = error.help ? ` (${error.help})` : "";
+      element("problem").textContent = error.message + help;
+      if (!error.status && !(error instanceof RangeError)) console.error(error);
+    }
+  }
+
+  /** The server is gone: asks until it is back, then for what is to be seen. */
+  #lost() {
+    element("gone").hidden = false;
+    if (this.retrying) return;
+    this.retrying = setInterval(async () => {
+      try {
+        await this.source.parameters();
+        this.#alive();
+        if (this.state.map) this.saved.open();
+        else this.changed();
+      } catch (error) {
+        if (error.status) {
+          this.#alive();
+          this.failed(error);
+        }
+      }
+    }, RETRY);
+  }
+
+  #alive() {
+    clearInterval(this.retrying);
+    this.retrying = null;
+    element("gone").hidden = true;
+  }
+
+  #listen() {
+    this.begun = { x: { ...this.state.x }, y: { ...this.state.y } };
+    follow(this.plane, {
+      look: (point) => {
+        this.#move(point);
+        this.look();
+        this.#settle();
+      },
+      move: (point) => {
+        this.#move(point);
+        this.#settle();
+      },
+      hover: (point) => (element("hover").textContent = this.#words(point)),
+      view: (view) => this.#view(view),
+    });
+    const zoom = (factor) => this.plane.view && this.#view(zoomed(this.plane.view, [0.5, 0.5], factor));
+    const click = (id, act) => element(id).addEventListener("click", act);
+    click("zoom-in", () => zoom(ZOOM));
+    click("zoom-out", () => zoom(1 / ZOOM));
+    click("zoom-all", () => this.#view(null));
+    click("take-law", () => this.controls.takeLaw("weakening"));
+    click("to-live", () => {
+      this.state.map = null;
+      this.#mode();
+    });
+    this.#downloads(click);
+    element("table-part").addEventListener("toggle", () => this.#table());
+    window.addEventListener("hashchange", () => {
+      if (location.hash === addressOf(this.state)) return;
+      Object.assign(this.state, stateOf(location.hash));
+      this.controls.build();
+      this.#mode();
+    });
+  }
+
+  #downloads(click) {
+    const name = () => (this.state.map ? this.saved.name() : "slipmap-chart");
+    const { plane } = this;
+    const shown = (act) => () => plane.plane && act();
+    click("save-png", shown(async () => download(`${name()}.png`, await plane.png())));
+    click("save-svg", shown(() => download(`${name()}.svg`, plane.svg(), "image/svg+xml")));
+    click("save-csv", shown(() => download(`${name()}.csv`, plane.csv(), "text/csv")));
+    click("save-toml", async () => {
+      try {
+        const own = () => this.live.text(this.state);
+        const text = this.state.map ? await this.saved.sweepText() : own();
+        download(`${name()}.toml`, text, "application/toml");
+      } catch (error) {
+        this.failed(error);
+      }
+    });
+    click("copy-link", async (event) => {
+      history.replaceState(null, "", addressOf(this.state));
+      const button = event.target;
+      await navigator.clipboard?.writeText(location.href).catch(() => {});
+      button.textContent = "Copied";
+      setTimeout(() => (button.textContent = "Copy link"), 1200);
+    });
   }
 }
 
-function changed() {
-  clearTimeout(resting);
-  resting = setTimeout(() => ask(RESTING), REST);
-  ask(MOVING);
-}
-
-const middle = () => [0, 1].map((axis) => view.ends(axis)).map(([from, to]) => (from + to) / 2);
-
-const short = (x) => Number(x.toPrecision(7)).toString();
-
-/** Moves the point, and says what the chart shows there. */
-function moveTo(point) {
-  state.point = view.point = point;
-  view.draw();
-  const [gain, tau] = point.map(short);
-  const name = state.control === "alpha_v" ? "α_v" : "α_N";
-  const count = view.countAt(point);
-  const what = count === 0 ? "stable" : `${count} unstable roots`;
-  element("readout").textContent = `${name} = ${gain}, τ = ${tau}: ${what}`;
-}
-
-/** Asks for everything at the point, by its exact values. */
-async function look() {
-  looking?.abort();
-  looking = new AbortController();
-  const [gain, tau] = state.point;
-  const toml = `[fixed]\nmu_prime = ${state.mu_prime}\n${state.control} = ${gain}\ntau = ${tau}\n`;
-  const flag = state.control.replace("_", "-");
-  element("command").value =
-    `slipmap point --mu-prime=${state.mu_prime} --${flag}=${gain} --tau ${tau}`;
+async function begin() {
   try {
-    tellPoint(await askPoint(toml, looking.signal));
+    const source = await openSource();
+    const explorer = new Explorer(source, await source.parameters());
+    // For tests and the curious.
+    window.slipmap = explorer;
   } catch (error) {
-    tell(error);
+    element("problem").textContent = error.message + (error.help ? ` (${error.help})` : "");
+    if (!error.status) console.error(error);
   }
-}
-
-function tellPoint(point) {
-  const margin = point.delay_margin === null ? "infinite" : short(point.delay_margin);
-  const intervals = point.stable_delays.slice(0, 8);
-  const interval = ([from, to]) => `${short(from)} < τ < ${to === null ? "∞" : short(to)}`;
-  const root = ([re, im]) => `${short(re)}${im === 0 ? "" : ` ± ${short(im)} i`}`;
-  const verdict = point.marginal ? "marginal" : point.stable ? "stable" : "unstable";
-  const rows = [
-    ["sliding", `${verdict}, ${point.n_unstable} unstable roots`],
-    ["delay margin", margin],
-    ["abscissa", point.abscissa === null ? "unknown" : short(point.abscissa)],
-    ["certified", point.certified ? "yes, by the argument principle" : "no"],
-    ["stable delays", intervals.map(interval).join(", ") || "none"],
-    ["roots", point.roots.slice(0, 6).map(root).join(", ")],
-  ];
-  const parts = rows.flatMap(([term, text]) => {
-    const [dt, dd] = ["dt", "dd"].map((tag) => document.createElement(tag));
-    [dt.textContent, dd.textContent] = [term, text];
-    return [dt, dd];
-  });
-  element("point").replaceChildren(...parts);
-}
-
-function slider([name, text, from, to, at]) {
-  state[name] = at;
-  const part = document.createElement("div");
-  part.className = "slider";
-  const label = document.createElement("label");
-  const [range, number] = ["range", "number"].map((type) => {
-    const input = document.createElement("input");
-    [input.type, input.step, input.value] = [type, "any", at];
-    input.addEventListener("input", () => {
-      const value = input.valueAsNumber;
-      if (!Number.isFinite(value)) return;
-      state[name] = value;
-      for (const other of [range, number]) if (other !== input) other.value = value;
-      changed();
-    });
-    return input;
-  });
-  [range.min, range.max, range.id, range.step] = [from, to, name, (to - from) / 1000];
-  range.value = at;
-  [label.htmlFor, label.textContent] = [name, text];
-  number.setAttribute("aria-label", `${text}, as a number`);
-  part.append(label, range, number);
-  return part;
-}
-
-function begin() {
-  element("sliders").append(...SLIDERS.map(slider));
-  element("legend").append(...COLOURS.map((colour, i) => {
-    const [item, box] = ["li", "i"].map((tag) => document.createElement(tag));
-    box.style.background = colour;
-    item.append(box, NAMES[i]);
-    return item;
-  }));
-  element("controls").addEventListener("submit", (event) => event.preventDefault());
-  for (const radio of document.querySelectorAll("input[name=control]")) {
-    radio.addEventListener("change", () => {
-      state.control = radio.value;
-      state.point = view.point = null;
-      changed();
-    });
-  }
-  const canvas = element("chart");
-  const at = (event) => {
-    const box = canvas.getBoundingClientRect();
-    return view.valueAt(event.clientX - box.left, event.clientY - box.top);
-  };
-  canvas.addEventListener("click", (event) => {
-    moveTo(at(event));
-    look();
-  });
-  canvas.addEventListener("keydown", (event) => {
-    const step = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] };
-    if (event.key === "Enter") return look();
-    if (!(event.key in step) || !state.point) return;
-    event.preventDefault();
-    const share = event.shiftKey ? 0.1 : 0.01;
-    moveTo(state.point.map((value, axis) => {
-      const [from, to] = view.ends(axis);
-      const next = value + step[event.key][axis] * share * (to - from);
-      return Math.min(to, Math.max(from, next));
-    }));
-  });
-  new ResizeObserver(() => view.draw()).observe(canvas);
-  changed();
 }
 
 begin();

@@ -1,0 +1,166 @@
+// Colours of cells: the same as in pictures that slipmap draws, and told apart by the colour-blind.
+
+import { told } from "./scale.js";
+
+const STABLE = "#5fb9ae";
+const NO_VALUE = "#b9b9b9";
+const COUNTS = [STABLE, "#f6e8c3", "#dfc27d", "#bf812d", "#7a4608"];
+const COUNT_NAMES = ["stable", "1 or 2 unstable roots", "3 or 4", "5 or 6", "7 or more"];
+/** Fates of motions, ends of stick-slip, working velocities, methods, by name. */
+const KINDS = {
+  sliding: STABLE,
+  "stick-slip": "#dfc27d",
+  oscillation: "#9e5a12",
+  "lift-off": "#2c4a7c",
+  diverged: "#222222",
+  undecided: NO_VALUE,
+  "no-cycle": "#e8e8e8",
+  grazing: "#35978f",
+  fold: "#dfc27d",
+  "period-doubling": "#bf812d",
+  irregular: "#7a4608",
+  persists: "#222222",
+  never: "#d5eeea",
+  lost: "#35978f",
+  stable: STABLE,
+  bistable: "#c2e3f2",
+  unstable: "#dfc27d",
+};
+const FEW = ["#c7eae5", "#35978f", "#dfc27d", "#7a4608"];
+const VIRIDIS = [
+  "#440154", "#472c7a", "#3b518b", "#2c718e", "#21908d", "#27ad81", "#5cc863", "#aadc32", "#fde725",
+];
+const BROWN_TEAL = [
+  "#8c510a", "#bf812d", "#dfc27d", "#f6e8c3", "#f7f7f7", "#c7eae5", "#80cdc1", "#35978f", "#01665e",
+];
+/** Steps of a colour bar. */
+const STEPS = 255;
+
+const parts = (colour) => [1, 3, 5].map((at) => parseInt(colour.slice(at, at + 2), 16));
+const packed = ([r, g, b]) => ((255 << 24) | (b << 16) | (g << 8) | r) >>> 0;
+const int = (colour) => packed(parts(colour));
+
+/** The colour at a part of the way through a table, as red, green and blue. */
+function sampled(table, part) {
+  const at = Math.min(1, Math.max(0, part)) * (table.length - 1);
+  const low = Math.min(table.length - 2, Math.floor(at));
+  const [from, to] = [parts(table[low]), parts(table[low + 1])];
+  return from.map((c, i) => Math.round(c + (at - low) * (to[i] - c)));
+}
+
+const css = ([r, g, b]) => `rgb(${r}, ${g}, ${b})`;
+
+/** Colours of numbers that stand for a few things. */
+class Classes {
+  constructor(names, colours, classOf) {
+    [this.names, this.colours, this.classOf] = [names, colours, classOf];
+    this.ints = Uint32Array.from(colours, int);
+    this.none = int(NO_VALUE);
+  }
+
+  pixel(value) {
+    return Number.isNaN(value) ? this.none : this.ints[this.classOf(value)];
+  }
+
+  name(value) {
+    return Number.isNaN(value) ? "no value" : this.names[this.classOf(value)];
+  }
+
+  /** What the colours mean: {colour, text} each. */
+  get legend() {
+    return this.names.map((text, i) => ({ colour: this.colours[i], text }));
+  }
+}
+
+/** Colours along a bar. `part` says where on it a value lies, 0 to 1; `value` what lies there. */
+class Bar {
+  constructor(table, part, value, words) {
+    Object.assign(this, { part, value, words });
+    this.table = table;
+    this.ints = Uint32Array.from({ length: STEPS + 1 }, (_, i) => packed(sampled(table, i / STEPS)));
+    this.none = int(NO_VALUE);
+  }
+
+  pixel(value) {
+    const part = this.part(value);
+    if (Number.isNaN(part)) return this.none;
+    return this.ints[Math.round(Math.min(1, Math.max(0, part)) * STEPS)];
+  }
+
+  name(value) {
+    return told(value);
+  }
+
+  get legend() {
+    const stops = Array.from({ length: 9 }, (_, i) => css(sampled(this.table, i / 8)));
+    const ticks = [0, 0.25, 0.5, 0.75, 1].map((part) => told(this.value(part), 3));
+    return { stops, ticks, words: this.words, none: NO_VALUE };
+  }
+}
+
+/** The smallest and largest finite value of those that `counts`. */
+function extent(values, counts = () => true) {
+  let [low, high] = [Infinity, -Infinity];
+  for (const value of values) {
+    if (!Number.isFinite(value) || !counts(value)) continue;
+    if (value < low) low = value;
+    if (value > high) high = value;
+  }
+  return low <= high ? [low, high] : [0, 1];
+}
+
+function linear(values) {
+  let [low, high] = extent(values);
+  if (low === high) [low, high] = [low - 0.5, high + 0.5];
+  if (low > 0 && low < 0.5 * high) low = 0;
+  const words = ["low", "high"];
+  return new Bar(VIRIDIS, (v) => (v - low) / (high - low), (p) => low + p * (high - low), words);
+}
+
+/** Over orders of magnitude; what is not above 0 has the lowest colour. */
+function logarithmic(values) {
+  const [low, high] = extent(values, (v) => v > 0);
+  const [a, b] = [Math.log(Math.max(low, high * 1e-6)), Math.log(high)];
+  if (!(b > a)) return linear(values);
+  const part = (v) => (Number.isNaN(v) ? NaN : v > 0 ? (Math.log(v) - a) / (b - a) : 0);
+  return new Bar(VIRIDIS, part, (p) => Math.exp(a + p * (b - a)), ["small", "large"]);
+}
+
+/** About a change of stability at 0: brown on the unstable side. */
+function aboutZero(values, stable, words) {
+  const [low, high] = extent(values);
+  const size = Math.max(Math.abs(low), Math.abs(high)) || 1;
+  const root = (p) => Math.sign(p) * Math.sqrt(Math.abs(p));
+  const part = (v) => (Number.isNaN(v) ? NaN : 0.5 + 0.5 * root((stable * v) / size));
+  const value = (p) => stable * size * Math.sign(p - 0.5) * (2 * p - 1) ** 2;
+  return new Bar(BROWN_TEAL, part, value, words);
+}
+
+/**
+ * The colours of a field's cells.
+ * @param {{name: string, kinds?: string[], spread?: string, storage?: string}} field
+ * @param {ArrayLike<number>} values those that are to be seen
+ */
+export function coloursOf(field, values) {
+  if (field.name === "n_unstable") {
+    return new Classes(COUNT_NAMES, COUNTS, (n) => Math.min(4, Math.ceil(n / 2)));
+  }
+  if (field.kinds) {
+    const colours = field.kinds.map((kind, i) => KINDS[kind] ?? FEW[i % FEW.length]);
+    return new Classes(field.kinds, colours, (n) => Math.min(n, field.kinds.length - 1));
+  }
+  switch (field.name) {
+    case "abscissa":
+      return aboutZero(values, -1, ["grows", "decays"]);
+    case "delay_margin":
+      return aboutZero(values, 1, ["unstable", "stable"]);
+    default:
+      return ofSpread(field.spread ?? "", values);
+  }
+}
+
+function ofSpread(spread, values) {
+  if (/below|error/.test(spread)) return aboutZero(values, -1, ["above 0", "below 0"]);
+  if (/tail|magnitude|decade|relax/.test(spread)) return logarithmic(values);
+  return linear(values);
+}

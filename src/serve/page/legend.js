@@ -1,0 +1,33 @@
+// What colours and marks of a chart mean, in words.
+
+import { make } from "./dom.js";
+import { marksOf } from "./cells.js";
+
+/** Writes the legend of a plane. */
+export function tellLegend(list, plane) {
+  const { legend } = plane.colours;
+  const items = Array.isArray(legend) ? legend.map(swatch) : bar(legend);
+  const marks = marksOf(plane).map(({ mark, text }) => {
+    return make("li", {}, make("i", { className: `box ${mark}` }), text);
+  });
+  const key = JSON.stringify([legend, marks.map((item) => item.textContent)]);
+  // Nothing is touched where nothing changes: this runs in every frame.
+  if (list.dataset.key === key) return;
+  list.dataset.key = key;
+  list.replaceChildren(...items, ...marks);
+}
+
+function swatch({ colour, text }) {
+  const box = make("i", { className: "box" });
+  box.style.background = colour;
+  return make("li", {}, box, text);
+}
+
+function bar({ stops, ticks, words, none }) {
+  const strip = make("span", { className: "strip" });
+  strip.style.background = `linear-gradient(to right, ${stops.join(", ")})`;
+  const numbers = make("span", { className: "ticks" }, ...ticks.map((t) => make("span", {}, t)));
+  const whole = make("span", { className: "bar" }, strip, numbers);
+  const item = make("li", { className: "wide" }, words[0], whole, words[1]);
+  return [item, swatch({ colour: none, text: "no value" })];
+}

@@ -1,0 +1,96 @@
+// The chart that is computed now: from what is set to a plane with its curves.
+
+import { coloursOf } from "./colours.js";
+import { Newest } from "./newest.js";
+import { Scale } from "./scale.js";
+import { sweepOf } from "./sweep.js";
+
+/** Cells of a chart along x and y. */
+export const CELLS = [800, 600];
+/** How long nothing moves before it rests, in milliseconds. */
+const REST = 150;
+/** Fields whose cells cost no more than counts. */
+const QUICK = ["n_unstable", "delay_margin"];
+const COUNTS = { name: "n_unstable", long_name: "number of unstable roots", unit: "1" };
+
+/** The scale of an axis from the edge of its first cell to that of its last one. */
+function edges({ values }, log) {
+  const scale = new Scale(values[0], values[values.length - 1], log);
+  const half = values.length > 1 ? 0.5 / (values.length - 1) : 0;
+  return scale.between(-half, 1 + half);
+}
+
+/** Curves with x first, whatever stands first in a vertex. */
+function curvesOf(chart) {
+  const turned = chart.axes[0].name === "tau";
+  if (!turned) return chart.curves;
+  return chart.curves.map((curve) => {
+    const values = new Float64Array(curve.values.length);
+    for (let k = 0; k + 1 < values.length; k += 2) {
+      [values[k], values[k + 1]] = [curve.values[k + 1], curve.values[k]];
+    }
+    return { ...curve, values };
+  });
+}
+
+export class Live {
+  /**
+   * @param {object} source see source.js
+   * @param {{shown: Function, failed: Function}} told
+   */
+  constructor(source, laws, told) {
+    this.laws = laws;
+    this.told = told;
+    const ask = async (question, signal) => source.chart(question.text, signal);
+    const show = (chart, question) => this.#show(chart, question);
+    this.requests = new Newest(ask, show, told.failed, 2);
+  }
+
+  /** The sweep file of what is set. */
+  text(state, cells = CELLS, fields = [...new Set(["n_unstable", state.show])]) {
+    return sweepOf(state, this.laws, cells, fields);
+  }
+
+  /** What is set has changed, and may change again soon. */
+  changed(state) {
+    clearTimeout(this.resting);
+    const quick = QUICK.includes(state.show) ? state.show : "n_unstable";
+    this.#want(state, [...new Set(["n_unstable", quick])], quick);
+    const all = [...new Set(["n_unstable", "abscissa", state.show])];
+    this.resting = setTimeout(() => this.#want(state, all, state.show, true), REST);
+  }
+
+  stop() {
+    clearTimeout(this.resting);
+    this.requests.stop();
+  }
+
+  #want(state, fields, show, rests = false) {
+    try {
+      const text = this.text(state, CELLS, fields);
+      this.requests.want({ text, show, logs: [state.x.log, state.y.log], rests });
+    } catch (error) {
+      this.told.failed(error);
+    }
+  }
+
+  #show(chart, { show, logs, rests }) {
+    const field = chart.fields.find(({ name }) => name === show) ?? chart.fields[0];
+    const byName = Object.fromEntries(chart.fields.map(({ name, values }) => [name, values]));
+    const [nx, ny] = chart.axes.map(({ values }) => values.length);
+    this.told.shown({
+      axes: chart.axes,
+      ends: chart.axes.map((axis, i) => edges(axis, logs[i])),
+      nx,
+      ny,
+      field: field.name === "n_unstable" ? { ...field, ...COUNTS } : field,
+      cells: field.values,
+      status: byName.status,
+      others: byName,
+      colours: coloursOf(field, field.values),
+      curves: curvesOf(chart),
+      milliseconds: chart.milliseconds,
+      rests,
+    });
+  }
+}

@@ -1,0 +1,80 @@
+// Scales of axes: from values to parts of the way between two ends, and back.
+
+/** A linear or logarithmic scale. The ends of a logarithmic one have the same sign. */
+export class Scale {
+  /**
+   * @param {number} from
+   * @param {number} to
+   * @param {boolean} log
+   */
+  constructor(from, to, log = false) {
+    this.from = from;
+    this.to = to;
+    this.log = log && from * to > 0;
+    this.sign = from < 0 ? -1 : 1;
+    [this.a, this.b] = [this.#linear(from), this.#linear(to)];
+  }
+
+  #linear(value) {
+    return this.log ? Math.log(this.sign * value) : value;
+  }
+
+  /** Where a value lies: 0 at the one end, 1 at the other. */
+  part(value) {
+    return (this.#linear(value) - this.a) / (this.b - this.a);
+  }
+
+  /** The value at a part of the way. */
+  value(part) {
+    const at = this.a + part * (this.b - this.a);
+    return this.log ? this.sign * Math.exp(at) : at;
+  }
+
+  /** The part of the scale between two parts of the way. */
+  between(from, to) {
+    return new Scale(this.value(from), this.value(to), this.log);
+  }
+
+  /** Round values on it, at most about `most`. */
+  ticks(most) {
+    return this.log ? this.#decades(most) : evenTicks(this.from, this.to, most);
+  }
+
+  #decades(most) {
+    const [low, high] = [this.sign * this.from, this.sign * this.to].sort((p, q) => p - q);
+    const list = [];
+    for (let power = Math.floor(Math.log10(low)); 10 ** power <= high; power++) {
+      for (const n of [1, 2, 5]) list.push(n * 10 ** power);
+    }
+    const inside = list.filter((x) => x >= low * (1 - 1e-12) && x <= high * (1 + 1e-12));
+    if (inside.length < 2) return evenTicks(this.from, this.to, most);
+    const powers = inside.filter((x) => /^1e/.test(x.toExponential()));
+    const kept = inside.length > most && powers.length > 1 ? powers : inside;
+    const every = Math.ceil(kept.length / Math.max(1, most));
+    return kept.filter((_, i) => i % every === 0).map((x) => this.sign * x);
+  }
+}
+
+/** Round numbers between two, at most about `most` of them. */
+function evenTicks(from, to, most) {
+  const [low, high] = from < to ? [from, to] : [to, from];
+  const rough = (high - low) / Math.max(1, most);
+  if (!(rough > 0) || !Number.isFinite(rough)) return [low];
+  const power = 10 ** Math.floor(Math.log10(rough));
+  const step = [1, 2, 5, 10].map((n) => n * power).find((s) => s >= rough * (1 - 1e-9));
+  const list = [];
+  const first = Math.ceil(low / step - 1e-9);
+  for (let n = first; n * step <= high + 1e-9 * step && list.length < 100; n++) list.push(n * step);
+  return list;
+}
+
+/** A number as people read it; not longer than it needs to be. */
+export function told(x, digits = 6) {
+  if (x === null || x === undefined || Number.isNaN(x)) return "no value";
+  if (!Number.isFinite(x)) return x > 0 ? "∞" : "−∞";
+  if (x === 0) return "0";
+  return Number(x.toPrecision(digits)).toString().replace("-", "−");
+}
+
+/** A tick's label: steps leave digits behind that mean nothing. */
+export const tickText = (x, step) => told(Math.abs(x) < 1e-9 * step ? 0 : x);
