@@ -3,6 +3,10 @@
 //!
 //! Units: M = κ = N0 = 1, so that everything is dimensionless as in `slipmap::slip::motion`.
 
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::{Duration, Instant};
+
 use slipmap::critical::follow::Pace;
 use slipmap::critical::limit::CoulombLimit;
 use slipmap::critical::line::{BLOCK, critical_velocities};
@@ -12,6 +16,7 @@ use slipmap::critical::{
 };
 use slipmap::model::{FrictionLaw, Table};
 use slipmap::slip::motion::Accuracy;
+use slipmap::slip::stop::Stop;
 
 #[path = "common/chance_problem.rs"]
 mod chance_problem;
@@ -24,6 +29,7 @@ fn problem(law: FrictionLaw, alpha_v: f64, alpha_n: f64, tau: f64) -> Problem {
         alpha_v,
         alpha_n,
         tau,
+        stop: Stop::default(),
     }
 }
 
@@ -582,4 +588,38 @@ fn uncontrolled_stick_slip() {
         assert!((found.vc / 4.14138767 - 1.0).abs() < 1e-4, "{found:?}");
     }
     assert!(fast.stick_time < 1e-5 && fast.slip_time > 6.0, "{fast:?}");
+}
+
+/// Wherever a search is, once it is told to stop it ends soon, and by no panic.
+#[test]
+fn a_search_stops_anywhere() {
+    let mut chance = Chance(20261123);
+    let mut stopped = 0;
+    for i in 0..600 {
+        let mut asked = match i % 2 {
+            0 => chance.problem(),
+            _ => chance.problem_of_other_laws(),
+        };
+        // Long delays make long searches.
+        asked.tau *= if i % 3 == 0 { 40.0 } else { 1.0 };
+        let flag = Arc::new(AtomicBool::new(i % 10 == 0));
+        asked.stop = Stop::when(&flag);
+        let wait = Duration::from_micros(chance.below(2000));
+        let text = format!("{asked:?}");
+        let search = std::thread::spawn(move || {
+            match i % 4 {
+                3 => drop(by_simulation(&asked, &Pace::default(), Accuracy::default())),
+                _ => drop(critical_velocity(&asked)),
+            }
+            Instant::now()
+        });
+        std::thread::sleep(wait);
+        let told = Instant::now();
+        flag.store(true, Ordering::Relaxed);
+        let ended = search.join().unwrap_or_else(|_| panic!("{text}"));
+        let took = ended.saturating_duration_since(told);
+        assert!(took < Duration::from_millis(500), "{took:?}: {text}");
+        stopped += u32::from(ended > told);
+    }
+    assert!(stopped > 100, "{stopped}");
 }

@@ -10,6 +10,7 @@ use slipmap::slip::case::{Case, Start};
 use slipmap::slip::cycle::after_release;
 use slipmap::slip::motion::Accuracy;
 use slipmap::slip::outcome::{Outcome, Summary};
+use slipmap::slip::stop::Stop;
 use slipmap::sweep::cells::vc;
 use slipmap::sweep::input::class::Class;
 use slipmap::sweep::input::search::Protocol;
@@ -190,6 +191,7 @@ fn letters(alpha_v: f64, alpha_n: f64, tau: f64) -> Problem {
         alpha_v,
         alpha_n,
         tau,
+        stop: Stop::default(),
     }
 }
 
@@ -227,6 +229,7 @@ fn coulomb(gamma: f64, tau: f64) -> Problem {
         alpha_v: 0.0,
         alpha_n: -2.0 * gamma / (0.5 * tau),
         tau,
+        stop: Stop::default(),
     }
 }
 

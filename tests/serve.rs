@@ -115,34 +115,121 @@ const POINT: &str = "[fixed]\nmu_prime = -0.3\nalpha_v = -0.33\ntau = 4.15\n";
 const PLANE: &str = "boundaries = true\n[axes]\nalpha_v = { from = -1.0, to = 0.2, points = 60 }\n\
     tau = { from = 0.0, to = 12.0, points = 80 }\n[fixed]\nmu_prime = -0.3\n";
 
+/// The answer, with what its own command line says of it.
+fn with_command(folder: &Folder, answer: &Answer) -> [serde_json::Value; 2] {
+    assert_eq!(answer.status, 200, "{}", answer.head);
+    let mut found = answer.json();
+    let command = found.as_object_mut().unwrap().remove("command").unwrap();
+    let words: Vec<&str> = command.as_str().unwrap().split(' ').skip(1).collect();
+    let told = folder.run(&[&words[..], &["--json"]].concat());
+    [found, serde_json::from_str(&out(&told)).unwrap()]
+}
+
 #[test]
 fn a_point_is_what_the_command_says() {
     let folder = Folder::new();
     let serving = Serving::new(&folder);
-    let answer = serving.ask("point", POINT);
-    assert_eq!(answer.status, 200, "{}", answer.head);
+    let weakening = "[friction]\nlaw = \"weakening\"\nmu0 = 0.5\n";
+    let sliding = format!("[fixed]\nv0 = 0.35\nalpha_n = -1e-9\ntau = 0.1\n{weakening}v_s = 0.5\n");
+    let heavy = "[fixed]\nmu_prime = -0.1\nmu_k = 0.4\nmass = 2.5e3\nstiffness = 0.3333333333333333\n\
+        alpha_v = -0.0\ntau = 7e-3\n";
+    for point in [POINT, &sliding, heavy] {
+        let [found, told] = with_command(&folder, &serving.ask("point", point));
+        assert_eq!(found, told);
+        let [line, abscissa] = ["certified_line", "abscissa"].map(|key| found[key].as_f64());
+        assert!(line > abscissa && abscissa.is_some(), "{found}");
+    }
+    let stated = format!("[fixed]\nalpha_v = -0.33\ntau = 4.15\n{weakening}");
+    for law in [
+        format!("{stated}v_s = 0.5\n"),
+        format!("{stated}mu_prime_rest = -1\n"),
+    ] {
+        let [found, told] = with_command(&folder, &serving.ask("vc", &law));
+        assert_eq!(found, told);
+        assert!((found["vc"].as_f64().unwrap() - 0.3).abs() < 0.1, "{found}");
+    }
     let flags = [
         "--mu-prime=-0.3",
         "--alpha-v=-0.33",
         "--tau=4.15",
         "--roots=16",
-        "--json",
     ];
-    let told = folder.run(&[&["point"], &flags[..]].concat());
+    let command = serving.ask("point", POINT).json()["command"].clone();
+    assert_eq!(command, format!("slipmap point {}", flags.join(" ")));
+    let table = "[fixed]\nv0 = 0.1\ntau = 1\n[friction]\nlaw = \"table\"\nspeeds = [0, 1]\nmu_k = [0.9, 0.5]\n";
+    assert!(serving.ask("point", table).json()["command"].is_null());
+}
+
+/// The head of an answer in bytes, and its arrays.
+fn decoded(body: &[u8]) -> (serde_json::Value, &[u8]) {
+    let length = u32::from_le_bytes(body[..4].try_into().unwrap()) as usize;
+    let head = serde_json::from_slice(&body[4..4 + length]).unwrap();
+    (head, &body[(4 + length).next_multiple_of(8)..])
+}
+
+#[test]
+fn a_motion_is_what_the_command_says() {
+    let folder = Folder::new();
+    let serving = Serving::new(&folder);
+    let case = include_str!("../sweeps/fig3a.toml");
+    let answer = serving.ask("motion", case);
+    assert_eq!(answer.status, 200, "{}", answer.head);
+    let (head, arrays) = decoded(&answer.body);
+    std::fs::write(folder.path().join("case.toml"), case).unwrap();
+    let words = head["command"].as_str().unwrap().split(' ').skip(1);
+    let told = folder.run(&[&words.collect::<Vec<_>>()[..], &["--json"]].concat());
     let told: serde_json::Value = serde_json::from_str(&out(&told)).unwrap();
-    assert_eq!(answer.json(), told);
-    let law = "[fixed]\nalpha_v = -0.33\ntau = 4.15\n[friction]\nlaw = \"weakening\"\nmu0 = 0.5\nv_s = 0.5\n";
-    let found = serving.ask("vc", law).json();
-    let flags = [
-        "--friction=weakening",
-        "--mu0=0.5",
-        "--v-s=0.5",
-        "--alpha-v=-0.33",
-        "--tau=4.15",
-    ];
-    let told = folder.run(&[&["vc", "--json"], &flags[..]].concat());
-    let told: serde_json::Value = serde_json::from_str(&out(&told)).unwrap();
-    assert_eq!(found, told);
+    for (key, value) in told.as_object().unwrap() {
+        assert!(key == "trace" || head[key] == *value, "{key}");
+    }
+    let array = |name: &str| {
+        let of = &head["arrays"][name];
+        assert_eq!(of["type"], "f64", "{name}");
+        let [at, length] = ["offset", "length"].map(|key| of[key].as_u64().unwrap() as usize);
+        let bytes = arrays[at..at + 8 * length].chunks(8);
+        bytes
+            .map(|n| f64::from_le_bytes(n.try_into().unwrap()))
+            .collect::<Vec<_>>()
+    };
+    let t = array("t");
+    assert!(t.len() > 1000 && t.len() <= 20_000 && t.windows(2).all(|w| w[0] < w[1]));
+    for event in head["events"].as_array().unwrap() {
+        let [at, a] = ["t", "a"].map(|key| event[key].as_f64().unwrap());
+        // To the last digit that JSON is read to.
+        let near = |x: f64, y: f64| (x - y).abs() <= 1e-14 * y.abs();
+        let sample = t.iter().position(|t| near(*t, at));
+        assert!(sample.is_some_and(|i| near(array("a")[i], a)) || at > t[t.len() - 1]);
+    }
+    for name in ["x", "x_dot", "v", "N"] {
+        assert_eq!(array(name).len(), t.len());
+    }
+    assert_eq!(head["arrays"]["mode"]["length"], t.len());
+    assert!(head.get("unit_t").is_none());
+    let units = "\n[units]\nforce = \"N\"\nlength = \"mm\"\ntime = \"s\"\n";
+    let answer = serving.ask("motion", &format!("{case}{units}"));
+    assert_eq!(decoded(&answer.body).0["unit_x_dot"], "mm s-1");
+}
+
+#[test]
+fn laws_and_tables_are_told() {
+    let folder = Folder::new();
+    let serving = Serving::new(&folder);
+    let law = "[fixed]\nv0 = 0.25\n[friction]\nlaw = \"weakening\"\nmu0 = 0.5\nv_s = 0.5\n";
+    let found = serving.ask("law", law).json();
+    assert_eq!(found["v"].as_array().unwrap().len(), 201);
+    assert_eq!(found["at"]["mu_k"].as_f64(), Some(0.5 / 1.5));
+    assert_eq!(serving.ask("law", POINT).status, 422);
+    let bearer = serving.bearer();
+    let asked = serving.request("GET /api/v1/parameters", &[("Authorization", &bearer)], "");
+    let known = asked.json();
+    let names = |of: &str| {
+        let list = known[of].as_array().unwrap().iter();
+        list.map(|row| row["name"].as_str().unwrap().to_owned())
+            .collect::<Vec<_>>()
+    };
+    assert!(names("parameters").contains(&"alpha_v".to_owned()));
+    assert_eq!(names("laws"), ["coulomb", "weakening", "stribeck", "table"]);
+    assert!(names("fields").contains(&"n_unstable".to_owned()));
 }
 
 /// Every cell of a chart by the closed form, from the bytes as a page reads them.
@@ -152,9 +239,7 @@ fn a_chart_is_that_of_the_closed_form() {
     let serving = Serving::new(&folder);
     let Answer { status, body, .. } = serving.ask("chart", PLANE);
     assert_eq!(status, 200);
-    let length = u32::from_le_bytes(body[..4].try_into().unwrap()) as usize;
-    let head: serde_json::Value = serde_json::from_slice(&body[4..4 + length]).unwrap();
-    let arrays = &body[(4 + length).next_multiple_of(8)..];
+    let (head, arrays) = decoded(&body);
     let field = &head["fields"][0];
     assert_eq!(
         (&field["name"], &field["type"]),

@@ -12,6 +12,7 @@ use slipmap::slip::case::{Case, Start};
 use slipmap::slip::cycle::{NoCycle, after_release};
 use slipmap::slip::motion::Accuracy;
 use slipmap::slip::outcome::Outcome;
+use slipmap::slip::stop::Stop;
 use slipmap::sweep::{Field, Plan};
 
 #[path = "common/map.rs"]
@@ -132,6 +133,7 @@ fn problem(law: FrictionLaw, (alpha_v, alpha_n): (f64, f64), tau: f64) -> Proble
         alpha_v,
         alpha_n,
         tau,
+        stop: Stop::default(),
     }
 }
 

@@ -26,7 +26,7 @@ impl Values {
         wanted.filter_map(|parameter| {
             let flag = parameter.flag()?;
             let arg = Arg::new(parameter.name())
-                .long(long(parameter))
+                .long(parameter.long_flag()?)
                 .value_name(flag.value)
                 .help(flag.help)
                 .value_parser(value_parser!(f64))
@@ -153,14 +153,12 @@ impl FromArgMatches for LimitArgs {
     }
 }
 
-/// The name of a parameter as flags write it.
-fn long(parameter: Parameter) -> String {
-    parameter.name().replace('_', "-")
-}
-
-/// The flag that gives a parameter.
+/// The flag that gives a parameter; the name of one that has none.
 pub(super) fn flag(parameter: Parameter) -> String {
-    format!("--{}", long(parameter))
+    match parameter.long_flag() {
+        Some(flag) => format!("--{flag}"),
+        None => parameter.key(),
+    }
 }
 
 impl ParameterArgs {

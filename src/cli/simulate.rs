@@ -154,10 +154,11 @@ fn draw(
 fn failure(error: TraceError) -> Failure {
     match error {
         TraceError::Case(error) => Failure::bad_input(error.to_string()),
-        TraceError::TooLong => Failure::bad_input_with_help(
+        TraceError::TooLong(_) => Failure::bad_input_with_help(
             error.to_string(),
             "[trace] until = … ends it earlier, interval = … makes it coarser",
         ),
+        TraceError::Stopped => Failure::failed(error.to_string()),
         TraceError::OutgrowsPast => Failure::bad_input_with_help(
             error.to_string(),
             "a larger tolerance takes fewer steps, [trace] until = … ends it earlier",

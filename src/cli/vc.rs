@@ -6,6 +6,7 @@ use clap::ValueEnum;
 use serde::Serialize;
 use slipmap::critical::switch_on::Phase;
 use slipmap::explore::vc::{CriticalVelocity, ShortDelay};
+use slipmap::slip::stop::Stop;
 use slipmap::sweep::Parameter;
 use slipmap::sweep::input::search::{self, PHASES};
 
@@ -58,7 +59,7 @@ pub(super) fn main(args: &Args) -> Result<(), Failure> {
                 ProtocolName::SwitchOn => search::Protocol::SwitchOn(args.phase()?),
                 _ => search::Protocol::Follow,
             };
-            let found = CriticalVelocity::of(&setting, protocol);
+            let found = CriticalVelocity::of(&setting, protocol, &Stop::default());
             let found = found.map_err(|e| args.parameters.refused(&e))?;
             print(&mut out, args.json, &found)
         }

@@ -74,7 +74,7 @@ pub fn carry(problem: &Problem, motion: &mut Motion, pace: &Pace) -> Followed {
 
 /// At the end of a stick without memory, with control.
 pub(super) fn start_sticking(problem: &Problem, v0: f64, accuracy: Accuracy) -> Motion {
-    let mut motion = Motion::new(problem.at(v0, 0.0), accuracy, 0.0, 0.0);
+    let mut motion = problem.at_rest(v0, accuracy);
     motion.release_from(problem.law.mu_s());
     motion
 }

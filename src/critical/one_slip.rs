@@ -69,7 +69,7 @@ pub(super) fn by_one_slip(problem: &Problem, accuracy: Accuracy) -> Option<RoadE
     if problem.alpha_v != 0.0 {
         return None;
     }
-    let motion = Motion::new(problem.at(1e-3, 0.0), accuracy, 0.0, 0.0);
+    let motion = problem.at_rest(1e-3, accuracy);
     let mut road = Slips { problem, motion };
     let mut from = road.first_place()?;
     let mut step = LARGEST_STEP;

@@ -119,7 +119,7 @@ const STARTS: [f64; 4] = [1e-2, 1e-3, 1e-4, 1e-6];
 impl Orbit {
     /// Of a block that is released from a memoryless stick at `v0`, which has one slip in a period.
     fn released(problem: &Problem, v0: f64, accuracy: Accuracy) -> Self {
-        let mut motion = Motion::new(problem.at(v0, 0.0), accuracy, 0.0, 0.0);
+        let mut motion = problem.at_rest(v0, accuracy);
         motion.release_from(problem.law.mu_s());
         Self::of(motion, 1)
     }

@@ -4,7 +4,8 @@ use crate::linear::rightmost::Rightmost;
 use crate::linear::{Count, Crossings, MarginalTolerance};
 use crate::model::friction::Kind;
 use crate::model::{FrictionLaw, Groups};
-use crate::slip::motion::Parameters;
+use crate::slip::motion::{Accuracy, Motion, Parameters};
+use crate::slip::stop::Stop;
 
 /// A controlled oscillator whose critical velocity is asked for, in the units of
 /// [`crate::slip::motion`].
@@ -20,6 +21,8 @@ pub struct Problem {
     pub alpha_n: f64,
     /// τ √(κ/M).
     pub tau: f64,
+    /// What ends the search: its answer then means nothing.
+    pub stop: Stop,
 }
 
 impl Problem {
@@ -36,6 +39,11 @@ impl Problem {
             v0,
             switch_on: if controlled { switch_on } else { f64::INFINITY },
         }
+    }
+
+    /// A block at rest at `v0`, under control from t = 0 on.
+    pub(super) fn at_rest(&self, v0: f64, accuracy: Accuracy) -> Motion {
+        Motion::new(self.at(v0, 0.0), accuracy, 0.0, 0.0).heeding(self.stop.clone())
     }
 
     /// How long to wait for a motion's outcome at `v0`: transients, many delays, and thirty of the

@@ -129,7 +129,7 @@ impl<'p> Trials<'p> {
     pub fn new(problem: &'p Problem, phase: Phase, accuracy: Accuracy, steps: u64) -> Self {
         Self {
             problem,
-            motion: Motion::new(problem.at(1.0, 0.0), accuracy, 0.0, 0.0),
+            motion: problem.at_rest(1.0, accuracy),
             accuracy,
             phase,
             steps,

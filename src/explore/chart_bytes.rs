@@ -11,8 +11,8 @@ struct Head {
     axes: Vec<AxisHead>,
     fields: Vec<FieldHead>,
     curves: Vec<CurveHead>,
-    /// How long it took to compute, in milliseconds.
-    milliseconds: f64,
+    /// How long it took to compute, in milliseconds; none where there is no clock.
+    milliseconds: Option<f64>,
 }
 
 #[derive(Debug, Serialize)]
@@ -44,11 +44,11 @@ struct CurveHead {
     array: Array,
 }
 
-/// The bytes of a chart that took so long to compute.
+/// The bytes of a chart that took so long to compute, if that is known.
 ///
 /// # Errors
 /// When its head is no JSON.
-pub fn encoded(chart: &Chart, milliseconds: f64) -> Result<Vec<u8>, serde_json::Error> {
+pub fn encoded(chart: &Chart, milliseconds: Option<f64>) -> Result<Vec<u8>, serde_json::Error> {
     let plan = chart.grid.plan();
     let units = &plan.spec.units;
     let mut arrays = Arrays::default();

@@ -71,7 +71,7 @@ impl Arrays {
     pub fn push_runs<T: Element>(&mut self, numbers: &[T]) -> Array {
         let mut runs: Vec<(T, u32)> = Vec::new();
         // A run takes its number and four bytes.
-        let most = numbers.len() * size_of::<T>() / (size_of::<T>() + 4);
+        let most = size_of_val(numbers) / (size_of::<T>() + 4);
         for run in numbers.chunk_by(|a, b| a == b) {
             if runs.len() >= most {
                 return self.push(numbers.iter().copied());

@@ -5,16 +5,29 @@
 //!   the same as bytes, laid out as in [`encoded`]
 //! - [`point`]: linear stability at a point, with its roots
 //! - [`vc`]: the critical velocity at a point
-//! - [`motion`]: one motion in time
+//! - [`motion`]: one motion in time; [`motion_bytes`]: the same as bytes
+//! - [`law`]: a friction law as a curve
+//! - [`known`]: all parameters, friction laws and fields
+//! - [`mod@answer`]: all of these by the names of requests; [`problem`]: what is told where there
+//!   is no answer
 //!
 //! Numbers that there are not are `null` in JSON, infinities among them.
 
+pub mod answer;
 pub mod chart;
 pub mod chart_bytes;
+mod command;
 pub mod encoded;
+pub mod known;
+pub mod law;
 pub mod motion;
+pub mod motion_bytes;
 pub mod point;
+pub mod problem;
 pub mod vc;
+
+pub use answer::{Limits, Request, answer};
+pub use problem::Problem;
 
 /// A number that JSON can tell.
 fn finite(value: f64) -> Option<f64> {

@@ -2,8 +2,80 @@
 
 use serde::Serialize;
 
-use crate::sweep::Trace;
-use crate::sweep::cells::trace::TraceEvent;
+use crate::slip::stop::Stop;
+use crate::sweep::cells::samples::Most;
+use crate::sweep::cells::trace::{TraceError, TraceEvent};
+use crate::sweep::{CaseSpec, SpecError, Trace};
+
+/// How much a motion may take.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Limits {
+    /// The most samples, and events; where there are more of the former, they are thinned.
+    pub samples: usize,
+    /// The most steps.
+    pub steps: u64,
+}
+
+impl Default for Limits {
+    /// What takes some seconds at most.
+    fn default() -> Self {
+        Self {
+            samples: 20_000,
+            steps: 1_000_000,
+        }
+    }
+}
+
+/// Why there is no motion.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum MotionError {
+    /// The case is not understood.
+    #[error(transparent)]
+    Spec(#[from] SpecError),
+    /// It has more events than a motion may have.
+    #[error("the motion has more than {0} events")]
+    TooLong(usize),
+    /// It takes more steps than a motion may take.
+    #[error("what becomes of the motion is not known after {0} steps")]
+    TooManySteps(u64),
+    /// It was stopped before it was complete.
+    #[error("stopped")]
+    Stopped,
+    /// It cannot be followed.
+    #[error("{0}")]
+    Failed(String),
+}
+
+/// A motion that was followed.
+#[derive(Debug, Clone)]
+pub struct Followed {
+    /// Its case.
+    pub spec: CaseSpec,
+    /// Its samples and events.
+    pub trace: Trace,
+}
+
+impl Followed {
+    /// Follows the case that `text` describes; a `stop` is heeded with every step.
+    ///
+    /// # Errors
+    /// When the text is not understood, it takes too much, or it was stopped.
+    pub fn of(text: &str, limits: Limits, stop: &Stop) -> Result<Self, MotionError> {
+        let mut spec: CaseSpec = text.parse()?;
+        let asked = spec.case.steps;
+        spec.case.steps = asked.min(limits.steps);
+        let trace = Trace::within(&spec, Most::Thinned(limits.samples), stop);
+        let trace = trace.map_err(|error| match error {
+            TraceError::TooLong(most) => MotionError::TooLong(most),
+            TraceError::Stopped => MotionError::Stopped,
+            other => MotionError::Failed(other.to_string()),
+        })?;
+        if trace.summary.steps >= limits.steps && asked > limits.steps {
+            return Err(MotionError::TooManySteps(limits.steps));
+        }
+        Ok(Self { spec, trace })
+    }
+}
 
 /// What became of a motion, in the units of its case. NaN and infinity are null in JSON.
 #[derive(Debug, Clone, Serialize)]
@@ -67,5 +139,46 @@ impl MotionSummary {
             steps: summary.steps,
             events: trace.events.iter().map(event).collect(),
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const FIG3A: &str = include_str!("../../sweeps/fig3a.toml");
+
+    fn followed(text: &str, limits: Limits) -> Result<Followed, MotionError> {
+        Followed::of(text, limits, &Stop::default())
+    }
+
+    #[test]
+    fn a_long_motion_is_thinned() {
+        let limits = Limits {
+            samples: 1000,
+            ..Limits::default()
+        };
+        let found = followed(FIG3A, limits).unwrap();
+        assert!((500..=1000).contains(&found.trace.samples.len()));
+        assert_eq!(MotionSummary::of(&found.trace).outcome, "sliding");
+        let few = Limits {
+            samples: 10,
+            ..limits
+        };
+        let refused = followed(FIG3A, few).unwrap_err();
+        assert_eq!(refused, MotionError::TooLong(10));
+    }
+
+    /// A case that asks for few steps gets them; one that needs more than there may be is refused.
+    #[test]
+    fn steps_have_an_end() {
+        let limits = Limits {
+            steps: 200,
+            ..Limits::default()
+        };
+        let refused = followed(FIG3A, limits).unwrap_err();
+        assert_eq!(refused, MotionError::TooManySteps(200));
+        let few = followed(&format!("steps = 100\n{FIG3A}"), limits).unwrap();
+        assert_eq!(MotionSummary::of(&few.trace).outcome, "undecided");
     }
 }

@@ -3,6 +3,7 @@
 use serde::Serialize;
 
 use super::finite;
+use crate::linear::certificate::roots_right_of;
 use crate::linear::rightmost::Rightmost;
 use crate::linear::stable_delays::StableInterval;
 use crate::linear::{Crossings, Direction, MarginalTolerance};
@@ -70,6 +71,9 @@ pub struct Spectrum {
     pub certified: bool,
     /// No root is farther right than abscissa + this times max(1/√(M/κ), |abscissa|).
     pub certificate_margin: Option<f64>,
+    /// Re λ of a vertical line, right of the rightmost root, that the argument principle finds no
+    /// root right of; none where it does not tell.
+    pub certified_line: Option<f64>,
     /// Why there are fewer roots than asked for.
     #[serde(skip)]
     pub fewer: Option<String>,
@@ -85,6 +89,11 @@ impl Spectrum {
         let count = Crossings::of(groups).count(tau, MarginalTolerance::default());
         let found = Rightmost::at(groups, tau, wanted.into(), count);
         let incomplete = found.missing.is_some();
+        let line = found.roots.first().map(|root| {
+            let re = root.lambda.re;
+            re + found.margin * re.abs().max(1.0)
+        });
+        let certified_line = line.filter(|line| roots_right_of(groups, tau, *line) == Some(0));
         let roots: Vec<[f64; 2]> = found
             .roots
             .iter()
@@ -103,6 +112,7 @@ impl Spectrum {
             roots,
             certified: found.certified,
             certificate_margin: finite(found.margin),
+            certified_line: certified_line.map(|line| line / time_unit),
             incomplete,
         })
     }

@@ -7,6 +7,7 @@ use serde::Serialize;
 use super::finite;
 use crate::critical::limit::LimitCell;
 use crate::model::ModelError;
+use crate::slip::stop::Stop;
 use crate::sweep::Setting;
 use crate::sweep::cells::vc;
 use crate::sweep::input::field::{Field, OUTCOMES, number_of_outcome};
@@ -39,12 +40,13 @@ pub struct CriticalVelocity {
 }
 
 impl CriticalVelocity {
-    /// Of a setting, whose v0 means nothing.
+    /// Of a setting, whose v0 means nothing. Once `stop` is set the answer comes soon and means
+    /// nothing.
     ///
     /// # Errors
     /// When the setting has no friction law, or a value is out of the model's range.
-    pub fn of(setting: &Setting, protocol: Protocol) -> Result<Self, ModelError> {
-        let found = vc::find(setting, protocol)?;
+    pub fn of(setting: &Setting, protocol: Protocol, stop: &Stop) -> Result<Self, ModelError> {
+        let found = vc::asked(setting)?.until(stop.clone()).find(protocol);
         let critical = found.critical;
         Ok(Self {
             vc: finite(critical.vc),

@@ -1,7 +1,6 @@
 //! What is answered at which address.
 
 use std::sync::Arc;
-use std::time::Instant;
 
 use axum::Router;
 use axum::body::Bytes;
@@ -17,19 +16,10 @@ use super::access::Access;
 use super::page;
 use super::problem::{Problem, nothing_here};
 use super::work::Work;
-use crate::explore::chart::{Chart, Limits};
-use crate::explore::chart_bytes;
-use crate::explore::point::Point;
-use crate::explore::vc::CriticalVelocity;
-use crate::model::ModelError;
-use crate::sweep::Setting;
-use crate::sweep::input::point_file::{PointOf, PointSpec};
-use crate::sweep::input::search::Protocol;
+use crate::explore::{self, Limits};
 
 /// The longest text that is read: friction laws of some thousand points.
 const LONGEST_BODY: usize = 1 << 18;
-/// Roots of a point.
-const ROOTS: u8 = 16;
 
 /// What a page may load: its own files, and nothing from elsewhere.
 const POLICY: &str = "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self' \
@@ -42,20 +32,19 @@ struct Served {
 }
 
 impl Served {
-    /// What `answer` says of the point that the text of a request describes.
-    async fn at_point<T: Send + 'static>(
+    /// The answer to what the text of a request describes.
+    async fn answer(
         &self,
-        headers: &HeaderMap,
-        body: &Bytes,
-        of: PointOf,
-        answer: impl FnOnce(&Setting) -> Result<T, ModelError> + Send + 'static,
-    ) -> Result<axum::Json<T>, Problem> {
-        let text = text(headers, body)?;
-        let computed = self.work.run(move |_| {
-            let spec = PointSpec::read(&text, of)?;
-            Ok(answer(&spec.setting)?)
-        });
-        computed.await.map(axum::Json)
+        request: explore::Request,
+        text: Result<String, Problem>,
+    ) -> Result<Response, Problem> {
+        let text = text?;
+        let limits = Limits::default();
+        let computed = self
+            .work
+            .run(move |stop| explore::answer(request, &text, &limits, stop));
+        let kind = [(header::CONTENT_TYPE, request.content_type())];
+        Ok((kind, computed.await?).into_response())
     }
 }
 
@@ -63,9 +52,12 @@ impl Served {
 pub(super) fn routes(access: Arc<Access>, work: Work) -> Router {
     let served = Served { access, work };
     let api = Router::new()
-        .route("/api/v1/chart", post(chart_of))
+        .route("/api/v1/chart", post(chart))
         .route("/api/v1/point", post(point))
         .route("/api/v1/vc", post(vc))
+        .route("/api/v1/motion", post(motion))
+        .route("/api/v1/law", post(law))
+        .route("/api/v1/parameters", get(parameters))
         .route("/", get(front))
         .route("/{asset}", get(page::asset))
         .fallback(nothing)
@@ -147,23 +139,14 @@ fn text(headers: &HeaderMap, body: &Bytes) -> Result<String, Problem> {
     Ok(text.to_owned())
 }
 
-/// A sweep of few cells, as [`chart_bytes`] describes.
-async fn chart_of(
+/// A sweep of few cells.
+async fn chart(
     State(served): State<Served>,
     headers: HeaderMap,
     body: Bytes,
 ) -> Result<Response, Problem> {
-    let text = text(&headers, &body)?;
-    let computed = served.work.run(move |stop| {
-        let begun = Instant::now();
-        let chart = Chart::of(&text, Limits::default(), stop)?;
-        let took = begun.elapsed().as_secs_f64() * 1e3;
-        chart_bytes::encoded(&chart, took)
-            .map_err(|error| Problem::of(StatusCode::INTERNAL_SERVER_ERROR, error.to_string()))
-    });
-    let bytes = computed.await?;
-    let kind = [(header::CONTENT_TYPE, "application/octet-stream")];
-    Ok((kind, bytes).into_response())
+    let text = text(&headers, &body);
+    served.answer(explore::Request::Chart, text).await
 }
 
 /// Linear stability at a point.
@@ -171,9 +154,9 @@ async fn point(
     State(served): State<Served>,
     headers: HeaderMap,
     body: Bytes,
-) -> Result<axum::Json<Point>, Problem> {
-    let at = |setting: &Setting| Point::at(setting, ROOTS);
-    served.at_point(&headers, &body, PointOf::Sliding, at).await
+) -> Result<Response, Problem> {
+    let text = text(&headers, &body);
+    served.answer(explore::Request::Point, text).await
 }
 
 /// The critical velocity of a point, by the protocol `follow`.
@@ -181,11 +164,37 @@ async fn vc(
     State(served): State<Served>,
     headers: HeaderMap,
     body: Bytes,
-) -> Result<axum::Json<CriticalVelocity>, Problem> {
-    let of = |setting: &Setting| CriticalVelocity::of(setting, Protocol::Follow);
+) -> Result<Response, Problem> {
+    let text = text(&headers, &body);
     served
-        .at_point(&headers, &body, PointOf::CriticalVelocity, of)
+        .answer(explore::Request::CriticalVelocity, text)
         .await
+}
+
+/// The motion of a case.
+async fn motion(
+    State(served): State<Served>,
+    headers: HeaderMap,
+    body: Bytes,
+) -> Result<Response, Problem> {
+    let text = text(&headers, &body);
+    served.answer(explore::Request::Motion, text).await
+}
+
+/// A friction law as a curve.
+async fn law(
+    State(served): State<Served>,
+    headers: HeaderMap,
+    body: Bytes,
+) -> Result<Response, Problem> {
+    let text = text(&headers, &body);
+    served.answer(explore::Request::Law, text).await
+}
+
+/// All parameters, friction laws and fields.
+async fn parameters(State(served): State<Served>) -> Result<Response, Problem> {
+    let asked = explore::Request::Parameters;
+    served.answer(asked, Ok(String::new())).await
 }
 
 async fn nothing() -> Problem {

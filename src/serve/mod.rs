@@ -1,7 +1,7 @@
 //! slipmap as a service on one's own machine: a page, and the interface that it uses.
 //!
 //! ```text
-//! link with a token → cookie → page → /api/v1/chart, point, vc, motion → explore
+//! link with a token → cookie → page → /api/v1/chart, point, vc, motion, law → explore
 //! ```
 //!
 //! Requests are TOML as in files, answers JSON or, for charts, arrays of numbers

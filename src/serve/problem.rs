@@ -1,34 +1,14 @@
-//! What is told of a request that cannot be answered: problem details in JSON (RFC 9457).
+//! Problems as answers: what is told of a request that cannot be answered (RFC 9457).
 
 use axum::http::StatusCode;
 use axum::http::header::{CONTENT_TYPE, HeaderValue};
 use axum::response::{IntoResponse, Response};
-use serde::Serialize;
 
 use super::access::Refusal;
-use crate::explore::chart::ChartError;
-use crate::model::ModelError;
-use crate::sweep::SpecError;
-
-/// A problem.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-pub(super) struct Problem {
-    /// The status of the answer.
-    pub status: u16,
-    /// The same in words.
-    pub title: &'static str,
-    /// What is wrong here.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub detail: Option<String>,
-    /// What could be done.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub help: Option<String>,
-    /// The bytes of the request's text that it is about: from and to.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub span: Option<[usize; 2]>,
-}
+pub(super) use crate::explore::Problem;
 
 impl Problem {
+    /// With any status.
     pub(super) fn of(status: StatusCode, detail: impl Into<String>) -> Self {
         Self {
             status: status.as_u16(),
@@ -68,36 +48,6 @@ impl From<Refusal> for Problem {
                 ..Self::of(StatusCode::UNAUTHORIZED, "no token, or another one")
             },
             Refusal::Origin => Self::of(StatusCode::FORBIDDEN, "sent by another page"),
-        }
-    }
-}
-
-impl From<SpecError> for Problem {
-    fn from(error: SpecError) -> Self {
-        Self {
-            help: error.help,
-            span: error.span.map(|span| [span.start, span.end]),
-            ..Self::of(StatusCode::UNPROCESSABLE_ENTITY, error.message)
-        }
-    }
-}
-
-impl From<ModelError> for Problem {
-    fn from(error: ModelError) -> Self {
-        Self::of(StatusCode::UNPROCESSABLE_ENTITY, error.to_string())
-    }
-}
-
-impl From<ChartError> for Problem {
-    fn from(error: ChartError) -> Self {
-        match error {
-            ChartError::Spec(error) => error.into(),
-            ChartError::TooManyCells { .. } => Self {
-                help: Some("run it: slipmap run SWEEP.toml has no such limit".into()),
-                ..Self::of(StatusCode::PAYLOAD_TOO_LARGE, error.to_string())
-            },
-            ChartError::Stopped => Self::of(StatusCode::SERVICE_UNAVAILABLE, "stopped"),
-            ChartError::Failed(why) => Self::of(StatusCode::UNPROCESSABLE_ENTITY, why),
         }
     }
 }

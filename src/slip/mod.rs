@@ -6,6 +6,7 @@
 //! - [`outcome`]: what becomes of a motion
 //! - [`step`]: the polynomials of one step
 //! - [`series`]: polynomials in time, their first zeros
+//! - [`stop`]: a flag that ends motions
 
 pub mod case;
 mod collocation;
@@ -17,5 +18,6 @@ pub mod motion;
 pub mod outcome;
 pub mod series;
 pub mod step;
+pub mod stop;
 mod table_series;
 pub mod watch;

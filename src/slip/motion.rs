@@ -29,6 +29,7 @@ use super::history::History;
 pub use super::history::{BYTES_OF_A_STEP, MOST_KEPT, Stretch};
 use super::series::{MOST_ORDER, value};
 use super::step::{Control, Step};
+use super::stop::Stop;
 use crate::model::elementary::ln;
 
 /// Rounding of a force, relative.
@@ -68,6 +69,7 @@ pub struct Motion {
     even_since: f64,
     /// The last step's polynomials of u, a, n and the delayed elongation, and its length.
     step: Step,
+    stop: Stop,
 }
 
 impl Motion {
@@ -80,8 +82,11 @@ impl Motion {
 
     /// Begins another motion, as [`Motion::new`] does, without allocating anew.
     pub fn restart(&mut self, parameters: Parameters, accuracy: Accuracy, u: f64, a: f64) {
-        let history = std::mem::take(&mut self.history);
-        *self = Self::with_history(parameters, accuracy, (u, a), history);
+        let (history, stop) = (
+            std::mem::take(&mut self.history),
+            std::mem::take(&mut self.stop),
+        );
+        *self = Self::with_history(parameters, accuracy, (u, a), history).heeding(stop);
     }
 
     fn with_history(
@@ -120,12 +125,25 @@ impl Motion {
                 n: zero,
                 delayed: zero,
             },
+            stop: Stop::default(),
         };
         motion.mode = motion.mode_at(1.0);
         if motion.mode == Mode::Stick {
             motion.even_since = 0.0;
         }
         motion
+    }
+
+    /// The same motion, and all that begin in its memory, until `stop` is set.
+    #[must_use]
+    pub fn heeding(self, stop: Stop) -> Self {
+        Self { stop, ..self }
+    }
+
+    /// Whether it was told to stop: its state is then no number.
+    #[must_use]
+    pub fn is_stopped(&self) -> bool {
+        self.stop.is_set()
     }
 
     /// Puts the block at the end of a stick that erased all memory: it is released at t = 0 to slip

@@ -2,6 +2,7 @@
 
 use slipmap::critical::Problem;
 use slipmap::model::{FrictionLaw, Table};
+use slipmap::slip::stop::Stop;
 
 #[path = "chance.rs"]
 mod chance;
@@ -49,6 +50,7 @@ impl Chance {
             alpha_v,
             alpha_n,
             tau,
+            stop: Stop::default(),
         }
     }
 }

@@ -6,6 +6,7 @@ use slipmap::critical::{self, Critical, Problem, critical_velocity};
 use slipmap::model::{FrictionLaw, Table};
 use slipmap::slip::motion;
 use slipmap::slip::outcome::Outcome;
+use slipmap::slip::stop::Stop;
 use slipmap::sweep::CaseSpec;
 
 use super::asked::{case_file, phase_file, simulate_command, vc_command};
@@ -191,6 +192,7 @@ pub(crate) fn problem(setting: &Setting) -> Problem {
         alpha_v: setting.alpha_v,
         alpha_n: setting.alpha_n,
         tau: setting.tau,
+        stop: Stop::default(),
     }
 }
 

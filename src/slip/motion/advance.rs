@@ -1,6 +1,6 @@
 //! One step after the other.
 
-use super::{Event, Integrator, Mode, Motion};
+use super::{Event, Integrator, LEAST_ORDER, Mode, Motion};
 use crate::slip::history::SMOOTH;
 use crate::slip::series::value;
 
@@ -30,8 +30,13 @@ struct DelayLimit {
 }
 
 impl Motion {
-    /// One step, not beyond `horizon`, and the event that ends it, if one does.
+    /// One step, not beyond `horizon`, and the event that ends it, if one does. A motion that is
+    /// told to stop takes none: its velocity is NaN from then on.
     pub fn advance(&mut self, horizon: f64) -> Option<Event> {
+        if self.is_stopped() {
+            self.end_here();
+            return None;
+        }
         let controlled = self.t >= self.parameters.switch_on;
         let now = Now {
             controlled,
@@ -71,6 +76,14 @@ impl Motion {
             self.kink = self.passed_on(delay.kink);
         }
         event.map(|event| self.change_mode(event))
+    }
+
+    /// A step that leads nowhere, to no number.
+    #[cold]
+    fn end_here(&mut self) {
+        self.u = f64::NAN;
+        self.step.order = self.step.order.max(LEAST_ORDER);
+        self.step.length = 0.0;
     }
 
     /// The longest step that delay, switch-on and `horizon` allow.

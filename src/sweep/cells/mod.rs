@@ -6,6 +6,7 @@ pub mod buffers;
 mod limit_columns;
 mod line;
 pub mod root_columns;
+pub mod samples;
 pub mod second_look;
 mod slip_columns;
 pub mod trace;

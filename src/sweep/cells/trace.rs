@@ -1,9 +1,11 @@
 //! A motion sampled over time, with its events: a case followed to its outcome and to the end of
 //! its trace.
 
+use super::samples::{Most, Samples};
 use crate::slip::case::{Case, CaseError, CaseUnits};
 use crate::slip::motion::{Event, MOST_KEPT, Mode, Motion};
 use crate::slip::outcome::{Observer, Outcome, Summary};
+use crate::slip::stop::Stop;
 use crate::sweep::input::case_file::{CaseSpec, Sampling};
 
 /// More samples than this make no trace: some 300 MB.
@@ -32,11 +34,14 @@ pub enum TraceError {
     #[error(transparent)]
     Case(#[from] CaseError),
     /// It would be too long.
-    #[error("the trace would have more than {MOST_SAMPLES} samples or events")]
-    TooLong,
+    #[error("the trace would have more than {0} samples or events")]
+    TooLong(usize),
     /// The delay is too long for its steps.
     #[error("two delays take more than {MOST_KEPT} steps, the most that are kept")]
     OutgrowsPast,
+    /// It was stopped before it was complete.
+    #[error("stopped")]
+    Stopped,
 }
 
 /// The state at one time, in the case's units.
@@ -96,21 +101,37 @@ impl Trace {
     /// # Errors
     /// When the model refuses a value, or the trace would be too long.
     pub fn of(spec: &CaseSpec) -> Result<Self, TraceError> {
+        Self::within(spec, Most::Refused(MOST_SAMPLES), &Stop::default())
+    }
+
+    /// Follows the case of `spec` with no more samples and events than `most`, until `stop` is
+    /// set, which is heeded with every step.
+    ///
+    /// # Errors
+    /// As [`Trace::of`], and when it was stopped.
+    pub fn within(spec: &CaseSpec, most: Most, stop: &Stop) -> Result<Self, TraceError> {
         let case = &spec.case;
-        let mut listed = Events {
+        let longest = most.number();
+        let mut listed = Listed {
             units: case.units(),
             events: Vec::new(),
+            most: longest,
+            stop,
         };
         let summary = case.run(&mut listed)?;
-        if listed.enough() {
-            return Err(TraceError::TooLong);
+        if stop.is_set() {
+            return Err(TraceError::Stopped);
+        }
+        if listed.events.len() > longest {
+            return Err(TraceError::TooLong(longest));
         }
         let ended = matches!(summary.outcome, Outcome::LiftOff | Outcome::Diverged);
         let until = match spec.until {
             Some(until) if !(ended && until > summary.decided) => until,
             _ => summary.decided,
         };
-        let mut recorder = Recorder::new(case, spec.sampling)?;
+        let sampling = sampling(spec.sampling, until, most);
+        let mut recorder = Recorder::new(case, (sampling, most), stop)?;
         recorder.record(until)?;
         // One motion twice, to rounding: a step that goes on to the end of what is asked for ends
         // elsewhere. Events of samples first.
@@ -118,7 +139,7 @@ impl Trace {
         let both = events.len();
         events.extend(listed.events.into_iter().skip(both));
         Ok(Self {
-            samples: recorder.samples,
+            samples: recorder.samples.into_vec(),
             events,
             summary,
         })
@@ -146,20 +167,33 @@ impl Trace {
     }
 }
 
-/// Lists the events of a motion.
-struct Events {
-    units: CaseUnits,
-    events: Vec<TraceEvent>,
+/// How to sample until then: intervals of which there are too many become longer by a whole number.
+fn sampling(asked: Sampling, until: f64, most: Most) -> Sampling {
+    match (asked, most) {
+        (Sampling::Interval(interval), Most::Thinned(most)) => {
+            let share = until / interval / (0.5 * most as f64);
+            Sampling::Interval(interval * share.ceil().max(1.0))
+        }
+        _ => asked,
+    }
 }
 
-impl Observer for Events {
+/// Lists the events of a motion.
+struct Listed<'s> {
+    units: CaseUnits,
+    events: Vec<TraceEvent>,
+    most: usize,
+    stop: &'s Stop,
+}
+
+impl Observer for Listed<'_> {
     fn step(&mut self, motion: &Motion, event: Option<Event>) {
         let there = event.map(|kind| physical(motion, kind, self.units));
         self.events.extend(there);
     }
 
     fn enough(&self) -> bool {
-        self.events.len() > MOST_SAMPLES
+        self.events.len() > self.most || self.stop.is_set()
     }
 }
 
@@ -179,7 +213,7 @@ struct Recorder {
     units: CaseUnits,
     steps: u64,
     sampling: Sampling,
-    samples: Vec<Sample>,
+    samples: Samples,
     events: Vec<TraceEvent>,
 }
 
@@ -194,14 +228,18 @@ struct Begun {
 }
 
 impl Recorder {
-    fn new(case: &Case, sampling: Sampling) -> Result<Self, CaseError> {
+    fn new(
+        case: &Case,
+        (sampling, most): (Sampling, Most),
+        stop: &Stop,
+    ) -> Result<Self, CaseError> {
         Ok(Self {
-            motion: case.motion()?,
+            motion: case.motion()?.heeding(stop.clone()),
             x: 0.0,
             units: case.units(),
             steps: case.steps,
             sampling,
-            samples: Vec::new(),
+            samples: Samples::new(most),
             events: Vec::new(),
         })
     }
@@ -218,6 +256,9 @@ impl Recorder {
                 marked,
             };
             let event = self.motion.advance(end);
+            if self.motion.is_stopped() {
+                return Err(TraceError::Stopped);
+            }
             if self.motion.outgrows_its_past() {
                 return Err(TraceError::OutgrowsPast);
             }
@@ -228,8 +269,8 @@ impl Recorder {
             if over || event == Some(Event::SwitchOn) {
                 self.sample_end(begun, !over);
             }
-            if self.samples.len() > MOST_SAMPLES {
-                return Err(TraceError::TooLong);
+            if self.samples.too_many() {
+                return Err(TraceError::TooLong(self.samples.most()));
             }
             if let Some(kind) = event {
                 self.events.push(physical(&self.motion, kind, self.units));
@@ -248,17 +289,18 @@ impl Recorder {
         match self.sampling {
             Sampling::PerStep(n) => {
                 for part in 0..n {
-                    self.add(begun, length * f64::from(part) / f64::from(n));
+                    let marked = begun.marked && part == 0;
+                    self.add(begun, marked, length * f64::from(part) / f64::from(n));
                 }
             }
             Sampling::Interval(interval) => {
                 let interval = interval / self.units.time;
                 if begun.marked {
-                    self.add(begun, 0.0);
+                    self.add(begun, true, 0.0);
                 }
                 let mut index = (begun.t / interval).ceil();
-                while index * interval < begun.t + length && self.samples.len() <= MOST_SAMPLES {
-                    self.add(begun, (index * interval - begun.t).max(0.0));
+                while index * interval < begun.t + length && !self.samples.too_many() {
+                    self.add(begun, false, (index * interval - begun.t).max(0.0));
                     index += 1.0;
                 }
             }
@@ -269,40 +311,35 @@ impl Recorder {
     /// other values.
     fn sample_end(&mut self, begun: Begun, before: bool) {
         let length = self.motion.last_step().length;
-        let mut sample = self.sample(begun, length);
+        let mut sample = Sample::of(&self.motion, self.units, begun, length);
         if before {
             sample.t = sample.t.next_down();
         } else {
             sample.mode = self.motion.mode();
         }
-        self.push(sample);
+        self.samples.add(true, || sample);
     }
 
-    fn add(&mut self, begun: Begun, s: f64) {
-        let sample = self.sample(begun, s);
-        self.push(sample);
+    fn add(&mut self, begun: Begun, marked: bool, s: f64) {
+        let Self {
+            motion, samples, ..
+        } = self;
+        let units = self.units;
+        samples.add(marked, || Sample::of(motion, units, begun, s));
     }
+}
 
-    fn push(&mut self, sample: Sample) {
-        if self.samples.last().is_none_or(|last| last.t < sample.t) {
-            self.samples.push(sample);
-        }
-    }
-
-    /// The state `s` after the beginning of the last step.
-    fn sample(&self, begun: Begun, s: f64) -> Sample {
-        let (step, p, units) = (
-            self.motion.last_step(),
-            self.motion.parameters(),
-            self.units,
-        );
+impl Sample {
+    /// The state of a motion, `s` after the beginning of its last step.
+    fn of(motion: &Motion, units: CaseUnits, begun: Begun, s: f64) -> Self {
+        let (step, p) = (motion.last_step(), motion.parameters());
         let (u, a, n) = step.state(s);
         let difference = if begun.t >= p.switch_on {
             a - step.delayed_elongation(s)
         } else {
             0.0
         };
-        Sample {
+        Self {
             t: (begun.t + s) * units.time,
             x: (begun.x + step.displacement(s)) * units.length,
             x_dot: u * units.velocity,
@@ -317,6 +354,8 @@ impl Recorder {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use std::sync::Arc;
+    use std::sync::atomic::AtomicBool;
 
     const FIG3A: &str = include_str!("../../../sweeps/fig3a.toml");
 
@@ -376,6 +415,41 @@ mod tests {
     fn a_trace_that_is_too_long_is_refused() {
         let text = FIG3A.replace("[trace]", "[trace]\ninterval = 1e-9");
         let spec: CaseSpec = text.parse().unwrap();
-        assert_eq!(Trace::of(&spec), Err(TraceError::TooLong));
+        assert_eq!(Trace::of(&spec), Err(TraceError::TooLong(MOST_SAMPLES)));
+    }
+
+    /// Of any sampling a part is left, with every event and the end.
+    #[test]
+    fn what_is_thinned_is_a_part_of_the_whole() {
+        for sampling in ["samples = 24", "interval = 0.001"] {
+            let text = FIG3A.replace("[trace]", &format!("[trace]\n{sampling}"));
+            let (spec, whole) = trace(&text);
+            let stop = Stop::default();
+            let thinned = Trace::within(&spec, Most::Thinned(300), &stop).unwrap();
+            assert_eq!(
+                (&thinned.events, thinned.summary),
+                (&whole.events, whole.summary)
+            );
+            assert!((150..=300).contains(&thinned.samples.len()));
+            assert_eq!(thinned.samples.last(), whole.samples.last());
+            for sample in &thinned.samples {
+                let near = whole.samples.iter().any(|s| (s.t - sample.t).abs() < 1e-9);
+                assert!(near, "{sample:?}");
+            }
+            for event in &thinned.events {
+                let found = thinned.samples.iter().any(|s| s.t == event.t);
+                assert!(found || thinned.samples.last().unwrap().t < event.t);
+            }
+        }
+        let spec: CaseSpec = FIG3A.parse().unwrap();
+        let refused = Trace::within(&spec, Most::Thinned(5), &Stop::default());
+        assert_eq!(refused, Err(TraceError::TooLong(5)));
+    }
+
+    #[test]
+    fn a_stop_ends_it() {
+        let (spec, flag) = (FIG3A.parse().unwrap(), Arc::new(AtomicBool::new(true)));
+        let stopped = Trace::within(&spec, Most::Thinned(300), &Stop::when(&flag));
+        assert_eq!(stopped, Err(TraceError::Stopped));
     }
 }

@@ -11,6 +11,7 @@ use crate::model::ModelError;
 use crate::model::elementary::pow;
 use crate::slip::case::CaseUnits;
 use crate::slip::motion::{Accuracy, Integrator};
+use crate::slip::stop::Stop;
 use crate::sweep::input::class::Class;
 use crate::sweep::input::parameter::Parameter;
 use crate::sweep::input::search::Protocol;
@@ -61,19 +62,19 @@ pub fn asked(setting: &Setting) -> Result<Asked, ModelError> {
         alpha_v: control.alpha_v * units.time,
         alpha_n: control.alpha_n / oscillator.stiffness(),
         tau: tau / units.time,
+        stop: Stop::default(),
     };
     Ok(Asked { problem, units })
 }
 
-/// The critical velocity of a setting; its v0 means nothing.
-///
-/// # Errors
-/// See [`asked`].
-pub fn find(setting: &Setting, protocol: Protocol) -> Result<CriticalWindows, ModelError> {
-    Ok(asked(setting)?.find(protocol))
-}
-
 impl Asked {
+    /// The same, until `stop` is set: answers come soon then, and mean nothing.
+    #[must_use]
+    pub fn until(mut self, stop: Stop) -> Self {
+        self.problem.stop = stop;
+        self
+    }
+
     /// The critical velocity by a protocol.
     #[must_use]
     pub fn find(&self, protocol: Protocol) -> CriticalWindows {
@@ -403,6 +404,7 @@ mod tests {
             alpha_v: 0.0,
             alpha_n: 0.0,
             tau: 1.0,
+            stop: Stop::default(),
         };
         let units = CaseUnits {
             time: 1.0,

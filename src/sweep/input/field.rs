@@ -48,6 +48,33 @@ pub enum Spread {
     RelativeError,
 }
 
+impl Spread {
+    /// The name.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Counts => "counts",
+            Self::FromZero => "from-zero",
+            Self::LongTail => "long-tail",
+            Self::Magnitudes => "magnitudes",
+            Self::Decades => "decades",
+            Self::Relaxation => "relaxation",
+            Self::AboutZero { .. } => "about-zero",
+            Self::BetterBelow => "better-below",
+            Self::RelativeError => "relative-error",
+        }
+    }
+
+    /// The sign of values where sliding is stable, for values on both sides of a change.
+    #[must_use]
+    pub const fn stable_sign(self) -> Option<f64> {
+        match self {
+            Self::AboutZero { stable } => Some(stable),
+            _ => None,
+        }
+    }
+}
+
 /// The powers of force, length and time in a unit, or what has none.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Measure {

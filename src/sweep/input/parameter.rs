@@ -37,6 +37,21 @@ pub enum Group {
     Limit,
 }
 
+impl Group {
+    /// The name.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Model => "model",
+            Self::Sliding => "sliding",
+            Self::Pull => "pull",
+            Self::Law => "law",
+            Self::Start => "start",
+            Self::Limit => "limit",
+        }
+    }
+}
+
 /// The flag that gives a parameter of a single point.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Flag {
@@ -345,7 +360,8 @@ impl Parameter {
     }
 
     /// Powers of force, length and time in its unit.
-    pub(super) const fn dimension(self) -> [i32; 3] {
+    #[must_use]
+    pub const fn dimension(self) -> [i32; 3] {
         self.row().dimension
     }
 
@@ -366,6 +382,24 @@ impl Parameter {
     #[must_use]
     pub const fn flag(self) -> Option<Flag> {
         self.row().flag
+    }
+
+    /// The name of that flag, without its dashes.
+    #[must_use]
+    pub fn long_flag(self) -> Option<String> {
+        self.flag().map(|_| self.name().replace('_', "-"))
+    }
+
+    /// The smallest and the largest value.
+    #[must_use]
+    pub const fn range(self) -> [f64; 2] {
+        match self.row().range {
+            Range::Any => [-LARGEST, LARGEST],
+            Range::NotNegative => [0.0, LARGEST],
+            Range::Positive => [1.0 / LARGEST, LARGEST],
+            Range::Part => [1.0 / LARGEST, 1.0],
+            Range::Negative => [-LARGEST, -1.0 / LARGEST],
+        }
     }
 
     /// True for the parameters that only a friction law has.
@@ -403,15 +437,8 @@ impl Parameter {
     /// # Errors
     /// Names the parameter, the value and the range allowed.
     pub fn check(self, value: f64) -> Result<f64, ModelError> {
-        let inside = value.abs() <= LARGEST
-            && match self.row().range {
-                Range::Any => true,
-                Range::NotNegative => value >= 0.0,
-                Range::Positive => value >= 1.0 / LARGEST,
-                Range::Part => (1.0 / LARGEST..=1.0).contains(&value),
-                Range::Negative => value <= -1.0 / LARGEST,
-            };
-        if inside {
+        let [from, to] = self.range();
+        if (from..=to).contains(&value) {
             Ok(value)
         } else {
             Err(ModelError {

@@ -28,6 +28,8 @@ pub enum PointOf {
     Sliding,
     /// Its critical velocity: a friction law, no v0, a delay only where control acts.
     CriticalVelocity,
+    /// Its friction law alone.
+    Law,
 }
 
 /// A point: every value in range, every name known.
@@ -60,11 +62,14 @@ impl PointSpec {
         match of {
             PointOf::Sliding => given.check(&[], None)?,
             PointOf::CriticalVelocity => check_critical(&given, &mut setting)?,
+            PointOf::Law => {
+                given.check(&[Parameter::V0, Parameter::Tau], None)?;
+            }
         }
         // Without v0 the law itself has to be well posed.
         let posed = match of {
             PointOf::Sliding => setting.sliding_point().map(drop),
-            PointOf::CriticalVelocity => setting.friction_law().map(drop),
+            PointOf::CriticalVelocity | PointOf::Law => setting.friction_law().map(drop),
         };
         posed.map_err(|error| SpecError {
             span: given.ill_posed_place().cloned(),

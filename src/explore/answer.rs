@@ -1,0 +1,185 @@
+//! Every request by its name, and its answer as bytes: what a server and a page without one share.
+
+use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
+use std::time::Instant;
+
+use serde::Serialize;
+
+use super::chart::{self, Chart};
+use super::known::Known;
+use super::law::LawCurve;
+use super::motion::{self, Followed};
+use super::point::Point;
+use super::problem::Problem;
+use super::vc::CriticalVelocity;
+use super::{chart_bytes, command, motion_bytes};
+use crate::slip::stop::Stop;
+use crate::sweep::input::point_file::{PointOf, PointSpec};
+use crate::sweep::input::search::Protocol;
+
+/// Roots of a point.
+pub const ROOTS: u8 = 16;
+
+/// What is asked.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Request {
+    /// Cells and curves of a sweep.
+    Chart,
+    /// Linear stability at a point.
+    Point,
+    /// The critical velocity at a point, by the protocol `follow`.
+    CriticalVelocity,
+    /// The motion of a case.
+    Motion,
+    /// A friction law as a curve.
+    Law,
+    /// All parameters, laws and fields; its text is empty.
+    Parameters,
+}
+
+impl Request {
+    /// All of them.
+    pub const ALL: [Self; 6] = [
+        Self::Chart,
+        Self::Point,
+        Self::CriticalVelocity,
+        Self::Motion,
+        Self::Law,
+        Self::Parameters,
+    ];
+
+    /// The name, in addresses.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Chart => "chart",
+            Self::Point => "point",
+            Self::CriticalVelocity => "vc",
+            Self::Motion => "motion",
+            Self::Law => "law",
+            Self::Parameters => "parameters",
+        }
+    }
+
+    /// Whether its answer is bytes as in [`super::encoded`]; else it is JSON.
+    #[must_use]
+    pub const fn is_encoded(self) -> bool {
+        matches!(self, Self::Chart | Self::Motion)
+    }
+
+    /// The type of its answer.
+    #[must_use]
+    pub const fn content_type(self) -> &'static str {
+        match self.is_encoded() {
+            true => "application/octet-stream",
+            false => "application/json",
+        }
+    }
+}
+
+/// How much an answer may take.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct Limits {
+    /// A chart.
+    pub chart: chart::Limits,
+    /// A motion.
+    pub motion: motion::Limits,
+}
+
+/// An answer with the command line that gives the same.
+#[derive(Debug, Serialize)]
+struct WithCommand<T> {
+    #[serde(flatten)]
+    answer: T,
+    /// None where flags cannot say it.
+    command: Option<String>,
+}
+
+/// The bytes of the answer to `request` about what `text` describes, of
+/// [`Request::content_type`]. Once `stop` is set it ends soon, between steps of motions and tiles
+/// of charts.
+///
+/// # Errors
+/// When the text is not understood, it asks for too much, or it was stopped.
+pub fn answer(
+    request: Request,
+    text: &str,
+    limits: &Limits,
+    stop: &Arc<AtomicBool>,
+) -> Result<Vec<u8>, Problem> {
+    match request {
+        Request::Chart => {
+            // There is no clock in WebAssembly.
+            let begun = (!cfg!(target_family = "wasm")).then(Instant::now);
+            let chart = Chart::of(text, limits.chart, stop)?;
+            let took = begun.map(|begun| begun.elapsed().as_secs_f64() * 1e3);
+            Ok(chart_bytes::encoded(&chart, took)?)
+        }
+        Request::Point => {
+            let setting = PointSpec::read(text, PointOf::Sliding)?.setting;
+            json(&WithCommand {
+                answer: Point::at(&setting, ROOTS)?,
+                command: command::point(&setting, ROOTS),
+            })
+        }
+        Request::CriticalVelocity => {
+            let (setting, stop) = (
+                PointSpec::read(text, PointOf::CriticalVelocity)?.setting,
+                Stop::when(stop),
+            );
+            let answer = CriticalVelocity::of(&setting, Protocol::Follow, &stop)?;
+            if stop.is_set() {
+                return Err(Problem::stopped());
+            }
+            let command = command::critical_velocity(&setting);
+            json(&WithCommand { answer, command })
+        }
+        Request::Motion => {
+            let followed = Followed::of(text, limits.motion, &Stop::when(stop))?;
+            Ok(motion_bytes::encoded(&followed)?)
+        }
+        Request::Law => json(&LawCurve::of(&PointSpec::read(text, PointOf::Law)?)?),
+        Request::Parameters => json(&Known::all()),
+    }
+}
+
+fn json(answer: &impl Serialize) -> Result<Vec<u8>, Problem> {
+    Ok(serde_json::to_vec(answer)?)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const LAW: &str = "[friction]\nlaw = \"weakening\"\nmu0 = 0.5\nv_s = 0.5\n";
+
+    /// What takes long is not answered once nobody waits.
+    #[test]
+    fn a_stop_is_heeded() {
+        let vc = format!("[fixed]\nalpha_v = -0.33\ntau = 4.15\n{LAW}");
+        let motion =
+            format!("{vc}[start]\nx_dot0 = 0.3\n").replace("[fixed]", "[fixed]\nv0 = 0.35");
+        let chart = "[axes]\ntau = [1, 2]\n[fixed]\nmu_prime = -0.3\n".to_owned();
+        for (request, text) in [
+            (Request::CriticalVelocity, vc),
+            (Request::Motion, motion),
+            (Request::Chart, chart),
+        ] {
+            let asked = |stopped| {
+                let stop = Arc::new(AtomicBool::new(stopped));
+                answer(request, &text, &Limits::default(), &stop)
+            };
+            assert!(asked(false).is_ok(), "{request:?}: {:?}", asked(false));
+            assert_eq!(asked(true), Err(Problem::stopped()), "{request:?}");
+        }
+    }
+
+    #[test]
+    fn names_are_of_one_request_each() {
+        for request in Request::ALL {
+            let of_name = |other: &&Request| other.name() == request.name();
+            assert_eq!(Request::ALL.iter().filter(of_name).count(), 1);
+        }
+    }
+}

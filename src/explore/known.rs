@@ -1,0 +1,164 @@
+//! What the program knows: its parameters, friction laws and fields, with all their facts.
+
+use serde::Serialize;
+
+use crate::sweep::input::field::Storage;
+use crate::sweep::input::law_kind::{Formula, LawKind};
+use crate::sweep::input::units::Units;
+use crate::sweep::{Field, Parameter};
+
+/// All tables.
+#[derive(Debug, Clone, Serialize)]
+pub struct Known {
+    /// The version of the program.
+    pub version: &'static str,
+    /// Parameters, in their order everywhere.
+    pub parameters: Vec<KnownParameter>,
+    /// Friction laws.
+    pub laws: Vec<KnownLaw>,
+    /// What a map can hold.
+    pub fields: Vec<KnownField>,
+}
+
+/// A parameter.
+#[derive(Debug, Clone, Serialize)]
+pub struct KnownParameter {
+    /// The word for it in texts.
+    pub name: &'static str,
+    /// Its symbol.
+    pub symbol: &'static str,
+    /// What it is.
+    pub long_name: &'static str,
+    /// Its unit where no units are given: "1".
+    pub unit: String,
+    /// Powers of force, length and time in its unit.
+    pub dimension: [i32; 3],
+    /// Its value where none is given; none where one has to be.
+    pub default: Option<f64>,
+    /// The smallest and the largest value.
+    pub range: [f64; 2],
+    /// The same in words.
+    pub allowed: &'static str,
+    /// What it belongs to: `model`, `sliding`, `pull`, `law`, `start` or `limit`.
+    pub group: &'static str,
+    /// The flag that gives it on the command line, if there is one.
+    pub flag: Option<String>,
+}
+
+/// A friction law.
+#[derive(Debug, Clone, Serialize)]
+pub struct KnownLaw {
+    /// The word for it in texts.
+    pub name: &'static str,
+    /// Its formula; none for a table.
+    pub formula: Option<&'static str>,
+    /// The parameters that describe it, besides μ_S.
+    pub parameters: Vec<&'static str>,
+    /// How many of them have to be given.
+    pub needed: usize,
+}
+
+/// A field of a map.
+#[derive(Debug, Clone, Serialize)]
+pub struct KnownField {
+    /// The word for it in texts.
+    pub name: &'static str,
+    /// What it is.
+    pub long_name: &'static str,
+    /// The same in a few words.
+    pub short_name: &'static str,
+    /// What a reader should know besides.
+    pub comment: Option<&'static str>,
+    /// How its values are spread, which tells what scale shows them.
+    pub spread: &'static str,
+    /// The sign of values where sliding is stable, for values on both sides of 0.
+    pub stable_sign: Option<f64>,
+    /// The names of its kinds, by their numbers.
+    pub kinds: Option<Vec<&'static str>>,
+    /// How it is stored: `count`, `kind`, `few` or `real`.
+    pub storage: &'static str,
+}
+
+impl Known {
+    /// Everything.
+    #[must_use]
+    pub fn all() -> Self {
+        let formulas = Formula::ALL.map(KnownLaw::of);
+        let table = KnownLaw {
+            name: LawKind::TABLE,
+            formula: None,
+            parameters: Vec::new(),
+            needed: 0,
+        };
+        Self {
+            version: env!("CARGO_PKG_VERSION"),
+            parameters: Parameter::ALL.map(KnownParameter::of).into(),
+            laws: formulas.into_iter().chain([table]).collect(),
+            fields: Field::ALL.map(KnownField::of).into(),
+        }
+    }
+}
+
+impl KnownParameter {
+    fn of(parameter: Parameter) -> Self {
+        Self {
+            name: parameter.name(),
+            symbol: parameter.symbol(),
+            long_name: parameter.long_name(),
+            unit: Units::default().of_parameter(parameter),
+            dimension: parameter.dimension(),
+            default: parameter.default_value(),
+            range: parameter.range(),
+            allowed: parameter.allowed(),
+            group: parameter.group().name(),
+            flag: parameter.long_flag().map(|flag| format!("--{flag}")),
+        }
+    }
+}
+
+impl KnownLaw {
+    fn of(formula: Formula) -> Self {
+        let law = LawKind::Formula(formula);
+        Self {
+            name: formula.name(),
+            formula: Some(formula.formula()),
+            parameters: law.parameters().iter().map(|p| p.name()).collect(),
+            needed: law.needed(),
+        }
+    }
+}
+
+impl KnownField {
+    fn of(field: Field) -> Self {
+        Self {
+            name: field.name(),
+            long_name: field.long_name(),
+            short_name: field.short_name(),
+            comment: field.comment(),
+            spread: field.spread().name(),
+            stable_sign: field.spread().stable_sign(),
+            kinds: field.kinds(),
+            storage: match field.storage() {
+                Storage::Count => "count",
+                Storage::Kind => "kind",
+                Storage::Few => "few",
+                Storage::Real => "real",
+            },
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn ranges_are_those_that_are_checked() {
+        for (parameter, known) in Parameter::ALL.into_iter().zip(Known::all().parameters) {
+            let [from, to] = known.range;
+            assert!(parameter.check(from).is_ok() && parameter.check(to).is_ok());
+            assert!(parameter.check(from - from.abs() * 1e-12 - 1e-13).is_err());
+            assert!(parameter.check(to + to.abs() * 1e-12 + 1e-13).is_err());
+        }
+    }
+}

@@ -1,0 +1,128 @@
+//! What is told of a request that cannot be answered: problem details (RFC 9457).
+
+use serde::Serialize;
+
+use super::chart::ChartError;
+use super::motion::MotionError;
+use crate::model::ModelError;
+use crate::sweep::SpecError;
+
+/// Why there is no answer, as the status of HTTP and its usual title.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Why {
+    /// The request is not understood, or cannot be computed.
+    Unprocessable,
+    /// It asks for more than is computed at once.
+    TooLarge,
+    /// Nobody waits for it any more, or somebody has to wait for others.
+    Unavailable,
+    /// The program is wrong.
+    Fault,
+}
+
+impl Why {
+    const fn status(self) -> (u16, &'static str) {
+        match self {
+            Self::Unprocessable => (422, "Unprocessable Entity"),
+            Self::TooLarge => (413, "Payload Too Large"),
+            Self::Unavailable => (503, "Service Unavailable"),
+            Self::Fault => (500, "Internal Server Error"),
+        }
+    }
+}
+
+/// A problem.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Problem {
+    /// The status of the answer.
+    pub status: u16,
+    /// The same in words.
+    pub title: &'static str,
+    /// What is wrong here.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub detail: Option<String>,
+    /// What could be done.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub help: Option<String>,
+    /// The bytes of the request's text that it is about: from and to.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub span: Option<[usize; 2]>,
+}
+
+impl Problem {
+    /// With this detail.
+    #[must_use]
+    pub fn new(why: Why, detail: impl Into<String>) -> Self {
+        let (status, title) = why.status();
+        Self {
+            status,
+            title,
+            detail: Some(detail.into()),
+            help: None,
+            span: None,
+        }
+    }
+
+    /// With what could be done.
+    #[must_use]
+    pub fn help(self, help: impl Into<String>) -> Self {
+        Self {
+            help: Some(help.into()),
+            ..self
+        }
+    }
+
+    /// It was stopped.
+    #[must_use]
+    pub fn stopped() -> Self {
+        Self::new(Why::Unavailable, "stopped")
+    }
+}
+
+impl From<SpecError> for Problem {
+    fn from(error: SpecError) -> Self {
+        Self {
+            help: error.help,
+            span: error.span.map(|span| [span.start, span.end]),
+            ..Self::new(Why::Unprocessable, error.message)
+        }
+    }
+}
+
+impl From<ModelError> for Problem {
+    fn from(error: ModelError) -> Self {
+        Self::new(Why::Unprocessable, error.to_string())
+    }
+}
+
+impl From<ChartError> for Problem {
+    fn from(error: ChartError) -> Self {
+        match error {
+            ChartError::Spec(error) => error.into(),
+            ChartError::TooManyCells { .. } => Self::new(Why::TooLarge, error.to_string())
+                .help("run it: slipmap run SWEEP.toml has no such limit"),
+            ChartError::Stopped => Self::stopped(),
+            ChartError::Failed(why) => Self::new(Why::Unprocessable, why),
+        }
+    }
+}
+
+impl From<MotionError> for Problem {
+    fn from(error: MotionError) -> Self {
+        match error {
+            MotionError::Spec(error) => error.into(),
+            MotionError::Stopped => Self::stopped(),
+            MotionError::TooLong(_) | MotionError::TooManySteps(_) => {
+                Self::new(Why::TooLarge, error.to_string())
+                    .help("run it: slipmap simulate CASE.toml has no such limit")
+            }
+            MotionError::Failed(why) => Self::new(Why::Unprocessable, why),
+        }
+    }
+}
+
+impl From<serde_json::Error> for Problem {
+    fn from(error: serde_json::Error) -> Self {
+        Self::new(Why::Fault, error.to_string())
+    }
+}

@@ -1,0 +1,34 @@
+//! Whether anybody still waits for a motion.
+
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+/// A flag that ends motions: each then takes no further step, and its state is no number. By
+/// default nothing ends them.
+#[derive(Debug, Clone, Default)]
+pub struct Stop(Option<Arc<AtomicBool>>);
+
+impl Stop {
+    /// Ends motions once `flag` is set.
+    #[must_use]
+    pub fn when(flag: &Arc<AtomicBool>) -> Self {
+        Self(Some(Arc::clone(flag)))
+    }
+
+    /// Whether it is set.
+    #[inline]
+    #[must_use]
+    pub fn is_set(&self) -> bool {
+        match &self.0 {
+            Some(flag) => flag.load(Ordering::Relaxed),
+            None => false,
+        }
+    }
+}
+
+/// Who waits for an answer is no part of the question.
+impl PartialEq for Stop {
+    fn eq(&self, _: &Self) -> bool {
+        true
+    }
+}

@@ -1,0 +1,132 @@
+//! The samples of a motion, within limits.
+
+use super::trace::Sample;
+
+/// What becomes of samples beyond a number of them.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Most {
+    /// So many are too many.
+    Refused(usize),
+    /// So many are thinned: every second one goes, and so on, but for those at events. As many
+    /// events are too many.
+    Thinned(usize),
+}
+
+impl Most {
+    pub(super) const fn number(self) -> usize {
+        match self {
+            Self::Refused(most) | Self::Thinned(most) => most,
+        }
+    }
+}
+
+/// Samples at strictly growing times.
+#[derive(Debug)]
+pub(super) struct Samples {
+    most: Most,
+    /// With those that are never thinned out.
+    kept: Vec<(Sample, bool)>,
+    /// Of samples that may be thinned out, one of so many is kept.
+    stride: usize,
+    /// How many were left out since the last one.
+    passed: usize,
+}
+
+impl Samples {
+    pub(super) fn new(most: Most) -> Self {
+        Self {
+            most,
+            kept: Vec::new(),
+            stride: 1,
+            passed: 0,
+        }
+    }
+
+    /// The most that there may be.
+    pub(super) fn most(&self) -> usize {
+        self.most.number()
+    }
+
+    /// Whether there are too many.
+    pub(super) fn too_many(&self) -> bool {
+        self.kept.len() > self.most()
+    }
+
+    /// Adds a sample, unless there is one at its time or it is thinned out. One that is `marked`
+    /// stays.
+    pub(super) fn add(&mut self, marked: bool, sample: impl FnOnce() -> Sample) {
+        if !marked {
+            self.passed += 1;
+            if self.passed < self.stride {
+                return;
+            }
+        }
+        let sample = sample();
+        if self.kept.last().is_some_and(|(last, _)| last.t >= sample.t) {
+            return;
+        }
+        self.passed = 0;
+        self.kept.push((sample, marked));
+        if matches!(self.most, Most::Thinned(_)) && self.too_many() {
+            self.thin();
+        }
+    }
+
+    /// Leaves out every second of those that may be.
+    fn thin(&mut self) {
+        let mut odd = false;
+        self.kept.retain(|(_, marked)| {
+            odd = !odd && !marked;
+            *marked || odd
+        });
+        self.stride *= 2;
+    }
+
+    pub(super) fn into_vec(self) -> Vec<Sample> {
+        self.kept.into_iter().map(|(sample, _)| sample).collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::slip::motion::Mode;
+
+    fn at(t: f64) -> Sample {
+        Sample {
+            t,
+            x: 0.0,
+            x_dot: 0.0,
+            a: 0.0,
+            v: 0.0,
+            n: 1.0,
+            mode: Mode::Stick,
+        }
+    }
+
+    #[test]
+    fn what_is_marked_stays_and_the_rest_is_thinned_evenly() {
+        let mut samples = Samples::new(Most::Thinned(100));
+        for i in 0..10_000_u32 {
+            samples.add(i % 500 == 0, || at(f64::from(i)));
+            assert!(!samples.too_many());
+        }
+        let times: Vec<f64> = samples.into_vec().iter().map(|s| s.t).collect();
+        assert!((50..=100).contains(&times.len()), "{}", times.len());
+        assert!((0..20).all(|i| times.contains(&(500.0 * f64::from(i)))));
+        let widest = times.windows(2).map(|w| w[1] - w[0]).fold(0.0, f64::max);
+        assert!(widest <= 256.0, "{widest}");
+        assert!(times.windows(2).all(|w| w[0] < w[1]));
+    }
+
+    #[test]
+    fn too_many_marks_are_too_many() {
+        for (most, marked) in [(Most::Thinned(10), true), (Most::Refused(10), false)] {
+            let mut samples = Samples::new(most);
+            for i in 0..12_u32 {
+                samples.add(marked, || at(f64::from(i)));
+            }
+            assert!(samples.too_many(), "{most:?}");
+        }
+    }
+}
