@@ -138,7 +138,7 @@ function aboutZero(values, stable, words) {
 
 /**
  * The colours of a field's cells.
- * @param {{name: string, kinds?: string[], spread?: string, storage?: string}} field
+ * @param {{name: string, kinds?: string[], spread?: string, stable_sign?: number}} field
  * @param {ArrayLike<number>} values those that are to be seen
  */
 export function coloursOf(field, values) {
@@ -149,17 +149,11 @@ export function coloursOf(field, values) {
     const colours = field.kinds.map((kind, i) => KINDS[kind] ?? FEW[i % FEW.length]);
     return new Classes(field.kinds, colours, (n) => Math.min(n, field.kinds.length - 1));
   }
-  switch (field.name) {
-    case "abscissa":
-      return aboutZero(values, -1, ["grows", "decays"]);
-    case "delay_margin":
-      return aboutZero(values, 1, ["unstable", "stable"]);
-    default:
-      return ofSpread(field.spread ?? "", values);
+  const spread = field.spread ?? "";
+  if (spread === "about-zero") {
+    const words = field.unit && /^abscissa/.test(field.name) ? ["grows", "decays"] : ["unstable", "stable"];
+    return aboutZero(values, field.stable_sign ?? 1, words);
   }
-}
-
-function ofSpread(spread, values) {
   if (/below|error/.test(spread)) return aboutZero(values, -1, ["above 0", "below 0"]);
   if (/tail|magnitude|decade|relax/.test(spread)) return logarithmic(values);
   return linear(values);

@@ -11,7 +11,7 @@ import { Saved } from "./saved.js";
 import { Scale, told } from "./scale.js";
 import { openSource } from "./source.js";
 import { addressOf, stateOf } from "./state.js";
-import { VALUES, pointTexts } from "./sweep.js";
+import { VALUES, parametersOf, pointTexts } from "./sweep.js";
 import { tellTable } from "./table.js";
 
 /** How long after the last change the address and the panel follow, in milliseconds. */
@@ -26,7 +26,7 @@ class Explorer {
     this.state = stateOf(location.hash);
     this.plane = new PlaneView(element("chart"));
     const failed = (error) => this.failed(error);
-    this.live = new Live(source, catalogue.laws, { shown: (plane) => this.#shown(plane), failed });
+    this.live = new Live(source, catalogue, { shown: (plane) => this.#shown(plane), failed });
     this.panel = new Panel(source, { moved: (start) => this.#started(start), failed });
     this.controls = new Controls(this.state, catalogue, source, {
       changed: () => this.changed(),
@@ -87,11 +87,15 @@ class Explorer {
     this.#settle();
   }
 
+  #address() {
+    return addressOf(this.state, parametersOf(this.state, this.catalogue.laws));
+  }
+
   /** Address, panel and table follow when nothing changes any more. */
   #settle() {
     clearTimeout(this.settling);
     this.settling = setTimeout(() => {
-      history.replaceState(null, "", addressOf(this.state));
+      history.replaceState(null, "", this.#address());
       if (!this.state.map) this.look();
       this.#table();
     }, REST);
@@ -111,7 +115,7 @@ class Explorer {
   }
 
   #title({ field, axes }) {
-    const what = field.long_name ?? field.name;
+    const what = field.short_name ?? field.name;
     return `${what[0].toUpperCase()}${what.slice(1)} over ${axes[0].symbol} and ${axes[1].symbol}`;
   }
 
@@ -130,10 +134,10 @@ class Explorer {
     const where = plane.axes.map(({ symbol, unit }, i) =>
       `${symbol} = ${told(exact[i], 7)}${unit === "1" ? "" : ` ${unit}`}`);
     const value = plane.cells[n];
-    const { name, unit, long_name: long } = plane.field;
+    const { name, unit, short_name: words } = plane.field;
     const count = value === 0 ? "stable" : `${value} unstable roots`;
     const kinds = plane.field.kinds ? plane.colours.name(value) : null;
-    const number = `${long ?? name} ${told(value)}${!unit || unit === "1" ? "" : ` ${unit}`}`;
+    const number = `${words ?? name} ${told(value)}${!unit || unit === "1" ? "" : ` ${unit}`}`;
     const parts = [name === "n_unstable" ? count : kinds ?? number];
     const { abscissa } = plane.others ?? {};
     if (abscissa && name !== "abscissa") parts.push(`spectral abscissa ${told(abscissa[n])}`);
@@ -271,7 +275,7 @@ class Explorer {
     this.#downloads(click);
     element("table-part").addEventListener("toggle", () => this.#table());
     window.addEventListener("hashchange", () => {
-      if (location.hash === addressOf(this.state)) return;
+      if (location.hash === this.#address()) return;
       Object.assign(this.state, stateOf(location.hash));
       this.controls.build();
       this.#mode();
@@ -295,7 +299,7 @@ class Explorer {
       }
     });
     click("copy-link", async (event) => {
-      history.replaceState(null, "", addressOf(this.state));
+      history.replaceState(null, "", this.#address());
       const button = event.target;
       await navigator.clipboard?.writeText(location.href).catch(() => {});
       button.textContent = "Copied";

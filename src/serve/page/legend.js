@@ -1,13 +1,12 @@
 // What colours and marks of a chart mean, in words.
 
 import { make } from "./dom.js";
-import { marksOf } from "./cells.js";
 
 /** Writes the legend of a plane. */
 export function tellLegend(list, plane) {
   const { legend } = plane.colours;
   const items = Array.isArray(legend) ? legend.map(swatch) : bar(legend);
-  const marks = marksOf(plane).map(({ mark, text }) => {
+  const marks = plane.marks.map(({ mark, text }) => {
     return make("li", {}, make("i", { className: `box ${mark}` }), text);
   });
   const key = JSON.stringify([legend, marks.map((item) => item.textContent)]);

@@ -11,7 +11,6 @@ export const CELLS = [800, 600];
 const REST = 150;
 /** Fields whose cells cost no more than counts. */
 const QUICK = ["n_unstable", "delay_margin"];
-const COUNTS = { name: "n_unstable", long_name: "number of unstable roots", unit: "1" };
 
 /** The scale of an axis from the edge of its first cell to that of its last one. */
 function edges({ values }, log) {
@@ -38,8 +37,9 @@ export class Live {
    * @param {object} source see source.js
    * @param {{shown: Function, failed: Function}} told
    */
-  constructor(source, laws, told) {
+  constructor(source, { laws, fields }, told) {
     this.laws = laws;
+    this.fields = Object.fromEntries(fields.map((field) => [field.name, field]));
     this.told = told;
     const ask = async (question, signal) => source.chart(question.text, signal);
     const show = (chart, question) => this.#show(chart, question);
@@ -75,7 +75,8 @@ export class Live {
   }
 
   #show(chart, { show, logs, rests }) {
-    const field = chart.fields.find(({ name }) => name === show) ?? chart.fields[0];
+    const found = chart.fields.find(({ name }) => name === show) ?? chart.fields[0];
+    const field = { ...this.fields[found.name], ...found };
     const byName = Object.fromEntries(chart.fields.map(({ name, values }) => [name, values]));
     const [nx, ny] = chart.axes.map(({ values }) => values.length);
     this.told.shown({
@@ -83,7 +84,7 @@ export class Live {
       ends: chart.axes.map((axis, i) => edges(axis, logs[i])),
       nx,
       ny,
-      field: field.name === "n_unstable" ? { ...field, ...COUNTS } : field,
+      field,
       cells: field.values,
       status: byName.status,
       others: byName,

@@ -99,7 +99,7 @@ export class Panel {
     terms(element("vc"), [
       ["critical velocity", found.vc === null ? "none" : told(found.vc) + verdict],
       ["stick-slip ends by", `${found.outcome}${ENDS[found.outcome] ? `: ${ENDS[found.outcome]}` : ""}`],
-      ["stuck, slipping", `${told(found.stick_time)}, ${told(found.slip_time)} of a period`],
+      ["in a period there", `stuck ${told(found.stick_time)}, slipping ${told(found.slip_time)}`],
       ["load reaches 0 from", found.v_liftoff === null ? "no velocity" : told(found.v_liftoff)],
       ["found by", `${found.method}${found.decided ? "" : "; not decided beyond"}`],
     ]);

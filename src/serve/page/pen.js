@@ -32,10 +32,14 @@ export class CanvasPen {
     context.restore();
   }
 
-  /** An image whose pixels stay sharp. */
+  /** An image whose pixels stay sharp. Its rows go upwards here, beside one another. */
   image(canvas, { x, y, w, h }) {
-    this.context.imageSmoothingEnabled = false;
-    this.context.drawImage(canvas, x, y, w, h);
+    const { context } = this;
+    context.save();
+    context.imageSmoothingEnabled = false;
+    context.transform(0, -h / canvas.width, w / canvas.height, 0, x, y + h);
+    context.drawImage(canvas, 0, 0);
+    context.restore();
   }
 
   /** A line through points [x0, y0, x1, y1, …]. */
@@ -115,7 +119,8 @@ export class SvgPen {
   }
 
   image(canvas, { x, y, w, h }) {
-    const place = `x="${short(x)}" y="${short(y)}" width="${short(w)}" height="${short(h)}"`;
+    const turn = [0, -h / canvas.width, w / canvas.height, 0, x, y + h].map((n) => Number(n.toFixed(6)));
+    const place = `width="${canvas.width}" height="${canvas.height}" transform="matrix(${turn.join(" ")})"`;
     this.parts.push(`<image ${place} preserveAspectRatio="none" image-rendering="pixelated" ` +
       `href="${canvas.toDataURL("image/png")}"/>`);
   }

@@ -63,7 +63,7 @@ export class PlaneView {
    */
   show(plane) {
     this.plane = plane;
-    paint(this.image, plane);
+    plane.marks = paint(this.image, plane);
     this.draw();
   }
 

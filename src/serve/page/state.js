@@ -25,9 +25,11 @@ const numbers = (text) => text.split(",").map(number);
 
 /**
  * The fragment of the address of a view.
+ * @param {object} state
+ * @param {string[]} parameters those on which the chart depends
  * @returns {string} beginning with #
  */
-export function addressOf(state) {
+export function addressOf(state, parameters) {
   const parts = [["v", VERSION]];
   const put = (key, value) => parts.push([key, String(value)]);
   const axis = ({ name, from, to, log }) => `${name},${from},${to}${log ? ",log" : ""}`;
@@ -43,7 +45,7 @@ export function addressOf(state) {
     put("control", state.control);
     put("x", axis(state.x));
     put("y", axis(state.y));
-    for (const [name, value] of Object.entries(state.values)) put(name, value);
+    for (const name of parameters) if (name in state.values) put(name, state.values[name]);
     if (state.law !== "none") put("law", state.law);
     if (state.law === "table" && state.table.length <= LONGEST_TABLE) {
       put("table", state.table.trim().replace(/[ \t]*\n[ \t]*/g, ";").replace(/[ \t]+/g, ""));
