@@ -59,7 +59,7 @@ copied() {
 test_browser() {
     copied
     export SLIPMAP_ROOT SLIPMAP_PROGRAM=${SLIPMAP_PROGRAM:-$SLIPMAP_ROOT/target/release/slipmap}
-    node --test --test-concurrency=1 "$BROWSER_TESTS"/run/*.test.mjs
+    node --test --test-concurrency=1 --test-timeout=400000 --test-force-exit "$BROWSER_TESTS"/run/*.test.mjs
 }
 
 bench_browser() {

@@ -65,6 +65,7 @@ export async function openPage(browser, link, { width = 1280, height = 900, ...o
     ...options,
   });
   const page = await context.newPage();
+  page.setDefaultTimeout(10000);
   page.faults = [];
   page.on("pageerror", (error) => page.faults.push(String(error)));
   page.on("console", (message) => {

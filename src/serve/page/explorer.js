@@ -18,6 +18,10 @@ import { tellTable } from "./table.js";
 const REST = 200;
 /** How often it is tried whether the server is back. */
 const RETRY = 1500;
+/** The status of an answer to who does not have the token. */
+const NO_TOKEN = 401;
+const GONE = "The server does not answer. This page goes on when it is back.";
+const ANEW = "The server was started anew: open the link that it has printed, and this page goes on.";
 
 class Explorer {
   constructor(source, catalogue) {
@@ -213,31 +217,27 @@ class Explorer {
   }
 
   failed(error) {
-    if (error instanceof TypeError && /fetch|network|load failed/i.test(error.message)) {
-      this.#lost();
-    } else {
-      const help = error.help ? ` (${error.help})` : "";
-      element("problem").textContent = error.message + help;
-      if (!error.status && !(error instanceof RangeError)) console.error(error);
-    }
+    const lost = error instanceof TypeError && /fetch|network|load failed/i.test(error.message);
+    if (lost || error.status === NO_TOKEN) return this.#lost(error);
+    element("problem").textContent = error.message + (error.help ? ` (${error.help})` : "");
+    if (!error.status && !(error instanceof RangeError)) console.error(error);
+    return undefined;
   }
 
-  /** The server is gone: asks until it is back, then for what is to be seen. */
-  #lost() {
-    element("gone").hidden = false;
-    if (this.retrying) return;
-    this.retrying = setInterval(async () => {
+  /** The server is gone, or is another one: asks until it answers, then for what is to be seen. */
+  #lost(error) {
+    const words = error.status ? ANEW : GONE;
+    [element("gone").hidden, element("gone").textContent] = [false, words];
+    this.retrying ??= setInterval(async () => {
       try {
         await this.source.parameters();
-        this.#alive();
-        if (this.state.map) this.saved.open();
-        else this.changed();
-      } catch (error) {
-        if (error.status) {
-          this.#alive();
-          this.failed(error);
-        }
+      } catch (again) {
+        if (this.retrying) this.#lost(again);
+        return;
       }
+      this.#alive();
+      if (this.state.map) this.saved.open();
+      else this.changed();
     }, RETRY);
   }
 
