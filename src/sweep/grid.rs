@@ -113,9 +113,16 @@ impl Grid {
         let tile = self.plan.tiles.tile(number);
         let strides = self.plan.tiles.strides();
         let first = place_of(&tile.offset, &self.strides);
-        for_each_index(&tile.extent, None, |inside| {
-            let at = first + place_of(inside, &self.strides);
-            self.cells.take_cell(at, from, place_of(inside, &strides));
+        // The last axis is the fastest one on both sides.
+        let last = tile.extent.len() - 1;
+        for_each_index(&tile.extent, Some(last), |inside| {
+            let (at, there) = (
+                first + place_of(inside, &self.strides),
+                place_of(inside, &strides),
+            );
+            let length = tile.extent[last];
+            self.cells
+                .take_cells(at..at + length, from, there..there + length);
         });
     }
 }

@@ -1,5 +1,7 @@
 //! The cells of a tile in memory, a column for each field.
 
+use std::ops::Range;
+
 use crate::sweep::input::field::{Field, Storage};
 use crate::sweep::plan::Plan;
 
@@ -53,17 +55,23 @@ impl TileBuffers {
         }
     }
 
-    /// Takes the cell at the place `there` of other buffers of the same plan to the place `at`.
-    pub(in crate::sweep) fn take_cell(&mut self, at: usize, from: &Self, there: usize) {
-        self.status[at] = from.status[there];
+    /// Takes the cells at the places `there` of other buffers of the same plan to the places `at`.
+    pub(in crate::sweep) fn take_cells(
+        &mut self,
+        at: Range<usize>,
+        from: &Self,
+        there: Range<usize>,
+    ) {
+        let places = (at, there);
+        take(&mut self.status, &from.status, &places);
         if let (Some(to), Some(from)) = (&mut self.n_unstable, &from.n_unstable) {
-            to[at] = from[there];
+            take(to, from, &places);
         }
         for (to, from) in self.kinds.iter_mut().zip(&from.kinds) {
-            to.cells[at] = from.cells[there];
+            take(&mut to.cells, &from.cells, &places);
         }
         for (to, from) in self.columns.iter_mut().zip(&from.columns) {
-            to.cells[at] = from.cells[there];
+            take(&mut to.cells, &from.cells, &places);
         }
     }
 
@@ -93,6 +101,10 @@ impl TileBuffers {
             column.cells.fill(f64::NAN);
         }
     }
+}
+
+fn take<T: Copy>(to: &mut [T], from: &[T], (at, there): &(Range<usize>, Range<usize>)) {
+    to[at.clone()].copy_from_slice(&from[there.clone()]);
 }
 
 /// A kind or a small count, saturating below [`FEW_FILL`]; that for NaN.
