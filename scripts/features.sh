@@ -3,8 +3,8 @@
 #
 #   scripts/features.sh
 #
-# Without features it takes 60 packages at most, and none that needs a C compiler, libhdf5 or threads. It and `sweep` are
-# checked for WebAssembly as well, where that target can be had; says so where it cannot.
+# Without features it takes 60 packages at most, and none that needs a C compiler, libhdf5 or threads. It, `sweep` and `wasm`
+# are checked for WebAssembly as well, where that target can be had; says so where it cannot.
 set -euo pipefail
 
 # shellcheck source=scripts/setup.sh
@@ -12,7 +12,6 @@ set -euo pipefail
 cd "$SLIPMAP_ROOT"
 
 MOST_OF_CORE=60
-wasm=wasm32-unknown-unknown
 
 # packages FEATURES: names of all that a build takes, slipmap among them.
 packages() {
@@ -38,13 +37,11 @@ core=$(packages "")
 [ "$(wc -l <<<"$core")" -le $MOST_OF_CORE ] || die "without features more than $MOST_OF_CORE packages are needed"
 ! grep -E '^(hdf5|rayon|cc |cmake|clap|miette|plotters|[^ ]*-sys )' <<<"$core" >&2 || die "these are not for the core"
 
-if have rustup; then
-    rustup --quiet target add $wasm >&2 || true
-fi
-if [ -e "$(rustc --print sysroot)/lib/rustlib/$wasm" ]; then
-    for features in "" sweep explore; do
-        cargo check --quiet --locked --lib --no-default-features --features "$features" --target $wasm
+if have_wasm; then
+    for features in "" sweep wasm; do
+        "${check[@]}" --quiet --locked --lib --no-default-features --features "$features" --target "$WASM" \
+            ${strict[@]+"${strict[@]}"}
     done
 else
-    say "warning: left out: $wasm, for which there is no standard library here"
+    say "warning: left out: $WASM, for which there is no standard library here"
 fi

@@ -16,6 +16,7 @@ CARGO_NEEDED=1.89
 RUST_TESTED=1.95.0
 CARGO_DENY=0.18.9
 CMAKE_NEEDED=3.26
+WASM=wasm32-unknown-unknown
 
 say() { printf '%s\n' "$*" >&2; }
 die() {
@@ -108,6 +109,18 @@ need_cargo() {
         die "cargo is version ${version:-unknown}, $CARGO_NEEDED or newer is needed. With Rust from https://rustup.rs: rustup update"
 }
 
+# Rust's standard library for WebAssembly, from where Rust comes from; false where it cannot be had.
+have_wasm() {
+    local library
+    library=$(rustc --print sysroot)/lib/rustlib/$WASM
+    if [ ! -e "$library" ] && have rustup; then
+        rustup --quiet target add "$WASM" >&2 || true
+    elif [ ! -e "$library" ] && [ "$(rustc --print sysroot)" = /usr ] && have apt-get; then
+        apt_install libstd-rust-dev-wasm32 || true
+    fi
+    [ -e "$library" ]
+}
+
 have_compiler() { have "${CC:-cc}" || have gcc || have clang; }
 
 # A C compiler, pkg-config and libhdf5 of the system; false where there are none to be had.
@@ -157,7 +170,10 @@ static_hdf5() {
 slipmap_setup() {
     SLIPMAP_CARGO_FEATURES=""
     need_cargo
-    if [ "${SLIPMAP_STATIC_HDF5:-0}" = 1 ]; then
+    # A script may need no more.
+    if [ "${SLIPMAP_SETUP:-}" = cargo ]; then
+        :
+    elif [ "${SLIPMAP_STATIC_HDF5:-0}" = 1 ]; then
         static_hdf5
     elif ! system_hdf5; then
         say "libhdf5 is not here and cannot be installed: building it from source, which takes some minutes once"

@@ -89,6 +89,15 @@ install_languages() {
         "scripts/read/read_map.jl is not run: Julia or one of NCDatasets, Interpolations, CairoMakie is missing"
 }
 
+# Rust for WebAssembly, and Node, which runs what is made with it.
+check_static_page() {
+    if ! have_wasm; then
+        leave_out the_static_page "the page without a server is neither made nor checked: there is no standard library for $WASM here"
+    elif ! have node; then
+        leave_out the_static_page "the page without a server is not run: Node is missing"
+    fi
+}
+
 # Slurm and what proves who one is to it.
 have_slurm() {
     local program
@@ -132,6 +141,7 @@ step() {
 install_readers
 install_python_packages
 install_languages
+check_static_page
 install_slurm
 install_cargo_deny
 rust_is_tested=$(version_of rustc)
@@ -153,8 +163,6 @@ else
     warnings+=("lints are not checked, clippy is not installed (rustup component add clippy)")
 fi
 step scripts/features.sh
-[ -e "$(rustc --print sysroot)/lib/rustlib/wasm32-unknown-unknown" ] ||
-    warnings+=("WebAssembly is not checked: there is no standard library for it here")
 RUSTDOCFLAGS="-D warnings" step cargo doc --locked --no-deps "${features[@]}"
 check_licences
 step cargo test --release --locked "${features[@]}" -- ${left_out[@]+"${left_out[@]}"}

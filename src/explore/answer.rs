@@ -62,6 +62,12 @@ impl Request {
         }
     }
 
+    /// The request of that name.
+    #[must_use]
+    pub fn from_name(name: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|request| request.name() == name)
+    }
+
     /// Whether its answer is bytes as in [`super::encoded`]; else it is JSON.
     #[must_use]
     pub const fn is_encoded(self) -> bool {
@@ -178,8 +184,7 @@ mod tests {
     #[test]
     fn names_are_of_one_request_each() {
         for request in Request::ALL {
-            let of_name = |other: &&Request| other.name() == request.name();
-            assert_eq!(Request::ALL.iter().filter(of_name).count(), 1);
+            assert_eq!(Request::from_name(request.name()), Some(request));
         }
     }
 }

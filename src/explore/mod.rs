@@ -25,6 +25,8 @@ pub mod motion_bytes;
 pub mod point;
 pub mod problem;
 pub mod vc;
+#[cfg(all(feature = "wasm", target_family = "wasm"))]
+pub mod wasm;
 
 pub use answer::{Limits, Request, answer};
 pub use problem::Problem;

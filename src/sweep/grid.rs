@@ -113,12 +113,16 @@ impl Grid {
         let tile = self.plan.tiles.tile(number);
         let strides = self.plan.tiles.strides();
         let first = place_of(&tile.offset, &self.strides);
-        // Cells along the last axis are neighbours here and there.
+        // The last axis is the fastest one on both sides.
         let last = tile.extent.len() - 1;
         for_each_index(&tile.extent, Some(last), |inside| {
-            let at = first + place_of(inside, &self.strides);
-            let there = place_of(inside, &strides);
-            self.cells.take(at, from, there, tile.extent[last]);
+            let (at, there) = (
+                first + place_of(inside, &self.strides),
+                place_of(inside, &strides),
+            );
+            let length = tile.extent[last];
+            self.cells
+                .take_cells(at..at + length, from, there..there + length);
         });
     }
 }

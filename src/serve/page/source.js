@@ -1,4 +1,4 @@
-// Where answers come from: the server that this page comes from.
+// Where answers come from: the server of this page or, where there is none, WebAssembly.
 
 /** What is said instead of an answer. */
 export class Problem extends Error {
@@ -25,51 +25,191 @@ function numbers(bytes, begun, { type, offset, length, runs }) {
   return all;
 }
 
-const isArray = (of) => of && typeof of === "object" && of.type in TYPES && "offset" in of;
+const isArray = (of) => of.type in TYPES && "offset" in of;
 
-/** Puts the numbers of arrays where a head names them. */
+/** Puts numbers where a head names them: fields and curves get `values`, bare arrays become them. */
 function filled(of, bytes, begun) {
   if (!of || typeof of !== "object") return of;
-  for (const [key, value] of Object.entries(of)) {
-    if (isArray(value) && !("name" in value) && !("stable_side" in value)) of[key] = numbers(bytes, begun, value);
-    else filled(value, bytes, begun);
+  if (isArray(of)) {
+    const values = numbers(bytes, begun, of);
+    return "name" in of || "stable_side" in of ? Object.assign(of, { values }) : values;
   }
-  if (isArray(of)) of.values = numbers(bytes, begun, of);
+  for (const [key, value] of Object.entries(of)) of[key] = filled(value, bytes, begun);
   return of;
 }
 
-/** An answer with many numbers. */
+/**
+ * An answer with many numbers, see src/explore/encoded.rs.
+ * @param {ArrayBuffer} bytes
+ */
 export function decode(bytes) {
   const length = new DataView(bytes).getUint32(0, true);
   const head = JSON.parse(new TextDecoder().decode(new Uint8Array(bytes, 4, length)));
   return filled(head, bytes, Math.ceil((4 + length) / 8) * 8);
 }
 
-async function answered(response) {
-  if (response.ok) return response;
-  throw new Problem(await response.json().catch(() => ({ title: response.statusText })));
-}
-
-async function ask(path, toml, signal) {
-  const headers = { "Content-Type": "application/toml" };
-  return answered(await fetch(`api/v1/${path}`, { method: "POST", headers, body: toml, signal }));
-}
-
-const get = async (path, signal) => answered(await fetch(`api/v1/${path}`, { signal }));
-
-export function openSource() {
-  const json = (path) => async (toml, signal) => (await ask(path, toml, signal)).json();
-  const binary = (path) => async (toml, signal) => decode(await (await ask(path, toml, signal)).arrayBuffer());
-  const q = (query) => new URLSearchParams(query).toString();
+/** A server: kind "server". */
+function server() {
+  const answered = async (response) => {
+    if (response.ok) return response;
+    throw new Problem(await response.json().catch(() => ({ title: response.statusText })));
+  };
+  const post = async (path, body, signal) => {
+    const headers = { "Content-Type": "application/toml" };
+    return answered(await fetch(`api/v1/${path}`, { method: "POST", headers, body, signal }));
+  };
+  const get = async (path, signal) => answered(await fetch(`api/v1/${path}`, { signal }));
+  const decoded = async (response) => decode(await (await response).arrayBuffer());
+  const json = async (response) => (await response).json();
+  const of = (id, what, query) => `maps/${id}/${what}?${new URLSearchParams(query)}`;
   return {
     kind: "server",
-    chart: binary("chart"), point: json("point"), vc: json("vc"), motion: binary("motion"), law: json("law"),
-    parameters: async (signal) => (await get("parameters", signal)).json(),
-    maps: async (signal) => (await get("maps", signal)).json(),
-    map: async (id, signal) => (await get(`maps/${id}`, signal)).json(),
-    window: async (id, query, signal) => decode(await (await get(`maps/${id}/window?${q(query)}`, signal)).arrayBuffer()),
-    curves: async (id, query, signal) => decode(await (await get(`maps/${id}/curves?${q(query)}`, signal)).arrayBuffer()),
-    cell: async (id, query, signal) => (await get(`maps/${id}/cell?${q(query)}`, signal)).json(),
+    chart: (toml, signal) => decoded(post("chart", toml, signal)),
+    point: (toml, signal) => json(post("point", toml, signal)),
+    vc: (toml, signal) => json(post("vc", toml, signal)),
+    motion: (toml, signal) => decoded(post("motion", toml, signal)),
+    law: (toml, signal) => json(post("law", toml, signal)),
+    parameters: (signal) => json(get("parameters", signal)),
+    maps: (signal) => json(get("maps", signal)),
+    map: (id, signal) => json(get(`maps/${id}`, signal)),
+    window: (id, query, signal) => decoded(get(of(id, "window", query), signal)),
+    curves: (id, query, signal) => decoded(get(of(id, "curves", query), signal)),
+    cell: (id, query, signal) => json(get(of(id, "cell", query), signal)),
     sweepText: async (id, signal) => (await get(`maps/${id}/sweep`, signal)).text(),
   };
+}
+
+/** How long what nobody waits for may go on, in milliseconds, and what somebody does. */
+const [PATIENCE, LONGEST] = [250, 20_000];
+
+/** Requests to a worker, one at a time. What takes too long ends with it; the next one has a new one. */
+class Computing {
+  #compiled;
+  #newestFirst;
+  #worker = null;
+  #waiting = [];
+  #current = null;
+
+  /**
+   * @param {Promise<WebAssembly.Module>} compiled
+   * @param {boolean} newestFirst whether the newest request comes first; else they come in order
+   */
+  constructor(compiled, newestFirst) {
+    [this.#compiled, this.#newestFirst] = [compiled, newestFirst];
+  }
+
+  /** @returns {Promise<{status: number, bytes: ArrayBuffer, milliseconds: number}>} */
+  ask(name, text, signal) {
+    return new Promise((resolve, reject) => {
+      if (signal?.aborted) return reject(signal.reason);
+      const asked = { name, text, resolve, reject };
+      signal?.addEventListener("abort", () => this.#drop(asked, signal.reason), { once: true });
+      this.#waiting.push(asked);
+      this.#next();
+    });
+  }
+
+  #drop(asked, reason) {
+    asked.reject(reason);
+    this.#waiting = this.#waiting.filter((other) => other !== asked);
+    if (this.#current === asked) this.#endAfter(PATIENCE, reason);
+  }
+
+  /** Ends the worker if it is at the same then, counted from when it began. */
+  #endAfter(time, reason) {
+    const asked = this.#current;
+    clearTimeout(asked.timer);
+    const left = asked.begun + time - performance.now();
+    asked.timer = setTimeout(() => this.#restart(reason), Math.max(0, left));
+  }
+
+  #restart(reason) {
+    this.#worker?.terminate();
+    this.#worker = null;
+    this.#done((asked) => asked.reject(reason));
+  }
+
+  #done(tell) {
+    const asked = this.#current;
+    if (!asked) return;
+    clearTimeout(asked.timer);
+    this.#current = null;
+    tell(asked);
+    this.#next();
+  }
+
+  async #next() {
+    if (this.#current || this.#waiting.length === 0) return;
+    const asked = this.#newestFirst ? this.#waiting.pop() : this.#waiting.shift();
+    this.#current = asked;
+    asked.begun = performance.now();
+    const detail = "it takes longer than 20 s: slipmap run has no such limit";
+    this.#endAfter(LONGEST, new Problem({ status: 503, detail }));
+    try {
+      const compiled = await this.#compiled;
+      if (this.#current !== asked) return;
+      this.#worker ??= this.#begin(compiled);
+      this.#worker.postMessage({ name: asked.name, text: asked.text });
+    } catch (error) {
+      const told = { status: 503, detail: `slipmap.wasm is not there: ${error.message}` };
+      this.#done((asked) => asked.reject(new Problem(told)));
+    }
+  }
+
+  #begin(compiled) {
+    const worker = new Worker("worker.js");
+    const failed = (why) => {
+      const detail = "the computation failed; this is a fault of slipmap. It begins anew.";
+      console.error(why);
+      this.#restart(new Problem({ status: 500, detail }));
+    };
+    worker.onmessage = ({ data }) => {
+      if (data.failed) failed(data.failed);
+      else this.#done((asked) => asked.resolve(data));
+    };
+    worker.onerror = (event) => failed(event.message);
+    worker.postMessage({ compiled });
+    return worker;
+  }
+}
+
+/** WebAssembly beside the page: kind "page". */
+function page() {
+  const load = async () => {
+    const response = await fetch("slipmap.wasm");
+    if (!response.ok) throw new Error(response.statusText);
+    return WebAssembly.compile(await response.arrayBuffer());
+  };
+  const compiled = load();
+  // Whoever asks is told.
+  compiled.catch(() => {});
+  // A chart does not wait for a critical velocity.
+  const [charts, others] = [true, false].map((newest) => new Computing(compiled, newest));
+  const ask = async (of, name, toml, signal) => {
+    const answer = await of.ask(name, toml, signal);
+    if (answer.status === 200) return answer;
+    throw new Problem(JSON.parse(new TextDecoder().decode(answer.bytes)));
+  };
+  const json = async (name, toml, signal) => {
+    const { bytes } = await ask(others, name, toml, signal);
+    return JSON.parse(new TextDecoder().decode(bytes));
+  };
+  return {
+    kind: "page",
+    chart: async (toml, signal) => {
+      const { bytes, milliseconds } = await ask(charts, "chart", toml, signal);
+      return Object.assign(decode(bytes), { milliseconds });
+    },
+    point: (toml, signal) => json("point", toml, signal),
+    vc: (toml, signal) => json("vc", toml, signal),
+    motion: async (toml, signal) => decode((await ask(others, "motion", toml, signal)).bytes),
+    law: (toml, signal) => json("law", toml, signal),
+    parameters: (signal) => json("parameters", "", signal),
+  };
+}
+
+/** The one through which the page asks: a marker in its head says that there is no server. */
+export function openSource() {
+  const marker = document.querySelector('meta[name="slipmap-source"]');
+  return marker?.content === "wasm" ? page() : server();
 }

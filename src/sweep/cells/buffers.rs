@@ -1,5 +1,7 @@
 //! The cells of a tile in memory, a column for each field.
 
+use std::ops::Range;
+
 use crate::sweep::input::field::{Field, Storage};
 use crate::sweep::plan::Plan;
 
@@ -53,21 +55,23 @@ impl TileBuffers {
         }
     }
 
-    /// Takes `count` cells from the place `there` on of other buffers of the same plan to the place
-    /// `at` and behind it.
-    pub(in crate::sweep) fn take(&mut self, at: usize, from: &Self, there: usize, count: usize) {
-        fn copy<T: Copy>(to: &mut [T], at: usize, from: &[T], there: usize, count: usize) {
-            to[at..at + count].copy_from_slice(&from[there..there + count]);
-        }
-        copy(&mut self.status, at, &from.status, there, count);
+    /// Takes the cells at the places `there` of other buffers of the same plan to the places `at`.
+    pub(in crate::sweep) fn take_cells(
+        &mut self,
+        at: Range<usize>,
+        from: &Self,
+        there: Range<usize>,
+    ) {
+        let places = (at, there);
+        take(&mut self.status, &from.status, &places);
         if let (Some(to), Some(from)) = (&mut self.n_unstable, &from.n_unstable) {
-            copy(to, at, from, there, count);
+            take(to, from, &places);
         }
         for (to, from) in self.kinds.iter_mut().zip(&from.kinds) {
-            copy(&mut to.cells, at, &from.cells, there, count);
+            take(&mut to.cells, &from.cells, &places);
         }
         for (to, from) in self.columns.iter_mut().zip(&from.columns) {
-            copy(&mut to.cells, at, &from.cells, there, count);
+            take(&mut to.cells, &from.cells, &places);
         }
     }
 
@@ -97,6 +101,10 @@ impl TileBuffers {
             column.cells.fill(f64::NAN);
         }
     }
+}
+
+fn take<T: Copy>(to: &mut [T], from: &[T], (at, there): &(Range<usize>, Range<usize>)) {
+    to[at.clone()].copy_from_slice(&from[there.clone()]);
 }
 
 /// A kind or a small count, saturating below [`FEW_FILL`]; that for NaN.

@@ -426,10 +426,8 @@ mod tests {
             let (spec, whole) = trace(&text);
             let stop = Stop::default();
             let thinned = Trace::within(&spec, Most::Thinned(300), &stop).unwrap();
-            assert_eq!(
-                (&thinned.events, thinned.summary),
-                (&whole.events, whole.summary)
-            );
+            assert_eq!(thinned.events, whole.events);
+            assert_eq!(thinned.summary.decided, whole.summary.decided);
             assert!((150..=300).contains(&thinned.samples.len()));
             assert_eq!(thinned.samples.last(), whole.samples.last());
             for sample in &thinned.samples {
