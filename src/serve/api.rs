@@ -13,6 +13,7 @@ use axum::routing::{get, post};
 use serde::Deserialize;
 
 use super::access::Access;
+use super::maps::{self, Maps};
 use super::page;
 use super::problem::{Problem, nothing_here};
 use super::work::Work;
@@ -49,9 +50,10 @@ impl Served {
 }
 
 /// The router of all addresses.
-pub(super) fn routes(access: Arc<Access>, work: Work) -> Router {
+pub(super) fn routes(access: Arc<Access>, work: Work, maps: Arc<Maps>) -> Router {
     let served = Served { access, work };
     let api = Router::new()
+        .merge(maps::routes(maps))
         .route("/api/v1/chart", post(chart))
         .route("/api/v1/point", post(point))
         .route("/api/v1/vc", post(vc))

@@ -1,0 +1,116 @@
+//! What is answered about maps.
+
+use std::sync::Arc;
+
+use axum::Router;
+use axum::extract::rejection::QueryRejection;
+use axum::extract::{Path, Query, State};
+use axum::http::StatusCode;
+use axum::http::header::CONTENT_TYPE;
+use axum::response::{IntoResponse, Response};
+use axum::routing::get;
+use serde_json::Value;
+
+use super::frames::{Ask, CellQuery, CurvesQuery, Frame, Kind, WindowQuery};
+use super::readers::Maps;
+use super::scan::Found;
+use crate::serve::problem::Problem;
+
+/// The routes of all addresses below `/api/v1/maps`.
+pub(in crate::serve) fn routes<S: Clone + Send + Sync + 'static>(maps: Arc<Maps>) -> Router<S> {
+    Router::new()
+        .route("/api/v1/maps", get(list))
+        .route("/api/v1/maps/{id}", get(description))
+        .route("/api/v1/maps/{id}/window", get(window))
+        .route("/api/v1/maps/{id}/curves", get(curves))
+        .route("/api/v1/maps/{id}/cell", get(cell))
+        .route("/api/v1/maps/{id}/sweep", get(sweep))
+        .with_state(maps)
+}
+
+type Asked<T> = Result<Query<T>, QueryRejection>;
+
+/// What a query says.
+fn said<T>(query: Asked<T>) -> Result<T, Problem> {
+    let said = query
+        .map_err(|rejected| Problem::of(StatusCode::UNPROCESSABLE_ENTITY, rejected.body_text()));
+    Ok(said?.0)
+}
+
+async fn found(maps: &Maps, id: &str) -> Result<Found, Problem> {
+    let found = maps.list.find(id).await;
+    found.ok_or_else(|| Problem::of(StatusCode::NOT_FOUND, "there is no map of this id"))
+}
+
+fn answered(frame: Frame) -> Response {
+    let kind = match frame.kind {
+        Kind::Text => "text/plain; charset=utf-8",
+        Kind::Json => "application/json",
+        _ => "application/octet-stream",
+    };
+    ([(CONTENT_TYPE, kind)], frame.bytes).into_response()
+}
+
+async fn asked(maps: &Maps, id: &str, ask: Ask) -> Result<Response, Problem> {
+    let found = found(maps, id).await?;
+    Ok(answered(maps.ask(&found, &ask).await?))
+}
+
+/// The maps below the folder.
+async fn list(State(maps): State<Arc<Maps>>) -> axum::Json<Value> {
+    axum::Json(maps.list.json().await)
+}
+
+/// What there is to know of a map besides its cells.
+async fn description(
+    State(maps): State<Arc<Maps>>,
+    Path(id): Path<String>,
+) -> Result<axum::Json<Value>, Problem> {
+    let found = found(&maps, &id).await?;
+    let frame = maps.ask(&found, &Ask::Description).await?;
+    let mut told: Value = serde_json::from_slice(&frame.bytes)
+        .map_err(|error| Problem::of(StatusCode::BAD_GATEWAY, error.to_string()))?;
+    let complete = told["cells"] == told["cells_done"];
+    told["state"] = found.state(complete).into();
+    told["id"] = found.id.into();
+    told["name"] = found.name.into();
+    Ok(axum::Json(told))
+}
+
+/// Cells in a plane, as pixels.
+async fn window(
+    State(maps): State<Arc<Maps>>,
+    Path(id): Path<String>,
+    query: Asked<WindowQuery>,
+) -> Result<Response, Problem> {
+    let query = said(query)?;
+    let ends = [query.x0, query.x1, query.y0, query.y1];
+    if ends.into_iter().flatten().any(|end| !end.is_finite()) {
+        let detail = "the ends of a window are finite numbers";
+        return Err(Problem::of(StatusCode::UNPROCESSABLE_ENTITY, detail));
+    }
+    asked(&maps, &id, Ask::Window(query)).await
+}
+
+/// The curves in a plane.
+async fn curves(
+    State(maps): State<Arc<Maps>>,
+    Path(id): Path<String>,
+    query: Asked<CurvesQuery>,
+) -> Result<Response, Problem> {
+    asked(&maps, &id, Ask::Curves(said(query)?)).await
+}
+
+/// One cell.
+async fn cell(
+    State(maps): State<Arc<Maps>>,
+    Path(id): Path<String>,
+    query: Asked<CellQuery>,
+) -> Result<Response, Problem> {
+    asked(&maps, &id, Ask::Cell(said(query)?)).await
+}
+
+/// The sweep file's text.
+async fn sweep(State(maps): State<Arc<Maps>>, Path(id): Path<String>) -> Result<Response, Problem> {
+    asked(&maps, &id, Ask::Sweep).await
+}
