@@ -129,7 +129,9 @@ impl KnownLaw {
 }
 
 impl KnownField {
-    fn of(field: Field) -> Self {
+    /// Of a field.
+    #[must_use]
+    pub fn of(field: Field) -> Self {
         Self {
             name: field.name(),
             long_name: field.long_name(),

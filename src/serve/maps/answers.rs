@@ -7,6 +7,7 @@ use serde_json::{Value, json};
 
 use super::frames::{CellQuery, CurvesQuery, Refused, ScaleName, WindowQuery};
 use crate::explore::encoded::{Array, Arrays};
+use crate::explore::known::KnownField;
 use crate::linear::Direction;
 use crate::linear::curves::StableSide;
 use crate::linear::status::FLAGS;
@@ -16,7 +17,7 @@ use crate::store::MapFile;
 use crate::store::map_file::MapAxis;
 use crate::store::schema::root;
 use crate::sweep::engine::{FEW_FILL, N_UNSTABLE_FILL, STATUS_FILL};
-use crate::sweep::input::field::{Spread, Storage};
+use crate::sweep::input::field::Storage;
 use crate::sweep::{Field, Parameter};
 
 /// A window is waited for so long; then what was read so far is told.
@@ -85,11 +86,14 @@ pub(super) fn description(look: &Look) -> Value {
             Some(_) => field.described_at_vc(),
             None => (field.long_name(), field.comment()),
         };
-        json!({
-            "name": field.name(), "long_name": long_name, "short_name": field.short_name(),
-            "unit": unit(field), "storage": storage(field), "kinds": field.kinds(),
-            "spread": spread(field), "comment": comment,
-        })
+        let known = KnownField {
+            long_name,
+            comment,
+            ..KnownField::of(field)
+        };
+        let mut told = json!(known);
+        told["unit"] = unit(field).into();
+        told
     };
     json!({
         "title": title(look), "cells": facts.cells(), "cells_done": cells_done,
@@ -134,31 +138,6 @@ fn scalars(look: &Look) -> Vec<Value> {
         })
     };
     found.into_iter().map(told).collect()
-}
-
-fn storage(field: Field) -> &'static str {
-    match field.storage() {
-        Storage::Count => "count",
-        Storage::Kind => "kind",
-        Storage::Few => "few",
-        Storage::Real => "real",
-    }
-}
-
-/// How values are spread; about zero, with the sign of the stable side.
-fn spread(field: Field) -> &'static str {
-    match field.spread() {
-        Spread::Counts => "counts",
-        Spread::FromZero => "from_zero",
-        Spread::LongTail => "long_tail",
-        Spread::Magnitudes => "magnitudes",
-        Spread::Decades => "decades",
-        Spread::Relaxation => "relaxation",
-        Spread::AboutZero { stable } if stable < 0.0 => "about_zero_stable_below",
-        Spread::AboutZero { .. } => "about_zero_stable_above",
-        Spread::BetterBelow => "better_below",
-        Spread::RelativeError => "relative_error",
-    }
 }
 
 /// The axis of that name.

@@ -170,10 +170,11 @@ class Explorer {
     return undefined;
   }
 
-  #move(point) {
+  /** Moves the point; by a key, in a map, at least to the next cell. */
+  #move(point, byKey) {
     const { state, plane } = this;
     const kept = point.map((x) => Number(x.toPrecision(9)));
-    plane.point = state.map ? this.saved.move(kept) : kept;
+    plane.point = state.map ? this.saved.move(kept, byKey) : kept;
     if (!state.map) state.point = plane.point;
     plane.draw();
     this.#say(plane.point);
@@ -251,12 +252,12 @@ class Explorer {
     this.begun = { x: { ...this.state.x }, y: { ...this.state.y } };
     follow(this.plane, {
       look: (point) => {
-        this.#move(point);
+        this.#move(point, false);
         this.look();
         this.#settle();
       },
       move: (point) => {
-        this.#move(point);
+        this.#move(point, true);
         this.#settle();
       },
       hover: (point) => (element("hover").textContent = this.#words(point)),

@@ -41,15 +41,19 @@ export class Panel {
   /**
    * Asks for everything at a point.
    * @param {{point: string | null, vc: string | null, motion: string | null, v0?: number}} texts
-   * @param {{where: string, start: number[] | null, unit: string}} about
+   * @param {{where: string, start: number[] | null, unit: string, fixed?: boolean}} about fixed: no
+   *   other friction law can be chosen
    */
-  look(texts, { where, start, unit = "1" }) {
+  look(texts, { where, start, unit = "1", fixed = false }) {
     element("point-where").textContent = where;
     element("toml").value = texts.point ?? "";
     element("point-none").hidden = texts.point !== null;
     this.unit = unit;
     this.v0 = texts.v0;
     if (texts.point !== null) this.points.want(texts.point);
+    element("take-law").hidden = fixed;
+    const law = fixed ? "The map has none." : "Choose one first.";
+    element("vc-none").textContent = `It depends on the whole friction law. ${law}`;
     element("vc-none").hidden = texts.vc !== null;
     element("vc").hidden = texts.vc === null;
     if (texts.vc !== null) {

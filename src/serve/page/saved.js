@@ -152,7 +152,7 @@ export class Saved {
       this.#begin();
       this.#build();
       this.#ask();
-      if (this.state.map.point) this.look();
+      this.look();
     } catch (error) {
       this.#failed(error);
     }
@@ -321,6 +321,7 @@ export class Saved {
     const ends = [new Scale(query.x0, query.x1, query.xscale === "log"),
       map.y ? new Scale(query.y0, query.y1, query.yscale === "log") : new Scale(0, 1)];
     const flags = (n) => this.#flags(answer, n);
+    this.#placePoint(axes);
     this.told.shown({
       axes, ends, field, flags,
       nx: axes[0].values.length,
@@ -337,7 +338,6 @@ export class Saved {
       exact: true,
       rests: answer.complete,
     });
-    this.#placePoint(axes);
     for (const { name, value } of answer.at ?? []) {
       const output = element("map-sliders").querySelector(`output[data-axis="${name}"]`);
       if (output && !output.value) output.value = told(value, 7);
@@ -358,7 +358,6 @@ export class Saved {
     });
     if (values.every((value) => value !== null)) {
       this.plane.point = map.y ? values : [values[0], 0.5];
-      this.plane.draw();
     }
   }
 
@@ -372,8 +371,8 @@ export class Saved {
     return list;
   }
 
-  /** Moves to the cell nearest to a point; at least to the next one in that direction. */
-  move(point) {
+  /** Moves to the cell nearest to a point; by a key at least to the next one in that direction. */
+  move(point, byKey) {
     const { map } = this.state;
     const { plane } = this.plane;
     const index = plane && this.plane.indexAt(point);
@@ -383,13 +382,14 @@ export class Saved {
       if (!axis) return;
       const before = map.at[name];
       let next = plane.axes[i].index?.[index[i]] ?? before;
-      const [was, is] = [this.plane.point?.[i], point[i]];
-      const up = Math.sign(is - was) * Math.sign(axis.to - axis.from);
-      if (this.stepping && next === before && is !== was) next = before + up;
+      const way = point[i] - (this.plane.point?.[i] ?? point[i]);
+      const far = Math.abs(way) > 1e-8 * Math.abs(axis.to - axis.from);
+      if (byKey && far && next === before) next += Math.sign(way) * Math.sign(axis.to - axis.from);
       map.at[name] = Math.min(axis.points - 1, Math.max(0, next));
     });
     map.point = [map.at[map.x], map.at[map.y] ?? 0];
     this.#placePoint(plane.axes);
+    this.plane.draw();
     return this.plane.point;
   }
 
@@ -405,7 +405,7 @@ export class Saved {
     const where = names.map((name) => `${this.#axis(name)?.symbol ?? name} = ${told(cell.axes[name], 9)}`);
     const { point = null, vc = null, motion = null } = cell;
     const unit = this.#axis("tau")?.unit ?? "1";
-    this.told.look({ point, vc, motion }, { where: where.join(", "), unit });
+    this.told.look({ point, vc, motion }, { where: where.join(", "), unit, fixed: true });
     const value = ([name, v]) => [name, cell.kinds?.[name] ?? (typeof v === "number" ? told(v, 9) : String(v ?? "no value"))];
     const status = cell.computed ? cell.status.join(", ") || "no flags" : "not computed yet";
     terms(element("cell"), [...Object.entries(cell.fields).map(value), ["status", status]]);
