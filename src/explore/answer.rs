@@ -95,11 +95,13 @@ pub struct Limits {
 
 /// An answer with the command line that gives the same.
 #[derive(Debug, Serialize)]
-struct WithCommand<T> {
+#[cfg_attr(feature = "serve", derive(utoipa::ToSchema))]
+pub struct WithCommand<T> {
+    /// The answer.
     #[serde(flatten)]
-    answer: T,
-    /// None where flags cannot say it.
-    command: Option<String>,
+    pub answer: T,
+    /// The command line; none where flags cannot say it.
+    pub command: Option<String>,
 }
 
 /// The bytes of the answer to `request` about what `text` describes, of

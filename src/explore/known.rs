@@ -9,6 +9,7 @@ use crate::sweep::{Field, Parameter};
 
 /// All tables.
 #[derive(Debug, Clone, Serialize)]
+#[cfg_attr(feature = "serve", derive(utoipa::ToSchema))]
 pub struct Known {
     /// The version of the program.
     pub version: &'static str,
@@ -22,6 +23,7 @@ pub struct Known {
 
 /// A parameter.
 #[derive(Debug, Clone, Serialize)]
+#[cfg_attr(feature = "serve", derive(utoipa::ToSchema))]
 pub struct KnownParameter {
     /// The word for it in texts.
     pub name: &'static str,
@@ -47,6 +49,7 @@ pub struct KnownParameter {
 
 /// A friction law.
 #[derive(Debug, Clone, Serialize)]
+#[cfg_attr(feature = "serve", derive(utoipa::ToSchema))]
 pub struct KnownLaw {
     /// The word for it in texts.
     pub name: &'static str,
@@ -60,6 +63,7 @@ pub struct KnownLaw {
 
 /// A field of a map.
 #[derive(Debug, Clone, Serialize)]
+#[cfg_attr(feature = "serve", derive(utoipa::ToSchema))]
 pub struct KnownField {
     /// The word for it in texts.
     pub name: &'static str,

@@ -9,8 +9,11 @@
 
 mod access;
 mod api;
+mod computed;
+mod openapi;
 mod page;
 mod problem;
+mod served;
 mod work;
 
 use std::net::{IpAddr, SocketAddr, TcpListener};
