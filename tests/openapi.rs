@@ -69,8 +69,17 @@ impl Described {
     fn check(&self, schema: &Value, value: &Value, at: &str) {
         let schema = self.schema(schema);
         if let Some(choices) = schema["oneOf"].as_array() {
-            let null = |of: &&Value| (of["type"] == "null") == value.is_null();
-            return self.check(choices.iter().find(null).unwrap(), value, at);
+            let fits = |of: &&Value| {
+                let of = self.schema(of);
+                kinds(value).iter().any(|kind| has(of, kind)) || of.get("allOf").is_some()
+            };
+            let fitting = choices.iter().find(fits);
+            let fitting = fitting.unwrap_or_else(|| panic!("{at}: {value} is none of {schema}"));
+            return self.check(fitting, value, at);
+        }
+        if schema.get("allOf").is_none() {
+            let fits = kinds(value).iter().any(|kind| has(schema, kind));
+            assert!(fits, "{at} is {value}, described as {schema}");
         }
         match value {
             Value::Object(entries) => {
@@ -88,28 +97,25 @@ impl Described {
                 }
             }
             Value::Array(values) => {
-                Self::check_type(schema, "array", at);
                 for value in values {
                     self.check(&schema["items"], value, &format!("{at}[]"));
                 }
             }
-            Value::String(_) => Self::check_type(schema, "string", at),
-            Value::Bool(_) => Self::check_type(schema, "boolean", at),
-            Value::Null => Self::check_type(schema, "null", at),
-            Value::Number(number) if number.is_u64() || number.is_i64() => {
-                let kind = if schema["type"] == "number" || has(schema, "number") {
-                    "number"
-                } else {
-                    "integer"
-                };
-                Self::check_type(schema, kind, at);
-            }
-            Value::Number(_) => Self::check_type(schema, "number", at),
+            _ => {}
         }
     }
+}
 
-    fn check_type(schema: &Value, kind: &str, at: &str) {
-        assert!(has(schema, kind), "{at} is {kind}, described as {schema}");
+/// The types that a value has.
+fn kinds(value: &Value) -> &'static [&'static str] {
+    match value {
+        Value::Object(_) => &["object"],
+        Value::Array(_) => &["array"],
+        Value::String(_) => &["string"],
+        Value::Bool(_) => &["boolean"],
+        Value::Null => &["null"],
+        Value::Number(number) if number.is_f64() => &["number"],
+        Value::Number(_) => &["number", "integer"],
     }
 }
 
@@ -172,6 +178,68 @@ fn answers_have_the_fields_that_are_named() {
     described.check(schema, &problem.json(), "problem");
 }
 
+const SWEEP: &str = "title = \"a map\"\nboundaries = true\nfields = [\"n_unstable\", \"relaxation_time\", \
+    \"outcome\"]\n[axes]\nalpha_v = { from = -1.0, to = 0.2, points = 5 }\ntau = [0.5, 1.0, 4.15]\n[fixed]\n\
+    v0 = 0.35\n[friction]\nlaw = \"weakening\"\nmu0 = 0.5\nv_s = 0.5\n";
+
+/// So are answers about a map, and about one that is none.
+#[test]
+fn answers_about_maps_have_the_fields_that_are_named() {
+    let folder = Folder::with(&[("sweep.toml", SWEEP), ("odd.h5", "no map")]);
+    let made = folder.run(&["run", "sweep.toml"]);
+    assert!(made.status.success(), "{}", program::err(&made));
+    let serving = Serving::new(&folder);
+    let described = Described::of(&serving);
+    let bearer = serving.bearer();
+    let ask = |path: &str| {
+        let line = format!("GET /api/v1/maps{path}");
+        serving.request(&line, &[("Authorization", &bearer)], "")
+    };
+    let schema = |path: &str| {
+        let about = &described.0["paths"][format!("/api/v1/maps{path}")]["get"];
+        let content = about["responses"]["200"]["content"].as_object().unwrap();
+        content.values().next().unwrap()["schema"].clone()
+    };
+    let list = ask("").json();
+    described.check(&schema(""), &list, "list");
+    let maps = list["maps"].as_array().unwrap();
+    assert_eq!(maps.len(), 2, "{list}");
+    let map = maps.iter().find(|map| map["state"] == "complete").unwrap();
+    let id = map["id"].as_str().unwrap();
+    described.check(&schema("/{id}"), &ask(&format!("/{id}")).json(), "map");
+    for at in ["alpha_v:0,tau:0", "alpha_v:4,tau:2"] {
+        let cell = ask(&format!("/{id}/cell?at={at}")).json();
+        described.check(&schema("/{id}/cell"), &cell, "cell");
+    }
+    for (asked, head) in [
+        (
+            "window?field=n_unstable&x=alpha_v&y=tau&w=7&h=9",
+            "WindowHead",
+        ),
+        (
+            "window?field=outcome&x=tau&at=alpha_v:2&xscale=log",
+            "WindowHead",
+        ),
+        ("curves?x=alpha_v&y=tau", "CurvesHead"),
+    ] {
+        let answer = ask(&format!("/{id}/{asked}"));
+        assert_eq!(answer.status, 200, "{asked}");
+        let schema = &described.0["components"]["schemas"][head];
+        described.check(schema, &decoded(&answer.body).0, asked);
+    }
+    assert_eq!(ask(&format!("/{id}/sweep")).body, SWEEP.as_bytes());
+    let problem = &described.0["components"]["schemas"]["Problem"];
+    for (asked, status) in [
+        ("/0123456789abcdef", 404),
+        (&format!("/{id}/window?field=none&x=tau"), 422),
+        (&format!("/{id}/window?x=tau"), 422),
+    ] {
+        let answer = ask(asked);
+        assert_eq!(answer.status, status, "{asked}");
+        described.check(problem, &answer.json(), asked);
+    }
+}
+
 /// Every address of the interface is described, with every parameter where it is.
 #[test]
 fn nothing_is_left_out() {
@@ -183,6 +251,18 @@ fn nothing_is_left_out() {
         .iter()
         .map(|of| of.0.to_owned())
         .collect();
+    for name in described
+        .0
+        .to_string()
+        .split("\"$ref\":\"#/components/schemas/")
+        .skip(1)
+    {
+        let name = name.split('"').next().unwrap();
+        assert!(
+            described.0["components"]["schemas"][name].is_object(),
+            "{name}"
+        );
+    }
     let mut named = BTreeSet::new();
     let mut folders = vec![std::path::PathBuf::from("src/serve")];
     while let Some(folder) = folders.pop() {

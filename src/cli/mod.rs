@@ -11,6 +11,7 @@ mod parameters;
 mod plan;
 mod plot;
 mod point;
+mod read_map;
 mod run;
 mod say;
 mod serve;
@@ -58,6 +59,9 @@ enum Command {
     Best(best::Args),
     /// Show charts in a browser, computed while you look
     Serve(serve::Args),
+    /// Read a map for `serve`
+    #[command(hide = true)]
+    ReadMap(read_map::Args),
     /// The critical velocity at one point
     Vc(vc::Args),
     /// One motion in time: from a case file to HDF5 and a picture, with its events and outcome
@@ -100,6 +104,7 @@ pub(crate) fn main() -> ExitCode {
         Command::Point(args) => point::main(&args),
         Command::Best(args) => best::main(&args),
         Command::Serve(args) => serve::main(&args),
+        Command::ReadMap(args) => read_map::main(&args),
         Command::Vc(args) => vc::main(&args),
         Command::Simulate(args) => simulate::main(&args),
         Command::Plot(args) => plot::main(&args),

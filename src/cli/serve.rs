@@ -2,10 +2,12 @@
 
 use std::io::Write;
 use std::net::{IpAddr, Ipv4Addr};
+use std::path::PathBuf;
 
-use slipmap::serve::{Server, Serving};
+use slipmap::serve::{ReaderCommand, Server, Serving};
 
 use super::failure::Failure;
+use super::read_map;
 use super::run::default_threads;
 use super::say;
 use super::signals::Signals;
@@ -13,6 +15,9 @@ use super::signals::Signals;
 #[derive(Debug, clap::Args)]
 #[command(after_help = "Example: slipmap serve --port 0")]
 pub(super) struct Args {
+    /// Folder whose maps are shown, and those of the folders in it
+    #[arg(value_name = "FOLDER", default_value = ".")]
+    folder: PathBuf,
     /// Port on this machine; 0 takes any free one
     #[arg(long, value_name = "N", default_value_t = 8417)]
     port: u16,
@@ -28,6 +33,11 @@ pub(super) fn main(args: &Args) -> Result<(), Failure> {
         address: IpAddr::V4(Ipv4Addr::LOCALHOST),
         port: args.port,
         threads: args.threads.map_or_else(default_threads, usize::from),
+        folder: args.folder.clone(),
+        reader: ReaderCommand {
+            program: std::env::current_exe()?,
+            arguments: vec![read_map::NAME.into()],
+        },
     };
     let server = Server::listen(&serving).map_err(|error| {
         Failure::bad_input_with_help(

@@ -2,7 +2,6 @@
 
 use serde::Serialize;
 
-use crate::sweep::input::field::Storage;
 use crate::sweep::input::law_kind::{Formula, LawKind};
 use crate::sweep::input::units::Units;
 use crate::sweep::{Field, Parameter};
@@ -142,12 +141,7 @@ impl KnownField {
             spread: field.spread().name(),
             stable_sign: field.spread().stable_sign(),
             kinds: field.kinds(),
-            storage: match field.storage() {
-                Storage::Count => "count",
-                Storage::Kind => "kind",
-                Storage::Few => "few",
-                Storage::Real => "real",
-            },
+            storage: field.storage().name(),
         }
     }
 }

@@ -4,10 +4,12 @@ use std::collections::BTreeMap;
 
 use serde::Serialize;
 
-use super::command;
 use super::encoded::{Array, Arrays};
 use super::motion::{Followed, MotionSummary};
 use crate::sweep::cells::trace::{MODES, Sample};
+
+/// The command that gives the same.
+const SIMULATE: &str = "slipmap simulate case.toml";
 
 /// What a motion says before its numbers. Where units are given, `unit_t` and so on tell those of
 /// its arrays.
@@ -92,7 +94,7 @@ pub fn encoded(followed: &Followed) -> Result<Vec<u8>, serde_json::Error> {
         units: QUANTITIES.iter().filter(|_| given).map(named).collect(),
         arrays: heads,
         modes: MODES.map(|(_, name)| name),
-        command: command::SIMULATE,
+        command: SIMULATE,
     };
     arrays.behind(&head)
 }

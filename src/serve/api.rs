@@ -12,6 +12,7 @@ use axum::routing::get;
 use serde::Deserialize;
 
 use super::access::Access;
+use super::maps::{self, Maps};
 use super::problem::{Problem, nothing_here};
 use super::served::Served;
 use super::work::Work;
@@ -25,9 +26,10 @@ const POLICY: &str = "default-src 'none'; script-src 'self'; style-src 'self'; i
     data: blob:; connect-src 'self'; base-uri 'none'; form-action 'none'; frame-ancestors 'none'";
 
 /// The router of all addresses.
-pub(super) fn routes(access: Arc<Access>, work: Work) -> Router {
+pub(super) fn routes(access: Arc<Access>, work: Work, maps: Arc<Maps>) -> Router {
     let served = Served { access, work };
-    let all = openapi::described(computed::routes())
+    let interface = computed::routes().merge(maps::routes(maps));
+    let all = openapi::described(interface)
         .route("/", get(front))
         .route("/{asset}", get(page::asset))
         .fallback(nothing)

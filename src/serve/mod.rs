@@ -10,6 +10,7 @@
 mod access;
 mod api;
 mod computed;
+mod maps;
 mod openapi;
 mod page;
 mod problem;
@@ -17,9 +18,12 @@ mod served;
 mod work;
 
 use std::net::{IpAddr, SocketAddr, TcpListener};
+use std::path::PathBuf;
 use std::sync::Arc;
 
 use access::Access;
+use maps::Maps;
+pub use maps::{ReaderCommand, read_map};
 use work::Work;
 
 /// What a server is asked to do.
@@ -31,6 +35,10 @@ pub struct Serving {
     pub port: u16,
     /// Threads that compute.
     pub threads: usize,
+    /// The folder whose maps are shown.
+    pub folder: PathBuf,
+    /// How to start a process that reads a map.
+    pub reader: ReaderCommand,
 }
 
 /// A server that listens already.
@@ -40,6 +48,7 @@ pub struct Server {
     address: SocketAddr,
     access: Arc<Access>,
     threads: usize,
+    maps: Arc<Maps>,
 }
 
 impl Server {
@@ -56,6 +65,7 @@ impl Server {
             address,
             access: Arc::new(Access::new(address.port())?),
             threads: serving.threads,
+            maps: Arc::new(Maps::below(&serving.folder, serving.reader.clone())),
         })
     }
 
@@ -72,11 +82,11 @@ impl Server {
     pub fn run(self, stopped: impl Fn() -> bool + Send + 'static) -> std::io::Result<()> {
         let runtime = tokio::runtime::Builder::new_multi_thread()
             .worker_threads(2)
-            .max_blocking_threads(self.threads + 2)
+            .max_blocking_threads(self.threads + 6)
             .enable_all()
             .build()?;
         let work = Work::new(self.threads);
-        let app = api::routes(self.access, work);
+        let app = api::routes(self.access, work, self.maps);
         let ended = runtime.block_on(async move {
             let listener = tokio::net::TcpListener::from_std(self.listener)?;
             let until = async move {

@@ -32,7 +32,10 @@ const ADDRESS: &str = "/api/v1/openapi.json";
             so many numbers, padded, and behind them as many u32, the places where each run ends."
     ),
     components(schemas(Problem, ChartHead, MotionHead)),
-    tags((name = "computed", description = "Computed now")),
+    tags(
+        (name = "computed", description = "Computed now"),
+        (name = "maps", description = "From the maps below a folder"),
+    ),
     security(("bearer" = []), ("cookie" = [])),
     modifiers(&Keys),
 )]

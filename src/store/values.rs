@@ -13,8 +13,8 @@ use hdf5_sys::h5::HADDR_UNDEF;
 use hdf5_sys::h5d::{H5Dget_chunk_info_by_coord, H5Dread_chunk1};
 use hdf5_sys::h5i::hid_t;
 use hdf5_sys::h5p::H5P_DEFAULT;
-use zlib_rs::{InflateConfig, ReturnCode, decompress_slice};
 
+use super::chunk_layout::ChunkLayout;
 use super::open::{self, DEFLATE, SHUFFLE};
 use crate::sweep::input::axis::MOST_POINTS;
 
@@ -97,17 +97,15 @@ impl Picked {
 }
 
 /// A dataset in chunks, as it is stored.
-pub(super) struct Chunks<'d> {
-    dataset: &'d Dataset,
-    shape: Vec<usize>,
-    chunk: Vec<usize>,
-    element: usize,
-    filters: Vec<i32>,
+#[derive(Debug)]
+pub(super) struct Chunks {
+    dataset: Dataset,
+    layout: ChunkLayout,
 }
 
-impl<'d> Chunks<'d> {
+impl Chunks {
     /// The chunks of a dataset; none where it is not stored in chunks.
-    pub(super) fn of(dataset: &'d Dataset) -> hdf5::Result<Option<Self>> {
+    pub(super) fn of(dataset: &Dataset) -> hdf5::Result<Option<Self>> {
         let Some(chunk) = dataset.chunk() else {
             return Ok(None);
         };
@@ -115,18 +113,23 @@ impl<'d> Chunks<'d> {
         if chunk.len() != shape.len() || chunk.contains(&0) {
             return Err("its chunks have another number of dimensions".into());
         }
-        Ok(Some(Self {
-            dataset,
+        let filters = open::filters_of(dataset)?;
+        let layout = ChunkLayout {
             shape,
             chunk,
             element: dataset.dtype()?.size(),
-            filters: open::filters_of(dataset)?,
+            deflated: filters.contains(&DEFLATE),
+            shuffled: filters.contains(&SHUFFLE),
+        };
+        Ok(Some(Self {
+            dataset: dataset.clone(),
+            layout,
         }))
     }
 
-    /// Bytes of a whole chunk.
-    fn bytes(&self) -> usize {
-        self.chunk.iter().product::<usize>() * self.element
+    /// How they are stored.
+    pub(super) fn layout(&self) -> &ChunkLayout {
+        &self.layout
     }
 
     /// Bytes of the chunk at `offset` in the file; none where there is no chunk.
@@ -176,7 +179,7 @@ impl<'d> Chunks<'d> {
             return Ok(None);
         };
         // Deflate makes nothing longer by more than a thousandth and some bytes.
-        let most = self.bytes() + self.bytes() / 8 + 1024;
+        let most = self.layout.bytes() + self.layout.bytes() / 8 + 1024;
         let size = usize::try_from(size).ok().filter(|&size| size <= most);
         let mut bytes = vec![0; size.ok_or("a chunk has more bytes than it can have")?];
         let mut skipped = 0;
@@ -203,25 +206,10 @@ impl<'d> Chunks<'d> {
 
     /// The values of that chunk as bytes, also those beyond the dataset's edges.
     fn values(&self, offset: &[usize]) -> hdf5::Result<Option<Vec<u8>>> {
-        let Some(mut bytes) = self.stored(offset)? else {
+        let Some(bytes) = self.stored(offset)? else {
             return Ok(None);
         };
-        let length = self.bytes();
-        if self.filters.contains(&DEFLATE) {
-            let mut out = vec![0; length];
-            match decompress_slice(&mut out, &bytes, InflateConfig::default()) {
-                (whole, ReturnCode::Ok) if whole.len() == length => {}
-                _ => return Err("a chunk does not inflate to its own size".into()),
-            }
-            bytes = out;
-        }
-        if bytes.len() != length {
-            return Err("a chunk has not its own size".into());
-        }
-        if self.filters.contains(&SHUFFLE) && self.element > 1 {
-            bytes = unshuffled(&bytes, self.element);
-        }
-        Ok(Some(bytes))
+        Ok(Some(self.layout.decoded(bytes)?))
     }
 
     /// The values of a hyperslab, row by row; those of chunks that are not there have the fill
@@ -230,14 +218,15 @@ impl<'d> Chunks<'d> {
         let picked: Option<Vec<Picked>> = slab.iter().map(Picked::of).collect();
         let picked = picked.filter(|picked| {
             let inside = |(p, &end): (&Picked, &usize)| p.count == 0 || p.index(p.count - 1) < end;
-            picked.len() == self.shape.len() && picked.iter().zip(&self.shape).all(inside)
+            let shape = &self.layout.shape;
+            picked.len() == shape.len() && picked.iter().zip(shape).all(inside)
         });
         let picked = picked.ok_or("a part of a dataset that is not there")?;
         let fill = self.dataset.create_plist()?.get_fill_value_as::<T>()?;
         let mut out = filled(&picked, fill.unwrap_or_default())?;
         let parts: Vec<_> = picked
             .iter()
-            .zip(&self.chunk)
+            .zip(&self.layout.chunk)
             .map(|(p, &c)| p.by_chunk(c))
             .collect();
         let mut place = vec![0; parts.len()];
@@ -255,7 +244,7 @@ impl<'d> Chunks<'d> {
                 let numbers: Vec<_> = here.iter().map(|(_, numbers)| numbers.clone()).collect();
                 let picker = Picker {
                     picked: &picked,
-                    chunk: &self.chunk,
+                    chunk: &self.layout.chunk,
                     offset,
                     numbers,
                 };
@@ -327,18 +316,6 @@ impl Picker<'_> {
             *place = T::of(value);
         }
     }
-}
-
-/// The inverse of HDF5's shuffle.
-fn unshuffled(bytes: &[u8], size: usize) -> Vec<u8> {
-    let count = bytes.len() / size;
-    let mut out = vec![0; bytes.len()];
-    for (byte, plane) in bytes.chunks_exact(count).enumerate() {
-        for (value, &from) in out.chunks_exact_mut(size).zip(plane) {
-            value[byte] = from;
-        }
-    }
-    out
 }
 
 /// The values of a hyperslab of a dataset, row by row.

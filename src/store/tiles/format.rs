@@ -17,7 +17,8 @@ use super::record::{Digest, Record, digest};
 use crate::sweep::plan::pieces::Piece;
 
 const MAGIC: [u8; 16] = *b"slipmap tiles 1\n";
-const HEAD: usize = MAGIC.len() + size_of::<Digest>() + 8;
+/// Bytes before the entries.
+pub(super) const HEAD: usize = MAGIC.len() + size_of::<Digest>() + 8;
 const ENTRY: usize = 24 + size_of::<Digest>();
 
 /// A record of a tile file.
@@ -83,6 +84,14 @@ pub fn entries(records: &[Record]) -> Vec<Entry> {
         }
     };
     records.iter().map(entry).collect()
+}
+
+/// Bytes before the records, from the first [`HEAD`] ones; none where they tell none.
+pub(super) fn length_of_head(head: &[u8]) -> Option<usize> {
+    let head = head.get(..HEAD)?;
+    let count = usize::try_from(number(head, HEAD - 8)).ok()?;
+    let entries = count.checked_mul(ENTRY)?;
+    entries.checked_add(HEAD + size_of::<Digest>())
 }
 
 /// The index of a file's bytes. The records' own checksums are not looked at, see [`is_sound`].

@@ -7,6 +7,7 @@
 
 pub mod folder;
 pub mod format;
+pub mod growing;
 pub mod manifest;
 pub mod reader;
 pub mod record;
@@ -14,6 +15,7 @@ pub mod shards;
 pub mod survey;
 
 pub use folder::TileFolder;
+pub use growing::GrowingMap;
 pub use manifest::Manifest;
 pub use reader::{Damaged, TileReader};
 pub use record::{Record, RecordEncoder};

@@ -1,5 +1,6 @@
 //! The tile files of one folder, checked and read; nothing is changed.
 
+use std::collections::HashSet;
 use std::fs::File;
 use std::io::{ErrorKind, Read, Seek, SeekFrom};
 use std::path::{Path, PathBuf};
@@ -86,6 +87,27 @@ impl Checked {
     }
 }
 
+/// What the head of a tile file says that it holds; nothing where that is not sound.
+fn head(path: &Path, layout: &Digest) -> std::io::Result<Vec<Entry>> {
+    let found = path.metadata()?;
+    if !found.is_file() {
+        return Ok(Vec::new());
+    }
+    let mut file = File::open(path)?;
+    let mut head = vec![0; format::HEAD.min(found.len() as usize)];
+    file.read_exact(&mut head)?;
+    let length = format::length_of_head(&head).filter(|&length| length as u64 <= found.len());
+    let Some(length) = length else {
+        return Ok(Vec::new());
+    };
+    let begun = head.len();
+    head.resize(length, 0);
+    file.read_exact(&mut head[begun..])?;
+    let entries = format::index(&head, layout).unwrap_or_default();
+    let whole = |entry: &Entry| entry.at.end as u64 <= found.len();
+    Ok(entries.into_iter().filter(whole).collect())
+}
+
 /// Whether a tile file belongs to what has `layout`; none where it does not say.
 pub(super) fn is_of(path: &Path, layout: &Digest) -> Result<Option<bool>, StoreError> {
     match read_regular(path, MOST_BYTES) {
@@ -141,6 +163,45 @@ impl TileReader {
             }
         }
         Ok((reader, damaged))
+    }
+
+    /// Reads the heads of the files alone: whether a piece is as it was written is seen when it is
+    /// read. What has no sound head is left out.
+    ///
+    /// # Errors
+    /// When the system refuses.
+    pub(super) fn of_heads(
+        path: &Path,
+        layout: Digest,
+        pieces: Pieces,
+    ) -> Result<Self, StoreError> {
+        let mut reader = Self {
+            path: path.to_owned(),
+            layout,
+            pieces,
+            files: Vec::new(),
+            index: vec![None; pieces.total() as usize],
+            open: None,
+        };
+        reader.add_new()?;
+        Ok(reader)
+    }
+
+    /// Adds the files that were not there before, by their heads.
+    pub(super) fn add_new(&mut self) -> Result<(), StoreError> {
+        let known: HashSet<PathBuf> = self.files.iter().map(|file| file.path.clone()).collect();
+        let found = listed(&self.path, is_tile_file)?;
+        for file in found.into_iter().filter(|file| !known.contains(file)) {
+            let entries = match head(&file, &self.layout) {
+                Ok(entries) => entries,
+                Err(error) if error.kind() == ErrorKind::NotFound => continue,
+                Err(error) => return Err(StoreError::io("read", &file)(error)),
+            };
+            let there = |entry: &Entry| self.pieces.place(entry.piece).is_some();
+            let entries = entries.into_iter().filter(there).collect();
+            self.add(file, entries);
+        }
+        Ok(())
     }
 
     /// Adds the sound pieces of a file. What is wrong with it, if something is.

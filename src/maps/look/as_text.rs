@@ -1,0 +1,253 @@
+//! A cell's setting as text that gives the same setting when it is read: for requests, files and
+//! the command line.
+
+use crate::model::Control;
+use crate::model::table::TableColumn;
+use crate::sweep::input::command::command_line;
+use crate::sweep::input::law_kind::LawKind;
+use crate::sweep::input::parameter::{Group, Parameter};
+use crate::sweep::input::setting::Setting;
+use crate::sweep::input::simulation::Simulation;
+use crate::sweep::input::units::Units;
+use crate::sweep::{Plan, SweepSpec};
+
+/// What can be asked at a cell, as text; none where it means nothing there.
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
+pub struct CellTexts {
+    /// A point of continuous sliding.
+    pub point: Option<String>,
+    /// A problem of the critical velocity.
+    pub vc: Option<String>,
+    /// A case file: the motion from the cell's start.
+    pub motion: Option<String>,
+    /// The command line of the point or, where there is none, of the critical velocity; none for a
+    /// law that flags cannot say.
+    pub command: Option<String>,
+}
+
+impl CellTexts {
+    /// Of the cell at `index`.
+    #[must_use]
+    pub fn of(plan: &Plan, index: &[usize]) -> Self {
+        let spec = &plan.spec;
+        let setting = plan.setting(index);
+        if spec.limit {
+            let asked = "vc --protocol=limit";
+            return Self {
+                command: command_line(asked, &setting, Parameter::of_limit),
+                ..Self::default()
+            };
+        }
+        let has = |parameter| !setting.get(parameter).is_nan();
+        let uncontrolled = setting.control() == Control::default();
+        let delay = has(Parameter::Tau);
+        let slides = setting.law().is_none() || has(Parameter::V0);
+        let law = setting.law().is_some();
+        let point = (slides && delay).then(|| text(spec, &setting, |_| true));
+        let no_v0 = |parameter| parameter != Parameter::V0;
+        let vc = (law && (delay || uncontrolled)).then(|| text(spec, &setting, no_v0));
+        let moves = law && slides && (delay || uncontrolled);
+        let of_point = |parameter| of_point(&setting, parameter);
+        let command = match (&point, &vc) {
+            (Some(_), _) => command_line("point", &setting, of_point),
+            (None, Some(_)) => command_line("vc", &setting, |p| no_v0(p) && of_point(p)),
+            (None, None) => None,
+        };
+        Self {
+            point,
+            vc,
+            motion: moves.then(|| case(spec, &setting)),
+            command,
+        }
+    }
+}
+
+/// Whether a point of this setting has the parameter.
+fn of_point(setting: &Setting, parameter: Parameter) -> bool {
+    !parameter.of_start() && setting.uses(parameter)
+}
+
+/// A number that is read as the same.
+fn number(value: f64) -> String {
+    format!("{value:?}")
+}
+
+/// A table of parameters.
+fn table(name: &str, setting: &Setting, wanted: impl Fn(Parameter) -> bool) -> String {
+    let mut text = format!("\n[{name}]\n");
+    for parameter in Parameter::ALL.into_iter().filter(|&p| wanted(p)) {
+        let value = number(setting.get(parameter));
+        text += &format!("{} = {value}\n", parameter.name());
+    }
+    text
+}
+
+/// The tables `[fixed]`, `[friction]` and `[units]` of a setting.
+fn text(spec: &SweepSpec, setting: &Setting, wanted: impl Fn(Parameter) -> bool) -> String {
+    let wanted = |parameter| wanted(parameter) && of_point(setting, parameter);
+    let fixed = |p: Parameter| wanted(p) && p.group() != Group::Law;
+    let mut text = table("fixed", setting, fixed);
+    if let Some(law) = setting.law() {
+        text += &table("friction", setting, |p| {
+            wanted(p) && p.group() == Group::Law
+        });
+        text += &format!("law = \"{}\"\n", law.name());
+        if let LawKind::Table(points) = law {
+            for (column, values) in [
+                (TableColumn::Speeds, points.speeds()),
+                (TableColumn::MuK, points.mu_k()),
+            ] {
+                let values: Vec<String> = values.iter().map(|&value| number(value)).collect();
+                text += &format!("{} = [{}]\n", column.name(), values.join(", "));
+            }
+        }
+    }
+    text += &units(&spec.units);
+    text.trim_start().to_owned()
+}
+
+fn units(units: &Units) -> String {
+    match &units.force_length_time {
+        None => String::new(),
+        Some(names) => {
+            let keys = ["force", "length", "time"].iter().zip(names);
+            let lines: String = keys
+                .map(|(key, name)| format!("{key} = \"{name}\"\n"))
+                .collect();
+            format!("\n[units]\n{lines}")
+        }
+    }
+}
+
+/// The motion of a setting from its start.
+fn case(spec: &SweepSpec, setting: &Setting) -> String {
+    let mut said = String::new();
+    let Simulation {
+        horizon,
+        tolerance,
+        steps,
+        ..
+    } = &spec.simulation;
+    let usual = Simulation::default();
+    if let Some(horizon) = horizon {
+        said += &format!("horizon = {}\n", number(*horizon));
+    }
+    if *tolerance != usual.tolerance {
+        said += &format!("tolerance = {}\n", number(*tolerance));
+    }
+    if *steps != usual.steps {
+        said += &format!("steps = {steps}\n");
+    }
+    if !said.is_empty() {
+        said += "\n";
+    }
+    said += &text(spec, setting, |_| true);
+    let begins = |p: Parameter| p.of_start() && !setting.get(p).is_nan();
+    if Parameter::ALL.into_iter().any(begins) {
+        said += &table("start", setting, begins);
+    }
+    said
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::sweep::CaseSpec;
+    use crate::sweep::input::point_file::{PointOf, PointSpec};
+
+    /// Settings are equal, also where both have no value.
+    #[track_caller]
+    fn assert_same(found: &Setting, expected: &Setting, but: &[Parameter]) {
+        assert_eq!(found.law(), expected.law());
+        for parameter in Parameter::ALL.into_iter().filter(|p| !but.contains(p)) {
+            let bits = |setting: &Setting| setting.get(parameter).to_bits();
+            assert_eq!(bits(found), bits(expected), "{}", parameter.name());
+        }
+    }
+
+    const START: [Parameter; 3] = [Parameter::XDot0, Parameter::A0, Parameter::SwitchOnPhase];
+
+    #[test]
+    fn texts_are_read_as_the_setting_that_they_are_of() {
+        let ranges = "tau = { from = 0.03, to = 3.0, points = 41, spacing = \"log\" }\n";
+        let units = "[units]\nforce = \"N\"\nlength = \"mm\"\ntime = \"s\"\n";
+        let table = "[friction]\nlaw = \"table\"\nmu_s = 0.7\nspeeds = [0.0, 0.1, 0.30000000000000004]\n\
+            mu_k = [0.6, 0.5, 0.1]\n";
+        for (sweep, told) in [
+            (format!("[axes]\nmu_prime = [-0.1, -0.30000000000000004]\n{ranges}"), [true, false, false]),
+            (
+                format!(
+                    "[axes]\nmu_prime_rest = [-0.5, -2.0]\nalpha_n = {{ from = -12.0, to = -0.2, \
+                     points = 7 }}\n{ranges}[friction]\nlaw = \"weakening\"\nmu0 = 0.5\n[fixed]\n\
+                     v0 = 0.2\nmass = 1.7e-9\n{units}"
+                ),
+                [true, true, true],
+            ),
+            (
+                format!("[axes]\nv0 = [0.1, 0.2]\n{ranges}[fixed]\nalpha_v = -0.1\n{table}"),
+                [true, true, true],
+            ),
+            (
+                format!(
+                    "fields = [\"vc\"]\n[axes]\nalpha_v = [-0.3, -0.1]\n{ranges}\
+                     [friction]\nlaw = \"stribeck\"\nmu0 = 0.5\nv_s = 0.1\nmu_s = 0.9\n"
+                ),
+                [false, true, false],
+            ),
+            (
+                "fields = [\"outcome\"]\n[axes]\na0 = [-0.6, 0.1]\nx_dot0 = [0.5, 1.5]\n[friction]\n\
+                 law = \"coulomb\"\nmu0 = 0.5\n[fixed]\nv0 = 0.118\nalpha_n = -7.0\ntau = 1.0\n\
+                 [simulation]\nhorizon = 900.5\ntolerance = 1e-9\nsteps = 12345\n"
+                    .to_owned(),
+                [true, true, true],
+            ),
+        ] {
+            let plan = Plan::new(sweep.parse().unwrap()).unwrap();
+            for number in [0, plan.cells() / 2 + 1, plan.cells() - 1] {
+                let index = crate::sweep::plan::tile::index_of(number, plan.shape());
+                let (texts, setting) = (CellTexts::of(&plan, &index), plan.setting(&index));
+                let found = [&texts.point, &texts.vc, &texts.motion].map(Option::is_some);
+                assert_eq!(found, told, "{sweep}");
+                if let Some(text) = &texts.point {
+                    let read = PointSpec::read(text, PointOf::Sliding).unwrap();
+                    assert_same(&read.setting, &setting, &START);
+                    assert_eq!(read.units, plan.spec.units);
+                }
+                if let Some(text) = &texts.vc {
+                    let read = PointSpec::read(text, PointOf::CriticalVelocity).unwrap();
+                    let but = [&START[..], &[Parameter::V0]].concat();
+                    assert_same(&read.setting, &setting, &but);
+                }
+                if let Some(text) = &texts.motion {
+                    let read: CaseSpec = text.parse().unwrap();
+                    assert_same(&read.setting, &setting, &[]);
+                    let motion = plan.spec.simulation.case(&setting, 0.0).unwrap();
+                    assert_eq!(Some(read.case), motion);
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn commands_say_it_by_flags_where_they_can() {
+        let plan = |text: &str| Plan::new(text.parse().unwrap()).unwrap();
+        let sliding =
+            plan("[axes]\nmu_prime = [-0.3]\ntau = [0.1, 4.15]\n[fixed]\nalpha_v = -0.33\n");
+        let command = CellTexts::of(&sliding, &[0, 1]).command.unwrap();
+        let parts = [
+            "slipmap point",
+            "--mu-prime=-0.3",
+            "--alpha-v=-0.33",
+            "--tau=4.15",
+        ];
+        assert!(parts.iter().all(|part| command.contains(part)), "{command}");
+        let limit = plan(
+            "protocol = \"limit\"\nfields = [\"vc_over_vtilde\"]\n[axes]\ngamma = [0.1, 0.2]\nmu_ratio = [0.5]\n",
+        );
+        let command = CellTexts::of(&limit, &[1, 0]).command.unwrap();
+        assert_eq!(
+            command,
+            "slipmap vc --protocol=limit --gamma=0.2 --mu-ratio=0.5"
+        );
+    }
+}

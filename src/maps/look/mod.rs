@@ -1,0 +1,249 @@
+//! A map that is looked at: windows on it are read little by little, on threads of their own, and
+//! what was read is kept as long as there is room.
+//!
+//! ```text
+//! window asked → [pixels] the cells under each → [view] chunks in turn → [source] stored bytes
+//!   → [cells] runs, or one by one → [shelf] kept → [canvas] nearest cell, several values → shot
+//! ```
+//!
+//! Nothing is averaged: a pixel shows one cell, and says so where it hides others of another value.
+
+pub mod as_text;
+mod canvas;
+mod cells;
+mod pixels;
+mod reading;
+mod shelf;
+mod source;
+mod view;
+mod window;
+
+use std::collections::VecDeque;
+use std::path::Path;
+use std::sync::atomic::{AtomicU64, Ordering};
+use std::sync::{Arc, Condvar, Mutex, MutexGuard};
+use std::time::{Duration, Instant};
+
+pub use canvas::{NOT_COMPUTED, SEVERAL, UNREAD};
+pub use pixels::{Scale, Stretch};
+pub use source::Facts;
+pub use window::{Asked, Numbers, Shot, Shown};
+
+use reading::Reading;
+use source::{Cells, Source, Still};
+use view::{View, locked};
+
+use crate::store::StoreError;
+use crate::store::curve_reader::MapCurve;
+
+/// Windows that are read at a time, the last ones asked for.
+const MOST_VIEWS: usize = 2;
+/// Threads that read.
+const MOST_THREADS: usize = 4;
+
+/// A map that is looked at.
+#[derive(Debug)]
+pub struct Look {
+    facts: Arc<Facts>,
+    reading: Arc<Reading>,
+    desk: Arc<Desk>,
+    numbers: AtomicU64,
+}
+
+/// What is being read, the newest first.
+#[derive(Debug, Default)]
+struct Desk {
+    views: Mutex<VecDeque<Arc<View>>>,
+    /// There is something to read.
+    work: Condvar,
+    /// Something was read.
+    news: Condvar,
+}
+
+/// Whether a map is still the one that was opened.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct OtherMap;
+
+impl Look {
+    /// Opens the map at `path`, or the tiles beside it.
+    ///
+    /// # Errors
+    /// When there is none, or it is damaged.
+    pub fn open(path: &Path) -> Result<Self, StoreError> {
+        let (source, facts) = Source::open(path)?;
+        let facts = Arc::new(facts);
+        let reading = Arc::new(Reading::new(source, Arc::clone(&facts)));
+        let desk = Arc::new(Desk::default());
+        let threads = std::thread::available_parallelism().map_or(1, std::num::NonZero::get);
+        for _ in 0..threads.min(MOST_THREADS) {
+            let (reading, desk) = (Arc::clone(&reading), Arc::clone(&desk));
+            std::thread::spawn(move || desk.work(&reading));
+        }
+        Ok(Self {
+            facts,
+            reading,
+            desk,
+            numbers: AtomicU64::new(1),
+        })
+    }
+
+    /// What stays as it is.
+    #[must_use]
+    pub fn facts(&self) -> &Facts {
+        &self.facts
+    }
+
+    /// Takes in what was computed since. An error where another map, or none, is there by now: it
+    /// has to be opened again.
+    ///
+    /// # Errors
+    /// See above.
+    pub fn refresh(&self) -> Result<(), OtherMap> {
+        let mut source = locked(&self.reading.source);
+        let still = source.look();
+        self.reading
+            .version
+            .store(source.version, Ordering::Relaxed);
+        drop(source);
+        match still {
+            Still::Same => Ok(()),
+            Still::Grown => {
+                self.desk.views().clear();
+                Ok(())
+            }
+            Still::Gone => Err(OtherMap),
+        }
+    }
+
+    /// Changes when more cells are there; and how many there are.
+    #[must_use]
+    pub fn version(&self) -> (u64, u64) {
+        let source = locked(&self.reading.source);
+        (source.version, source.cells_done)
+    }
+
+    /// What is told of the map itself, by its file or its tiles.
+    pub fn told<T>(
+        &self,
+        of_file: impl FnOnce(&crate::store::MapFile) -> T,
+        of_tiles: impl FnOnce(&crate::store::tiles::GrowingMap) -> T,
+    ) -> T {
+        match &locked(&self.reading.source).cells {
+            Cells::File(columns) => of_file(columns.map()),
+            Cells::Growing(growing) => of_tiles(growing),
+        }
+    }
+
+    /// A window, as far as it was read within `patience`.
+    ///
+    /// # Errors
+    /// When there is no such window, in words.
+    pub fn window(&self, asked: &Asked, patience: Duration) -> Result<Shot, String> {
+        let until = Instant::now() + patience;
+        let view = self.view(asked)?;
+        let mut views = self.desk.views();
+        while !view.is_complete() {
+            let left = until.saturating_duration_since(Instant::now());
+            if left.is_zero() {
+                break;
+            }
+            let waited = self.desk.news.wait_timeout(views, left);
+            views = waited.unwrap_or_else(std::sync::PoisonError::into_inner).0;
+        }
+        drop(views);
+        Ok(view.shot(&self.facts))
+    }
+
+    /// The view of a window: the one that is being read already, or a new one.
+    fn view(&self, asked: &Asked) -> Result<Arc<View>, String> {
+        let version = self.reading.version.load(Ordering::Relaxed);
+        let mut views = self.desk.views();
+        let known = |view: &Arc<View>| view.asked == *asked && view.version == version;
+        if let Some(place) = views.iter().position(known) {
+            let view = views.remove(place).ok_or("it has gone")?;
+            views.push_front(Arc::clone(&view));
+            return Ok(view);
+        }
+        drop(views);
+        let number = self.numbers.fetch_add(1, Ordering::Relaxed);
+        let view = Arc::new(View::new(asked.clone(), &self.facts, version, number)?);
+        self.reading.show_kept(&view);
+        let mut views = self.desk.views();
+        views.push_front(Arc::clone(&view));
+        views.truncate(MOST_VIEWS);
+        drop(views);
+        self.desk.work.notify_all();
+        Ok(view)
+    }
+
+    /// The bits of a cell of a column; the fill value where it is not computed.
+    ///
+    /// # Errors
+    /// When it cannot be read, in words.
+    pub fn cell(&self, column: usize, index: &[usize]) -> Result<u64, String> {
+        self.reading.cell(column, index)
+    }
+
+    /// The curves of the plane at `index`.
+    ///
+    /// # Errors
+    /// When the map is damaged.
+    pub fn curves(&self, index: &[usize]) -> Result<Vec<MapCurve>, StoreError> {
+        match &mut locked(&self.reading.source).cells {
+            Cells::Growing(growing) => growing.curves(index),
+            Cells::File(columns) => {
+                let map = columns.map();
+                let Some((p, tau)) = map.boundary_plane() else {
+                    return Ok(Vec::new());
+                };
+                let outer = map.axes().iter().zip(index).enumerate();
+                let outer = outer.filter(|(axis, _)| *axis != p && *axis != tau);
+                let outer: Vec<f64> = outer.map(|(_, (axis, &i))| axis.values[i]).collect();
+                map.curves_where(|of| of == outer)
+            }
+        }
+    }
+
+    /// The axes of the planes of curves, parameter and delay; none where there are no curves.
+    #[must_use]
+    pub fn curves_plane(&self) -> Option<(usize, usize)> {
+        self.told(crate::store::MapFile::boundary_plane, |growing| {
+            growing.plan().boundary_plane
+        })
+    }
+}
+
+impl Desk {
+    fn views(&self) -> MutexGuard<'_, VecDeque<Arc<View>>> {
+        locked(&self.views)
+    }
+
+    /// One thread's work: the next chunk of the newest window that has any left.
+    fn work(&self, reading: &Reading) {
+        loop {
+            let mut views = self.views();
+            let next = loop {
+                let mut all = views.iter();
+                let found = all.find_map(|view| {
+                    let job = locked(&view.jobs).pop_front()?;
+                    Some((Arc::clone(view), job))
+                });
+                match found {
+                    Some(found) => break found,
+                    None => {
+                        let woken = self.work.wait(views);
+                        views = woken.unwrap_or_else(std::sync::PoisonError::into_inner);
+                    }
+                }
+            };
+            drop(views);
+            let (view, job) = next;
+            view.finish_one(reading.read(&view, job));
+            if view.is_complete() {
+                // With the lock, so that nobody misses it between looking and waiting.
+                drop(self.views());
+                self.news.notify_all();
+            }
+        }
+    }
+}

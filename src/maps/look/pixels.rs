@@ -1,0 +1,376 @@
+//! Which cells the pixels along an axis show.
+
+use std::ops::Range;
+
+/// How pixels are spread over an axis.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Scale {
+    /// Evenly.
+    #[default]
+    Linear,
+    /// Evenly in the logarithm.
+    Log,
+}
+
+/// A stretch of an axis under pixels.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Stretch {
+    /// The value at the outer edge of the first pixel; none: the axis' first value.
+    pub from: Option<f64>,
+    /// The value at the outer edge of the last pixel; none: the axis' last value.
+    pub to: Option<f64>,
+    /// The number of pixels.
+    pub pixels: usize,
+    /// How they are spread.
+    pub scale: Scale,
+}
+
+/// Pixels along an axis, in the order of the cells.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(super) struct Pixels {
+    /// The cell nearest to the centre of each, not falling.
+    pub nearest: Vec<u32>,
+    /// The cells whose values lie in each, one stretch behind the other.
+    pub inside: Vec<Range<u32>>,
+    /// The first pixel that was asked for comes last.
+    pub flipped: bool,
+}
+
+/// A coordinate that grows with the value, in which pixels are even.
+#[derive(Debug, Clone, Copy)]
+enum Coordinate {
+    Linear,
+    /// The logarithm of positive values.
+    Above,
+    /// That of negative ones.
+    Below,
+}
+
+impl Coordinate {
+    fn of(self, value: f64) -> f64 {
+        match self {
+            Self::Linear => value,
+            Self::Above => value.max(0.0).ln(),
+            Self::Below => -(-value).max(0.0).ln(),
+        }
+    }
+}
+
+impl Stretch {
+    /// The ends, in the coordinate of the pixels.
+    fn ends(&self, values: &[f64]) -> Result<(Coordinate, f64, f64), String> {
+        let (first, last) = (values[0], values[values.len() - 1]);
+        let (from, to) = (self.from.unwrap_or(first), self.to.unwrap_or(last));
+        if !(from.is_finite() && to.is_finite()) {
+            return Err("the ends of a window are finite numbers".into());
+        }
+        if self.scale == Scale::Linear {
+            return Ok((Coordinate::Linear, from, to));
+        }
+        let above = self.from.or(self.to).unwrap_or(first.max(last)) > 0.0;
+        let side = |value: &&f64| **value != 0.0 && (**value > 0.0) == above;
+        let mut there = values.iter().filter(side);
+        let nearest = [there.next(), there.next_back()];
+        let end = |given: Option<f64>, whole: f64, replaced: Option<&f64>| match given {
+            Some(value) => Some(value),
+            None if side(&&whole) => Some(whole),
+            None => replaced.copied(),
+        };
+        let from = end(self.from, first, nearest[0]);
+        let to = end(self.to, last, nearest[1].or(nearest[0]));
+        let (Some(from), Some(to)) = (from, to) else {
+            return Err("a logarithmic axis needs values on one side of 0".into());
+        };
+        if !side(&&from) || !side(&&to) {
+            return Err("a logarithmic window lies on one side of 0".into());
+        }
+        let coordinate = match above {
+            true => Coordinate::Above,
+            false => Coordinate::Below,
+        };
+        Ok((coordinate, coordinate.of(from), coordinate.of(to)))
+    }
+}
+
+/// The values of an axis in rising order, whichever way they run.
+struct Rising<'a> {
+    values: &'a [f64],
+    falls: bool,
+    coordinate: Coordinate,
+}
+
+impl Rising<'_> {
+    fn at(&self, place: usize) -> f64 {
+        let index = match self.falls {
+            true => self.values.len() - 1 - place,
+            false => place,
+        };
+        self.coordinate.of(self.values[index])
+    }
+
+    /// How many values come before the first that is not `below`.
+    fn count(&self, below: impl Fn(f64) -> bool) -> usize {
+        let (mut low, mut high) = (0, self.values.len());
+        while low < high {
+            let middle = low.midpoint(high);
+            match below(self.at(middle)) {
+                true => low = middle + 1,
+                false => high = middle,
+            }
+        }
+        low
+    }
+
+    fn nearest(&self, to: f64) -> usize {
+        let above = self.count(|value| value < to);
+        if above == 0 {
+            return 0;
+        }
+        let last = self.values.len() - 1;
+        if above > last || to - self.at(above - 1) <= self.at(above) - to {
+            return above - 1;
+        }
+        above
+    }
+
+    /// The index of a place.
+    fn index(&self, place: usize) -> u32 {
+        match self.falls {
+            true => (self.values.len() - 1 - place) as u32,
+            false => place as u32,
+        }
+    }
+
+    /// The indices of a stretch of places.
+    fn indices(&self, places: Range<usize>) -> Range<u32> {
+        let count = self.values.len();
+        match self.falls {
+            true => (count - places.end) as u32..(count - places.start) as u32,
+            false => places.start as u32..places.end as u32,
+        }
+    }
+}
+
+impl Pixels {
+    /// The pixels of a stretch of an axis with these values, of which there is one at least.
+    ///
+    /// # Errors
+    /// When there is no such stretch, in words.
+    pub(super) fn along(values: &[f64], stretch: &Stretch) -> Result<Self, String> {
+        let (coordinate, from, to) = stretch.ends(values)?;
+        let rising = Rising {
+            values,
+            falls: values[0] > values[values.len() - 1],
+            coordinate,
+        };
+        let count = stretch.pixels;
+        let at = |part: f64| from + (to - from) * (part / count as f64);
+        // How many values lie before the edge of a pixel, counted the way that pixels run.
+        let rises = from <= to;
+        let before = |edge: usize| match (rises, edge == count) {
+            (true, false) => rising.count(|value| value < at(edge as f64)),
+            (true, true) => rising.count(|value| value <= to),
+            (false, false) => rising.count(|value| value <= at(edge as f64)),
+            (false, true) => rising.count(|value| value < to),
+        };
+        let edges: Vec<usize> = (0..=count).map(before).collect();
+        let place = |pixel| rising.index(rising.nearest(at(pixel as f64 + 0.5)));
+        let mut pixels = Self {
+            nearest: (0..count).map(place).collect(),
+            inside: edges
+                .windows(2)
+                .map(|edge| rising.indices(edge[0].min(edge[1])..edge[0].max(edge[1])))
+                .collect(),
+            flipped: rises == rising.falls,
+        };
+        if pixels.flipped {
+            pixels.nearest.reverse();
+            pixels.inside.reverse();
+        }
+        Ok(pixels)
+    }
+
+    /// One pixel that shows one cell.
+    pub(super) fn one(cell: usize) -> Self {
+        let cell = cell as u32;
+        Self {
+            nearest: vec![cell],
+            inside: vec![cell..cell + 1],
+            flipped: false,
+        }
+    }
+
+    /// The number of pixels.
+    pub(super) fn len(&self) -> usize {
+        self.nearest.len()
+    }
+
+    /// Whether some pixel hides cells.
+    pub(super) fn is_crowded(&self) -> bool {
+        self.inside.iter().any(|inside| inside.len() > 1)
+    }
+
+    /// The pixels whose nearest cells are among these.
+    pub(super) fn showing(&self, cells: &Range<u32>) -> Range<usize> {
+        let from = self.nearest.partition_point(|&cell| cell < cells.start);
+        let to = self.nearest.partition_point(|&cell| cell < cells.end);
+        from..to
+    }
+
+    /// The pixels in which some of these cells may lie.
+    pub(super) fn holding(&self, cells: &Range<u32>) -> Range<usize> {
+        let from = (self.inside).partition_point(|inside| inside.end <= cells.start);
+        let to = (self.inside).partition_point(|inside| inside.start < cells.end);
+        from..to.max(from)
+    }
+
+    /// The pixel asked for as the `number`th.
+    pub(super) fn place(&self, number: usize) -> usize {
+        match self.flipped {
+            true => self.len() - 1 - number,
+            false => number,
+        }
+    }
+
+    /// The chunks of this length that hold a cell of these pixels: that one of them shows, and
+    /// whether that one shows or only hides.
+    pub(super) fn chunks(&self, length: usize, hidden: bool) -> Vec<(usize, bool)> {
+        let mut chunks: Vec<(usize, bool)> = Vec::new();
+        let mut add = |chunk: usize, shown: bool| match chunks.last_mut() {
+            Some((last, was)) if *last == chunk => *was |= shown,
+            _ => chunks.push((chunk, shown)),
+        };
+        for (&nearest, inside) in self.nearest.iter().zip(&self.inside) {
+            let shown = nearest as usize / length;
+            let holds = match hidden && !inside.is_empty() {
+                true => inside.start as usize / length..(inside.end as usize - 1) / length + 1,
+                false => shown..shown + 1,
+            };
+            for chunk in holds {
+                add(chunk, chunk == shown);
+            }
+        }
+        chunks
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn along(values: &[f64], ends: Option<(f64, f64)>, pixels: usize, scale: Scale) -> Pixels {
+        let stretch = Stretch {
+            from: ends.map(|ends| ends.0),
+            to: ends.map(|ends| ends.1),
+            pixels,
+            scale,
+        };
+        Pixels::along(values, &stretch).unwrap()
+    }
+
+    /// By looking at all cells for every pixel.
+    fn by_hand(values: &[f64], (from, to): (f64, f64), pixels: usize, scale: Scale) -> Pixels {
+        let coordinate = |value: f64| match scale {
+            Scale::Linear => value,
+            Scale::Log => value.ln(),
+        };
+        let (a, b) = (coordinate(from), coordinate(to));
+        let (mut nearest, mut inside) = (Vec::new(), Vec::new());
+        for pixel in 0..pixels {
+            let at = |part: f64| a + (b - a) * (part / pixels as f64);
+            let centre = at(pixel as f64 + 0.5);
+            let distance = |i: &usize| (coordinate(values[*i]) - centre).abs();
+            let found = (0..values.len()).min_by(|i, j| distance(i).total_cmp(&distance(j)));
+            nearest.push(found.unwrap() as u32);
+            let (low, high) = (at(pixel as f64), at(pixel as f64 + 1.0));
+            let last = pixel + 1 == pixels;
+            let within = |i: &u32| {
+                let u = coordinate(values[*i as usize]);
+                match a <= b {
+                    true => u >= low && (u < high || last && u <= high),
+                    false => u <= low && (u > high || last && u >= high),
+                }
+            };
+            let cells: Vec<u32> = (0..values.len() as u32).filter(within).collect();
+            inside.push(cells);
+        }
+        let flipped = (a <= b) == (values[0] > values[values.len() - 1]);
+        if flipped {
+            nearest.reverse();
+            inside.reverse();
+        }
+        let mut end = inside.iter().flatten().next().copied().unwrap_or(0);
+        let range = |cells: Vec<u32>| {
+            let start = cells.first().copied().unwrap_or(end);
+            end = cells.last().map_or(end, |last| last + 1);
+            start..end
+        };
+        Pixels {
+            nearest,
+            inside: inside.into_iter().map(range).collect(),
+            flipped,
+        }
+    }
+
+    #[test]
+    fn every_pixel_is_as_by_hand() {
+        let even: Vec<f64> = (0..97).map(|i| 0.3 + f64::from(i) / 96.0).collect();
+        let uneven = [0.01, 0.02, 0.5, 0.51, 0.52, 3.0, 3.5, 9.0, 40.0];
+        let falling: Vec<f64> = uneven.iter().rev().copied().collect();
+        for values in [&even[..], &uneven, &falling] {
+            for scale in [Scale::Linear, Scale::Log] {
+                for ends in [
+                    (0.011, 8.3),
+                    (9.0, 0.02),
+                    (0.4, 0.55),
+                    (3.1, 3.1001),
+                    (0.3, 100.0),
+                ] {
+                    for pixels in [1, 7, 40, 200] {
+                        let found = along(values, Some(ends), pixels, scale);
+                        let expected = by_hand(values, ends, pixels, scale);
+                        assert_eq!(found.nearest, expected.nearest, "{ends:?} {pixels}");
+                        let lists = |p: &Pixels| -> Vec<Vec<u32>> {
+                            p.inside.iter().map(|r| r.clone().collect()).collect()
+                        };
+                        assert_eq!(lists(&found), lists(&expected), "{ends:?} {pixels}");
+                        assert_eq!(found.flipped, expected.flipped);
+                    }
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn as_many_pixels_as_cells_show_one_each() {
+        let values: Vec<f64> = (0..1000).map(|i| f64::from(i) * 0.1).collect();
+        let all = along(&values, None, 1000, Scale::Linear);
+        assert!(all.nearest.iter().copied().eq(0..1000));
+        assert!(all.inside.iter().zip(0..).all(|(r, i)| *r == (i..i + 1)));
+    }
+
+    #[test]
+    fn logarithms_stay_on_one_side_of_zero() {
+        let values = [-10.0, -1.0, 0.0, 1.0, 10.0, 100.0];
+        let upper = along(&values, None, 20, Scale::Log);
+        assert_eq!((upper.nearest[0], upper.nearest[19]), (3, 5));
+        let lower = along(&values, Some((-10.0, -1.0)), 4, Scale::Log);
+        assert_eq!(lower.nearest, [0, 0, 1, 1]);
+        for (from, to) in [
+            (-1.0, 1.0),
+            (0.0, 1.0),
+            (f64::NAN, 1.0),
+            (1.0, f64::INFINITY),
+        ] {
+            let stretch = Stretch {
+                from: Some(from),
+                to: Some(to),
+                pixels: 5,
+                scale: Scale::Log,
+            };
+            assert!(Pixels::along(&values, &stretch).is_err());
+        }
+        let one = along(&[3.0], None, 3, Scale::Linear);
+        assert_eq!(one.nearest, [0, 0, 0]);
+    }
+}

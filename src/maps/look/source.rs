@@ -1,0 +1,248 @@
+//! Where the cells of a map that is looked at come from: its file or, where there is none that is
+//! complete, the tiles of its run.
+
+use std::path::{Path, PathBuf};
+use std::time::{Duration, Instant, SystemTime};
+
+use crate::store::chunk_layout::ChunkLayout;
+use crate::store::columns::FileColumns;
+use crate::store::map_file::MapAxis;
+use crate::store::schema::root;
+use crate::store::tiles::GrowingMap;
+use crate::store::{MapFile, StoreError};
+use crate::sweep::engine::{FEW_FILL, N_UNSTABLE_FILL, STATUS_FILL};
+use crate::sweep::input::field::Storage;
+use crate::sweep::{Field, Plan, SweepSpec};
+
+/// How often it is looked whether a map is still what it was.
+const BETWEEN_LOOKS: Duration = Duration::from_millis(500);
+/// How often it is looked whether more of it is there.
+const BETWEEN_REFRESHES: Duration = Duration::from_secs(2);
+
+/// What stays as it is while a map is looked at.
+#[derive(Debug, Clone)]
+pub struct Facts {
+    /// Its axes.
+    pub axes: Vec<MapAxis>,
+    /// Its fields.
+    pub fields: Vec<Field>,
+    /// The sweep that it is of; none where its text is not understood, or is another's.
+    pub plan: Option<Plan>,
+    /// How its columns are stored: the fields, then the status.
+    pub layouts: Vec<ChunkLayout>,
+}
+
+impl Facts {
+    /// Length of each axis.
+    #[must_use]
+    pub fn shape(&self) -> Vec<usize> {
+        self.axes.iter().map(|axis| axis.values.len()).collect()
+    }
+
+    /// Number of cells.
+    #[must_use]
+    pub fn cells(&self) -> u64 {
+        self.axes
+            .iter()
+            .map(|axis| axis.values.len() as u64)
+            .product()
+    }
+
+    /// The column of a field.
+    #[must_use]
+    pub fn column(&self, field: Field) -> Option<usize> {
+        self.fields.iter().position(|held| *held == field)
+    }
+
+    /// The column of the status.
+    #[must_use]
+    pub fn status(&self) -> usize {
+        self.fields.len()
+    }
+
+    /// The bits of cells of a column that are not computed.
+    #[must_use]
+    pub fn fill(&self, column: usize) -> u64 {
+        match self.fields.get(column).map(|field| field.storage()) {
+            Some(Storage::Count) => N_UNSTABLE_FILL.into(),
+            Some(Storage::Kind | Storage::Few) => FEW_FILL.into(),
+            Some(Storage::Real) => f64::NAN.to_bits(),
+            None => STATUS_FILL.into(),
+        }
+    }
+}
+
+/// The cells of a map.
+#[derive(Debug)]
+pub(super) enum Cells {
+    File(Box<FileColumns>),
+    Growing(Box<GrowingMap>),
+}
+
+/// A map, as far as it is there.
+#[derive(Debug)]
+pub(super) struct Source {
+    path: PathBuf,
+    pub cells: Cells,
+    stamp: Stamp,
+    looked: Instant,
+    refreshed: Instant,
+    /// Grows with what is there.
+    pub version: u64,
+    /// Cells that are there.
+    pub cells_done: u64,
+}
+
+/// Where a map's file is still the same, this is.
+type Stamp = Option<(u64, Option<SystemTime>, u64)>;
+
+fn stamp(path: &Path) -> Stamp {
+    let found = path.metadata().ok()?;
+    #[cfg(unix)]
+    let node = std::os::unix::fs::MetadataExt::ino(&found);
+    #[cfg(not(unix))]
+    let node = 0;
+    Some((found.len(), found.modified().ok(), node))
+}
+
+/// What came of a look whether a map is what it was.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Still {
+    Same,
+    /// More cells are there.
+    Grown,
+    /// It is another map, or none: it has to be opened again.
+    Gone,
+}
+
+impl Source {
+    /// Opens the map at `path`.
+    ///
+    /// # Errors
+    /// When there is none, or it is damaged.
+    pub(super) fn open(path: &Path) -> Result<(Self, Facts), StoreError> {
+        let stamp = stamp(path);
+        let held = stamp.is_some().then(|| MapFile::open(path)).transpose()?;
+        let growing = match held.as_ref().is_none_or(MapFile::is_partial) {
+            true => GrowingMap::of(path)?,
+            false => None,
+        };
+        let (cells, facts, cells_done) = match growing {
+            Some(growing) => {
+                let facts = facts_of_tiles(&growing);
+                let (_, done) = growing.done();
+                (Cells::Growing(Box::new(growing)), facts, done)
+            }
+            None => {
+                let map = held.map_or_else(|| MapFile::open(path), Ok)?;
+                let done = map.cells() - map.cells_missing().min(map.cells());
+                let columns = FileColumns::of(map)?;
+                let facts = facts_of_file(&columns);
+                (Cells::File(Box::new(columns)), facts, done)
+            }
+        };
+        let now = Instant::now();
+        let source = Self {
+            path: path.to_owned(),
+            version: version_of(&stamp, &cells),
+            cells,
+            stamp,
+            looked: now,
+            refreshed: now,
+            cells_done,
+        };
+        Ok((source, facts))
+    }
+
+    /// Whether it is still what it was.
+    pub(super) fn look(&mut self) -> Still {
+        let now = Instant::now();
+        if now - self.looked < BETWEEN_LOOKS {
+            return Still::Same;
+        }
+        self.looked = now;
+        if stamp(&self.path) != self.stamp {
+            return Still::Gone;
+        }
+        let Cells::Growing(growing) = &mut self.cells else {
+            return Still::Same;
+        };
+        if now - self.refreshed < BETWEEN_REFRESHES {
+            return Still::Same;
+        }
+        self.refreshed = now;
+        if !growing.refresh(&self.path).unwrap_or(false) {
+            return Still::Gone;
+        }
+        let (_, done) = growing.done();
+        let version = version_of(&self.stamp, &self.cells);
+        if version == self.version {
+            return Still::Same;
+        }
+        (self.version, self.cells_done) = (version, done);
+        Still::Grown
+    }
+
+    /// The bytes of a chunk as they are stored; none where it is not computed yet.
+    pub(super) fn stored(
+        &mut self,
+        column: usize,
+        offset: &[usize],
+    ) -> Result<Option<Vec<u8>>, StoreError> {
+        match &mut self.cells {
+            Cells::File(columns) => columns.stored(column, offset),
+            Cells::Growing(growing) => growing.stored(column, offset),
+        }
+    }
+}
+
+/// A number that changes with what is there.
+fn version_of(stamp: &Stamp, cells: &Cells) -> u64 {
+    match cells {
+        Cells::Growing(growing) => growing.done().0,
+        Cells::File(_) => {
+            let since = |time: SystemTime| time.duration_since(SystemTime::UNIX_EPOCH).ok();
+            let modified = stamp.and_then(|(_, modified, _)| since(modified?));
+            // Exact as a number of JavaScript.
+            modified.map_or(0, |time| time.as_micros() as u64)
+        }
+    }
+}
+
+fn facts_of_tiles(growing: &GrowingMap) -> Facts {
+    let plan = growing.plan();
+    let units = &plan.spec.units;
+    let axes = plan.spec.axes.iter().map(|axis| MapAxis {
+        parameter: axis.parameter,
+        values: axis.values.clone(),
+        unit: units.of_parameter(axis.parameter),
+    });
+    Facts {
+        axes: axes.collect(),
+        fields: plan.spec.fields.clone(),
+        layouts: (0..=plan.spec.fields.len())
+            .filter_map(|column| growing.layout(column))
+            .collect(),
+        plan: Some(plan.clone()),
+    }
+}
+
+fn facts_of_file(columns: &FileColumns) -> Facts {
+    let map = columns.map();
+    let axes = map.axes().to_vec();
+    let text = map.root_text(root::SWEEP).unwrap_or_default();
+    let plan = text.parse::<SweepSpec>().and_then(Plan::new).ok();
+    let plan = plan.filter(|plan| {
+        let told = plan.spec.axes.iter();
+        let told = told.map(|axis| (axis.parameter, &axis.values));
+        told.eq(axes.iter().map(|axis| (axis.parameter, &axis.values)))
+    });
+    Facts {
+        fields: map.fields().to_vec(),
+        layouts: (0..=map.fields().len())
+            .filter_map(|column| columns.layout(column).cloned())
+            .collect(),
+        axes,
+        plan,
+    }
+}

@@ -1,0 +1,266 @@
+//! A window that is being read: its pixels, and the chunks that are still to be looked at.
+
+use std::collections::VecDeque;
+use std::sync::Mutex;
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+use super::canvas::{Canvas, NOT_COMPUTED, SEVERAL, UNREAD};
+use super::cells::Cell;
+use super::pixels::Pixels;
+use super::shelf::Plane;
+use super::source::Facts;
+use super::window::{Asked, Numbers, Shot, Shown};
+use crate::store::chunk_layout::ChunkLayout;
+use crate::sweep::engine::STATUS_FILL;
+use crate::sweep::plan::pieces::mixed;
+
+/// A chunk that is to be looked at.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) struct Job {
+    /// Of the status, else of the field.
+    pub status: bool,
+    /// Numbers of the chunk along the slower and the faster axis.
+    pub chunk: (usize, usize),
+    /// It holds cells that pixels show.
+    pub shown: bool,
+}
+
+/// The pixels of a field, of which there are three types.
+#[derive(Debug)]
+pub(super) enum AnyCanvas {
+    U8(Canvas<u8>),
+    U16(Canvas<u16>),
+    U64(Canvas<u64>),
+}
+
+impl AnyCanvas {
+    fn new(element: usize, pixels: usize) -> Self {
+        match element {
+            1 => Self::U8(Canvas::new(pixels)),
+            2 => Self::U16(Canvas::new(pixels)),
+            _ => Self::U64(Canvas::new(pixels)),
+        }
+    }
+
+    fn bits(&self) -> &[u8] {
+        match self {
+            Self::U8(canvas) => &canvas.bits,
+            Self::U16(canvas) => &canvas.bits,
+            Self::U64(canvas) => &canvas.bits,
+        }
+    }
+}
+
+/// A window that is being read.
+#[derive(Debug)]
+pub(super) struct View {
+    pub asked: Asked,
+    pub version: u64,
+    /// Grows from view to view.
+    pub number: u64,
+    pub plane: std::sync::Arc<Plane>,
+    pub column: usize,
+    pub slow: Pixels,
+    pub fast: Pixels,
+    /// Whether pixels may hide cells.
+    pub crowded: bool,
+    pub field: Mutex<AnyCanvas>,
+    pub status: Mutex<Canvas<u8>>,
+    pub jobs: Mutex<VecDeque<Job>>,
+    total: usize,
+    done: AtomicUsize,
+    damage: Mutex<Option<String>>,
+}
+
+/// A lock whose holder cannot have left things half done.
+pub(super) fn locked<T>(of: &Mutex<T>) -> std::sync::MutexGuard<'_, T> {
+    of.lock().unwrap_or_else(std::sync::PoisonError::into_inner)
+}
+
+impl View {
+    /// Nothing is read yet.
+    ///
+    /// # Errors
+    /// When there is no such window, in words.
+    pub(super) fn new(
+        asked: Asked,
+        facts: &Facts,
+        version: u64,
+        number: u64,
+    ) -> Result<Self, String> {
+        let column = facts.column(asked.field);
+        let column = column.ok_or("the map does not hold this field")?;
+        let along = |axis: usize, stretch| Pixels::along(&facts.axes[axis].values, stretch);
+        let across = along(asked.x, &asked.across)?;
+        let (slow, fast, plane) = match asked.y {
+            None => (Pixels::one(0), across, (None, asked.x)),
+            Some(y) => {
+                let up = along(y, &asked.up)?;
+                match asked.x < y {
+                    true => (across, up, (Some(asked.x), y)),
+                    false => (up, across, (Some(y), asked.x)),
+                }
+            }
+        };
+        let mut at = asked.at.clone();
+        for axis in [plane.0, Some(plane.1)].into_iter().flatten() {
+            at[axis] = 0;
+        }
+        let plane = Plane {
+            slow: plane.0,
+            fast: plane.1,
+            at,
+        };
+        let crowded = slow.is_crowded() || fast.is_crowded();
+        let field = &facts.layouts[column];
+        let pixels = slow.len() * fast.len();
+        let jobs = jobs(
+            &plane,
+            (&slow, &fast),
+            (field, &facts.layouts[facts.status()]),
+        );
+        Ok(Self {
+            field: Mutex::new(AnyCanvas::new(field.element, pixels)),
+            status: Mutex::new(Canvas::new(pixels)),
+            total: jobs.len(),
+            jobs: Mutex::new(jobs),
+            done: AtomicUsize::new(0),
+            damage: Mutex::default(),
+            plane: std::sync::Arc::new(plane),
+            asked,
+            version,
+            number,
+            column,
+            slow,
+            fast,
+            crowded,
+        })
+    }
+
+    pub(super) fn is_complete(&self) -> bool {
+        self.done.load(Ordering::Acquire) >= self.total
+    }
+
+    /// A job is done; cells that could not be read stay marked as such.
+    pub(super) fn finish_one(&self, done: Result<(), String>) {
+        if let Err(why) = done {
+            locked(&self.damage).get_or_insert(why);
+        }
+        self.done.fetch_add(1, Ordering::Release);
+    }
+
+    /// What it shows so far.
+    pub(super) fn shot(&self, facts: &Facts) -> Shot {
+        // Before the pixels are looked at: what is called complete is.
+        let done = self.done.load(Ordering::Acquire);
+        let shown = |axis: usize, pixels: &Pixels| {
+            let index = (0..pixels.len()).map(|i| pixels.nearest[pixels.place(i)]);
+            let index: Vec<u32> = index.collect();
+            let values = &facts.axes[axis].values;
+            Shown {
+                values: index.iter().map(|&i| values[i as usize]).collect(),
+                index,
+            }
+        };
+        let x_is_slow = self.plane.slow == Some(self.asked.x);
+        let (across, up) = match x_is_slow {
+            true => (&self.slow, &self.fast),
+            false => (&self.fast, &self.slow),
+        };
+        let places = || {
+            let fast = self.fast.len();
+            (0..across.len()).flat_map(move |ix| {
+                (0..up.len()).map(move |iy| match (across.place(ix), up.place(iy)) {
+                    (ix, iy) if x_is_slow => ix * fast + iy,
+                    (ix, iy) => iy * fast + ix,
+                })
+            })
+        };
+        let field = locked(&self.field);
+        let status = locked(&self.status);
+        let fill = facts.fill(self.column);
+        let hidden = |place: usize| field.bits()[place] & UNREAD != 0;
+        let values = match &*field {
+            AnyCanvas::U8(canvas) => Numbers::U8(picked(canvas, places(), hidden, fill as u8)),
+            AnyCanvas::U16(canvas) => Numbers::U16(picked(canvas, places(), hidden, fill as u16)),
+            AnyCanvas::U64(canvas) => {
+                let bits = picked(canvas, places(), hidden, fill);
+                Numbers::F64(bits.into_iter().map(f64::from_bits).collect())
+            }
+        };
+        let bits = |place: usize| {
+            let (of_field, of_status) = (field.bits()[place], status.bits[place]);
+            let missing = of_status & UNREAD == 0 && status.values[place] == STATUS_FILL;
+            let unread = (of_field | of_status) & UNREAD;
+            (of_field & SEVERAL) | unread | if missing { NOT_COMPUTED } else { 0 }
+        };
+        let unread = |place: usize| status.bits[place] & UNREAD != 0;
+        Shot {
+            complete: done >= self.total,
+            progress: done as f64 / self.total.max(1) as f64,
+            version: self.version,
+            x: shown(self.asked.x, across),
+            y: self.asked.y.map(|y| shown(y, up)),
+            values,
+            status: picked(&status, places(), unread, STATUS_FILL),
+            bits: places().map(bits).collect(),
+            damage: locked(&self.damage).clone(),
+        }
+    }
+}
+
+/// The values at places, `fill` where they are hidden.
+fn picked<T: Cell>(
+    canvas: &Canvas<T>,
+    places: impl Iterator<Item = usize>,
+    hidden: impl Fn(usize) -> bool,
+    fill: T,
+) -> Vec<T> {
+    let value = |place: usize| match hidden(place) {
+        true => fill,
+        false => canvas.values[place],
+    };
+    places.map(value).collect()
+}
+
+/// The chunks of a window: first those that pixels show, spread all over it, field and status in
+/// turn, then those whose cells are all hidden.
+fn jobs(
+    plane: &Plane,
+    (slow, fast): (&Pixels, &Pixels),
+    (field, status): (&ChunkLayout, &ChunkLayout),
+) -> VecDeque<Job> {
+    let of = |layout: &ChunkLayout, status: bool| {
+        let hidden = !status && (slow.is_crowded() || fast.is_crowded());
+        let down = match plane.slow {
+            Some(axis) => slow.chunks(layout.chunk[axis], hidden),
+            None => vec![(0, true)],
+        };
+        let across = fast.chunks(layout.chunk[plane.fast], hidden);
+        let mut jobs = Vec::with_capacity(down.len() * across.len());
+        for &(row, shown) in &down {
+            jobs.extend(across.iter().map(|&(column, too)| Job {
+                status,
+                chunk: (row, column),
+                shown: shown && too,
+            }));
+        }
+        jobs.sort_by_key(|job| {
+            let number = (job.chunk.0 as u64) << 32 | job.chunk.1 as u64;
+            (!job.shown, mixed(number))
+        });
+        jobs
+    };
+    let (field, status) = (of(field, false), of(status, true));
+    let mut jobs = VecDeque::with_capacity(field.len() + status.len());
+    let mut status = status.into_iter();
+    for job in field {
+        if !job.shown {
+            jobs.extend(status.by_ref());
+        }
+        jobs.push_back(job);
+        jobs.extend(status.next());
+    }
+    jobs.extend(status);
+    jobs
+}

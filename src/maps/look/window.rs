@@ -1,0 +1,65 @@
+//! What is asked of a window on a map, and what is told.
+
+use super::pixels::Stretch;
+use crate::sweep::Field;
+
+/// A window on a map.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Asked {
+    /// What it shows.
+    pub field: Field,
+    /// The axis from left to right.
+    pub x: usize,
+    /// The axis from bottom to top; none: a line along `x`.
+    pub y: Option<usize>,
+    /// The index along every axis; those of `x` and `y` mean nothing.
+    pub at: Vec<usize>,
+    /// The pixels along `x`.
+    pub across: Stretch,
+    /// The pixels along `y`.
+    pub up: Stretch,
+}
+
+/// Pixels along an axis: the index of the cell that each shows, and its value there.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Shown {
+    /// Indices.
+    pub index: Vec<u32>,
+    /// Values.
+    pub values: Vec<f64>,
+}
+
+/// The numbers of a field, pixel by pixel.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Numbers {
+    /// Kinds and small counts.
+    U8(Vec<u8>),
+    /// Counts.
+    U16(Vec<u16>),
+    /// Reals.
+    F64(Vec<f64>),
+}
+
+/// What a window shows, as far as it was read.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Shot {
+    /// Everything was read.
+    pub complete: bool,
+    /// The part that was, 0 to 1.
+    pub progress: f64,
+    /// Changes when more cells are there.
+    pub version: u64,
+    /// Along x.
+    pub x: Shown,
+    /// Along y.
+    pub y: Option<Shown>,
+    /// The cells nearest to the pixels, those of the first x first; fill values where none is.
+    pub values: Numbers,
+    /// Their status.
+    pub status: Vec<u8>,
+    /// [`SEVERAL`](super::SEVERAL), [`UNREAD`](super::UNREAD),
+    /// [`NOT_COMPUTED`](super::NOT_COMPUTED).
+    pub bits: Vec<u8>,
+    /// Why some cells could not be read.
+    pub damage: Option<String>,
+}

@@ -1,0 +1,402 @@
+//! What is told of a map, by the process that reads it.
+
+use std::time::{Duration, Instant};
+
+use serde::Serialize;
+use serde_json::{Value, json};
+
+use super::frames::{CellQuery, CurvesQuery, Refused, ScaleName, WindowQuery};
+use crate::explore::encoded::{Array, Arrays};
+use crate::linear::status::FLAGS;
+use crate::maps::look::as_text::CellTexts;
+use crate::maps::look::{Asked, Facts, Look, Numbers, Scale, Shot, Shown, Stretch};
+use crate::store::MapFile;
+use crate::store::map_file::MapAxis;
+use crate::store::schema::root;
+use crate::sweep::engine::{FEW_FILL, N_UNSTABLE_FILL, STATUS_FILL};
+use crate::sweep::input::field::Storage;
+use crate::sweep::{Field, Parameter};
+
+/// A window is waited for so long; then what was read so far is told.
+const PATIENCE: Duration = Duration::from_millis(250);
+/// The most pixels each way.
+const MOST_PIXELS: usize = 2048;
+/// The most values of an axis that are listed.
+const MOST_VALUES: usize = 4096;
+
+fn axis_json(axis: &MapAxis) -> Value {
+    json!({
+        "name": axis.parameter.name(),
+        "symbol": axis.parameter.symbol(),
+        "unit": axis.unit,
+        "from": axis.values.first(),
+        "to": axis.values.last(),
+        "points": axis.values.len(),
+    })
+}
+
+fn title(look: &Look) -> String {
+    look.told(
+        |map| map.root_text(root::TITLE).unwrap_or_default(),
+        |growing| growing.plan().spec.title.clone(),
+    )
+}
+
+/// What a list tells of it.
+pub(super) fn summary(look: &Look) -> Value {
+    let facts = look.facts();
+    json!({
+        "title": title(look),
+        "cells": facts.cells(),
+        "cells_done": look.version().1,
+        "axes": facts.axes.iter().map(axis_json).collect::<Vec<_>>(),
+        "fields": facts.fields.iter().map(|field| field.name()).collect::<Vec<_>>(),
+    })
+}
+
+/// What there is to know of it besides its cells.
+pub(super) fn description(look: &Look) -> Value {
+    let facts = look.facts();
+    let (version, cells_done) = look.version();
+    let axis = |axis: &MapAxis| {
+        let mut told = axis_json(axis);
+        told["long_name"] = axis.parameter.long_name().into();
+        let listed = (axis.values.len() <= MOST_VALUES).then_some(&axis.values);
+        told["values"] = json!(listed);
+        told
+    };
+    let critical = facts.plan.as_ref().and_then(|plan| plan.spec.critical);
+    let limit = facts.plan.as_ref().is_some_and(|plan| plan.spec.limit);
+    let protocol = match limit {
+        true => Some(crate::sweep::input::search::LIMIT),
+        false => critical.map(|search| search.protocol.name()),
+    };
+    let plane = look.curves_plane();
+    let plane = plane.map(|(p, tau)| [p, tau].map(|axis| facts.axes[axis].parameter.name()));
+    let unit = |field: Field| {
+        let of_tiles =
+            |growing: &crate::store::tiles::GrowingMap| field.unit(&growing.plan().spec.units);
+        look.told(|map| map.field_unit(field), of_tiles)
+    };
+    let field = |&field: &Field| {
+        let (long_name, comment) = match critical {
+            Some(_) => field.described_at_vc(),
+            None => (field.long_name(), field.comment()),
+        };
+        json!({
+            "name": field.name(), "long_name": long_name, "short_name": field.short_name(),
+            "unit": unit(field), "storage": field.storage().name(), "kinds": field.kinds(),
+            "spread": field.spread().name(), "stable_sign": field.spread().stable_sign(),
+            "comment": comment,
+        })
+    };
+    json!({
+        "title": title(look), "cells": facts.cells(), "cells_done": cells_done,
+        "version": version,
+        "axes": facts.axes.iter().map(axis).collect::<Vec<_>>(),
+        "fields": facts.fields.iter().map(field).collect::<Vec<_>>(),
+        "scalars": scalars(look),
+        "flags": FLAGS.map(|(mask, name)| json!({ "mask": mask, "name": name })),
+        "curves_plane": plane, "protocol": protocol,
+        "program_version": look.told(
+            |map| map.root_text(root::PROGRAM_VERSION),
+            |growing| Some(growing.manifest().program_version.clone()),
+        ),
+        "sweep": sweep(look),
+    })
+}
+
+/// The sweep file's text.
+pub(super) fn sweep(look: &Look) -> String {
+    look.told(
+        |map| map.root_text(root::SWEEP).unwrap_or_default(),
+        |growing| growing.plan().spec.text.clone(),
+    )
+}
+
+/// The parameters that are no axes.
+fn scalars(look: &Look) -> Vec<Value> {
+    let facts = look.facts();
+    let found: Vec<(Parameter, f64)> = look.told(MapFile::scalars, |growing| {
+        let spec = &growing.plan().spec;
+        let on_axis = |p: Parameter| spec.axes.iter().any(|axis| axis.parameter == p);
+        let held = Parameter::ALL.into_iter();
+        let held = held.filter(|&p| spec.uses(p) && !on_axis(p));
+        held.map(|p| (p, spec.fixed.get(p))).collect()
+    });
+    let units = facts.plan.as_ref().map(|plan| &plan.spec.units);
+    let unit = |p: Parameter| units.map_or("1".into(), |units| units.of_parameter(p));
+    let told = |(p, value): (Parameter, f64)| {
+        json!({
+            "name": p.name(), "symbol": p.symbol(), "long_name": p.long_name(),
+            "unit": unit(p), "value": value,
+        })
+    };
+    found.into_iter().map(told).collect()
+}
+
+/// The axis of that name.
+fn axis_of(facts: &Facts, name: &str) -> Result<usize, Refused> {
+    let found = facts
+        .axes
+        .iter()
+        .position(|axis| axis.parameter.name() == name);
+    found.ok_or_else(|| Refused::asked(format!("the map has no axis {}", shortened(name))))
+}
+
+/// What a message says of a text that may be long.
+fn shortened(text: &str) -> String {
+    let short: String = text.chars().take(40).collect();
+    format!("{short:?}")
+}
+
+/// The index along each axis that `at` names; none along the others.
+fn indices(facts: &Facts, at: &str) -> Result<Vec<Option<usize>>, Refused> {
+    let mut found = vec![None; facts.axes.len()];
+    for part in at.split(',').filter(|part| !part.is_empty()) {
+        let (name, index) = part
+            .split_once(':')
+            .ok_or_else(|| Refused::asked(format!("{} is not AXIS:INDEX", shortened(part))))?;
+        let axis = axis_of(facts, name)?;
+        let points = facts.axes[axis].values.len();
+        let index: Option<usize> = index.parse().ok().filter(|&index| index < points);
+        let index = index.ok_or_else(|| {
+            Refused::asked(format!("an index along {name} is 0 to {}", points - 1))
+        })?;
+        if found[axis].replace(index).is_some() {
+            return Err(Refused::asked(format!("{name} is given twice")));
+        }
+    }
+    Ok(found)
+}
+
+fn pixels(asked: Option<usize>, points: usize) -> Result<usize, Refused> {
+    let pixels = asked.unwrap_or(points.min(MOST_PIXELS));
+    match (1..=MOST_PIXELS).contains(&pixels) {
+        true => Ok(pixels),
+        false => Err(Refused::asked(format!("w and h are 1 to {MOST_PIXELS}"))),
+    }
+}
+
+/// The window that a query is about.
+fn asked(facts: &Facts, query: &WindowQuery) -> Result<Asked, Refused> {
+    let held = Field::from_name(&query.field).filter(|field| facts.fields.contains(field));
+    let field = held.ok_or_else(|| {
+        Refused::asked(format!("the map has no field {}", shortened(&query.field)))
+    })?;
+    let x = axis_of(facts, &query.x)?;
+    let y = query
+        .y
+        .as_deref()
+        .map(|name| axis_of(facts, name))
+        .transpose()?;
+    if y == Some(x) {
+        return Err(Refused::asked("x and y are the same axis"));
+    }
+    let stretch = |axis: usize, ends: [Option<f64>; 2], asked, scale| -> Result<_, Refused> {
+        Ok(Stretch {
+            from: ends[0],
+            to: ends[1],
+            pixels: pixels(asked, facts.axes[axis].values.len())?,
+            scale: match scale {
+                ScaleName::Linear => Scale::Linear,
+                ScaleName::Log => Scale::Log,
+            },
+        })
+    };
+    let across = stretch(x, [query.x0, query.x1], query.w, query.xscale)?;
+    let up = stretch(y.unwrap_or(x), [query.y0, query.y1], query.h, query.yscale)?;
+    let at = indices(facts, &query.at)?;
+    Ok(Asked {
+        field,
+        x,
+        y,
+        at: at.into_iter().map(Option::unwrap_or_default).collect(),
+        across,
+        up,
+    })
+}
+
+#[derive(Serialize)]
+struct WindowHead {
+    complete: bool,
+    progress: f64,
+    version: u64,
+    field: &'static str,
+    x: AxisHead,
+    y: Option<AxisHead>,
+    at: Vec<AtHead>,
+    values: Array,
+    status: Array,
+    bits: Array,
+    /// Why some cells could not be read.
+    damage: Option<String>,
+    milliseconds: f64,
+}
+
+#[derive(Serialize)]
+struct AxisHead {
+    name: &'static str,
+    index: Array,
+    values: Array,
+}
+
+#[derive(Serialize)]
+struct AtHead {
+    name: &'static str,
+    index: usize,
+    value: f64,
+}
+
+/// A window, as far as it was read.
+pub(super) fn window(look: &Look, query: &WindowQuery) -> Result<Vec<u8>, Refused> {
+    let begun = Instant::now();
+    let asked = asked(look.facts(), query)?;
+    let shot = look.window(&asked, PATIENCE).map_err(Refused::asked)?;
+    encoded(look.facts(), &asked, &shot, begun).map_err(Refused::damaged)
+}
+
+fn encoded(
+    facts: &Facts,
+    asked: &Asked,
+    shot: &Shot,
+    begun: Instant,
+) -> Result<Vec<u8>, serde_json::Error> {
+    let mut arrays = Arrays::default();
+    let mut axis = |axis: usize, shown: &Shown| AxisHead {
+        name: facts.axes[axis].parameter.name(),
+        index: arrays.push(shown.index.iter().copied()),
+        values: arrays.push(shown.values.iter().copied()),
+    };
+    let x = axis(asked.x, &shot.x);
+    let y = shot
+        .y
+        .as_ref()
+        .zip(asked.y)
+        .map(|(shown, y)| axis(y, shown));
+    let values = match &shot.values {
+        Numbers::U8(values) => arrays.push_runs(values),
+        Numbers::U16(values) => arrays.push_runs(values),
+        Numbers::F64(values) => arrays.push(values.iter().copied()),
+    };
+    let head = WindowHead {
+        complete: shot.complete,
+        progress: shot.progress,
+        version: shot.version,
+        field: asked.field.name(),
+        x,
+        y,
+        at: at(facts, &asked.at, &[Some(asked.x), asked.y]),
+        values,
+        status: arrays.push_runs(&shot.status),
+        bits: arrays.push_runs(&shot.bits),
+        damage: shot.damage.clone(),
+        milliseconds: begun.elapsed().as_secs_f64() * 1e3,
+    };
+    arrays.behind(&head)
+}
+
+/// Where a plane lies along the axes that do not span it.
+fn at(facts: &Facts, index: &[usize], spanned: &[Option<usize>]) -> Vec<AtHead> {
+    let axes = facts.axes.iter().zip(index).enumerate();
+    axes.filter(|(axis, _)| !spanned.contains(&Some(*axis)))
+        .map(|(_, (axis, &index))| AtHead {
+            name: axis.parameter.name(),
+            index,
+            value: axis.values[index],
+        })
+        .collect()
+}
+
+#[derive(Serialize)]
+struct CurvesHead {
+    version: u64,
+    curves: Vec<CurveHead>,
+}
+
+#[derive(Serialize)]
+struct CurveHead {
+    degree_of_stability: f64,
+    direction: i8,
+    stable_side: i8,
+    #[serde(flatten)]
+    array: Array,
+}
+
+/// The curves of a plane, x and y vertex by vertex; none where curves are of other planes.
+pub(super) fn curves(look: &Look, query: &CurvesQuery) -> Result<Vec<u8>, Refused> {
+    let facts = look.facts();
+    let (x, y) = (axis_of(facts, &query.x)?, axis_of(facts, &query.y)?);
+    let index = indices(facts, &query.at)?;
+    let index: Vec<usize> = index.into_iter().map(Option::unwrap_or_default).collect();
+    let plane = look.curves_plane();
+    let found = match plane {
+        Some(plane) if plane == (x, y) || plane == (y, x) => look.curves(&index),
+        _ => Ok(Vec::new()),
+    };
+    let p_is_x = plane.is_some_and(|(p, _)| p == x);
+    let mut arrays = Arrays::default();
+    let found = found.map_err(Refused::damaged)?;
+    let curves = found.iter().map(|curve| CurveHead {
+        degree_of_stability: curve.degree_of_stability,
+        direction: curve.piece.direction.sign(),
+        stable_side: curve.piece.stable_side.sign(),
+        array: arrays.push(curve.piece.vertices.iter().flat_map(|v| match p_is_x {
+            true => [v.p, v.tau],
+            false => [v.tau, v.p],
+        })),
+    });
+    let head = CurvesHead {
+        curves: curves.collect(),
+        version: look.version().0,
+    };
+    arrays.behind(&head).map_err(Refused::damaged)
+}
+
+/// A number that JSON may not have.
+fn number(value: f64) -> Value {
+    match value {
+        f64::INFINITY => "inf".into(),
+        f64::NEG_INFINITY => "-inf".into(),
+        _ => json!(Some(value).filter(|value| !value.is_nan())),
+    }
+}
+
+/// One cell: what it holds, and what can be asked there.
+pub(super) fn cell(look: &Look, query: &CellQuery) -> Result<Value, Refused> {
+    let facts = look.facts();
+    let index: Option<Vec<usize>> = indices(facts, &query.at)?.into_iter().collect();
+    let index = index.ok_or_else(|| Refused::asked("a cell has an index along every axis"))?;
+    let bits = |column: usize| look.cell(column, &index).map_err(Refused::damaged);
+    let (mut fields, mut kinds) = (serde_json::Map::new(), serde_json::Map::new());
+    for (column, field) in facts.fields.iter().enumerate() {
+        let bits = bits(column)?;
+        let value = match field.storage() {
+            Storage::Real => number(f64::from_bits(bits)),
+            Storage::Count if bits == u64::from(N_UNSTABLE_FILL) => Value::Null,
+            Storage::Kind | Storage::Few if bits == u64::from(FEW_FILL) => Value::Null,
+            _ => bits.into(),
+        };
+        if let Some(names) = field.kinds() {
+            let name = names.get(bits as usize).copied();
+            kinds.insert(field.name().into(), json!(name));
+        }
+        fields.insert(field.name().into(), value);
+    }
+    let status = bits(facts.status())?;
+    let computed = status != u64::from(STATUS_FILL);
+    let flags = FLAGS
+        .iter()
+        .filter(|(mask, _)| computed && status & u64::from(*mask) != 0);
+    let axes = facts.axes.iter().zip(&index);
+    let axes = axes.map(|(axis, &i)| (axis.parameter.name().to_owned(), json!(axis.values[i])));
+    let texts = facts.plan.as_ref().map(|plan| CellTexts::of(plan, &index));
+    let texts = texts.unwrap_or_default();
+    Ok(json!({
+        "axes": axes.collect::<serde_json::Map<_, _>>(),
+        "fields": fields, "kinds": kinds,
+        "status": flags.map(|(_, name)| *name).collect::<Vec<_>>(),
+        "computed": computed,
+        "point": texts.point, "vc": texts.vc, "motion": texts.motion, "command": texts.command,
+    }))
+}

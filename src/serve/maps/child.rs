@@ -1,0 +1,117 @@
+//! A process that reads one map for the server: a damaged file can end it, and no more than it.
+
+use std::io::{BufRead, Write};
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::path::{Path, PathBuf};
+use std::sync::{Arc, Mutex, OnceLock, PoisonError};
+
+use super::answers;
+use super::frames::{Ask, Frame, Kind, Refused, Request};
+use crate::maps::look::Look;
+use crate::store::StoreError;
+
+/// More bytes are in no request.
+const LONGEST_REQUEST: u64 = 1 << 16;
+
+/// The map, opened when it is first asked for.
+struct Opened {
+    path: PathBuf,
+    look: OnceLock<Result<Look, Refused>>,
+}
+
+/// Answers requests that come line by line, until there are no more.
+///
+/// # Errors
+/// When a request cannot be read, or is none.
+pub fn read_map<W: Write + Send + 'static>(
+    path: &Path,
+    requests: impl BufRead,
+    answers: W,
+) -> std::io::Result<()> {
+    let opened = Arc::new(Opened {
+        path: path.to_owned(),
+        look: OnceLock::new(),
+    });
+    let answers = Arc::new(Mutex::new(answers));
+    let mut requests = requests;
+    loop {
+        let mut line = String::new();
+        let mut limited = std::io::Read::take(&mut requests, LONGEST_REQUEST);
+        if limited.read_line(&mut line)? == 0 {
+            return Ok(());
+        }
+        let request: Request = serde_json::from_str(&line)?;
+        let (opened, answers) = (Arc::clone(&opened), Arc::clone(&answers));
+        std::thread::spawn(move || {
+            let answered = catch_unwind(AssertUnwindSafe(|| opened.answer(&request.ask)));
+            let answered = answered.unwrap_or_else(|_| {
+                Err(Refused {
+                    status: 500,
+                    detail: "the map could not be read; this is a fault of slipmap".into(),
+                })
+            });
+            let frame = answered.unwrap_or_else(|refused| Frame {
+                kind: Kind::Problem,
+                bytes: serde_json::to_vec(&refused).unwrap_or_default(),
+            });
+            let mut out = answers.lock().unwrap_or_else(PoisonError::into_inner);
+            // Where nobody reads any more, the requests end too.
+            drop(frame.write(request.number, &mut *out));
+        });
+    }
+}
+
+impl Opened {
+    fn look(&self) -> Result<&Look, Refused> {
+        let open = || Look::open(&self.path).map_err(|error| refused(&error));
+        self.look.get_or_init(open).as_ref().map_err(Clone::clone)
+    }
+
+    fn answer(&self, ask: &Ask) -> Result<Frame, Refused> {
+        let look = self.look()?;
+        if look.refresh().is_err() {
+            return Ok(Frame {
+                kind: Kind::OtherMap,
+                bytes: Vec::new(),
+            });
+        }
+        match ask {
+            Ask::Summary => json(&answers::summary(look)),
+            Ask::Description => json(&answers::description(look)),
+            Ask::Window(query) => answers::window(look, query).map(bytes),
+            Ask::Curves(query) => answers::curves(look, query).map(bytes),
+            Ask::Cell(query) => json(&answers::cell(look, query)?),
+            Ask::Sweep => Ok(Frame {
+                kind: Kind::Text,
+                bytes: answers::sweep(look).into_bytes(),
+            }),
+        }
+    }
+}
+
+fn bytes(bytes: Vec<u8>) -> Frame {
+    let kind = Kind::Bytes;
+    Frame { kind, bytes }
+}
+
+fn json(value: &serde_json::Value) -> Result<Frame, Refused> {
+    let kind = Kind::Json;
+    let bytes = serde_json::to_vec(value).map_err(Refused::damaged)?;
+    Ok(Frame { kind, bytes })
+}
+
+/// Why a map cannot be opened, without the folders that it is in.
+fn refused(error: &StoreError) -> Refused {
+    Refused::damaged(match error {
+        StoreError::NotAMap { why, .. } => format!("it is not a map of slipmap: {why}"),
+        StoreError::InUse { .. } => "another program has it open for writing".into(),
+        StoreError::Io { action, source, .. } => format!("cannot {action} it: {source}"),
+        StoreError::Hdf5 { action, cause, .. } => format!("cannot {action} it: {cause}"),
+        StoreError::Manifest { why, .. } => format!("the manifest of its tiles is damaged: {why}"),
+        StoreError::OtherTiles { difference, .. } => {
+            format!("its tiles are of something else: {difference}")
+        }
+        StoreError::Foreign { .. } => "something that is not slipmap's is among its tiles".into(),
+        other => other.to_string(),
+    })
+}

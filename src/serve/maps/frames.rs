@@ -1,0 +1,212 @@
+//! What passes between the server and a process that reads a map: requests as lines of JSON,
+//! answers as frames.
+//!
+//! ```text
+//! number of the request, u64 | kind, u8 | length, u32 | so many bytes      all little-endian
+//! ```
+
+use std::io::{self, Read, Write};
+
+use serde::{Deserialize, Serialize};
+use utoipa::{IntoParams, ToSchema};
+
+/// No answer is longer.
+const LONGEST: u32 = 128 << 20;
+
+/// A request, by its number.
+#[derive(Debug, Serialize, Deserialize)]
+pub(super) struct Request {
+    pub number: u64,
+    pub ask: Ask,
+}
+
+/// What is asked of a map.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+pub(super) enum Ask {
+    /// What a list tells of it.
+    Summary,
+    /// What there is to know of it besides its cells.
+    Description,
+    /// Its cells in a plane, as pixels.
+    Window(WindowQuery),
+    /// Its curves in a plane.
+    Curves(CurvesQuery),
+    /// One cell.
+    Cell(CellQuery),
+    /// The sweep file's text.
+    Sweep,
+}
+
+/// A window on a map.
+#[derive(Debug, Clone, Serialize, Deserialize, IntoParams)]
+#[into_params(parameter_in = Query)]
+pub(super) struct WindowQuery {
+    /// The field that it shows.
+    pub field: String,
+    /// The axis from left to right.
+    pub x: String,
+    /// The axis from bottom to top; a line along `x` without it.
+    pub y: Option<String>,
+    /// Where it lies along the other axes: `AXIS:INDEX,AXIS:INDEX`; 0 where it does not say.
+    #[serde(default)]
+    pub at: String,
+    /// The value of x at the left edge.
+    pub x0: Option<f64>,
+    /// The value of x at the right edge.
+    pub x1: Option<f64>,
+    /// The value of y at the lower edge.
+    pub y0: Option<f64>,
+    /// The value of y at the upper edge.
+    pub y1: Option<f64>,
+    /// Pixels from left to right, 1 to 2048.
+    pub w: Option<usize>,
+    /// Pixels from bottom to top, 1 to 2048.
+    pub h: Option<usize>,
+    /// How pixels are spread along x.
+    #[serde(default)]
+    pub xscale: ScaleName,
+    /// How they are spread along y.
+    #[serde(default)]
+    pub yscale: ScaleName,
+}
+
+/// How pixels are spread.
+#[derive(Debug, Clone, Copy, Default, Serialize, Deserialize, ToSchema)]
+#[serde(rename_all = "lowercase")]
+pub(super) enum ScaleName {
+    #[default]
+    Linear,
+    Log,
+}
+
+/// The curves of a plane.
+#[derive(Debug, Clone, Serialize, Deserialize, IntoParams)]
+#[into_params(parameter_in = Query)]
+pub(super) struct CurvesQuery {
+    /// The axis from left to right.
+    pub x: String,
+    /// The axis from bottom to top.
+    pub y: String,
+    /// As that of a window.
+    #[serde(default)]
+    pub at: String,
+}
+
+/// A cell.
+#[derive(Debug, Clone, Serialize, Deserialize, IntoParams)]
+#[into_params(parameter_in = Query)]
+pub(super) struct CellQuery {
+    /// Where: `AXIS:INDEX`, all axes.
+    pub at: String,
+}
+
+/// What an answer is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Kind {
+    Json,
+    Text,
+    Bytes,
+    /// Why there is none, in JSON: [`Refused`].
+    Problem,
+    /// The map is another one by now: it is to be asked of a new process.
+    OtherMap,
+}
+
+impl Kind {
+    const ALL: [Self; 5] = [
+        Self::Json,
+        Self::Text,
+        Self::Bytes,
+        Self::Problem,
+        Self::OtherMap,
+    ];
+}
+
+/// Why there is no answer.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub(super) struct Refused {
+    /// The status of the answer.
+    pub status: u16,
+    /// In words.
+    pub detail: String,
+}
+
+impl Refused {
+    /// The request asks for what there is not.
+    pub(super) fn asked(detail: impl Into<String>) -> Self {
+        let status = 422;
+        let detail = detail.into();
+        Self { status, detail }
+    }
+
+    /// The map cannot be read.
+    pub(super) fn damaged(detail: impl ToString) -> Self {
+        Self {
+            status: 502,
+            detail: detail.to_string(),
+        }
+    }
+}
+
+/// An answer.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(super) struct Frame {
+    pub kind: Kind,
+    pub bytes: Vec<u8>,
+}
+
+impl Frame {
+    pub(super) fn write(&self, number: u64, out: &mut impl Write) -> io::Result<()> {
+        let length = u32::try_from(self.bytes.len()).map_err(io::Error::other)?;
+        let mut head = Vec::with_capacity(13);
+        head.extend(number.to_le_bytes());
+        head.push(self.kind as u8);
+        head.extend(length.to_le_bytes());
+        out.write_all(&head)?;
+        out.write_all(&self.bytes)?;
+        out.flush()
+    }
+
+    /// The next answer, with the number of its request.
+    pub(super) fn read(from: &mut impl Read) -> io::Result<(u64, Self)> {
+        let mut head = [0; 13];
+        from.read_exact(&mut head)?;
+        let number = u64::from_le_bytes(std::array::from_fn(|i| head[i]));
+        let length = u32::from_le_bytes(std::array::from_fn(|i| head[9 + i]));
+        let kind = Kind::ALL.into_iter().find(|&kind| kind as u8 == head[8]);
+        let odd = || io::Error::from(io::ErrorKind::InvalidData);
+        let kind = kind.filter(|_| length <= LONGEST).ok_or_else(odd)?;
+        let mut bytes = Vec::new();
+        // As many as come, however many were promised.
+        from.take(length.into()).read_to_end(&mut bytes)?;
+        match bytes.len() == length as usize {
+            true => Ok((number, Self { kind, bytes })),
+            false => Err(io::ErrorKind::UnexpectedEof.into()),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn frames_are_read_as_they_were_written_and_cut_ones_refused() {
+        let mut bytes = Vec::new();
+        for (number, kind) in (7..).zip(Kind::ALL) {
+            let frame = Frame {
+                kind,
+                bytes: vec![kind as u8; 10],
+            };
+            frame.write(number, &mut bytes).unwrap();
+        }
+        let mut from = &bytes[..];
+        for (number, kind) in (7..).zip(Kind::ALL) {
+            let (found, frame) = Frame::read(&mut from).unwrap();
+            assert_eq!((found, frame.kind, frame.bytes.len()), (number, kind, 10));
+        }
+        assert!((0..23).all(|end| Frame::read(&mut &bytes[..end]).is_err()));
+        bytes[8] = 77;
+        assert!(Frame::read(&mut &bytes[..]).is_err());
+    }
+}

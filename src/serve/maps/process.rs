@@ -1,0 +1,162 @@
+//! The server's side of a process that reads a map.
+
+use std::collections::HashMap;
+use std::io::{BufReader, Write};
+use std::path::Path;
+use std::process::{Child, ChildStdin, ChildStdout, Command, Stdio};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::time::Duration;
+
+use tokio::sync::oneshot;
+
+use super::frames::{Ask, Frame, Request};
+
+/// Requests that wait for one process; a pipe holds as many, so writing them never waits.
+const MOST_WAITING: usize = 16;
+/// The longest request.
+const LONGEST_REQUEST: usize = 3000;
+
+/// How to start a process that reads a map: a program and its arguments, the path comes behind
+/// them.
+#[derive(Debug, Clone)]
+pub struct ReaderCommand {
+    /// The program.
+    pub program: std::path::PathBuf,
+    /// The arguments.
+    pub arguments: Vec<String>,
+}
+
+/// Why there is no answer.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Trouble {
+    /// The process could not be started.
+    NotStarted,
+    /// It ended before it answered.
+    Ended,
+    /// It took too long, and was ended.
+    TooLong,
+    /// Others wait already.
+    Busy,
+    /// No map is asked for that much.
+    LongRequest,
+}
+
+#[derive(Debug, Default)]
+struct Waiting {
+    answers: HashMap<u64, oneshot::Sender<Frame>>,
+    number: u64,
+    ended: bool,
+}
+
+/// A process that reads a map; it ends with this.
+#[derive(Debug)]
+pub(super) struct Reader {
+    child: Mutex<Child>,
+    requests: Mutex<ChildStdin>,
+    waiting: Arc<Mutex<Waiting>>,
+}
+
+fn locked<T>(of: &Mutex<T>) -> MutexGuard<'_, T> {
+    of.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+impl Reader {
+    /// Starts a process for the map at `path`.
+    pub(super) fn start(command: &ReaderCommand, path: &Path) -> Result<Self, Trouble> {
+        let mut child = Command::new(&command.program)
+            .args(&command.arguments)
+            .arg(path)
+            .stdin(Stdio::piped())
+            .stdout(Stdio::piped())
+            .stderr(Stdio::null())
+            .spawn()
+            .map_err(|_| Trouble::NotStarted)?;
+        let (Some(requests), Some(answers)) = (child.stdin.take(), child.stdout.take()) else {
+            return Err(Trouble::NotStarted);
+        };
+        let waiting = Arc::new(Mutex::new(Waiting::default()));
+        let reader = Self {
+            child: Mutex::new(child),
+            requests: Mutex::new(requests),
+            waiting: Arc::clone(&waiting),
+        };
+        let listening = std::thread::Builder::new()
+            .stack_size(1 << 17)
+            .spawn(move || listen(answers, &waiting));
+        listening.map_err(|_| Trouble::NotStarted)?;
+        Ok(reader)
+    }
+
+    /// Whether it has ended.
+    pub(super) fn has_ended(&self) -> bool {
+        locked(&self.waiting).ended
+    }
+
+    fn end(&self) {
+        let mut child = locked(&self.child);
+        drop(child.kill());
+        drop(child.wait());
+    }
+
+    /// Its answer. One that does not answer within `patience` is ended.
+    pub(super) async fn ask(&self, ask: Ask, patience: Duration) -> Result<Frame, Trouble> {
+        let answer = self.send(ask)?;
+        match tokio::time::timeout(patience, answer).await {
+            Ok(Ok(frame)) => Ok(frame),
+            Ok(Err(_)) => Err(Trouble::Ended),
+            Err(_) => {
+                self.end();
+                Err(Trouble::TooLong)
+            }
+        }
+    }
+
+    fn send(&self, ask: Ask) -> Result<oneshot::Receiver<Frame>, Trouble> {
+        let (sender, receiver) = oneshot::channel();
+        let number = {
+            let mut waiting = locked(&self.waiting);
+            if waiting.ended {
+                return Err(Trouble::Ended);
+            }
+            if waiting.answers.len() >= MOST_WAITING {
+                return Err(Trouble::Busy);
+            }
+            waiting.number += 1;
+            let number = waiting.number;
+            waiting.answers.insert(number, sender);
+            number
+        };
+        let line = serde_json::to_string(&Request { number, ask }).unwrap_or_default() + "\n";
+        let forget = |trouble| {
+            locked(&self.waiting).answers.remove(&number);
+            Err(trouble)
+        };
+        if line.len() > LONGEST_REQUEST {
+            return forget(Trouble::LongRequest);
+        }
+        match locked(&self.requests).write_all(line.as_bytes()) {
+            Ok(()) => Ok(receiver),
+            Err(_) => forget(Trouble::Ended),
+        }
+    }
+}
+
+impl Drop for Reader {
+    fn drop(&mut self) {
+        self.end();
+    }
+}
+
+/// Hands answers to who waits for them, until there are no more.
+fn listen(answers: ChildStdout, waiting: &Mutex<Waiting>) {
+    let mut answers = BufReader::with_capacity(1 << 16, answers);
+    while let Ok((number, frame)) = Frame::read(&mut answers) {
+        if let Some(asker) = locked(waiting).answers.remove(&number) {
+            // Where nobody waits any more, nobody is told.
+            drop(asker.send(frame));
+        }
+    }
+    let mut waiting = locked(waiting);
+    waiting.ended = true;
+    waiting.answers.clear();
+}

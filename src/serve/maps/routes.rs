@@ -1,0 +1,209 @@
+//! What is answered about maps.
+
+use std::sync::Arc;
+
+use axum::extract::rejection::QueryRejection;
+use axum::extract::{Path, Query, State};
+use axum::http::StatusCode;
+use axum::http::header::CONTENT_TYPE;
+use axum::response::{IntoResponse, Response};
+use serde_json::Value;
+use utoipa::OpenApi;
+use utoipa_axum::router::OpenApiRouter;
+use utoipa_axum::routes;
+
+use super::described::{CurvesHead, MapCell, MapDescription, MapList, WindowHead};
+use super::frames::{Ask, CellQuery, CurvesQuery, Frame, Kind, ScaleName, WindowQuery};
+use super::readers::Maps;
+use super::scan::Found;
+use crate::serve::openapi::Encoded;
+use crate::serve::problem::{Denied, Problem};
+
+/// The routes of all addresses below `/api/v1/maps`.
+pub(in crate::serve) fn routes<S>(maps: Arc<Maps>) -> OpenApiRouter<S>
+where
+    S: Clone + Send + Sync + 'static,
+{
+    OpenApiRouter::with_openapi(Schemas::openapi())
+        .routes(routes!(list))
+        .routes(routes!(description))
+        .routes(routes!(window))
+        .routes(routes!(curves))
+        .routes(routes!(cell))
+        .routes(routes!(sweep))
+        .with_state(maps)
+}
+
+/// What heads say before numbers.
+#[derive(OpenApi)]
+#[openapi(components(schemas(WindowHead, CurvesHead, ScaleName)))]
+struct Schemas;
+
+/// How requests about a map may be refused besides.
+#[derive(utoipa::IntoResponses)]
+#[allow(dead_code, reason = "only described")]
+enum NoMap {
+    /// There is no map of this id
+    #[response(status = 404, content_type = "application/problem+json")]
+    None(Problem),
+    /// The map has not got what is asked for
+    #[response(status = 422, content_type = "application/problem+json")]
+    Unprocessable(Problem),
+    /// The map cannot be read
+    #[response(status = 502, content_type = "application/problem+json")]
+    Damaged(Problem),
+}
+
+type Asked<T> = Result<Query<T>, QueryRejection>;
+
+/// What a query says.
+fn said<T>(query: Asked<T>) -> Result<T, Problem> {
+    let said = query
+        .map_err(|rejected| Problem::of(StatusCode::UNPROCESSABLE_ENTITY, rejected.body_text()));
+    Ok(said?.0)
+}
+
+async fn found(maps: &Maps, id: &str) -> Result<Found, Problem> {
+    let found = maps.list.find(id).await;
+    found.ok_or_else(|| Problem::of(StatusCode::NOT_FOUND, "there is no map of this id"))
+}
+
+fn answered(frame: Frame) -> Response {
+    let kind = match frame.kind {
+        Kind::Text => "text/plain; charset=utf-8",
+        Kind::Json => "application/json",
+        _ => "application/octet-stream",
+    };
+    ([(CONTENT_TYPE, kind)], frame.bytes).into_response()
+}
+
+async fn asked(maps: &Maps, id: &str, ask: Ask) -> Result<Response, Problem> {
+    let found = found(maps, id).await?;
+    Ok(answered(maps.ask(&found, &ask).await?))
+}
+
+/// The maps below the folder
+#[utoipa::path(
+    get,
+    path = "/api/v1/maps",
+    tag = "maps",
+    responses(
+        (status = 200, description = "The maps", body = MapList),
+        Denied,
+    ),
+)]
+async fn list(State(maps): State<Arc<Maps>>) -> axum::Json<Value> {
+    axum::Json(maps.list.json().await)
+}
+
+/// What there is to know of a map besides its cells
+#[utoipa::path(
+    get,
+    path = "/api/v1/maps/{id}",
+    tag = "maps",
+    params(("id" = String, Path, description = "as the list has it")),
+    responses(
+        (status = 200, description = "The map", body = MapDescription),
+        Denied,
+        NoMap,
+    ),
+)]
+async fn description(
+    State(maps): State<Arc<Maps>>,
+    Path(id): Path<String>,
+) -> Result<axum::Json<Value>, Problem> {
+    let found = found(&maps, &id).await?;
+    let frame = maps.ask(&found, &Ask::Description).await?;
+    let mut told: Value = serde_json::from_slice(&frame.bytes)
+        .map_err(|error| Problem::of(StatusCode::BAD_GATEWAY, error.to_string()))?;
+    let complete = told["cells"] == told["cells_done"];
+    told["state"] = found.state(complete).into();
+    told["id"] = found.id.into();
+    told["name"] = found.name.into();
+    Ok(axum::Json(told))
+}
+
+/// Cells in a plane, as pixels
+#[utoipa::path(
+    get,
+    path = "/api/v1/maps/{id}/window",
+    tag = "maps",
+    params(("id" = String, Path, description = "as the list has it"), WindowQuery),
+    responses(
+        (status = 200, description = "A head (`WindowHead`) and arrays", body = Encoded,
+            content_type = "application/octet-stream"),
+        Denied,
+        NoMap,
+    ),
+)]
+async fn window(
+    State(maps): State<Arc<Maps>>,
+    Path(id): Path<String>,
+    query: Asked<WindowQuery>,
+) -> Result<Response, Problem> {
+    let query = said(query)?;
+    let ends = [query.x0, query.x1, query.y0, query.y1];
+    if ends.into_iter().flatten().any(|end| !end.is_finite()) {
+        let detail = "the ends of a window are finite numbers";
+        return Err(Problem::of(StatusCode::UNPROCESSABLE_ENTITY, detail));
+    }
+    asked(&maps, &id, Ask::Window(query)).await
+}
+
+/// The curves in a plane
+#[utoipa::path(
+    get,
+    path = "/api/v1/maps/{id}/curves",
+    tag = "maps",
+    params(("id" = String, Path, description = "as the list has it"), CurvesQuery),
+    responses(
+        (status = 200, description = "A head (`CurvesHead`) and arrays", body = Encoded,
+            content_type = "application/octet-stream"),
+        Denied,
+        NoMap,
+    ),
+)]
+async fn curves(
+    State(maps): State<Arc<Maps>>,
+    Path(id): Path<String>,
+    query: Asked<CurvesQuery>,
+) -> Result<Response, Problem> {
+    asked(&maps, &id, Ask::Curves(said(query)?)).await
+}
+
+/// One cell
+#[utoipa::path(
+    get,
+    path = "/api/v1/maps/{id}/cell",
+    tag = "maps",
+    params(("id" = String, Path, description = "as the list has it"), CellQuery),
+    responses(
+        (status = 200, description = "The cell", body = MapCell),
+        Denied,
+        NoMap,
+    ),
+)]
+async fn cell(
+    State(maps): State<Arc<Maps>>,
+    Path(id): Path<String>,
+    query: Asked<CellQuery>,
+) -> Result<Response, Problem> {
+    asked(&maps, &id, Ask::Cell(said(query)?)).await
+}
+
+/// The sweep file's text
+#[utoipa::path(
+    get,
+    path = "/api/v1/maps/{id}/sweep",
+    tag = "maps",
+    params(("id" = String, Path, description = "as the list has it")),
+    responses(
+        (status = 200, description = "The text", body = String,
+            content_type = "text/plain; charset=utf-8"),
+        Denied,
+        NoMap,
+    ),
+)]
+async fn sweep(State(maps): State<Arc<Maps>>, Path(id): Path<String>) -> Result<Response, Problem> {
+    asked(&maps, &id, Ask::Sweep).await
+}

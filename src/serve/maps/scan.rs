@@ -1,0 +1,279 @@
+//! What may be a map below a folder: by names and what the system tells of them alone, no file is
+//! opened.
+
+use std::collections::BTreeMap;
+use std::fs::{self, DirEntry, Metadata};
+use std::path::{Path, PathBuf};
+use std::time::SystemTime;
+
+use sha2::{Digest, Sha256};
+
+use crate::store::tiles::shards;
+use crate::sweep::plan::in_hexadecimal;
+
+/// Folders within folders that are searched.
+const DEEPEST: usize = 8;
+/// Names that are looked at.
+const MOST_NAMES: usize = 50_000;
+/// Maps that are listed.
+const MOST_MAPS: usize = 2000;
+/// How names of maps end.
+const ENDINGS: [&str; 3] = ["h5", "hdf5", "nc"];
+/// How the name of a map's folder of tiles ends.
+const TILES: &str = ".tiles";
+/// Digits of an id.
+const DIGITS: usize = 16;
+
+/// What is there of a map, by which it is seen that something has changed.
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
+pub(super) struct Mark {
+    file: Option<(u64, Option<SystemTime>, u64)>,
+    /// Tile files, their bytes, and when the last came.
+    tiles: Option<(u64, u64, Option<SystemTime>)>,
+}
+
+/// What may be a map.
+#[derive(Debug, Clone)]
+pub(super) struct Found {
+    pub id: String,
+    /// Below the folder.
+    pub name: String,
+    pub path: PathBuf,
+    pub mark: Mark,
+    /// A run works on it.
+    pub running: bool,
+    /// Why it cannot be one.
+    pub odd: Option<&'static str>,
+}
+
+impl Found {
+    /// Bytes of it.
+    pub(super) fn bytes(&self) -> u64 {
+        let file = self.mark.file.map_or(0, |(length, ..)| length);
+        file + self.mark.tiles.map_or(0, |(_, bytes, _)| bytes)
+    }
+
+    /// When it was last written to.
+    pub(super) fn modified(&self) -> Option<SystemTime> {
+        let tiles = self.mark.tiles.and_then(|(.., modified)| modified);
+        tiles.max(self.mark.file.and_then(|(_, modified, _)| modified))
+    }
+
+    /// The state of a map that can be read, of which all cells are there or not.
+    pub(super) fn state(&self, complete: bool) -> &'static str {
+        match (self.mark.file, self.running) {
+            // Also where another one is being computed.
+            (Some(_), _) if complete => "complete",
+            (_, true) => "running",
+            // Of tiles alone no map has been made yet.
+            (_, false) => "interrupted",
+        }
+    }
+}
+
+/// What was found below a folder.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Scanned {
+    /// By name.
+    pub maps: Vec<Found>,
+    /// Folders that were not searched: too deep, or closed to this process.
+    pub folders_skipped: u64,
+    /// Links that lead out of the folder, to folders, or nowhere.
+    pub links_skipped: u64,
+    /// There is more than is listed.
+    pub truncated: bool,
+}
+
+struct Search<'a> {
+    root: &'a Path,
+    found: BTreeMap<PathBuf, Option<&'static str>>,
+    scanned: Scanned,
+    names: usize,
+}
+
+/// What may be maps below `root`, which is an absolute path without links.
+pub(super) fn scan(root: &Path) -> Scanned {
+    let mut search = Search {
+        root,
+        found: BTreeMap::new(),
+        scanned: Scanned::default(),
+        names: 0,
+    };
+    search.folder(root, 0);
+    let Search {
+        found, mut scanned, ..
+    } = search;
+    scanned.truncated |= found.len() > MOST_MAPS;
+    let maps = found.into_iter().take(MOST_MAPS);
+    scanned.maps = maps
+        .filter_map(|(path, odd)| look(root, path, odd))
+        .collect();
+    scanned
+}
+
+impl Search<'_> {
+    fn folder(&mut self, folder: &Path, depth: usize) {
+        let Ok(entries) = fs::read_dir(folder) else {
+            self.scanned.folders_skipped += 1;
+            return;
+        };
+        let mut inner = Vec::new();
+        for entry in entries.flatten() {
+            self.names += 1;
+            if self.names > MOST_NAMES {
+                self.scanned.truncated = true;
+                return;
+            }
+            inner.extend(self.entry(&entry));
+        }
+        inner.sort();
+        for folder in inner {
+            match depth < DEEPEST {
+                true => self.folder(&folder, depth + 1),
+                false => self.scanned.folders_skipped += 1,
+            }
+        }
+    }
+
+    /// Takes in a name; a folder that is to be searched comes back.
+    fn entry(&mut self, entry: &DirEntry) -> Option<PathBuf> {
+        let (path, kind) = (entry.path(), entry.file_type().ok()?);
+        let name = entry.file_name();
+        if name.as_encoded_bytes().starts_with(b".") {
+            return None;
+        }
+        if kind.is_dir() {
+            let map = name.to_str().and_then(|name| name.strip_suffix(TILES));
+            let Some(map) = map.filter(|map| !map.is_empty()) else {
+                return Some(path);
+            };
+            let map = path.with_file_name(map);
+            if shards::present(&map).is_ok_and(|present| !present.is_empty()) {
+                self.found.entry(map).or_default();
+            }
+            return None;
+        }
+        let ending = path.extension().and_then(|ending| ending.to_str());
+        let ending = ending.map(str::to_ascii_lowercase);
+        let is_map = ending.is_some_and(|ending| ENDINGS.contains(&&*ending));
+        if kind.is_symlink() {
+            if !is_map {
+                return None;
+            }
+            let inside = path
+                .canonicalize()
+                .is_ok_and(|to| to.starts_with(self.root));
+            if !inside || path.is_dir() {
+                self.scanned.links_skipped += 1;
+                return None;
+            }
+        }
+        if is_map {
+            let regular = path.metadata().is_ok_and(|found| found.is_file());
+            let odd = (!regular).then_some("it is no regular file");
+            self.found.insert(path, odd);
+        }
+        None
+    }
+}
+
+/// The id of a map by its path below the folder.
+fn id_of(relative: &Path) -> String {
+    let mut hash = Sha256::new();
+    hash.update(relative.as_os_str().as_encoded_bytes());
+    let mut id = in_hexadecimal(&hash.finalize());
+    id.truncate(DIGITS);
+    id
+}
+
+#[cfg(unix)]
+fn node(found: &Metadata) -> u64 {
+    std::os::unix::fs::MetadataExt::ino(found)
+}
+
+#[cfg(not(unix))]
+fn node(_: &Metadata) -> u64 {
+    0
+}
+
+/// What the system tells of a map; none where it is gone again.
+fn look(root: &Path, path: PathBuf, odd: Option<&'static str>) -> Option<Found> {
+    let relative = path.strip_prefix(root).ok()?;
+    let told = |found: Metadata| (found.len(), found.modified().ok(), node(&found));
+    let folders = shards::present(&path).unwrap_or_default();
+    let tiles = folders.iter().map(|(_, folder)| tiles_in(folder));
+    let tiles = tiles.reduce(|a, b| (a.0 + b.0, a.1 + b.1, a.2.max(b.2)));
+    let mark = Mark {
+        file: path.metadata().ok().map(told),
+        tiles,
+    };
+    if mark == Mark::default() {
+        return None;
+    }
+    Some(Found {
+        id: id_of(relative),
+        name: relative.to_string_lossy().into_owned(),
+        running: folders.iter().any(|(_, folder)| shards::is_running(folder)),
+        odd,
+        mark,
+        path,
+    })
+}
+
+/// Files of a folder, their bytes, and when the last of them was written.
+fn tiles_in(folder: &Path) -> (u64, u64, Option<SystemTime>) {
+    let entries = fs::read_dir(folder).into_iter().flatten().flatten();
+    let entries = entries.filter_map(|entry| entry.metadata().ok());
+    entries
+        .filter(Metadata::is_file)
+        .fold((0, 0, None), |sum, found| {
+            let last = sum.2.max(found.modified().ok());
+            (sum.0 + 1, sum.1 + found.len(), last)
+        })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[cfg(unix)]
+    #[test]
+    fn only_what_lies_below_is_found() {
+        use std::os::unix::fs::symlink;
+        let outside = tempfile::tempdir().unwrap();
+        let folder = tempfile::tempdir().unwrap();
+        let root = folder.path().canonicalize().unwrap();
+        let write = |path: PathBuf| {
+            fs::create_dir_all(path.parent().unwrap()).unwrap();
+            fs::write(path, "x").unwrap();
+        };
+        for name in [
+            "a.h5",
+            "b/c/d.HDF5",
+            ".hidden/e.h5",
+            "f.txt",
+            "g.h5.tiles/h.h5",
+        ] {
+            write(root.join(name));
+        }
+        write(outside.path().join("secret.h5"));
+        symlink(outside.path().join("secret.h5"), root.join("out.h5")).unwrap();
+        symlink(outside.path(), root.join("folder.h5")).unwrap();
+        symlink(root.join("a.h5"), root.join("b/in.h5")).unwrap();
+        symlink(&root, root.join("b/again")).unwrap();
+        symlink("/nowhere/at/all", root.join("broken.nc")).unwrap();
+        let scanned = scan(&root);
+        let names: Vec<&str> = scanned.maps.iter().map(|found| &*found.name).collect();
+        assert_eq!(names, ["a.h5", "b/c/d.HDF5", "b/in.h5"]);
+        assert_eq!((scanned.links_skipped, scanned.truncated), (3, false));
+        let ids: std::collections::BTreeSet<_> = scanned.maps.iter().map(|f| &f.id).collect();
+        assert!(ids.len() == 3 && ids.iter().all(|id| id.len() == DIGITS));
+        let mut deep = root.clone();
+        for _ in 0..20 {
+            deep.push("d");
+        }
+        write(deep.join("map.h5"));
+        let scanned = scan(&root);
+        assert_eq!((scanned.maps.len(), scanned.folders_skipped), (3, 1));
+    }
+}

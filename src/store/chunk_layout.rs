@@ -1,0 +1,68 @@
+//! How the cells of a column are stored: in chunks, each shuffled and deflated.
+
+use zlib_rs::{InflateConfig, ReturnCode, decompress_slice};
+
+/// How the chunks of a dataset are stored.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct ChunkLayout {
+    /// Values along each axis.
+    pub shape: Vec<usize>,
+    /// Values of a chunk along each axis, at least 1; those at the far edges reach beyond.
+    pub chunk: Vec<usize>,
+    /// Bytes of a value.
+    pub element: usize,
+    /// The bytes of a chunk are deflated.
+    pub deflated: bool,
+    /// First bytes of all values come first, then second bytes, and so on.
+    pub shuffled: bool,
+}
+
+impl ChunkLayout {
+    /// Values of a whole chunk.
+    #[must_use]
+    pub fn cells(&self) -> usize {
+        self.chunk.iter().product()
+    }
+
+    /// Bytes of a whole chunk.
+    #[must_use]
+    pub fn bytes(&self) -> usize {
+        self.cells() * self.element
+    }
+
+    /// The values of a chunk as bytes, also those beyond the edges, from what is stored.
+    ///
+    /// # Errors
+    /// When it is not what such a chunk is stored as, in words.
+    pub fn decoded(&self, stored: Vec<u8>) -> Result<Vec<u8>, &'static str> {
+        let mut bytes = stored;
+        let length = self.bytes();
+        if self.deflated {
+            let mut out = vec![0; length];
+            match decompress_slice(&mut out, &bytes, InflateConfig::default()) {
+                (whole, ReturnCode::Ok) if whole.len() == length => {}
+                _ => return Err("a chunk does not inflate to its own size"),
+            }
+            bytes = out;
+        }
+        if bytes.len() != length {
+            return Err("a chunk has not its own size");
+        }
+        if self.shuffled && self.element > 1 {
+            bytes = unshuffled(&bytes, self.element);
+        }
+        Ok(bytes)
+    }
+}
+
+/// The inverse of HDF5's shuffle.
+fn unshuffled(bytes: &[u8], size: usize) -> Vec<u8> {
+    let count = bytes.len() / size;
+    let mut out = vec![0; bytes.len()];
+    for (byte, plane) in bytes.chunks_exact(count).enumerate() {
+        for (value, &from) in out.chunks_exact_mut(size).zip(plane) {
+            value[byte] = from;
+        }
+    }
+    out
+}

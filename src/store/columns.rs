@@ -1,0 +1,76 @@
+//! The columns of a map: its fields and the status, chunk by chunk as they stand in the file.
+
+use super::chunk_layout::ChunkLayout;
+use super::error::StoreError;
+use super::map_file::MapFile;
+use super::schema::STATUS;
+use super::values::{Chunks, is_of};
+use crate::sweep::input::field::Storage;
+
+/// The columns of a map, each open: the fields in the order of [`MapFile::fields`], then the
+/// status.
+#[derive(Debug)]
+pub struct FileColumns {
+    map: MapFile,
+    columns: Vec<Chunks>,
+}
+
+impl FileColumns {
+    /// Opens all columns.
+    ///
+    /// # Errors
+    /// When one is not stored as slipmap stores columns.
+    pub fn of(map: MapFile) -> Result<Self, StoreError> {
+        let fields = map.fields().iter();
+        let columns = fields.map(|field| (field.name(), field.storage()));
+        let open = |(name, storage): (&str, Storage)| {
+            let dataset = map.dataset(name)?;
+            let kind = dataset.dtype();
+            let as_expected = match storage {
+                Storage::Count => is_of::<u16>(&kind),
+                Storage::Kind | Storage::Few => is_of::<u8>(&kind),
+                Storage::Real => is_of::<f64>(&kind),
+            };
+            if !as_expected {
+                let why = format!("the values of {name} are of another type");
+                return Err(StoreError::not_a_map(map.path(), why));
+            }
+            let chunks = Chunks::of(&dataset).map_err(StoreError::hdf5("read", map.path()))?;
+            chunks.ok_or_else(|| {
+                StoreError::not_a_map(map.path(), format!("{name} is not stored in chunks"))
+            })
+        };
+        let columns: Result<_, _> = columns.chain([(STATUS, Storage::Kind)]).map(open).collect();
+        Ok(Self {
+            columns: columns?,
+            map,
+        })
+    }
+
+    /// The map that they are of.
+    #[must_use]
+    pub fn map(&self) -> &MapFile {
+        &self.map
+    }
+
+    /// How a column is stored; none where there is no such column.
+    #[must_use]
+    pub fn layout(&self, column: usize) -> Option<&ChunkLayout> {
+        self.columns.get(column).map(Chunks::layout)
+    }
+
+    /// The bytes of the chunk of a column whose first cell is at `offset`; none where there is
+    /// none.
+    ///
+    /// # Errors
+    /// When they cannot be read.
+    pub fn stored(&self, column: usize, offset: &[usize]) -> Result<Option<Vec<u8>>, StoreError> {
+        match self.columns.get(column) {
+            Some(chunks) => {
+                let stored = chunks.stored(offset);
+                stored.map_err(StoreError::hdf5("read", self.map.path()))
+            }
+            None => Ok(None),
+        }
+    }
+}

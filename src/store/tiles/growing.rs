@@ -1,0 +1,189 @@
+//! A map of which there are only tiles yet, read as far as it is there: no file is written for it,
+//! and what was read once is not read again.
+
+use std::fs::Metadata;
+use std::path::{Path, PathBuf};
+
+use super::super::chunk_layout::ChunkLayout;
+use super::super::curve_reader::{MapCurve, curves_of};
+use super::super::curve_rows::outer_values;
+use super::super::error::StoreError;
+use super::super::source::Source;
+use super::manifest::{self, Manifest};
+use super::reader::TileReader;
+use super::record::Content;
+use super::shards;
+use crate::sweep::cells::boundaries::plane;
+use crate::sweep::plan::Plan;
+use crate::sweep::plan::pieces::Piece;
+use crate::sweep::plan::tile::place_of;
+
+/// The tiles of a map as chunks of its columns: the fields of the plan, then the status.
+#[derive(Debug)]
+pub struct GrowingMap {
+    plan: Plan,
+    manifest: Manifest,
+    folders: Vec<PathBuf>,
+    readers: Vec<TileReader>,
+    stamps: Vec<Option<Stamp>>,
+}
+
+/// What changes when a folder's tiles are of something else than before.
+type Stamp = (u64, Option<std::time::SystemTime>);
+
+fn stamp(folder: &Path) -> Option<Stamp> {
+    let told = |found: Metadata| (found.len(), found.modified().ok());
+    folder.join(manifest::NAME).metadata().ok().map(told)
+}
+
+impl GrowingMap {
+    /// The tiles beside `map`; none where there are none.
+    ///
+    /// # Errors
+    /// When no manifest is sound, tiles are cut as another program cuts them, or the system
+    /// refuses.
+    pub fn of(map: &Path) -> Result<Option<Self>, StoreError> {
+        let present = shards::present(map)?;
+        if present.is_empty() {
+            return Ok(None);
+        }
+        let folders: Vec<PathBuf> = present.into_iter().map(|(_, path)| path).collect();
+        let stamps = folders.iter().map(|folder| stamp(folder)).collect();
+        let (manifest, plan) = shards::plan(&folders)?;
+        if manifest.tile_shape != plan.tiles.tile_shape() {
+            return Err(StoreError::OtherTiles {
+                path: shards::root(map),
+                difference: "another program cut them".into(),
+            });
+        }
+        let (layout, pieces) = (manifest.layout(), plan.pieces());
+        let readers = folders
+            .iter()
+            .map(|folder| TileReader::of_heads(folder, layout, pieces))
+            .collect::<Result<_, _>>()?;
+        Ok(Some(Self {
+            plan,
+            manifest,
+            folders,
+            readers,
+            stamps,
+        }))
+    }
+
+    /// Looks for files that were not there before. False where the folders are no longer those that
+    /// they were: the map is complete now, or was begun anew.
+    ///
+    /// # Errors
+    /// When the system refuses.
+    pub fn refresh(&mut self, map: &Path) -> Result<bool, StoreError> {
+        let present = shards::present(map)?;
+        let folders = present.iter().map(|(_, path)| path);
+        let stamps = self.folders.iter().map(|folder| stamp(folder));
+        if !folders.eq(&self.folders) || !stamps.eq(self.stamps.iter().copied()) {
+            return Ok(false);
+        }
+        self.readers.iter_mut().try_for_each(TileReader::add_new)?;
+        Ok(true)
+    }
+
+    /// The plan that the tiles are of.
+    #[must_use]
+    pub fn plan(&self) -> &Plan {
+        &self.plan
+    }
+
+    /// Who computes them.
+    #[must_use]
+    pub fn manifest(&self) -> &Manifest {
+        &self.manifest
+    }
+
+    /// Whether a run works on one of the shards at this moment.
+    #[must_use]
+    pub fn is_running(&self) -> bool {
+        self.folders.iter().any(|folder| shards::is_running(folder))
+    }
+
+    /// The pieces that are there: how many, and the cells of those.
+    #[must_use]
+    pub fn done(&self) -> (u64, u64) {
+        let mut done: Vec<Piece> = self.readers.iter().flat_map(TileReader::done).collect();
+        done.sort_unstable();
+        done.dedup();
+        let cells = done.iter().map(|&piece| self.plan.cells_of(piece)).sum();
+        (done.len() as u64, cells)
+    }
+
+    /// How a column is stored; none where there is no such column.
+    #[must_use]
+    pub fn layout(&self, column: usize) -> Option<ChunkLayout> {
+        let fields = &self.plan.spec.fields;
+        let element = match column.cmp(&fields.len()) {
+            std::cmp::Ordering::Less => fields[column].bytes(),
+            std::cmp::Ordering::Equal => size_of::<u8>(),
+            std::cmp::Ordering::Greater => return None,
+        };
+        Some(ChunkLayout {
+            shape: self.plan.shape().to_vec(),
+            chunk: self.plan.tiles.tile_shape().to_vec(),
+            element,
+            deflated: true,
+            shuffled: element > 1,
+        })
+    }
+
+    /// The bytes of the chunk of a column whose first cell is at `offset`; none where it is not
+    /// computed yet.
+    ///
+    /// # Errors
+    /// When they are damaged or cannot be read.
+    pub fn stored(
+        &mut self,
+        column: usize,
+        offset: &[usize],
+    ) -> Result<Option<Vec<u8>>, StoreError> {
+        let tiles = &self.plan.tiles;
+        let mut number = 0;
+        for ((&at, &length), &whole) in offset.iter().zip(tiles.tile_shape()).zip(tiles.shape()) {
+            number = number * whole.div_ceil(length) + at / length;
+        }
+        let piece = Piece::Tile(number as u64);
+        let Some(payload) = self.readers.read(piece)? else {
+            return Ok(None);
+        };
+        let columns = self.plan.spec.fields.len() + 1;
+        match Content::read(piece, &payload) {
+            Some(Content::Tile(chunks)) if chunks.len() == columns => {
+                Ok(chunks.get(column).map(|chunk| chunk.to_vec()))
+            }
+            _ => Err(StoreError::DamagedPiece { piece }),
+        }
+    }
+
+    /// The curves of the plane at `index`, one index per axis; none where they are not there yet,
+    /// or the map has none.
+    ///
+    /// # Errors
+    /// As [`GrowingMap::stored`].
+    pub fn curves(&mut self, index: &[usize]) -> Result<Vec<MapCurve>, StoreError> {
+        let Some((p, tau)) = self.plan.boundary_plane else {
+            return Ok(Vec::new());
+        };
+        let mut shape = self.plan.shape().to_vec();
+        let mut at = index.to_vec();
+        (shape[p], shape[tau], at[p], at[tau]) = (1, 1, 0, 0);
+        let strides = crate::sweep::plan::tile::memory_strides(&shape);
+        let number = place_of(&at, &strides) as u64;
+        let piece = Piece::Curves(number);
+        let Some(payload) = self.readers.read(piece)? else {
+            return Ok(Vec::new());
+        };
+        let damaged = || StoreError::DamagedPiece { piece };
+        let Some(Content::Curves(rows)) = Content::read(piece, &payload) else {
+            return Err(damaged());
+        };
+        let outer = outer_values(&self.plan, &plane(&self.plan, number));
+        let outer: Vec<Vec<f64>> = outer.iter().map(|&v| vec![v; rows.curves()]).collect();
+        curves_of(&rows, &outer).ok_or_else(damaged)
+    }
+}
