@@ -13,8 +13,9 @@ use super::motion::{self, Followed};
 use super::point::Point;
 use super::problem::Problem;
 use super::vc::CriticalVelocity;
-use super::{chart_bytes, command, motion_bytes};
+use super::{chart_bytes, motion_bytes};
 use crate::slip::stop::Stop;
+use crate::sweep::input::command::command_line;
 use crate::sweep::input::point_file::{PointOf, PointSpec};
 use crate::sweep::input::search::Protocol;
 
@@ -95,11 +96,13 @@ pub struct Limits {
 
 /// An answer with the command line that gives the same.
 #[derive(Debug, Serialize)]
-struct WithCommand<T> {
+#[cfg_attr(feature = "serve", derive(utoipa::ToSchema))]
+pub struct WithCommand<T> {
+    /// The answer.
     #[serde(flatten)]
-    answer: T,
-    /// None where flags cannot say it.
-    command: Option<String>,
+    pub answer: T,
+    /// The command line; none where flags cannot say it.
+    pub command: Option<String>,
 }
 
 /// The bytes of the answer to `request` about what `text` describes, of
@@ -126,7 +129,8 @@ pub fn answer(
             let setting = PointSpec::read(text, PointOf::Sliding)?.setting;
             json(&WithCommand {
                 answer: Point::at(&setting, ROOTS)?,
-                command: command::point(&setting, ROOTS),
+                command: command_line("point", &setting, |p| setting.uses(p))
+                    .map(|command| format!("{command} --roots={ROOTS}")),
             })
         }
         Request::CriticalVelocity => {
@@ -138,7 +142,7 @@ pub fn answer(
             if stop.is_set() {
                 return Err(Problem::stopped());
             }
-            let command = command::critical_velocity(&setting);
+            let command = command_line("vc", &setting, |p| setting.uses(p));
             json(&WithCommand { answer, command })
         }
         Request::Motion => {

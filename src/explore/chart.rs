@@ -3,8 +3,6 @@
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
-use crate::linear::Direction;
-use crate::linear::curves::StableSide;
 use crate::sweep::engine::RunError;
 use crate::sweep::grid::{Grid, TooLarge};
 use crate::sweep::{Plan, SpecError, SweepSpec};
@@ -117,16 +115,8 @@ fn curves(grid: &Grid) -> Vec<ChartCurve> {
         let Ok(traced) = &of.curves else { continue };
         curves.extend(traced.pieces.iter().map(|piece| ChartCurve {
             degree_of_stability: of.degree_of_stability,
-            direction: match piece.direction {
-                Direction::Left => -1,
-                Direction::Touch => 0,
-                Direction::Right => 1,
-            },
-            stable_side: match piece.stable_side {
-                StableSide::Shorter => -1,
-                StableSide::Neither => 0,
-                StableSide::Longer => 1,
-            },
+            direction: piece.direction.sign(),
+            stable_side: piece.stable_side.sign(),
             vertices: piece.vertices.iter().map(|v| [v.p, v.tau]).collect(),
         }));
     }

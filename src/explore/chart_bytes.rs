@@ -6,16 +6,22 @@ use super::chart::Chart;
 use super::encoded::{Array, Arrays};
 use crate::sweep::input::field::Storage;
 
+/// What a chart says before its numbers.
 #[derive(Debug, Serialize)]
-struct Head {
+#[cfg_attr(feature = "serve", derive(utoipa::ToSchema))]
+pub struct ChartHead {
+    /// Its axes, the slowest one first.
     axes: Vec<AxisHead>,
+    /// Its fields, with an array of all cells each, and its status.
     fields: Vec<FieldHead>,
+    /// Its curves, with an array of the first and the second coordinate by turns.
     curves: Vec<CurveHead>,
     /// How long it took to compute, in milliseconds; none where there is no clock.
     milliseconds: Option<f64>,
 }
 
 #[derive(Debug, Serialize)]
+#[cfg_attr(feature = "serve", derive(utoipa::ToSchema))]
 struct AxisHead {
     name: &'static str,
     long_name: &'static str,
@@ -25,6 +31,7 @@ struct AxisHead {
 }
 
 #[derive(Debug, Serialize)]
+#[cfg_attr(feature = "serve", derive(utoipa::ToSchema))]
 struct FieldHead {
     name: &'static str,
     long_name: &'static str,
@@ -36,6 +43,7 @@ struct FieldHead {
 }
 
 #[derive(Debug, Serialize)]
+#[cfg_attr(feature = "serve", derive(utoipa::ToSchema))]
 struct CurveHead {
     degree_of_stability: f64,
     direction: i8,
@@ -52,7 +60,7 @@ pub fn encoded(chart: &Chart, milliseconds: Option<f64>) -> Result<Vec<u8>, serd
     let plan = chart.grid.plan();
     let units = &plan.spec.units;
     let mut arrays = Arrays::default();
-    let head = Head {
+    let head = ChartHead {
         axes: (plan.spec.axes.iter())
             .map(|axis| AxisHead {
                 name: axis.parameter.name(),

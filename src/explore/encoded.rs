@@ -36,6 +36,7 @@ element!(u8, u16, u32, f64);
 
 /// Where numbers are.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+#[cfg_attr(feature = "serve", derive(utoipa::ToSchema))]
 pub struct Array {
     #[serde(rename = "type")]
     kind: &'static str,

@@ -2,13 +2,13 @@
 
 use serde::Serialize;
 
-use crate::sweep::input::field::Storage;
 use crate::sweep::input::law_kind::{Formula, LawKind};
 use crate::sweep::input::units::Units;
 use crate::sweep::{Field, Parameter};
 
 /// All tables.
 #[derive(Debug, Clone, Serialize)]
+#[cfg_attr(feature = "serve", derive(utoipa::ToSchema))]
 pub struct Known {
     /// The version of the program.
     pub version: &'static str,
@@ -22,6 +22,7 @@ pub struct Known {
 
 /// A parameter.
 #[derive(Debug, Clone, Serialize)]
+#[cfg_attr(feature = "serve", derive(utoipa::ToSchema))]
 pub struct KnownParameter {
     /// The word for it in texts.
     pub name: &'static str,
@@ -47,6 +48,7 @@ pub struct KnownParameter {
 
 /// A friction law.
 #[derive(Debug, Clone, Serialize)]
+#[cfg_attr(feature = "serve", derive(utoipa::ToSchema))]
 pub struct KnownLaw {
     /// The word for it in texts.
     pub name: &'static str,
@@ -60,6 +62,7 @@ pub struct KnownLaw {
 
 /// A field of a map.
 #[derive(Debug, Clone, Serialize)]
+#[cfg_attr(feature = "serve", derive(utoipa::ToSchema))]
 pub struct KnownField {
     /// The word for it in texts.
     pub name: &'static str,
@@ -140,12 +143,7 @@ impl KnownField {
             spread: field.spread().name(),
             stable_sign: field.spread().stable_sign(),
             kinds: field.kinds(),
-            storage: match field.storage() {
-                Storage::Count => "count",
-                Storage::Kind => "kind",
-                Storage::Few => "few",
-                Storage::Real => "real",
-            },
+            storage: field.storage().name(),
         }
     }
 }

@@ -16,6 +16,7 @@ const SCALES: f64 = 6.0;
 
 /// A friction law over speeds from 0 on, in the units of its setting.
 #[derive(Debug, Clone, Serialize)]
+#[cfg_attr(feature = "serve", derive(utoipa::ToSchema))]
 pub struct LawCurve {
     /// Its name.
     pub law: &'static str,
@@ -39,6 +40,7 @@ pub struct LawCurve {
 
 /// A friction law at the velocity of the pull.
 #[derive(Debug, Clone, Copy, Serialize)]
+#[cfg_attr(feature = "serve", derive(utoipa::ToSchema))]
 pub struct LawPoint {
     /// v0.
     pub v0: f64,

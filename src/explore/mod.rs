@@ -16,7 +16,6 @@
 pub mod answer;
 pub mod chart;
 pub mod chart_bytes;
-mod command;
 pub mod encoded;
 pub mod known;
 pub mod law;

@@ -79,24 +79,32 @@ impl Followed {
 
 /// What became of a motion, in the units of its case. NaN and infinity are null in JSON.
 #[derive(Debug, Clone, Serialize)]
+#[cfg_attr(feature = "serve", derive(utoipa::ToSchema))]
 pub struct MotionSummary {
     /// How it ended up.
     pub outcome: &'static str,
     /// When that was known.
     pub decided: f64,
     /// From switch-on until ẋ stays within 1 % of v0.
+    #[cfg_attr(feature = "serve", schema(value_type = Option<f64>, required))]
     pub settle_time: f64,
     /// The smallest load since switch-on.
+    #[cfg_attr(feature = "serve", schema(value_type = Option<f64>, required))]
     pub n_min: f64,
     /// The largest spring force since switch-on.
+    #[cfg_attr(feature = "serve", schema(value_type = Option<f64>, required))]
     pub peak_force: f64,
     /// Period of stick-slip.
+    #[cfg_attr(feature = "serve", schema(value_type = Option<f64>, required))]
     pub period: f64,
     /// Time stuck in one period.
+    #[cfg_attr(feature = "serve", schema(value_type = Option<f64>, required))]
     pub stick_time: f64,
     /// Time in slip in one period.
+    #[cfg_attr(feature = "serve", schema(value_type = Option<f64>, required))]
     pub slip_time: f64,
     /// When the last stick ended.
+    #[cfg_attr(feature = "serve", schema(value_type = Option<f64>, required))]
     pub last_release: f64,
     /// Steps taken.
     pub steps: u64,
@@ -106,6 +114,7 @@ pub struct MotionSummary {
 
 /// An event of a motion.
 #[derive(Debug, Clone, Serialize)]
+#[cfg_attr(feature = "serve", derive(utoipa::ToSchema))]
 pub struct MotionEvent {
     /// When.
     pub t: f64,

@@ -4,17 +4,22 @@ use std::collections::BTreeMap;
 
 use serde::Serialize;
 
-use super::command;
 use super::encoded::{Array, Arrays};
 use super::motion::{Followed, MotionSummary};
 use crate::sweep::cells::trace::{MODES, Sample};
 
+/// The command that gives the same.
+const SIMULATE: &str = "slipmap simulate case.toml";
+
+/// What a motion says before its numbers. Where units are given, `unit_t` and so on tell those of
+/// its arrays.
 #[derive(Debug, Serialize)]
-struct Head {
+#[cfg_attr(feature = "serve", derive(utoipa::ToSchema))]
+pub struct MotionHead {
     #[serde(flatten)]
     summary: MotionSummary,
-    /// `unit_t` and so on, where units are given.
     #[serde(flatten)]
+    #[cfg_attr(feature = "serve", schema(ignore))]
     units: BTreeMap<String, String>,
     /// Samples by their names.
     arrays: BTreeMap<&'static str, Array>,
@@ -84,12 +89,12 @@ pub fn encoded(followed: &Followed) -> Result<Vec<u8>, serde_json::Error> {
         (format!("unit_{}", quantity.name), unit)
     };
     let given = units.force_length_time.is_some();
-    let head = Head {
+    let head = MotionHead {
         summary: MotionSummary::of(&followed.trace),
         units: QUANTITIES.iter().filter(|_| given).map(named).collect(),
         arrays: heads,
         modes: MODES.map(|(_, name)| name),
-        command: command::SIMULATE,
+        command: SIMULATE,
     };
     arrays.behind(&head)
 }

@@ -16,6 +16,7 @@ const MOST_INTERVALS: usize = 100_000;
 
 /// What there is to know of a point, in the units of its setting.
 #[derive(Debug, Clone, Serialize)]
+#[cfg_attr(feature = "serve", derive(utoipa::ToSchema))]
 pub struct Point {
     /// μ_K′(v0).
     pub mu_prime: f64,
@@ -49,6 +50,7 @@ pub struct Point {
 
 /// A crossing frequency, with its delays `first_delay` + 2πk/ω.
 #[derive(Debug, Clone, Serialize)]
+#[cfg_attr(feature = "serve", derive(utoipa::ToSchema))]
 pub struct PointCrossing {
     /// ω.
     pub omega: f64,
@@ -60,6 +62,7 @@ pub struct PointCrossing {
 
 /// The rightmost roots in physical units; none where nothing converged.
 #[derive(Debug, Clone, Serialize)]
+#[cfg_attr(feature = "serve", derive(utoipa::ToSchema))]
 pub struct Spectrum {
     /// The spectral abscissa.
     pub abscissa: Option<f64>,

@@ -33,6 +33,7 @@ impl Why {
 
 /// A problem.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "serve", derive(utoipa::ToSchema))]
 pub struct Problem {
     /// The status of the answer.
     pub status: u16,

@@ -16,6 +16,7 @@ use crate::sweep::input::source::Source;
 
 /// How stick-slip ends, in units of the setting.
 #[derive(Debug, Clone, Serialize)]
+#[cfg_attr(feature = "serve", derive(utoipa::ToSchema))]
 pub struct CriticalVelocity {
     /// v_c.
     pub vc: Option<f64>,

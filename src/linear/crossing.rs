@@ -47,6 +47,18 @@ pub enum Direction {
     Touch,
 }
 
+impl Direction {
+    /// −1 to the left, 0 where the pair touches the axis, 1 to the right.
+    #[must_use]
+    pub const fn sign(self) -> i8 {
+        match self {
+            Self::Left => -1,
+            Self::Touch => 0,
+            Self::Right => 1,
+        }
+    }
+}
+
 /// One crossing frequency with all its delays (equation 2 of the module).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Crossing {

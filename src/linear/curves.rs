@@ -43,6 +43,18 @@ pub enum StableSide {
     Longer,
 }
 
+impl StableSide {
+    /// −1 at shorter delays, 0 on neither side, 1 at longer ones.
+    #[must_use]
+    pub const fn sign(self) -> i8 {
+        match self {
+            Self::Shorter => -1,
+            Self::Neither => 0,
+            Self::Longer => 1,
+        }
+    }
+}
+
 /// A piece of a crossing curve between its corners, its folds and the edges of the window.
 #[derive(Debug, Clone, PartialEq)]
 pub struct CurvePiece {

@@ -9,9 +9,12 @@
 
 mod access;
 mod api;
+mod computed;
 mod maps;
+mod openapi;
 mod page;
 mod problem;
+mod served;
 mod work;
 
 use std::net::{IpAddr, SocketAddr, TcpListener};

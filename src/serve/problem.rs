@@ -20,6 +20,55 @@ impl Problem {
     }
 }
 
+impl Problem {
+    /// A request that should be TOML is not.
+    pub(super) fn no_toml() -> Self {
+        let detail = "the request is to be TOML: Content-Type: application/toml";
+        Self::of(StatusCode::UNSUPPORTED_MEDIA_TYPE, detail)
+    }
+
+    /// A request that should be text is not.
+    pub(super) fn no_text() -> Self {
+        Self::of(StatusCode::BAD_REQUEST, "the text is not UTF-8")
+    }
+}
+
+/// How any request may be refused, for the description of the interface.
+#[derive(utoipa::IntoResponses)]
+#[allow(dead_code, reason = "only described")]
+pub(super) enum Denied {
+    /// No token, or another one
+    #[response(status = 401, content_type = "application/problem+json")]
+    Token(Problem),
+    /// For another host
+    #[response(status = 421, content_type = "application/problem+json")]
+    Host(Problem),
+    /// Too many wait, or it takes too long
+    #[response(status = 503, content_type = "application/problem+json")]
+    Unavailable(Problem),
+}
+
+/// How requests with a text may be refused besides.
+#[derive(utoipa::IntoResponses)]
+#[allow(dead_code, reason = "only described")]
+pub(super) enum Refused {
+    /// The text is not UTF-8
+    #[response(status = 400, content_type = "application/problem+json")]
+    Text(Problem),
+    /// Sent by another page
+    #[response(status = 403, content_type = "application/problem+json")]
+    Origin(Problem),
+    /// It asks for more than is computed at once, or the text is too long
+    #[response(status = 413, content_type = "application/problem+json")]
+    TooLarge(Problem),
+    /// The request is not TOML
+    #[response(status = 415, content_type = "application/problem+json")]
+    Kind(Problem),
+    /// The text is not understood, or out of range; the problem may say where
+    #[response(status = 422, content_type = "application/problem+json")]
+    Unprocessable(Problem),
+}
+
 /// What is told where there is nothing.
 pub(super) fn nothing_here() -> Problem {
     Problem::of(StatusCode::NOT_FOUND, "there is nothing at this address")

@@ -6,8 +6,7 @@ use serde::{Deserialize, Serialize};
 
 use super::schema::{CORNER_DEGREE_OF_STABILITY, DEGREE_OF_STABILITY};
 use super::values::Number;
-use crate::linear::Direction;
-use crate::linear::curves::{Corner, CurvePiece, StableSide};
+use crate::linear::curves::{Corner, CurvePiece};
 use crate::sweep::Plan;
 use crate::sweep::cells::boundaries::BoundaryPlane;
 
@@ -249,16 +248,8 @@ impl CurveRows {
         self.degree.push(degree);
         self.vertex_count.push(piece.vertices.len() as i32);
         self.branch.push(piece.branch as i64);
-        self.direction.push(match piece.direction {
-            Direction::Left => -1,
-            Direction::Touch => 0,
-            Direction::Right => 1,
-        });
-        self.stable_side.push(match piece.stable_side {
-            StableSide::Shorter => -1,
-            StableSide::Neither => 0,
-            StableSide::Longer => 1,
-        });
+        self.direction.push(piece.direction.sign());
+        self.stable_side.push(piece.stable_side.sign());
         for vertex in &piece.vertices {
             self.p.push(vertex.p);
             self.tau.push(vertex.tau);

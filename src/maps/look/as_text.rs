@@ -3,6 +3,7 @@
 
 use crate::model::Control;
 use crate::model::table::TableColumn;
+use crate::sweep::input::command::command_line;
 use crate::sweep::input::law_kind::LawKind;
 use crate::sweep::input::parameter::{Group, Parameter};
 use crate::sweep::input::setting::Setting;
@@ -31,9 +32,9 @@ impl CellTexts {
         let spec = &plan.spec;
         let setting = plan.setting(index);
         if spec.limit {
-            let command = flags("slipmap vc --protocol=limit", &setting, Parameter::of_limit);
+            let asked = "vc --protocol=limit";
             return Self {
-                command: Some(command),
+                command: command_line(asked, &setting, Parameter::of_limit),
                 ..Self::default()
             };
         }
@@ -46,13 +47,11 @@ impl CellTexts {
         let no_v0 = |parameter| parameter != Parameter::V0;
         let vc = (law && (delay || uncontrolled)).then(|| text(spec, &setting, no_v0));
         let moves = law && slides && (delay || uncontrolled);
-        let said = setting.law().is_none_or(|law| law.name() != LawKind::TABLE);
-        let command = match (said, &point, &vc) {
-            (true, Some(_), _) => Some(flags("slipmap point", &setting, |p| of_point(&setting, p))),
-            (true, None, Some(_)) => Some(flags("slipmap vc", &setting, |p| {
-                no_v0(p) && of_point(&setting, p)
-            })),
-            _ => None,
+        let of_point = |parameter| of_point(&setting, parameter);
+        let command = match (&point, &vc) {
+            (Some(_), _) => command_line("point", &setting, of_point),
+            (None, Some(_)) => command_line("vc", &setting, |p| no_v0(p) && of_point(p)),
+            (None, None) => None,
         };
         Self {
             point,
@@ -71,21 +70,6 @@ fn of_point(setting: &Setting, parameter: Parameter) -> bool {
 /// A number that is read as the same.
 fn number(value: f64) -> String {
     format!("{value:?}")
-}
-
-fn flags(command: &str, setting: &Setting, wanted: impl Fn(Parameter) -> bool) -> String {
-    let mut text = command.to_owned();
-    if let Some(law) = setting.law().filter(|_| wanted(Parameter::MuS)) {
-        text += &format!(" --friction={}", law.name());
-    }
-    for parameter in Parameter::ALL {
-        let value = setting.get(parameter);
-        if wanted(parameter) && !value.is_nan() {
-            let flag = parameter.name().replace('_', "-");
-            text += &format!(" --{flag}={}", number(value));
-        }
-    }
-    text
 }
 
 /// A table of parameters.

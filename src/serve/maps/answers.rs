@@ -8,8 +8,6 @@ use serde_json::{Value, json};
 use super::frames::{CellQuery, CurvesQuery, Refused, ScaleName, WindowQuery};
 use crate::explore::encoded::{Array, Arrays};
 use crate::explore::known::KnownField;
-use crate::linear::Direction;
-use crate::linear::curves::StableSide;
 use crate::linear::status::FLAGS;
 use crate::maps::look::as_text::CellTexts;
 use crate::maps::look::{Asked, Facts, Look, Numbers, Scale, Shot, Shown, Stretch};
@@ -344,16 +342,8 @@ pub(super) fn curves(look: &Look, query: &CurvesQuery) -> Result<Vec<u8>, Refuse
     let found = found.map_err(Refused::damaged)?;
     let curves = found.iter().map(|curve| CurveHead {
         degree_of_stability: curve.degree_of_stability,
-        direction: match curve.piece.direction {
-            Direction::Left => -1,
-            Direction::Touch => 0,
-            Direction::Right => 1,
-        },
-        stable_side: match curve.piece.stable_side {
-            StableSide::Shorter => -1,
-            StableSide::Neither => 0,
-            StableSide::Longer => 1,
-        },
+        direction: curve.piece.direction.sign(),
+        stable_side: curve.piece.stable_side.sign(),
         array: arrays.push(curve.piece.vertices.iter().flat_map(|v| match p_is_x {
             true => [v.p, v.tau],
             false => [v.tau, v.p],

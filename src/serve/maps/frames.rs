@@ -8,6 +8,7 @@
 use std::io::{self, Read, Write};
 
 use serde::{Deserialize, Serialize};
+use utoipa::{IntoParams, ToSchema};
 
 /// No answer is longer.
 const LONGEST: u32 = 128 << 20;
@@ -37,7 +38,8 @@ pub(super) enum Ask {
 }
 
 /// A window on a map.
-#[derive(Debug, Clone, Serialize, Deserialize)]
+#[derive(Debug, Clone, Serialize, Deserialize, IntoParams)]
+#[into_params(parameter_in = Query)]
 pub(super) struct WindowQuery {
     /// The field that it shows.
     pub field: String,
@@ -69,7 +71,7 @@ pub(super) struct WindowQuery {
 }
 
 /// How pixels are spread.
-#[derive(Debug, Clone, Copy, Default, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, Default, Serialize, Deserialize, ToSchema)]
 #[serde(rename_all = "lowercase")]
 pub(super) enum ScaleName {
     #[default]
@@ -78,7 +80,8 @@ pub(super) enum ScaleName {
 }
 
 /// The curves of a plane.
-#[derive(Debug, Clone, Serialize, Deserialize)]
+#[derive(Debug, Clone, Serialize, Deserialize, IntoParams)]
+#[into_params(parameter_in = Query)]
 pub(super) struct CurvesQuery {
     /// The axis from left to right.
     pub x: String,
@@ -90,7 +93,8 @@ pub(super) struct CurvesQuery {
 }
 
 /// A cell.
-#[derive(Debug, Clone, Serialize, Deserialize)]
+#[derive(Debug, Clone, Serialize, Deserialize, IntoParams)]
+#[into_params(parameter_in = Query)]
 pub(super) struct CellQuery {
     /// Where: `AXIS:INDEX`, all axes.
     pub at: String,

@@ -10,6 +10,7 @@
 
 mod answers;
 mod child;
+mod described;
 mod frames;
 mod list;
 mod process;

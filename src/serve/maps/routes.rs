@@ -2,30 +2,56 @@
 
 use std::sync::Arc;
 
-use axum::Router;
 use axum::extract::rejection::QueryRejection;
 use axum::extract::{Path, Query, State};
 use axum::http::StatusCode;
 use axum::http::header::CONTENT_TYPE;
 use axum::response::{IntoResponse, Response};
-use axum::routing::get;
 use serde_json::Value;
+use utoipa::OpenApi;
+use utoipa_axum::router::OpenApiRouter;
+use utoipa_axum::routes;
 
-use super::frames::{Ask, CellQuery, CurvesQuery, Frame, Kind, WindowQuery};
+use super::described::{CurvesHead, MapCell, MapDescription, MapList, WindowHead};
+use super::frames::{Ask, CellQuery, CurvesQuery, Frame, Kind, ScaleName, WindowQuery};
 use super::readers::Maps;
 use super::scan::Found;
-use crate::serve::problem::Problem;
+use crate::serve::openapi::Encoded;
+use crate::serve::problem::{Denied, Problem};
 
 /// The routes of all addresses below `/api/v1/maps`.
-pub(in crate::serve) fn routes<S: Clone + Send + Sync + 'static>(maps: Arc<Maps>) -> Router<S> {
-    Router::new()
-        .route("/api/v1/maps", get(list))
-        .route("/api/v1/maps/{id}", get(description))
-        .route("/api/v1/maps/{id}/window", get(window))
-        .route("/api/v1/maps/{id}/curves", get(curves))
-        .route("/api/v1/maps/{id}/cell", get(cell))
-        .route("/api/v1/maps/{id}/sweep", get(sweep))
+pub(in crate::serve) fn routes<S>(maps: Arc<Maps>) -> OpenApiRouter<S>
+where
+    S: Clone + Send + Sync + 'static,
+{
+    OpenApiRouter::with_openapi(Schemas::openapi())
+        .routes(routes!(list))
+        .routes(routes!(description))
+        .routes(routes!(window))
+        .routes(routes!(curves))
+        .routes(routes!(cell))
+        .routes(routes!(sweep))
         .with_state(maps)
+}
+
+/// What heads say before numbers.
+#[derive(OpenApi)]
+#[openapi(components(schemas(WindowHead, CurvesHead, ScaleName)))]
+struct Schemas;
+
+/// How requests about a map may be refused besides.
+#[derive(utoipa::IntoResponses)]
+#[allow(dead_code, reason = "only described")]
+enum NoMap {
+    /// There is no map of this id
+    #[response(status = 404, content_type = "application/problem+json")]
+    None(Problem),
+    /// The map has not got what is asked for
+    #[response(status = 422, content_type = "application/problem+json")]
+    Unprocessable(Problem),
+    /// The map cannot be read
+    #[response(status = 502, content_type = "application/problem+json")]
+    Damaged(Problem),
 }
 
 type Asked<T> = Result<Query<T>, QueryRejection>;
@@ -56,12 +82,32 @@ async fn asked(maps: &Maps, id: &str, ask: Ask) -> Result<Response, Problem> {
     Ok(answered(maps.ask(&found, &ask).await?))
 }
 
-/// The maps below the folder.
+/// The maps below the folder
+#[utoipa::path(
+    get,
+    path = "/api/v1/maps",
+    tag = "maps",
+    responses(
+        (status = 200, description = "The maps", body = MapList),
+        Denied,
+    ),
+)]
 async fn list(State(maps): State<Arc<Maps>>) -> axum::Json<Value> {
     axum::Json(maps.list.json().await)
 }
 
-/// What there is to know of a map besides its cells.
+/// What there is to know of a map besides its cells
+#[utoipa::path(
+    get,
+    path = "/api/v1/maps/{id}",
+    tag = "maps",
+    params(("id" = String, Path, description = "as the list has it")),
+    responses(
+        (status = 200, description = "The map", body = MapDescription),
+        Denied,
+        NoMap,
+    ),
+)]
 async fn description(
     State(maps): State<Arc<Maps>>,
     Path(id): Path<String>,
@@ -77,7 +123,19 @@ async fn description(
     Ok(axum::Json(told))
 }
 
-/// Cells in a plane, as pixels.
+/// Cells in a plane, as pixels
+#[utoipa::path(
+    get,
+    path = "/api/v1/maps/{id}/window",
+    tag = "maps",
+    params(("id" = String, Path, description = "as the list has it"), WindowQuery),
+    responses(
+        (status = 200, description = "A head (`WindowHead`) and arrays", body = Encoded,
+            content_type = "application/octet-stream"),
+        Denied,
+        NoMap,
+    ),
+)]
 async fn window(
     State(maps): State<Arc<Maps>>,
     Path(id): Path<String>,
@@ -92,7 +150,19 @@ async fn window(
     asked(&maps, &id, Ask::Window(query)).await
 }
 
-/// The curves in a plane.
+/// The curves in a plane
+#[utoipa::path(
+    get,
+    path = "/api/v1/maps/{id}/curves",
+    tag = "maps",
+    params(("id" = String, Path, description = "as the list has it"), CurvesQuery),
+    responses(
+        (status = 200, description = "A head (`CurvesHead`) and arrays", body = Encoded,
+            content_type = "application/octet-stream"),
+        Denied,
+        NoMap,
+    ),
+)]
 async fn curves(
     State(maps): State<Arc<Maps>>,
     Path(id): Path<String>,
@@ -101,7 +171,18 @@ async fn curves(
     asked(&maps, &id, Ask::Curves(said(query)?)).await
 }
 
-/// One cell.
+/// One cell
+#[utoipa::path(
+    get,
+    path = "/api/v1/maps/{id}/cell",
+    tag = "maps",
+    params(("id" = String, Path, description = "as the list has it"), CellQuery),
+    responses(
+        (status = 200, description = "The cell", body = MapCell),
+        Denied,
+        NoMap,
+    ),
+)]
 async fn cell(
     State(maps): State<Arc<Maps>>,
     Path(id): Path<String>,
@@ -110,7 +191,19 @@ async fn cell(
     asked(&maps, &id, Ask::Cell(said(query)?)).await
 }
 
-/// The sweep file's text.
+/// The sweep file's text
+#[utoipa::path(
+    get,
+    path = "/api/v1/maps/{id}/sweep",
+    tag = "maps",
+    params(("id" = String, Path, description = "as the list has it")),
+    responses(
+        (status = 200, description = "The text", body = String,
+            content_type = "text/plain; charset=utf-8"),
+        Denied,
+        NoMap,
+    ),
+)]
 async fn sweep(State(maps): State<Arc<Maps>>, Path(id): Path<String>) -> Result<Response, Problem> {
     asked(&maps, &id, Ask::Sweep).await
 }

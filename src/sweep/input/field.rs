@@ -22,6 +22,19 @@ pub enum Storage {
     Real,
 }
 
+impl Storage {
+    /// The name.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Count => "count",
+            Self::Kind => "kind",
+            Self::Few => "few",
+            Self::Real => "real",
+        }
+    }
+}
+
 /// How the values of a field are spread, which tells what scale shows them.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Spread {

@@ -5,6 +5,7 @@ pub mod best_plane;
 pub mod case_file;
 mod catalogue;
 pub mod class;
+pub mod command;
 mod draft;
 pub mod field;
 pub mod friction_table;

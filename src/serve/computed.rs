@@ -1,0 +1,217 @@
+//! Requests that are computed now: texts as in files, answered by [`crate::explore`].
+
+use axum::body::Bytes;
+use axum::extract::State;
+use axum::http::header::{self, HeaderMap};
+use axum::response::{IntoResponse, Response};
+use utoipa_axum::router::OpenApiRouter;
+use utoipa_axum::routes;
+
+use super::openapi::Encoded;
+use super::problem::{Denied, Problem, Refused};
+use super::served::Served;
+use crate::explore::answer::WithCommand;
+use crate::explore::known::Known;
+use crate::explore::law::LawCurve;
+use crate::explore::point::Point;
+use crate::explore::vc::CriticalVelocity;
+use crate::explore::{self, Limits};
+
+/// Their addresses.
+pub(super) fn routes() -> OpenApiRouter<Served> {
+    OpenApiRouter::new()
+        .routes(routes!(chart))
+        .routes(routes!(point))
+        .routes(routes!(vc))
+        .routes(routes!(motion))
+        .routes(routes!(law))
+        .routes(routes!(parameters))
+}
+
+/// Texts of requests, for the description of the interface.
+mod examples {
+    pub(super) const CHART: &str = "boundaries = true\n\n[axes]\n\
+        alpha_v = { from = -1.0, to = 0.2, points = 60 }\n\
+        tau = { from = 0.0, to = 12.0, points = 80 }\n\n[fixed]\nmu_prime = -0.3\n";
+    pub(super) const POINT: &str = "[fixed]\nmu_prime = -0.3\nalpha_v = -0.33\ntau = 4.15\n";
+    pub(super) const VC: &str = "[fixed]\nalpha_v = -0.33\ntau = 4.15\n\n[friction]\n\
+        law = \"weakening\"\nmu0 = 0.5\nv_s = 0.5\n";
+    pub(super) const MOTION: &str = "switch_on = 70.0\n\n[fixed]\nv0 = 0.35\n\
+        alpha_v = -0.33\ntau = 4.15\n\n[friction]\nlaw = \"weakening\"\nmu0 = 0.5\n\
+        v_s = 0.5\n\n[start]\nx_dot0 = 0.3535\n";
+    pub(super) const LAW: &str = "[friction]\nlaw = \"stribeck\"\nmu0 = 0.4\nv_s = 0.5\n";
+}
+
+/// The text of a request.
+fn text(headers: &HeaderMap, body: &Bytes) -> Result<String, Problem> {
+    let kind = headers.get(header::CONTENT_TYPE);
+    if kind.is_none_or(|kind| kind.as_bytes() != b"application/toml") {
+        return Err(Problem::no_toml());
+    }
+    let text = std::str::from_utf8(body);
+    Ok(text.map_err(|_| Problem::no_text())?.to_owned())
+}
+
+/// The answer to what a text describes.
+async fn answer(
+    served: Served,
+    request: explore::Request,
+    text: Result<String, Problem>,
+) -> Result<Response, Problem> {
+    let text = text?;
+    let limits = Limits::default();
+    let computed = served
+        .work
+        .run(move |stop| explore::answer(request, &text, &limits, stop));
+    let kind = [(header::CONTENT_TYPE, request.content_type())];
+    Ok((kind, computed.await?).into_response())
+}
+
+/// Cells and curves of a sweep
+///
+/// The text is a sweep file of few cells: 4,000,000 of the closed form, 1,000,000 whose roots, or
+/// 1,000 whose motions are followed. The answer is a head (`ChartHead`) and arrays, see the
+/// description of this interface.
+#[utoipa::path(
+    post,
+    path = "/api/v1/chart",
+    tag = "computed",
+    request_body(
+        content = String,
+        content_type = "application/toml",
+        example = json!(examples::CHART),
+    ),
+    responses(
+        (status = 200, description = "A chart", body = Encoded,
+            content_type = "application/octet-stream"),
+        Denied,
+        Refused,
+    ),
+)]
+async fn chart(
+    State(served): State<Served>,
+    headers: HeaderMap,
+    body: Bytes,
+) -> Result<Response, Problem> {
+    answer(served, explore::Request::Chart, text(&headers, &body)).await
+}
+
+/// Linear stability at a point
+///
+/// The text has the tables `[fixed]`, `[friction]` and `[units]` of a sweep file.
+#[utoipa::path(
+    post,
+    path = "/api/v1/point",
+    tag = "computed",
+    request_body(
+        content = String,
+        content_type = "application/toml",
+        example = json!(examples::POINT),
+    ),
+    responses(
+        (status = 200, description = "The point", body = WithCommand<Point>),
+        Denied,
+        Refused,
+    ),
+)]
+async fn point(
+    State(served): State<Served>,
+    headers: HeaderMap,
+    body: Bytes,
+) -> Result<Response, Problem> {
+    answer(served, explore::Request::Point, text(&headers, &body)).await
+}
+
+/// The critical velocity at a point, by the protocol `follow`
+///
+/// The text has a friction law and no v0.
+#[utoipa::path(
+    post,
+    path = "/api/v1/vc",
+    tag = "computed",
+    request_body(
+        content = String,
+        content_type = "application/toml",
+        example = json!(examples::VC),
+    ),
+    responses(
+        (status = 200, description = "How stick-slip ends", body = WithCommand<CriticalVelocity>),
+        Denied,
+        Refused,
+    ),
+)]
+async fn vc(
+    State(served): State<Served>,
+    headers: HeaderMap,
+    body: Bytes,
+) -> Result<Response, Problem> {
+    let text = text(&headers, &body);
+    answer(served, explore::Request::CriticalVelocity, text).await
+}
+
+/// The motion of a case
+///
+/// The text is a case file. Of more than 20,000 samples every second one is left out until they
+/// are fewer, but for those at events. The answer is a head (`MotionHead`) and arrays, see the
+/// description of this interface.
+#[utoipa::path(
+    post,
+    path = "/api/v1/motion",
+    tag = "computed",
+    request_body(
+        content = String,
+        content_type = "application/toml",
+        example = json!(examples::MOTION),
+    ),
+    responses(
+        (status = 200, description = "A motion", body = Encoded,
+            content_type = "application/octet-stream"),
+        Denied,
+        Refused,
+    ),
+)]
+async fn motion(
+    State(served): State<Served>,
+    headers: HeaderMap,
+    body: Bytes,
+) -> Result<Response, Problem> {
+    answer(served, explore::Request::Motion, text(&headers, &body)).await
+}
+
+/// A friction law as a curve
+///
+/// The text has the table `[friction]`, and may have v0 in `[fixed]`, and `[units]`.
+#[utoipa::path(
+    post,
+    path = "/api/v1/law",
+    tag = "computed",
+    request_body(
+        content = String,
+        content_type = "application/toml",
+        example = json!(examples::LAW),
+    ),
+    responses(
+        (status = 200, description = "The law", body = LawCurve),
+        Denied,
+        Refused,
+    ),
+)]
+async fn law(
+    State(served): State<Served>,
+    headers: HeaderMap,
+    body: Bytes,
+) -> Result<Response, Problem> {
+    answer(served, explore::Request::Law, text(&headers, &body)).await
+}
+
+/// All parameters, friction laws and fields
+#[utoipa::path(
+    get,
+    path = "/api/v1/parameters",
+    tag = "computed",
+    responses((status = 200, description = "What there is", body = Known), Denied),
+)]
+async fn parameters(State(served): State<Served>) -> Result<Response, Problem> {
+    let asked = explore::Request::Parameters;
+    answer(served, asked, Ok(String::new())).await
+}

@@ -1,0 +1,64 @@
+//! The command line that asks for a setting.
+
+use super::law_kind::LawKind;
+use super::parameter::Parameter;
+use super::setting::Setting;
+
+/// `slipmap COMMAND` with the friction law of a setting and its `wanted` parameters, those of
+/// default values left out: numbers in the fewest digits that are read as the same ones. None for
+/// a table, whose points are in a file.
+#[must_use]
+pub fn command_line(
+    command: &str,
+    setting: &Setting,
+    wanted: impl Fn(Parameter) -> bool,
+) -> Option<String> {
+    let law = match setting.law() {
+        None => String::new(),
+        Some(LawKind::Table(_)) => return None,
+        Some(law) => format!(" --friction={}", law.name()),
+    };
+    let flags = Parameter::ALL.into_iter().filter_map(|parameter| {
+        let value = setting.get(parameter);
+        let default = parameter.default_value().map(f64::to_bits);
+        let said = wanted(parameter) && !value.is_nan() && default != Some(value.to_bits());
+        let flag = parameter.long_flag().filter(|_| said)?;
+        Some(format!(" --{flag}={value}"))
+    });
+    Some(format!(
+        "slipmap {command}{law}{}",
+        flags.collect::<String>()
+    ))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::sweep::input::point_file::{PointOf, PointSpec};
+
+    fn said(command: &str, text: &str, of: PointOf) -> Option<String> {
+        let setting = PointSpec::read(text, of).unwrap().setting;
+        command_line(command, &setting, |parameter| setting.uses(parameter))
+    }
+
+    #[test]
+    fn only_what_is_given_is_said_and_to_the_last_digit() {
+        let text = "[fixed]\nmu_prime = -0.30000000000000004\ntau = 1e-9\nalpha_v = 0\nmu_k = 1\n";
+        let flags = "--mu-prime=-0.30000000000000004 --tau=0.000000001";
+        let found = said("point", text, PointOf::Sliding).unwrap();
+        assert_eq!(found, format!("slipmap point {flags}"));
+        let text = "[fixed]\nalpha_n = -2\ntau = 0.5\nmass = 4\n[friction]\nlaw = \"weakening\"\n\
+            mu_prime_rest = -1\nv_s = 0.5\n";
+        let flags = "--friction=weakening --alpha-n=-2 --tau=0.5 --mass=4 --v-s=0.5 \
+            --mu-prime-rest=-1";
+        let found = said("vc", text, PointOf::CriticalVelocity).unwrap();
+        assert_eq!(found, format!("slipmap vc {flags}"));
+    }
+
+    #[test]
+    fn a_table_is_not_said_by_flags() {
+        let text = "[fixed]\nv0 = 0.1\ntau = 1\n[friction]\nlaw = \"table\"\n\
+            speeds = [0, 1]\nmu_k = [0.9, 0.5]\n";
+        assert_eq!(said("point", text, PointOf::Sliding), None);
+    }
+}
