@@ -2,114 +2,16 @@
 
 #[path = "common/program.rs"]
 mod program;
+#[path = "common/server.rs"]
+mod server;
 
-use std::io::{BufRead, BufReader, Read, Write};
 use std::net::TcpStream;
-use std::process::{Child, ChildStdout, Stdio};
 use std::time::{Duration, Instant};
 
 use program::{Folder, out};
+use server::{Answer, Serving};
 use slipmap::linear::Crossings;
 use slipmap::model::Groups;
-
-/// A server of the real program.
-struct Serving {
-    child: Child,
-    _out: BufReader<ChildStdout>,
-    address: String,
-    token: String,
-}
-
-impl Drop for Serving {
-    fn drop(&mut self) {
-        drop(self.child.kill());
-        drop(self.child.wait());
-    }
-}
-
-/// What came back.
-struct Answer {
-    status: u16,
-    head: String,
-    body: Vec<u8>,
-}
-
-impl Answer {
-    fn json(&self) -> serde_json::Value {
-        serde_json::from_slice(&self.body).unwrap()
-    }
-}
-
-impl Serving {
-    fn new(folder: &Folder) -> Self {
-        let mut command = folder.command(&["serve", "--port", "0", "--threads", "2"]);
-        let mut child = command
-            .stdout(Stdio::piped())
-            .stderr(Stdio::null())
-            .spawn()
-            .unwrap();
-        let mut lines = BufReader::new(child.stdout.take().unwrap());
-        let mut link = String::new();
-        lines.read_line(&mut link).unwrap();
-        let link = link.trim().strip_prefix("http://").unwrap();
-        let (address, token) = link.split_once("/?token=").unwrap();
-        Self {
-            address: address.to_owned(),
-            token: token.to_owned(),
-            child,
-            _out: lines,
-        }
-    }
-
-    /// Sends bytes and reads until the server closes the connection.
-    fn send(&self, bytes: &[u8]) -> Answer {
-        let mut stream = TcpStream::connect(&self.address).unwrap();
-        stream
-            .set_read_timeout(Some(Duration::from_secs(30)))
-            .unwrap();
-        // A server that refuses early may close before it has read all.
-        drop(stream.write_all(bytes));
-        let mut read = Vec::new();
-        drop(stream.read_to_end(&mut read));
-        let end = read
-            .windows(4)
-            .position(|w| w == b"\r\n\r\n")
-            .unwrap_or(read.len());
-        let head = String::from_utf8_lossy(&read[..end]).into_owned();
-        let status = head.split(' ').nth(1).and_then(|code| code.parse().ok());
-        Answer {
-            status: status.unwrap_or(0),
-            body: read.get(end + 4..).unwrap_or_default().to_vec(),
-            head,
-        }
-    }
-
-    fn request(&self, line: &str, headers: &[(&str, &str)], body: &str) -> Answer {
-        let mut text = format!("{line} HTTP/1.1\r\nConnection: close\r\n");
-        if !headers.iter().any(|(name, _)| *name == "Host") {
-            text += &format!("Host: {}\r\n", self.address);
-        }
-        for (name, value) in headers {
-            text += &format!("{name}: {value}\r\n");
-        }
-        text += &format!("Content-Length: {}\r\n\r\n{body}", body.len());
-        self.send(text.as_bytes())
-    }
-
-    fn bearer(&self) -> String {
-        format!("Bearer {}", self.token)
-    }
-
-    /// A request for what a text describes, by who has the token.
-    fn ask(&self, what: &str, toml: &str) -> Answer {
-        let bearer = self.bearer();
-        let headers = [
-            ("Authorization", &*bearer),
-            ("Content-Type", "application/toml"),
-        ];
-        self.request(&format!("POST /api/v1/{what}"), &headers, toml)
-    }
-}
 
 const POINT: &str = "[fixed]\nmu_prime = -0.3\nalpha_v = -0.33\ntau = 4.15\n";
 const PLANE: &str = "boundaries = true\n[axes]\nalpha_v = { from = -1.0, to = 0.2, points = 60 }\n\
