@@ -4,7 +4,7 @@ use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
 use crate::linear::Direction;
-use crate::linear::curves::StableSide;
+use crate::linear::curves::{CurvePiece, StableSide};
 use crate::sweep::engine::RunError;
 use crate::sweep::grid::{Grid, TooLarge};
 use crate::sweep::{Plan, SpecError, SweepSpec};
@@ -66,6 +66,27 @@ pub struct ChartCurve {
     pub vertices: Vec<[f64; 2]>,
 }
 
+impl ChartCurve {
+    /// A curve as it was traced.
+    #[must_use]
+    pub fn of(degree_of_stability: f64, piece: &CurvePiece) -> Self {
+        Self {
+            degree_of_stability,
+            direction: match piece.direction {
+                Direction::Left => -1,
+                Direction::Touch => 0,
+                Direction::Right => 1,
+            },
+            stable_side: match piece.stable_side {
+                StableSide::Shorter => -1,
+                StableSide::Neither => 0,
+                StableSide::Longer => 1,
+            },
+            vertices: piece.vertices.iter().map(|v| [v.p, v.tau]).collect(),
+        }
+    }
+}
+
 /// A sweep in memory.
 #[derive(Debug, Clone)]
 pub struct Chart {
@@ -115,20 +136,13 @@ fn curves(grid: &Grid) -> Vec<ChartCurve> {
     let mut curves = Vec::new();
     for of in of_planes {
         let Ok(traced) = &of.curves else { continue };
-        curves.extend(traced.pieces.iter().map(|piece| ChartCurve {
-            degree_of_stability: of.degree_of_stability,
-            direction: match piece.direction {
-                Direction::Left => -1,
-                Direction::Touch => 0,
-                Direction::Right => 1,
-            },
-            stable_side: match piece.stable_side {
-                StableSide::Shorter => -1,
-                StableSide::Neither => 0,
-                StableSide::Longer => 1,
-            },
-            vertices: piece.vertices.iter().map(|v| [v.p, v.tau]).collect(),
-        }));
+        let degree = of.degree_of_stability;
+        curves.extend(
+            traced
+                .pieces
+                .iter()
+                .map(|piece| ChartCurve::of(degree, piece)),
+        );
     }
     curves
 }
