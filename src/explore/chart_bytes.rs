@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use super::chart::Chart;
+use super::chart::{Chart, ChartCurve};
 use super::encoded::{Array, Arrays};
 use crate::sweep::input::field::Storage;
 
@@ -42,14 +42,28 @@ struct FieldHead {
     array: Array,
 }
 
+/// What the head says of a curve.
 #[derive(Debug, Serialize)]
 #[cfg_attr(feature = "serve", derive(utoipa::ToSchema))]
-struct CurveHead {
+pub struct CurveHead {
     degree_of_stability: f64,
     direction: i8,
     stable_side: i8,
     #[serde(flatten)]
     array: Array,
+}
+
+impl CurveHead {
+    /// Of a curve, whose vertices go to the arrays.
+    #[must_use]
+    pub fn of(curve: &ChartCurve, arrays: &mut Arrays) -> Self {
+        Self {
+            degree_of_stability: curve.degree_of_stability,
+            direction: curve.direction,
+            stable_side: curve.stable_side,
+            array: arrays.push(curve.vertices.iter().flatten().copied()),
+        }
+    }
 }
 
 /// The bytes of a chart that took so long to compute, if that is known.
@@ -72,12 +86,7 @@ pub fn encoded(chart: &Chart, milliseconds: Option<f64>) -> Result<Vec<u8>, serd
             .collect(),
         fields: fields(chart, &mut arrays),
         curves: (chart.curves.iter())
-            .map(|curve| CurveHead {
-                degree_of_stability: curve.degree_of_stability,
-                direction: curve.direction,
-                stable_side: curve.stable_side,
-                array: arrays.push(curve.vertices.iter().flatten().copied()),
-            })
+            .map(|curve| CurveHead::of(curve, &mut arrays))
             .collect(),
         milliseconds,
     };
