@@ -2,14 +2,14 @@
 
 #[path = "common/program.rs"]
 mod program;
-#[path = "common/serving.rs"]
-mod serving;
+#[path = "common/server.rs"]
+mod server;
 
 use std::collections::BTreeSet;
 
 use program::Folder;
 use serde_json::Value;
-use serving::{Serving, decoded};
+use server::{Serving, decoded};
 
 const METHODS: [&str; 2] = ["get", "post"];
 

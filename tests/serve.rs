@@ -2,14 +2,14 @@
 
 #[path = "common/program.rs"]
 mod program;
-#[path = "common/serving.rs"]
-mod serving;
+#[path = "common/server.rs"]
+mod server;
 
 use std::net::TcpStream;
 use std::time::{Duration, Instant};
 
 use program::{Folder, out};
-use serving::{Answer, Serving, decoded};
+use server::{Answer, Serving, decoded};
 use slipmap::linear::Crossings;
 use slipmap::model::Groups;
 

@@ -3,8 +3,9 @@
 use std::io::Write;
 use std::net::{IpAddr, Ipv4Addr};
 use std::path::PathBuf;
+use std::process::{Command, Stdio};
 
-use slipmap::serve::{ReaderCommand, Server, Serving};
+use slipmap::serve::{Place, ReaderCommand, Server, Serving};
 
 use super::failure::Failure;
 use super::read_map;
@@ -12,26 +13,120 @@ use super::run::default_threads;
 use super::say;
 use super::signals::Signals;
 
+/// The port where none is given.
+const DEFAULT_PORT: u16 = 8417;
+/// The program that opens a link in a browser.
+const OPENER: &str = if cfg!(target_os = "macos") {
+    "open"
+} else {
+    "xdg-open"
+};
+
 #[derive(Debug, clap::Args)]
-#[command(after_help = "Example: slipmap serve --port 0")]
+#[command(after_help = "Examples: slipmap serve maps --open\n          \
+    slipmap serve --socket ~/slipmap.sock, and ssh -L 8417:/home/me/slipmap.sock HOST elsewhere")]
 pub(super) struct Args {
     /// Folder whose maps are shown, and those of the folders in it
     #[arg(value_name = "FOLDER", default_value = ".")]
     folder: PathBuf,
-    /// Port on this machine; 0 takes any free one
-    #[arg(long, value_name = "N", default_value_t = 8417)]
+    /// Port on this machine; 0 takes any free one. With --socket: where the tunnel begins
+    #[arg(long, value_name = "N", default_value_t = DEFAULT_PORT)]
     port: u16,
+    /// Listen on a new socket of this name instead, for `ssh -L`
+    #[cfg(unix)]
+    #[arg(long, value_name = "PATH", conflicts_with_all = ["address", "open"])]
+    socket: Option<PathBuf>,
+    /// Open the link in a browser
+    #[arg(long)]
+    open: bool,
+    /// Listen on this address instead of this machine's own: others can then reach the server
+    #[arg(long, value_name = "IP", default_value_t = IpAddr::V4(Ipv4Addr::LOCALHOST))]
+    address: IpAddr,
     /// Threads that compute [default: all that this process may use]
     #[arg(long, value_name = "N",
           value_parser = clap::value_parser!(u16).range(1..=1024))]
     threads: Option<u16>,
 }
 
+impl Args {
+    fn place(&self) -> Place {
+        #[cfg(unix)]
+        if let Some(path) = self.socket.clone() {
+            let port = if self.port == 0 {
+                DEFAULT_PORT
+            } else {
+                self.port
+            };
+            return Place::Socket { path, port };
+        }
+        Place::Address {
+            address: self.address,
+            port: self.port,
+        }
+    }
+
+    /// Where the server cannot listen.
+    fn refused(&self, error: &std::io::Error) -> Failure {
+        match self.place() {
+            Place::Address { address, port } => Failure::bad_input_with_help(
+                format!("cannot listen on port {port} of {address}: {error}"),
+                "--port 0 takes any free one",
+            ),
+            #[cfg(unix)]
+            Place::Socket { path, .. } => {
+                Failure::bad_input(format!("cannot listen on {}: {error}", path.display()))
+            }
+        }
+    }
+
+    /// Who may use the server, and how.
+    fn tell(&self, server: &Server) {
+        match self.place() {
+            #[cfg(unix)]
+            Place::Socket { path, port } => say::remark(format_args!(
+                "on the machine with the browser: ssh -L {port}:{} HOST, then open the link; \
+                Ctrl-C ends the server",
+                std::path::absolute(&path).unwrap_or(path).display()
+            )),
+            Place::Address { address, .. } if !address.is_loopback() => say::remark(format_args!(
+                "warning: everyone who can reach {address} and has this link may use the server \
+                and see its maps, and what is sent is not encrypted; Ctrl-C ends it"
+            )),
+            Place::Address { .. } => {
+                say::remark("whoever has this link may use the server; Ctrl-C ends it");
+            }
+        }
+        if self.open {
+            open(&server.link());
+        }
+    }
+}
+
+/// Opens a link in a browser; where that fails, it can be opened by hand.
+fn open(link: &str) {
+    let mut command = Command::new(OPENER);
+    command.arg(link).stdin(Stdio::null());
+    match command.stdout(Stdio::null()).stderr(Stdio::null()).spawn() {
+        Ok(mut child) => {
+            std::thread::spawn(move || match child.wait() {
+                Ok(ended) if ended.success() => {}
+                _ => say::remark(format_args!("{OPENER} did not open the link")),
+            });
+        }
+        Err(error) => say::remark(format_args!(
+            "cannot run {OPENER} to open the link: {error}"
+        )),
+    }
+}
+
 pub(super) fn main(args: &Args) -> Result<(), Failure> {
     let signals = Signals::catch()?;
+    if !args.folder.is_dir() {
+        let folder = args.folder.display();
+        return Err(Failure::bad_input(format!("{folder} is no folder")));
+    }
     let serving = Serving {
-        address: IpAddr::V4(Ipv4Addr::LOCALHOST),
-        port: args.port,
+        place: args.place(),
         threads: args.threads.map_or_else(default_threads, usize::from),
         folder: args.folder.clone(),
         reader: ReaderCommand {
@@ -39,14 +134,9 @@ pub(super) fn main(args: &Args) -> Result<(), Failure> {
             arguments: vec![read_map::NAME.into()],
         },
     };
-    let server = Server::listen(&serving).map_err(|error| {
-        Failure::bad_input_with_help(
-            format!("cannot listen on port {}: {error}", args.port),
-            "--port 0 takes any free one",
-        )
-    })?;
+    let server = Server::listen(&serving).map_err(|error| args.refused(&error))?;
     writeln!(std::io::stdout().lock(), "{}", server.link())?;
-    say::remark("whoever has this link may use the server; Ctrl-C ends it");
+    args.tell(&server);
     let stop = std::sync::Arc::clone(&signals.stop);
     server.run(move || stop.load(std::sync::atomic::Ordering::Relaxed))?;
     Ok(())

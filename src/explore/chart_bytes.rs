@@ -42,14 +42,19 @@ struct FieldHead {
     array: Array,
 }
 
+/// A curve.
 #[derive(Debug, Serialize)]
 #[cfg_attr(feature = "serve", derive(utoipa::ToSchema))]
-struct CurveHead {
-    degree_of_stability: f64,
-    direction: i8,
-    stable_side: i8,
+pub struct CurveHead {
+    /// σ: roots on the curve have Re λ = −σ.
+    pub degree_of_stability: f64,
+    /// Where a pair crosses with growing delay: −1 to the left, 0 it touches, 1 to the right.
+    pub direction: i8,
+    /// On which side sliding is stable: −1 at shorter delays, 0 on neither, 1 at longer ones.
+    pub stable_side: i8,
+    /// The coordinates, the first and the second one by turns.
     #[serde(flatten)]
-    array: Array,
+    pub array: Array,
 }
 
 /// The bytes of a chart that took so long to compute, if that is known.

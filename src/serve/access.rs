@@ -4,6 +4,7 @@
 //! browser can send requests to a port of this machine, so neither is its address.
 
 use std::io;
+use std::net::IpAddr;
 
 use axum::http::header::{AUTHORIZATION, COOKIE, HOST, ORIGIN};
 use axum::http::{HeaderMap, Method};
@@ -11,11 +12,23 @@ use axum::http::{HeaderMap, Method};
 /// Bytes of a token.
 const BYTES: usize = 32;
 
+/// For which hosts requests may be.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Hosts {
+    /// This machine, at this port.
+    Own(u16),
+    /// And this address.
+    And(IpAddr, u16),
+    /// This machine at any port: the far end of a tunnel has its own.
+    Tunnel,
+}
+
 /// What requests have to bring.
 #[derive(Debug)]
 pub(super) struct Access {
     token: String,
-    port: u16,
+    hosts: Hosts,
+    cookie_name: String,
 }
 
 /// Why a request is refused.
@@ -29,27 +42,69 @@ pub(super) enum Refusal {
     Origin,
 }
 
+/// So many random bytes, in hexadecimal.
+fn random(count: usize) -> io::Result<String> {
+    let mut bytes = vec![0; count];
+    getrandom::fill(&mut bytes).map_err(io::Error::other)?;
+    Ok(crate::sweep::plan::in_hexadecimal(&bytes))
+}
+
+impl Hosts {
+    /// Whether a request for `host` is for one of these.
+    fn have(self, host: &str) -> bool {
+        let own = |name: &str| ["127.0.0.1", "localhost", "[::1]"].contains(&name);
+        let Some((name, port)) = host.rsplit_once(':') else {
+            // A tunnel that ends at port 80.
+            return self == Self::Tunnel && own(host);
+        };
+        let digits = !port.is_empty() && port.bytes().all(|byte| byte.is_ascii_digit());
+        let Some(port) = port.parse::<u16>().ok().filter(|_| digits) else {
+            return false;
+        };
+        match self {
+            Self::Own(here) => port == here && own(name),
+            Self::Tunnel => own(name),
+            Self::And(address, here) => port == here && (own(name) || is_address(name, address)),
+        }
+    }
+}
+
+/// Whether a name is this address; any address, if it is that of all.
+fn is_address(name: &str, address: IpAddr) -> bool {
+    let bracketed = name
+        .strip_prefix('[')
+        .and_then(|name| name.strip_suffix(']'));
+    let named = match bracketed {
+        Some(name) => name.parse().map(IpAddr::V6),
+        None => name.parse().map(IpAddr::V4),
+    };
+    // A page elsewhere reaches this server by a name of its own, never by an address.
+    named.is_ok_and(|named| named == address || address.is_unspecified())
+}
+
 impl Access {
     /// With a new token.
-    pub(super) fn new(port: u16) -> io::Result<Self> {
-        let mut bytes = [0; BYTES];
-        getrandom::fill(&mut bytes).map_err(io::Error::other)?;
-        let token = crate::sweep::plan::in_hexadecimal(&bytes);
-        Ok(Self { token, port })
+    pub(super) fn new(hosts: Hosts) -> io::Result<Self> {
+        let token = random(BYTES)?;
+        // Ports of one host share their cookies, and tunnels may end at any port.
+        let cookie_name = match hosts {
+            Hosts::Own(port) | Hosts::And(_, port) => format!("slipmap-{port}"),
+            Hosts::Tunnel => format!("slipmap-{}", random(4)?),
+        };
+        Ok(Self {
+            token,
+            hosts,
+            cookie_name,
+        })
     }
 
     pub(super) fn token(&self) -> &str {
         &self.token
     }
 
-    /// The name of the cookie. Ports of one host share their cookies.
-    fn cookie_name(&self) -> String {
-        format!("slipmap-{}", self.port)
-    }
-
     /// The cookie that takes the place of the token in the link.
     pub(super) fn cookie(&self) -> String {
-        let (name, token) = (self.cookie_name(), &self.token);
+        let (name, token) = (&self.cookie_name, &self.token);
         format!("{name}={token}; HttpOnly; SameSite=Strict; Path=/")
     }
 
@@ -70,9 +125,7 @@ impl Access {
         let (Some(host), None) = (hosts.next(), hosts.next()) else {
             return Err(Refusal::Host);
         };
-        let port = self.port;
-        let own = ["127.0.0.1", "localhost", "[::1]"].map(|name| format!("{name}:{port}"));
-        match own.iter().any(|own| own.as_bytes() == host.as_bytes()) {
+        match host.to_str().is_ok_and(|host| self.hosts.have(host)) {
             true => Ok(()),
             false => Err(Refusal::Host),
         }
@@ -85,7 +138,7 @@ impl Access {
             .get(AUTHORIZATION)
             .and_then(|value| value.to_str().ok());
         let bearer = bearer.and_then(|value| value.strip_prefix("Bearer "));
-        let prefix = format!("{}=", self.cookie_name());
+        let prefix = format!("{}=", self.cookie_name);
         let cookies = headers.get_all(COOKIE).iter();
         let cookies = cookies.filter_map(|value| value.to_str().ok());
         let mut cookies = cookies.flat_map(|value| value.split("; "));
@@ -129,7 +182,7 @@ mod tests {
 
     #[test]
     fn tokens_are_long_and_never_the_same() {
-        let [one, other] = [(); 2].map(|()| Access::new(80).unwrap());
+        let [one, other] = [(); 2].map(|()| Access::new(Hosts::Own(80)).unwrap());
         assert_eq!(one.token().len(), 2 * BYTES);
         assert!(one.is_token(one.token()) && !one.is_token(other.token()));
         assert!(!one.is_token("") && !one.is_token(&one.token()[1..]));
@@ -137,7 +190,7 @@ mod tests {
 
     #[test]
     fn only_own_names_are_answered() {
-        let access = Access::new(8080).unwrap();
+        let access = Access::new(Hosts::Own(8080)).unwrap();
         let check = |hosts: &[&str]| {
             let list: Vec<_> = hosts
                 .iter()
@@ -161,8 +214,51 @@ mod tests {
     }
 
     #[test]
+    fn hosts_of_tunnels_and_other_addresses_are_told_apart() {
+        let there: IpAddr = "192.0.2.7".parse().unwrap();
+        let sixth: IpAddr = "2001:db8::7".parse().unwrap();
+        let all: IpAddr = "0.0.0.0".parse().unwrap();
+        for (hosts, good, bad) in [
+            (
+                Hosts::Tunnel,
+                &["127.0.0.1:1", "localhost:8417", "[::1]:65535", "localhost"][..],
+                &[
+                    "evil.example:8417",
+                    "evil.example",
+                    "localhost:",
+                    "localhost:x",
+                    "1.2.3.4:1",
+                ][..],
+            ),
+            (
+                Hosts::And(there, 80),
+                &["192.0.2.7:80", "localhost:80"],
+                &[
+                    "192.0.2.8:80",
+                    "192.0.2.7:81",
+                    "192.0.2.7",
+                    "evil.example:80",
+                ],
+            ),
+            (
+                Hosts::And(sixth, 80),
+                &["[2001:db8::7]:80", "[::1]:80"],
+                &["2001:db8::7:80", "[2001:db8::8]:80", "[evil.example]:80"],
+            ),
+            (
+                Hosts::And(all, 80),
+                &["192.0.2.8:80", "10.0.0.1:80"],
+                &["evil.example:80", "10.0.0.1:81", "10.0.0.1:080x"],
+            ),
+        ] {
+            assert!(good.iter().all(|host| hosts.have(host)), "{hosts:?}");
+            assert!(!bad.iter().any(|host| hosts.have(host)), "{hosts:?}");
+        }
+    }
+
+    #[test]
     fn writes_come_from_the_page_itself() {
-        let access = Access::new(8080).unwrap();
+        let access = Access::new(Hosts::Own(8080)).unwrap();
         let cookie = ("cookie", format!("a=b; slipmap-8080={}", access.token()));
         let host = ("host", "localhost:8080".to_owned());
         let own = ("origin", "http://localhost:8080".to_owned());

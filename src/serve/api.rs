@@ -12,6 +12,7 @@ use axum::routing::get;
 use serde::Deserialize;
 
 use super::access::Access;
+use super::connections;
 use super::maps::{self, Maps};
 use super::problem::{Problem, nothing_here};
 use super::served::Served;
@@ -35,6 +36,9 @@ pub(super) fn routes(access: Arc<Access>, work: Work, maps: Arc<Maps>) -> Router
         .fallback(nothing)
         .method_not_allowed_fallback(no_such_method);
     all.layer(DefaultBodyLimit::max(LONGEST_BODY))
+        .layer(middleware::from_fn(|request, next| {
+            connections::read_body(request, LONGEST_BODY, next)
+        }))
         .layer(middleware::from_fn_with_state(served.clone(), guarded))
         .with_state(served)
 }
@@ -50,7 +54,13 @@ async fn guarded(State(served): State<Served>, request: Request, next: Next) -> 
     };
     let mut response = match checked {
         Ok(()) => next.run(request).await,
-        Err(refusal) => Problem::from(refusal).into_response(),
+        Err(refusal) => {
+            let mut response = Problem::from(refusal).into_response();
+            // Who is refused holds no connection.
+            let close = HeaderValue::from_static("close");
+            response.headers_mut().insert(header::CONNECTION, close);
+            response
+        }
     };
     let headers = response.headers_mut();
     for (name, value) in [

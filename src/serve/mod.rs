@@ -2,6 +2,7 @@
 //!
 //! ```text
 //! link with a token → cookie → page → /api/v1/chart, point, vc, motion, law → explore
+//!                                  → /api/v1/maps → maps → processes that read files
 //! ```
 //!
 //! Requests are TOML as in files, answers JSON or, for charts, arrays of numbers
@@ -10,29 +11,54 @@
 mod access;
 mod api;
 mod computed;
+mod connections;
 mod maps;
 mod openapi;
 mod page;
 mod problem;
 mod served;
+#[cfg(unix)]
+mod socket;
 mod work;
 
-use std::net::{IpAddr, SocketAddr, TcpListener};
+use std::net::{IpAddr, Ipv4Addr, SocketAddr, TcpListener};
 use std::path::PathBuf;
 use std::sync::Arc;
 
-use access::Access;
+use access::{Access, Hosts};
+use connections::Listener;
 use maps::Maps;
 pub use maps::{ReaderCommand, read_map};
 use work::Work;
 
+/// Threads that may wait for files and processes.
+const BESIDES: usize = 6;
+
+/// Where a server listens.
+#[derive(Debug, Clone)]
+pub enum Place {
+    /// At an address of this machine.
+    Address {
+        /// The address.
+        address: IpAddr,
+        /// The port; 0 takes any free one.
+        port: u16,
+    },
+    /// At a socket in the file system, which is made.
+    #[cfg(unix)]
+    Socket {
+        /// Its name.
+        path: PathBuf,
+        /// The port at which a tunnel to it is expected to begin.
+        port: u16,
+    },
+}
+
 /// What a server is asked to do.
 #[derive(Debug, Clone)]
 pub struct Serving {
-    /// The address that it listens on.
-    pub address: IpAddr,
-    /// The port; 0 takes any free one.
-    pub port: u16,
+    /// Where it listens.
+    pub place: Place,
     /// Threads that compute.
     pub threads: usize,
     /// The folder whose maps are shown.
@@ -41,10 +67,18 @@ pub struct Serving {
     pub reader: ReaderCommand,
 }
 
+/// What a server listens on.
+#[derive(Debug)]
+enum Bound {
+    Tcp(TcpListener),
+    #[cfg(unix)]
+    Unix(std::os::unix::net::UnixListener, socket::Socket),
+}
+
 /// A server that listens already.
 #[derive(Debug)]
 pub struct Server {
-    listener: TcpListener,
+    bound: Bound,
     address: SocketAddr,
     access: Arc<Access>,
     threads: usize,
@@ -55,52 +89,98 @@ impl Server {
     /// Listens, with a new token.
     ///
     /// # Errors
-    /// When the system gives no such port, or no random numbers.
+    /// When the system gives no such port or socket, or no random numbers.
     pub fn listen(serving: &Serving) -> std::io::Result<Self> {
-        let listener = TcpListener::bind((serving.address, serving.port))?;
-        listener.set_nonblocking(true)?;
-        let address = listener.local_addr()?;
+        let (bound, address, hosts) = match &serving.place {
+            &Place::Address { address, port } => {
+                let listener = TcpListener::bind((address, port))?;
+                listener.set_nonblocking(true)?;
+                let bound = listener.local_addr()?;
+                let hosts = match address.is_loopback() {
+                    true => Hosts::Own(bound.port()),
+                    false => Hosts::And(address, bound.port()),
+                };
+                (Bound::Tcp(listener), bound, hosts)
+            }
+            #[cfg(unix)]
+            Place::Socket { path, port } => {
+                let (socket, listener) = socket::Socket::listen(path)?;
+                listener.set_nonblocking(true)?;
+                let bound = Bound::Unix(listener, socket);
+                (bound, (Ipv4Addr::LOCALHOST, *port).into(), Hosts::Tunnel)
+            }
+        };
         Ok(Self {
-            listener,
+            bound,
             address,
-            access: Arc::new(Access::new(address.port())?),
+            access: Arc::new(Access::new(hosts)?),
             threads: serving.threads,
             maps: Arc::new(Maps::below(&serving.folder, serving.reader.clone())),
         })
     }
 
-    /// The link that opens the page; whoever has it may use the server.
+    /// The link that opens the page; whoever has it may use the server. That of a socket leads to
+    /// the near end of a tunnel.
     #[must_use]
     pub fn link(&self) -> String {
-        format!("http://{}/?token={}", self.address, self.access.token())
+        let mut address = self.address;
+        if address.ip().is_unspecified() {
+            // All addresses, of which a browser here can use this one.
+            address.set_ip(Ipv4Addr::LOCALHOST.into());
+        }
+        format!("http://{address}/?token={}", self.access.token())
     }
 
-    /// Answers until `stopped` says so, and the requests that are under way have their answers.
+    /// Answers until `stopped` says so.
     ///
     /// # Errors
-    /// When the system gives no threads, or ends the connection.
+    /// When the system gives no threads.
     pub fn run(self, stopped: impl Fn() -> bool + Send + 'static) -> std::io::Result<()> {
         let runtime = tokio::runtime::Builder::new_multi_thread()
             .worker_threads(2)
-            .max_blocking_threads(self.threads + 6)
+            .max_blocking_threads(self.threads + BESIDES)
             .enable_all()
             .build()?;
         let work = Work::new(self.threads);
         let app = api::routes(self.access, work, self.maps);
         let ended = runtime.block_on(async move {
-            let listener = tokio::net::TcpListener::from_std(self.listener)?;
+            let (listener, _socket) = self.bound.listener()?;
             let until = async move {
                 while !stopped() {
                     tokio::time::sleep(work::PAUSE).await;
                 }
             };
             tokio::select! {
-                served = axum::serve(listener, app) => served,
-                () = until => Ok(()),
+                () = connections::answer(listener, app) => {}
+                () = until => {}
             }
+            Ok(())
         });
         // What still computes is told to stop, and not waited for.
         runtime.shutdown_background();
         ended
+    }
+}
+
+/// The name of a socket, which is removed with this.
+#[cfg(unix)]
+type Named = Option<socket::Socket>;
+#[cfg(not(unix))]
+type Named = ();
+
+impl Bound {
+    /// The same for the runtime.
+    fn listener(self) -> std::io::Result<(Listener, Named)> {
+        match self {
+            Self::Tcp(listener) => {
+                let listener = tokio::net::TcpListener::from_std(listener)?;
+                Ok((Listener::Tcp(listener), Named::default()))
+            }
+            #[cfg(unix)]
+            Self::Unix(listener, socket) => {
+                let listener = tokio::net::UnixListener::from_std(listener)?;
+                Ok((Listener::Unix(listener), Some(socket)))
+            }
+        }
     }
 }

@@ -6,6 +6,7 @@ use serde::Serialize;
 use serde_json::{Value, json};
 
 use super::frames::{CellQuery, CurvesQuery, Refused, ScaleName, WindowQuery};
+use crate::explore::chart_bytes::CurveHead;
 use crate::explore::encoded::{Array, Arrays};
 use crate::linear::status::FLAGS;
 use crate::maps::look::as_text::CellTexts;
@@ -312,15 +313,6 @@ fn at(facts: &Facts, index: &[usize], spanned: &[Option<usize>]) -> Vec<AtHead> 
 struct CurvesHead {
     version: u64,
     curves: Vec<CurveHead>,
-}
-
-#[derive(Serialize)]
-struct CurveHead {
-    degree_of_stability: f64,
-    direction: i8,
-    stable_side: i8,
-    #[serde(flatten)]
-    array: Array,
 }
 
 /// The curves of a plane, x and y vertex by vertex; none where curves are of other planes.

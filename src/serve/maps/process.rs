@@ -66,6 +66,8 @@ impl Reader {
         let mut child = Command::new(&command.program)
             .args(&command.arguments)
             .arg(path)
+            // Threads of the GNU library's would each keep what they freed for themselves.
+            .env("MALLOC_ARENA_MAX", "2")
             .stdin(Stdio::piped())
             .stdout(Stdio::piped())
             .stderr(Stdio::null())

@@ -1,4 +1,4 @@
-//! A server of the real program, and requests to it over real connections.
+//! A server of the real program, and requests to it.
 
 #![allow(dead_code, reason = "no test uses all of it")]
 
@@ -11,10 +11,10 @@ use super::program::Folder;
 
 /// A server of the real program.
 pub(crate) struct Serving {
-    pub(crate) child: Child,
+    pub child: Child,
     _out: BufReader<ChildStdout>,
-    pub(crate) address: String,
-    pub(crate) token: String,
+    pub address: String,
+    pub token: String,
 }
 
 impl Drop for Serving {
@@ -26,9 +26,9 @@ impl Drop for Serving {
 
 /// What came back.
 pub(crate) struct Answer {
-    pub(crate) status: u16,
-    pub(crate) head: String,
-    pub(crate) body: Vec<u8>,
+    pub status: u16,
+    pub head: String,
+    pub body: Vec<u8>,
 }
 
 impl Answer {
@@ -39,7 +39,13 @@ impl Answer {
 
 impl Serving {
     pub(crate) fn new(folder: &Folder) -> Self {
-        let mut command = folder.command(&["serve", "--port", "0", "--threads", "2"]);
+        Self::with(folder, &[])
+    }
+
+    /// With more arguments.
+    pub(crate) fn with(folder: &Folder, more: &[&str]) -> Self {
+        let usual = ["serve", "--port", "0", "--threads", "2"];
+        let mut command = folder.command(&[&usual, more].concat());
         let mut child = command
             .stdout(Stdio::piped())
             .stderr(Stdio::null())
@@ -95,6 +101,12 @@ impl Serving {
 
     pub(crate) fn bearer(&self) -> String {
         format!("Bearer {}", self.token)
+    }
+
+    /// What is at an address, for who has the token.
+    pub(crate) fn get(&self, path: &str) -> Answer {
+        let bearer = self.bearer();
+        self.request(&format!("GET {path}"), &[("Authorization", &bearer)], "")
     }
 
     /// A request for what a text describes, by who has the token.

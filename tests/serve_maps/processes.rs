@@ -1,0 +1,37 @@
+//! The processes of a server, as the system tells of them.
+
+use std::fs;
+
+/// The number behind a name in what the system tells of a process.
+fn told(id: u32, name: &str) -> Option<u64> {
+    let status = fs::read_to_string(format!("/proc/{id}/status")).ok()?;
+    let line = status.lines().find_map(|line| line.strip_prefix(name))?;
+    line.split_whitespace().next()?.parse().ok()
+}
+
+/// The processes that `parent` has started and that are there.
+pub(crate) fn children(parent: u32) -> Vec<u32> {
+    let all = fs::read_dir("/proc").unwrap().flatten();
+    let ids = all.filter_map(|entry| entry.file_name().to_str()?.parse::<u32>().ok());
+    ids.filter(|&id| told(id, "PPid:") == Some(parent.into()))
+        .collect()
+}
+
+/// The most memory that a process had, MB.
+pub(crate) fn peak(id: u32) -> u64 {
+    told(id, "VmHWM:").unwrap_or(0) / 1024
+}
+
+/// Whether a process is there, and not only still to be asked how it ended.
+pub(crate) fn is_there(id: u32) -> bool {
+    let status = fs::read_to_string(format!("/proc/{id}/status"));
+    status.is_ok_and(|status| !status.contains("State:\tZ"))
+}
+
+/// Sends a signal.
+pub(crate) fn signal(id: u32, name: &str) {
+    let sent = std::process::Command::new("kill")
+        .args([name, &id.to_string()])
+        .status();
+    assert!(sent.unwrap().success());
+}
