@@ -3,6 +3,7 @@
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
+use crate::linear::curves::CurvePiece;
 use crate::sweep::engine::RunError;
 use crate::sweep::grid::{Grid, TooLarge};
 use crate::sweep::{Plan, SpecError, SweepSpec};
@@ -64,6 +65,19 @@ pub struct ChartCurve {
     pub vertices: Vec<[f64; 2]>,
 }
 
+impl ChartCurve {
+    /// A curve as it was traced.
+    #[must_use]
+    pub fn of(degree_of_stability: f64, piece: &CurvePiece) -> Self {
+        Self {
+            degree_of_stability,
+            direction: piece.direction.sign(),
+            stable_side: piece.stable_side.sign(),
+            vertices: piece.vertices.iter().map(|v| [v.p, v.tau]).collect(),
+        }
+    }
+}
+
 /// A sweep in memory.
 #[derive(Debug, Clone)]
 pub struct Chart {
@@ -113,12 +127,13 @@ fn curves(grid: &Grid) -> Vec<ChartCurve> {
     let mut curves = Vec::new();
     for of in of_planes {
         let Ok(traced) = &of.curves else { continue };
-        curves.extend(traced.pieces.iter().map(|piece| ChartCurve {
-            degree_of_stability: of.degree_of_stability,
-            direction: piece.direction.sign(),
-            stable_side: piece.stable_side.sign(),
-            vertices: piece.vertices.iter().map(|v| [v.p, v.tau]).collect(),
-        }));
+        let degree = of.degree_of_stability;
+        curves.extend(
+            traced
+                .pieces
+                .iter()
+                .map(|piece| ChartCurve::of(degree, piece)),
+        );
     }
     curves
 }

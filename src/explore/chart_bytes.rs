@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use super::chart::Chart;
+use super::chart::{Chart, ChartCurve};
 use super::encoded::{Array, Arrays};
 use crate::sweep::input::field::Storage;
 
@@ -42,19 +42,32 @@ struct FieldHead {
     array: Array,
 }
 
-/// A curve.
+/// What the head says of a curve.
 #[derive(Debug, Serialize)]
 #[cfg_attr(feature = "serve", derive(utoipa::ToSchema))]
 pub struct CurveHead {
     /// σ: roots on the curve have Re λ = −σ.
-    pub degree_of_stability: f64,
+    degree_of_stability: f64,
     /// Where a pair crosses with growing delay: −1 to the left, 0 it touches, 1 to the right.
-    pub direction: i8,
+    direction: i8,
     /// On which side sliding is stable: −1 at shorter delays, 0 on neither, 1 at longer ones.
-    pub stable_side: i8,
+    stable_side: i8,
     /// The coordinates, the first and the second one by turns.
     #[serde(flatten)]
-    pub array: Array,
+    array: Array,
+}
+
+impl CurveHead {
+    /// Of a curve, whose vertices go to the arrays.
+    #[must_use]
+    pub fn of(curve: &ChartCurve, arrays: &mut Arrays) -> Self {
+        Self {
+            degree_of_stability: curve.degree_of_stability,
+            direction: curve.direction,
+            stable_side: curve.stable_side,
+            array: arrays.push(curve.vertices.iter().flatten().copied()),
+        }
+    }
 }
 
 /// The bytes of a chart that took so long to compute, if that is known.
@@ -77,12 +90,7 @@ pub fn encoded(chart: &Chart, milliseconds: Option<f64>) -> Result<Vec<u8>, serd
             .collect(),
         fields: fields(chart, &mut arrays),
         curves: (chart.curves.iter())
-            .map(|curve| CurveHead {
-                degree_of_stability: curve.degree_of_stability,
-                direction: curve.direction,
-                stable_side: curve.stable_side,
-                array: arrays.push(curve.vertices.iter().flatten().copied()),
-            })
+            .map(|curve| CurveHead::of(curve, &mut arrays))
             .collect(),
         milliseconds,
     };

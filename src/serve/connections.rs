@@ -181,7 +181,7 @@ impl<S: AsyncWrite + Unpin> AsyncWrite for Patient<S> {
         let this = self.get_mut();
         match Pin::new(&mut this.stream).poll_write(context, bytes) {
             Poll::Pending => this.wait(context),
-            done => done,
+            done @ Poll::Ready(_) => done,
         }
     }
 
@@ -193,7 +193,7 @@ impl<S: AsyncWrite + Unpin> AsyncWrite for Patient<S> {
         let this = self.get_mut();
         match Pin::new(&mut this.stream).poll_write_vectored(context, bytes) {
             Poll::Pending => this.wait(context),
-            done => done,
+            done @ Poll::Ready(_) => done,
         }
     }
 
@@ -206,7 +206,7 @@ impl<S: AsyncWrite + Unpin> AsyncWrite for Patient<S> {
         let this = self.get_mut();
         match Pin::new(&mut this.stream).poll_flush(context) {
             Poll::Pending => this.wait(context),
-            done => {
+            done @ Poll::Ready(_) => {
                 this.until = None;
                 done
             }
@@ -217,7 +217,7 @@ impl<S: AsyncWrite + Unpin> AsyncWrite for Patient<S> {
         let this = self.get_mut();
         match Pin::new(&mut this.stream).poll_shutdown(context) {
             Poll::Pending => this.wait(context),
-            done => done,
+            done @ Poll::Ready(_) => done,
         }
     }
 }
@@ -239,21 +239,19 @@ mod tests {
             runtime.block_on(async move {
                 let (ours, theirs) = tokio::net::UnixStream::pair().unwrap();
                 let reading = tokio::spawn(async move {
-                    while reads {
-                        theirs.readable().await.unwrap();
-                        match theirs.try_read(&mut [0; 1 << 16]) {
-                            Ok(0) => break,
-                            _ => tokio::task::yield_now().await,
+                    let mut read = vec![0; 1 << 16];
+                    loop {
+                        if reads && theirs.try_read(&mut read).is_ok_and(|bytes| bytes == 0) {
+                            break;
                         }
+                        sleep(Duration::from_millis(1)).await;
                     }
-                    sleep(Duration::from_secs(5)).await;
-                    drop(theirs);
                 });
                 let mut stream = Patient::new(ours, patience);
+                let part = vec![7; 1 << 16];
                 let mut left = 10_usize << 20;
                 let done = std::future::poll_fn(|context| {
                     while left > 0 {
-                        let part = [7; 1 << 16];
                         let written = Pin::new(&mut stream).poll_write(context, &part);
                         left = left.saturating_sub(ready!(written)?);
                         ready!(Pin::new(&mut stream).poll_flush(context))?;

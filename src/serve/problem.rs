@@ -90,8 +90,7 @@ impl From<Refusal> for Problem {
         match refusal {
             Refusal::Host => Self::of(
                 StatusCode::MISDIRECTED_REQUEST,
-                "this server answers as 127.0.0.1, localhost, [::1] and the address that it was given \
-                only",
+                "this server answers as 127.0.0.1, localhost and [::1], or its own address, only",
             ),
             Refusal::Token => Self {
                 help: Some("open the link that slipmap serve has printed".into()),

@@ -37,8 +37,8 @@ impl<T: Cell> Canvas<T> {
         }
     }
 
-    /// Shows the cells of a slab that are nearest to pixels and, where `several` is asked for, marks
-    /// pixels that hide others.
+    /// Shows the cells of a slab that are nearest to pixels and, where `several` is asked for,
+    /// marks pixels that hide others.
     pub(super) fn paint(&mut self, slab: &Slab<T>, under: &Under, several: bool) {
         self.show(slab, under);
         if several {

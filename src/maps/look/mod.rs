@@ -228,13 +228,11 @@ impl Desk {
                     let job = locked(&view.jobs).pop_front()?;
                     Some((Arc::clone(view), job))
                 });
-                match found {
-                    Some(found) => break found,
-                    None => {
-                        let woken = self.work.wait(views);
-                        views = woken.unwrap_or_else(std::sync::PoisonError::into_inner);
-                    }
+                if let Some(found) = found {
+                    break found;
                 }
+                let woken = self.work.wait(views);
+                views = woken.unwrap_or_else(std::sync::PoisonError::into_inner);
             };
             drop(views);
             let (view, job) = next;

@@ -2,6 +2,8 @@
 
 use std::ops::Range;
 
+use crate::model::elementary::ln;
+
 /// How pixels are spread over an axis.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Scale {
@@ -50,8 +52,8 @@ impl Coordinate {
     fn of(self, value: f64) -> f64 {
         match self {
             Self::Linear => value,
-            Self::Above => value.max(0.0).ln(),
-            Self::Below => -(-value).max(0.0).ln(),
+            Self::Above => ln(value.max(0.0)),
+            Self::Below => -ln((-value).max(0.0)),
         }
     }
 }
@@ -195,7 +197,7 @@ impl Pixels {
         let cell = cell as u32;
         Self {
             nearest: vec![cell],
-            inside: vec![cell..cell + 1],
+            inside: std::iter::once(cell..cell + 1).collect(),
             flipped: false,
         }
     }
@@ -272,7 +274,7 @@ mod tests {
     fn by_hand(values: &[f64], (from, to): (f64, f64), pixels: usize, scale: Scale) -> Pixels {
         let coordinate = |value: f64| match scale {
             Scale::Linear => value,
-            Scale::Log => value.ln(),
+            Scale::Log => ln(value),
         };
         let (a, b) = (coordinate(from), coordinate(to));
         let (mut nearest, mut inside) = (Vec::new(), Vec::new());

@@ -8,7 +8,7 @@ use super::cells::AnyCells;
 /// Bytes of cells that are kept.
 const MOST_BYTES: usize = 56 << 20;
 /// Bytes that an entry takes besides its cells, about.
-const BESIDES: usize = 200;
+const BESIDES: usize = 400;
 
 /// A plane of a map: its slower and its faster axis, and where it lies along the others.
 #[derive(Debug, Clone, PartialEq, Eq, Hash)]

@@ -127,19 +127,16 @@ impl Source {
             true => GrowingMap::of(path)?,
             false => None,
         };
-        let (cells, facts, cells_done) = match growing {
-            Some(growing) => {
-                let facts = facts_of_tiles(&growing);
-                let (_, done) = growing.done();
-                (Cells::Growing(Box::new(growing)), facts, done)
-            }
-            None => {
-                let map = held.map_or_else(|| MapFile::open(path), Ok)?;
-                let done = map.cells() - map.cells_missing().min(map.cells());
-                let columns = FileColumns::of(map)?;
-                let facts = facts_of_file(&columns);
-                (Cells::File(Box::new(columns)), facts, done)
-            }
+        let (cells, facts, cells_done) = if let Some(growing) = growing {
+            let facts = facts_of_tiles(&growing);
+            let (_, done) = growing.done();
+            (Cells::Growing(Box::new(growing)), facts, done)
+        } else {
+            let map = held.map_or_else(|| MapFile::open(path), Ok)?;
+            let done = map.cells() - map.cells_missing().min(map.cells());
+            let columns = FileColumns::of(map)?;
+            let facts = facts_of_file(&columns);
+            (Cells::File(Box::new(columns)), facts, done)
         };
         let now = Instant::now();
         let source = Self {

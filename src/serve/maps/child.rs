@@ -5,8 +5,8 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 
-use super::answers;
 use super::frames::{Ask, Frame, Kind, Refused, Request};
+use super::{answers, description};
 use crate::maps::look::Look;
 use crate::store::StoreError;
 
@@ -76,14 +76,14 @@ impl Opened {
             });
         }
         match ask {
-            Ask::Summary => json(&answers::summary(look)),
-            Ask::Description => json(&answers::description(look)),
+            Ask::Summary => json(&description::summary(look)),
+            Ask::Description => json(&description::description(look)),
             Ask::Window(query) => answers::window(look, query).map(bytes),
             Ask::Curves(query) => answers::curves(look, query).map(bytes),
             Ask::Cell(query) => json(&answers::cell(look, query)?),
             Ask::Sweep => Ok(Frame {
                 kind: Kind::Text,
-                bytes: answers::sweep(look).into_bytes(),
+                bytes: description::sweep(look).into_bytes(),
             }),
         }
     }

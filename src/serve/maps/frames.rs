@@ -140,10 +140,10 @@ impl Refused {
     }
 
     /// The map cannot be read.
-    pub(super) fn damaged(detail: impl ToString) -> Self {
+    pub(super) fn damaged(detail: impl std::fmt::Display) -> Self {
         Self {
             status: 502,
-            detail: detail.to_string(),
+            detail: format!("{detail}"),
         }
     }
 }

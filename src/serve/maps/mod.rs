@@ -3,7 +3,7 @@
 //! ```text
 //! [scan] names below the folder → ids → [list] what a process of each tells, remembered
 //! [routes] request → [readers] the process that reads the map → [frames] → answer
-//!          in that process: [child] → [answers] → maps::look
+//!          in that process: [child] → [description], [answers] → maps::look
 //! ```
 //!
 //! This process opens no map: a damaged one can end who reads it.
@@ -11,6 +11,7 @@
 mod answers;
 mod child;
 mod described;
+mod description;
 mod frames;
 mod list;
 mod process;
