@@ -46,9 +46,13 @@ struct FieldHead {
 #[derive(Debug, Serialize)]
 #[cfg_attr(feature = "serve", derive(utoipa::ToSchema))]
 pub struct CurveHead {
+    /// σ: roots on the curve have Re λ = −σ.
     degree_of_stability: f64,
+    /// Where a pair crosses with growing delay: −1 to the left, 0 it touches, 1 to the right.
     direction: i8,
+    /// On which side sliding is stable: −1 at shorter delays, 0 on neither, 1 at longer ones.
     stable_side: i8,
+    /// The coordinates, the first and the second one by turns.
     #[serde(flatten)]
     array: Array,
 }

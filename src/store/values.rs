@@ -1,7 +1,7 @@
 //! Reads values of a dataset that [`super::open`] has let through.
 //!
-//! Chunks are inflated by [`super::chunk_layout`]: the library inflates whatever a chunk holds, a thousand times its
-//! bytes, before it compares that with the chunk's own size.
+//! Chunks are inflated by [`super::chunk_layout`]: the library inflates whatever a chunk holds, a
+//! thousand times its bytes, before it compares that with the chunk's own size.
 //!
 //! Longer than most files: all that stands between the bytes of a chunk and numbers is checked as
 //! one.

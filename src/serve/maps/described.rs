@@ -7,6 +7,7 @@ use std::collections::BTreeMap;
 
 use utoipa::ToSchema;
 
+use crate::explore::chart_bytes::CurveHead;
 use crate::explore::encoded::Array;
 
 /// The maps below the folder.
@@ -234,20 +235,7 @@ pub(super) struct CurvesHead {
     /// Another one when more cells are there.
     version: u64,
     /// The curves; none where they are of other planes.
-    curves: Vec<MapCurve>,
-}
-
-/// A curve.
-#[derive(ToSchema)]
-pub(super) struct MapCurve {
-    #[serde(flatten)]
-    array: Array,
-    /// σ: roots on the curve have Re λ = −σ.
-    degree_of_stability: f64,
-    /// Where a pair crosses with growing delay: −1 to the left, 0 it touches, 1 to the right.
-    direction: i8,
-    /// On which side sliding is stable: −1 at shorter delays, 0 on neither, 1 at longer ones.
-    stable_side: i8,
+    curves: Vec<CurveHead>,
 }
 
 /// One cell.
