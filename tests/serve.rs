@@ -230,7 +230,13 @@ fn only_the_own_page_is_answered() {
     let page = serving.request("GET /", &[("Cookie", cookie)], "");
     assert_eq!(page.status, 200);
     assert!(String::from_utf8(page.body).unwrap().contains("<canvas"));
-    for file in ["explorer.js", "plane.js", "source.js", "uplot.js", "explorer.css"] {
+    for file in [
+        "explorer.js",
+        "plane.js",
+        "source.js",
+        "uplot.js",
+        "explorer.css",
+    ] {
         let answer = serving.request(&format!("GET /{file}"), &[("Cookie", cookie)], "");
         assert_eq!(answer.status, 200, "{file}");
     }
