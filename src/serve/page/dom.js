@@ -42,6 +42,11 @@ export async function copy(field, button) {
     field.select();
     document.execCommand("copy");
   }
+  tellCopied(button);
+}
+
+/** Says on a button for a moment that it has copied. */
+export function tellCopied(button) {
   const before = button.textContent;
   button.textContent = "Copied";
   setTimeout(() => (button.textContent = before), 1200);

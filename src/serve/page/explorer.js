@@ -1,7 +1,7 @@
 // The page: what is set, what is shown, and the point that is looked at.
 
 import { Controls } from "./controls.js";
-import { download, element } from "./dom.js";
+import { download, element, tellCopied } from "./dom.js";
 import { tellLegend } from "./legend.js";
 import { Live } from "./live.js";
 import { Panel } from "./panel.js";
@@ -303,8 +303,7 @@ class Explorer {
       history.replaceState(null, "", this.#address());
       const button = event.target;
       await navigator.clipboard?.writeText(location.href).catch(() => {});
-      button.textContent = "Copied";
-      setTimeout(() => (button.textContent = "Copy link"), 1200);
+      tellCopied(button);
     });
   }
 }

@@ -299,8 +299,7 @@ export class Saved {
     try {
       const { curves } = await this.source.curves(this.map.id, query);
       if (this.curves.key !== key) return;
-      const turned = map.x === "tau";
-      this.curves.list = turned ? curves.map(turnedCurve) : curves;
+      this.curves.list = curves;
       if (this.plane.plane) {
         this.plane.plane.curves = this.curves.list;
         this.plane.draw();
@@ -469,13 +468,4 @@ export class Saved {
   async sweepText() {
     return this.source.sweepText(this.map.id);
   }
-}
-
-/** A curve with x and y exchanged. */
-function turnedCurve(curve) {
-  const values = curve.values.slice();
-  for (let k = 0; k + 1 < values.length; k += 2) {
-    [values[k], values[k + 1]] = [curve.values[k + 1], curve.values[k]];
-  }
-  return { ...curve, values };
 }

@@ -134,6 +134,18 @@ pub struct TileReader {
 }
 
 impl TileReader {
+    /// Of a folder, no file of which is known.
+    fn empty(path: &Path, layout: Digest, pieces: Pieces) -> Self {
+        Self {
+            path: path.to_owned(),
+            layout,
+            pieces,
+            files: Vec::new(),
+            index: vec![None; pieces.total() as usize],
+            open: None,
+        }
+    }
+
     /// Reads every byte in the folder `path`, and says which files are damaged. The sound pieces of
     /// these are there too.
     ///
@@ -145,14 +157,7 @@ impl TileReader {
         pieces: Pieces,
         stop: &AtomicBool,
     ) -> Result<(Self, Vec<Damaged>), StoreError> {
-        let mut reader = Self {
-            path: path.to_owned(),
-            layout,
-            pieces,
-            files: Vec::new(),
-            index: vec![None; pieces.total() as usize],
-            open: None,
-        };
+        let mut reader = Self::empty(path, layout, pieces);
         let mut damaged = Vec::new();
         for file in listed(path, is_tile_file)? {
             if stop.load(Ordering::Relaxed) {
@@ -175,14 +180,7 @@ impl TileReader {
         layout: Digest,
         pieces: Pieces,
     ) -> Result<Self, StoreError> {
-        let mut reader = Self {
-            path: path.to_owned(),
-            layout,
-            pieces,
-            files: Vec::new(),
-            index: vec![None; pieces.total() as usize],
-            open: None,
-        };
+        let mut reader = Self::empty(path, layout, pieces);
         reader.add_new()?;
         Ok(reader)
     }
