@@ -54,6 +54,10 @@ impl Arrays {
     pub fn push<T: Element>(&mut self, numbers: impl IntoIterator<Item = T>) -> Array {
         let offset = self.0.len();
         let mut length = 0;
+        let numbers = numbers.into_iter();
+        // Long arrays are not to take twice their room while they grow.
+        self.0
+            .reserve_exact(numbers.size_hint().0 * size_of::<T>() + ALIGNED);
         for number in numbers {
             number.put(&mut self.0);
             length += 1;
@@ -71,7 +75,7 @@ impl Arrays {
     pub fn push_runs<T: Element>(&mut self, numbers: &[T]) -> Array {
         let mut runs: Vec<(T, u32)> = Vec::new();
         // A run takes its number and four bytes.
-        let most = numbers.len() * size_of::<T>() / (size_of::<T>() + 4);
+        let most = size_of_val(numbers) / (size_of::<T>() + 4);
         for run in numbers.chunk_by(|a, b| a == b) {
             if runs.len() >= most {
                 return self.push(numbers.iter().copied());
@@ -98,14 +102,23 @@ impl Arrays {
     /// # Errors
     /// When the head is no JSON.
     pub fn behind(self, head: &impl Serialize) -> Result<Vec<u8>, serde_json::Error> {
+        let [mut bytes, arrays] = self.parts(head)?;
+        bytes.extend(arrays);
+        Ok(bytes)
+    }
+
+    /// The whole answer in two parts, for answers too long to be copied.
+    ///
+    /// # Errors
+    /// As [`Arrays::behind`].
+    pub fn parts(self, head: &impl Serialize) -> Result<[Vec<u8>; 2], serde_json::Error> {
         let head = serde_json::to_vec(head)?;
         let begun = (4 + head.len()).next_multiple_of(ALIGNED);
-        let mut bytes = Vec::with_capacity(begun + self.0.len());
+        let mut bytes = Vec::with_capacity(begun);
         bytes.extend((head.len() as u32).to_le_bytes());
         bytes.extend(head);
         bytes.resize(begun, 0);
-        bytes.extend(self.0);
-        Ok(bytes)
+        Ok([bytes, self.0])
     }
 }
 

@@ -69,12 +69,16 @@ mod tests {
             Socket::listen(&path).unwrap_err().kind(),
             ErrorKind::AlreadyExists
         );
-        drop(listener);
-        // Nobody listens, though the name is there.
-        let (other, _listener) = Socket::listen(&path).unwrap();
-        drop(socket);
+        // Somebody removes the name, and another server takes it.
+        fs::remove_file(&path).unwrap();
+        let (other, others) = Socket::listen(&path).unwrap();
+        drop((socket, listener));
         assert!(path.exists(), "it is another's by now");
-        drop(other);
+        drop(others);
+        let left = std::mem::ManuallyDrop::new(other);
+        assert!(path.exists(), "left behind as by a server that was killed");
+        let (last, _listener) = Socket::listen(&left.path).unwrap();
+        drop(last);
         assert!(!path.exists());
         fs::write(&path, "text").unwrap();
         assert_eq!(

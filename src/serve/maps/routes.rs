@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use axum::Router;
+use axum::body::Bytes;
 use axum::extract::rejection::QueryRejection;
 use axum::extract::{Path, Query, State};
 use axum::http::StatusCode;
@@ -10,6 +11,7 @@ use axum::http::header::CONTENT_TYPE;
 use axum::response::{IntoResponse, Response};
 use axum::routing::get;
 use serde_json::Value;
+use tokio::sync::OwnedSemaphorePermit;
 
 use super::frames::{Ask, CellQuery, CurvesQuery, Frame, Kind, WindowQuery};
 use super::readers::Maps;
@@ -89,7 +91,24 @@ async fn window(
         let detail = "the ends of a window are finite numbers";
         return Err(Problem::of(StatusCode::UNPROCESSABLE_ENTITY, detail));
     }
-    asked(&maps, &id, Ask::Window(query)).await
+    let found = found(&maps, &id).await?;
+    let room = maps.room(&query).await?;
+    let Frame { bytes, .. } = maps.ask(&found, &Ask::Window(query)).await?;
+    // The room is given back when the last byte is sent.
+    let body = Bytes::from_owner(Sent { bytes, _room: room });
+    Ok(([(CONTENT_TYPE, "application/octet-stream")], body).into_response())
+}
+
+/// An answer that takes room until it is sent.
+struct Sent {
+    bytes: Vec<u8>,
+    _room: OwnedSemaphorePermit,
+}
+
+impl AsRef<[u8]> for Sent {
+    fn as_ref(&self) -> &[u8] {
+        &self.bytes
+    }
 }
 
 /// The curves in a plane.
