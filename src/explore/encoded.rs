@@ -55,6 +55,10 @@ impl Arrays {
     pub fn push<T: Element>(&mut self, numbers: impl IntoIterator<Item = T>) -> Array {
         let offset = self.0.len();
         let mut length = 0;
+        let numbers = numbers.into_iter();
+        // Long arrays are not to take twice their room while they grow.
+        self.0
+            .reserve_exact(numbers.size_hint().0 * size_of::<T>() + ALIGNED);
         for number in numbers {
             number.put(&mut self.0);
             length += 1;
@@ -99,14 +103,23 @@ impl Arrays {
     /// # Errors
     /// When the head is no JSON.
     pub fn behind(self, head: &impl Serialize) -> Result<Vec<u8>, serde_json::Error> {
+        let [mut bytes, arrays] = self.parts(head)?;
+        bytes.extend(arrays);
+        Ok(bytes)
+    }
+
+    /// The whole answer in two parts, for answers too long to be copied.
+    ///
+    /// # Errors
+    /// As [`Arrays::behind`].
+    pub fn parts(self, head: &impl Serialize) -> Result<[Vec<u8>; 2], serde_json::Error> {
         let head = serde_json::to_vec(head)?;
         let begun = (4 + head.len()).next_multiple_of(ALIGNED);
-        let mut bytes = Vec::with_capacity(begun + self.0.len());
+        let mut bytes = Vec::with_capacity(begun);
         bytes.extend((head.len() as u32).to_le_bytes());
         bytes.extend(head);
         bytes.resize(begun, 0);
-        bytes.extend(self.0);
-        Ok(bytes)
+        Ok([bytes, self.0])
     }
 }
 

@@ -2,15 +2,15 @@
 
 use std::fs;
 use std::io::{Error, ErrorKind, Result};
-use std::os::unix::fs::{FileTypeExt, MetadataExt, PermissionsExt};
+use std::os::unix::fs::{FileTypeExt, PermissionsExt};
 use std::os::unix::net::{UnixListener, UnixStream};
 use std::path::{Path, PathBuf};
 
-/// A socket that this process listens on; its name goes with it.
+/// The name of a socket that this process listens on; it goes with this, which therefore has to
+/// outlive the listener.
 #[derive(Debug)]
 pub(super) struct Socket {
     path: PathBuf,
-    node: u64,
 }
 
 impl Socket {
@@ -19,25 +19,19 @@ impl Socket {
         remove_stale(path)?;
         let listener = UnixListener::bind(path)?;
         fs::set_permissions(path, fs::Permissions::from_mode(0o600))?;
-        let node = path.symlink_metadata()?.ino();
         let path = path.to_owned();
-        Ok((Self { path, node }, listener))
+        Ok((Self { path }, listener))
     }
 }
 
 impl Drop for Socket {
     fn drop(&mut self) {
-        let own = self
-            .path
-            .symlink_metadata()
-            .is_ok_and(|m| m.ino() == self.node);
-        if own {
-            // Left behind it is replaced by the next one.
-            drop(fs::remove_file(&self.path));
-        }
+        // Another server may have taken the name. Left behind it is replaced by the next one.
+        drop(remove_stale(&self.path));
     }
 }
 
+/// Removes a socket that nobody listens on.
 fn remove_stale(path: &Path) -> Result<()> {
     let found = match path.symlink_metadata() {
         Err(error) if error.kind() == ErrorKind::NotFound => return Ok(()),
@@ -69,12 +63,16 @@ mod tests {
             Socket::listen(&path).unwrap_err().kind(),
             ErrorKind::AlreadyExists
         );
-        drop(listener);
-        // Nobody listens, though the name is there.
-        let (other, _listener) = Socket::listen(&path).unwrap();
-        drop(socket);
+        // Somebody removes the name, and another server takes it.
+        fs::remove_file(&path).unwrap();
+        let (other, others) = Socket::listen(&path).unwrap();
+        drop((listener, socket));
         assert!(path.exists(), "it is another's by now");
-        drop(other);
+        drop(others);
+        let left = std::mem::ManuallyDrop::new(other);
+        assert!(path.exists(), "left behind as by a server that was killed");
+        let (last, _listener) = Socket::listen(&left.path).unwrap();
+        drop(last);
         assert!(!path.exists());
         fs::write(&path, "text").unwrap();
         assert_eq!(

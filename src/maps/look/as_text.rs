@@ -220,20 +220,29 @@ mod tests {
                 let (texts, setting) = (CellTexts::of(&plan, &index), plan.setting(&index));
                 let found = [&texts.point, &texts.vc, &texts.motion].map(Option::is_some);
                 assert_eq!(found, told, "{sweep}");
-                if let Some(text) = &texts.point {
-                    let read = PointSpec::read(text, PointOf::Sliding).unwrap();
-                    assert_same(&read.setting, &setting, &START);
-                    assert_eq!(read.units, plan.spec.units);
-                }
-                if let Some(text) = &texts.vc {
-                    let read = PointSpec::read(text, PointOf::CriticalVelocity).unwrap();
-                    let but = [&START[..], &[Parameter::V0]].concat();
-                    assert_same(&read.setting, &setting, &but);
-                }
-                if let Some(text) = &texts.motion {
-                    assert_same_motion(text, &plan, &setting);
-                }
+                assert_read(&texts, &plan, &setting);
             }
+        }
+    }
+
+    /// What is read of the texts is the setting.
+    #[track_caller]
+    fn assert_read(texts: &CellTexts, plan: &Plan, setting: &Setting) {
+        if let Some(text) = &texts.point {
+            let read = PointSpec::read(text, PointOf::Sliding).unwrap();
+            assert_same(&read.setting, setting, &START);
+            assert_eq!(read.units, plan.spec.units);
+        }
+        if let Some(text) = &texts.vc {
+            let read = PointSpec::read(text, PointOf::CriticalVelocity).unwrap();
+            let but = [&START[..], &[Parameter::V0]].concat();
+            assert_same(&read.setting, setting, &but);
+        }
+        if let Some(text) = &texts.motion {
+            let read: CaseSpec = text.parse().unwrap();
+            assert_same(&read.setting, setting, &[]);
+            let motion = plan.spec.simulation.case(setting, 0.0).unwrap();
+            assert_eq!(Some(read.case), motion);
         }
     }
 

@@ -31,13 +31,16 @@ pub use window::{Asked, Numbers, Shot, Shown};
 
 use reading::Reading;
 use source::{Cells, Source, Still};
-use view::{View, locked};
+pub use view::View;
+use view::locked;
 
 use crate::store::StoreError;
 use crate::store::curve_reader::MapCurve;
 
 /// Windows that are read at a time, the last ones asked for.
 const MOST_VIEWS: usize = 2;
+/// Bytes of their pixels; where they are more, the last one is read alone.
+const MOST_OF_VIEWS: usize = 24 << 20;
 /// Threads that read.
 const MOST_THREADS: usize = 4;
 
@@ -134,11 +137,11 @@ impl Look {
         }
     }
 
-    /// A window, as far as it was read within `patience`.
+    /// A window, once it was read or `patience` is over.
     ///
     /// # Errors
     /// When there is no such window, in words.
-    pub fn window(&self, asked: &Asked, patience: Duration) -> Result<Shot, String> {
+    pub fn window(&self, asked: &Asked, patience: Duration) -> Result<Arc<View>, String> {
         let until = Instant::now() + patience;
         let view = self.view(asked)?;
         let mut views = self.desk.views();
@@ -151,7 +154,7 @@ impl Look {
             views = waited.unwrap_or_else(std::sync::PoisonError::into_inner).0;
         }
         drop(views);
-        Ok(view.shot(&self.facts))
+        Ok(view)
     }
 
     /// The view of a window: the one that is being read already, or a new one.
@@ -170,7 +173,8 @@ impl Look {
         self.reading.show_kept(&view);
         let mut views = self.desk.views();
         views.push_front(Arc::clone(&view));
-        views.truncate(MOST_VIEWS);
+        let room = views.iter().map(|view| view.bytes()).sum::<usize>() <= MOST_OF_VIEWS;
+        views.truncate(if room { MOST_VIEWS } else { 1 });
         drop(views);
         self.desk.work.notify_all();
         Ok(view)

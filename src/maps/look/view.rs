@@ -53,20 +53,20 @@ impl AnyCanvas {
 
 /// A window that is being read.
 #[derive(Debug)]
-pub(super) struct View {
-    pub asked: Asked,
-    pub version: u64,
+pub struct View {
+    pub(super) asked: Asked,
+    pub(super) version: u64,
     /// Grows from view to view.
-    pub number: u64,
-    pub plane: std::sync::Arc<Plane>,
-    pub column: usize,
-    pub slow: Pixels,
-    pub fast: Pixels,
+    pub(super) number: u64,
+    pub(super) plane: std::sync::Arc<Plane>,
+    pub(super) column: usize,
+    pub(super) slow: Pixels,
+    pub(super) fast: Pixels,
     /// Whether pixels may hide cells.
-    pub crowded: bool,
-    pub field: Mutex<AnyCanvas>,
-    pub status: Mutex<Canvas<u8>>,
-    pub jobs: Mutex<VecDeque<Job>>,
+    pub(super) crowded: bool,
+    pub(super) field: Mutex<AnyCanvas>,
+    pub(super) status: Mutex<Canvas<u8>>,
+    pub(super) jobs: Mutex<VecDeque<Job>>,
     total: usize,
     done: AtomicUsize,
     damage: Mutex<Option<String>>,
@@ -137,6 +137,12 @@ impl View {
         })
     }
 
+    /// Bytes of its pixels.
+    pub(super) fn bytes(&self) -> usize {
+        // Value and bits, and the same of the status.
+        self.slow.len() * self.fast.len() * (self.asked.field.bytes() + 3)
+    }
+
     pub(super) fn is_complete(&self) -> bool {
         self.done.load(Ordering::Acquire) >= self.total
     }
@@ -149,8 +155,9 @@ impl View {
         self.done.fetch_add(1, Ordering::Release);
     }
 
-    /// What it shows so far.
-    pub(super) fn shot(&self, facts: &Facts) -> Shot {
+    /// What it shows so far, of a map of these facts.
+    #[must_use]
+    pub fn shot(&self, facts: &Facts) -> Shot {
         // Before the pixels are looked at: what is called complete is.
         let done = self.done.load(Ordering::Acquire);
         let shown = |axis: usize, pixels: &Pixels| {

@@ -1,11 +1,12 @@
 //! What is told of a map's cells and curves, by the process that reads it.
 
+use std::sync::{Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
 use serde::Serialize;
 use serde_json::{Value, json};
 
-use super::frames::{CellQuery, CurvesQuery, Refused, ScaleName, WindowQuery};
+use super::frames::{CellQuery, CurvesQuery, MOST_PIXELS, Refused, ScaleName, WindowQuery};
 use crate::explore::chart::ChartCurve;
 use crate::explore::chart_bytes::CurveHead;
 use crate::explore::encoded::{Array, Arrays};
@@ -18,8 +19,8 @@ use crate::sweep::input::field::Storage;
 
 /// A window is waited for so long; then what was read so far is told.
 const PATIENCE: Duration = Duration::from_millis(250);
-/// The most pixels each way.
-const MOST_PIXELS: usize = 2048;
+/// The most bytes of the values of a window: half as many reals.
+const MOST_BYTES: usize = MOST_PIXELS * MOST_PIXELS * 4;
 
 /// The axis of that name.
 fn axis_of(facts: &Facts, name: &str) -> Result<usize, Refused> {
@@ -92,6 +93,12 @@ fn asked(facts: &Facts, query: &WindowQuery) -> Result<Asked, Refused> {
     };
     let across = stretch(x, [query.x0, query.x1], query.w, query.xscale)?;
     let up = stretch(y.unwrap_or(x), [query.y0, query.y1], query.h, query.yscale)?;
+    let pixels = across.pixels * y.map_or(1, |_| up.pixels);
+    if pixels * field.bytes() > MOST_BYTES {
+        let most = MOST_BYTES / field.bytes();
+        let detail = format!("a window on {} has at most {most} pixels", field.name());
+        return Err(Refused::asked(detail));
+    }
     let at = indices(facts, &query.at)?;
     Ok(Asked {
         field,
@@ -134,20 +141,26 @@ struct AtHead {
     value: f64,
 }
 
-/// A window, as far as it was read.
-pub(super) fn window(look: &Look, query: &WindowQuery) -> Result<Vec<u8>, Refused> {
+/// A window, as far as it was read, in two parts; `one` is held while they are put together.
+pub(super) fn window(
+    look: &Look,
+    query: &WindowQuery,
+    one: &Mutex<()>,
+) -> Result<[Vec<u8>; 2], Refused> {
     let begun = Instant::now();
     let asked = asked(look.facts(), query)?;
-    let shot = look.window(&asked, PATIENCE).map_err(Refused::asked)?;
-    encoded(look.facts(), &asked, &shot, begun).map_err(Refused::damaged)
+    let view = look.window(&asked, PATIENCE).map_err(Refused::asked)?;
+    let _one = one.lock().unwrap_or_else(PoisonError::into_inner);
+    let shot = view.shot(look.facts());
+    encoded(look.facts(), &asked, shot, begun).map_err(Refused::damaged)
 }
 
 fn encoded(
     facts: &Facts,
     asked: &Asked,
-    shot: &Shot,
+    shot: Shot,
     begun: Instant,
-) -> Result<Vec<u8>, serde_json::Error> {
+) -> Result<[Vec<u8>; 2], serde_json::Error> {
     let mut arrays = Arrays::default();
     let mut axis = |axis: usize, shown: &Shown| AxisHead {
         name: facts.axes[axis].parameter.name(),
@@ -160,11 +173,6 @@ fn encoded(
         .as_ref()
         .zip(asked.y)
         .map(|(shown, y)| axis(y, shown));
-    let values = match &shot.values {
-        Numbers::U8(values) => arrays.push_runs(values),
-        Numbers::U16(values) => arrays.push_runs(values),
-        Numbers::F64(values) => arrays.push(values.iter().copied()),
-    };
     let head = WindowHead {
         complete: shot.complete,
         progress: shot.progress,
@@ -173,13 +181,17 @@ fn encoded(
         x,
         y,
         at: at(facts, &asked.at, &[Some(asked.x), asked.y]),
-        values,
         status: arrays.push_runs(&shot.status),
         bits: arrays.push_runs(&shot.bits),
-        damage: shot.damage.clone(),
+        values: match shot.values {
+            Numbers::U8(values) => arrays.push_runs(&values),
+            Numbers::U16(values) => arrays.push_runs(&values),
+            Numbers::F64(values) => arrays.push(values),
+        },
+        damage: shot.damage,
         milliseconds: begun.elapsed().as_secs_f64() * 1e3,
     };
-    arrays.behind(&head)
+    arrays.parts(&head)
 }
 
 /// Where a plane lies along the axes that do not span it.

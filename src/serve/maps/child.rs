@@ -17,6 +17,8 @@ const LONGEST_REQUEST: u64 = 1 << 16;
 struct Opened {
     path: PathBuf,
     look: OnceLock<Result<Look, Refused>>,
+    /// One window is put together at a time.
+    one: Mutex<()>,
 }
 
 /// Answers requests that come line by line, until there are no more.
@@ -31,6 +33,7 @@ pub fn read_map<W: Write + Send + 'static>(
     let opened = Arc::new(Opened {
         path: path.to_owned(),
         look: OnceLock::new(),
+        one: Mutex::default(),
     });
     let answers = Arc::new(Mutex::new(answers));
     let mut requests = requests;
@@ -50,13 +53,14 @@ pub fn read_map<W: Write + Send + 'static>(
                     detail: "the map could not be read; this is a fault of slipmap".into(),
                 })
             });
-            let frame = answered.unwrap_or_else(|refused| Frame {
-                kind: Kind::Problem,
-                bytes: serde_json::to_vec(&refused).unwrap_or_default(),
+            let (frame, more) = answered.unwrap_or_else(|refused| {
+                let kind = Kind::Problem;
+                let bytes = serde_json::to_vec(&refused).unwrap_or_default();
+                (Frame { kind, bytes }, Vec::new())
             });
             let mut out = answers.lock().unwrap_or_else(PoisonError::into_inner);
             // Where nobody reads any more, the requests end too.
-            drop(frame.write(request.number, &mut *out));
+            drop(frame.write(&more, request.number, &mut *out));
         });
     }
 }
@@ -67,37 +71,34 @@ impl Opened {
         self.look.get_or_init(open).as_ref().map_err(Clone::clone)
     }
 
-    fn answer(&self, ask: &Ask) -> Result<Frame, Refused> {
+    /// An answer, and what it goes on with.
+    fn answer(&self, ask: &Ask) -> Result<(Frame, Vec<u8>), Refused> {
         let look = self.look()?;
         if look.refresh().is_err() {
-            return Ok(Frame {
-                kind: Kind::OtherMap,
-                bytes: Vec::new(),
-            });
+            return Ok((frame(Kind::OtherMap, Vec::new()), Vec::new()));
         }
-        match ask {
-            Ask::Summary => json(&description::summary(look)),
-            Ask::Description => json(&description::description(look)),
-            Ask::Window(query) => answers::window(look, query).map(bytes),
-            Ask::Curves(query) => answers::curves(look, query).map(bytes),
-            Ask::Cell(query) => json(&answers::cell(look, query)?),
-            Ask::Sweep => Ok(Frame {
-                kind: Kind::Text,
-                bytes: description::sweep(look).into_bytes(),
-            }),
-        }
+        let answer = match ask {
+            Ask::Summary => json(&description::summary(look))?,
+            Ask::Description => json(&description::description(look))?,
+            Ask::Cell(query) => json(&answers::cell(look, query)?)?,
+            Ask::Sweep => frame(Kind::Text, description::sweep(look).into_bytes()),
+            Ask::Curves(query) => frame(Kind::Bytes, answers::curves(look, query)?),
+            Ask::Window(query) => {
+                let [head, arrays] = answers::window(look, query, &self.one)?;
+                return Ok((frame(Kind::Bytes, head), arrays));
+            }
+        };
+        Ok((answer, Vec::new()))
     }
 }
 
-fn bytes(bytes: Vec<u8>) -> Frame {
-    let kind = Kind::Bytes;
+fn frame(kind: Kind, bytes: Vec<u8>) -> Frame {
     Frame { kind, bytes }
 }
 
 fn json(value: &serde_json::Value) -> Result<Frame, Refused> {
-    let kind = Kind::Json;
     let bytes = serde_json::to_vec(value).map_err(Refused::damaged)?;
-    Ok(Frame { kind, bytes })
+    Ok(frame(Kind::Json, bytes))
 }
 
 /// Why a map cannot be opened, without the folders that it is in.

@@ -11,7 +11,10 @@ use serde::{Deserialize, Serialize};
 use utoipa::{IntoParams, ToSchema};
 
 /// No answer is longer.
-const LONGEST: u32 = 128 << 20;
+const LONGEST: u32 = 64 << 20;
+
+/// The most pixels of a window each way.
+pub(super) const MOST_PIXELS: usize = 2048;
 
 /// A request, by its number.
 #[derive(Debug, Serialize, Deserialize)]
@@ -156,14 +159,16 @@ pub(super) struct Frame {
 }
 
 impl Frame {
-    pub(super) fn write(&self, number: u64, out: &mut impl Write) -> io::Result<()> {
-        let length = u32::try_from(self.bytes.len()).map_err(io::Error::other)?;
+    /// Writes an answer, of which the bytes may go on with `more`.
+    pub(super) fn write(&self, more: &[u8], number: u64, out: &mut impl Write) -> io::Result<()> {
+        let length = u32::try_from(self.bytes.len() + more.len()).map_err(io::Error::other)?;
         let mut head = Vec::with_capacity(13);
         head.extend(number.to_le_bytes());
         head.push(self.kind as u8);
         head.extend(length.to_le_bytes());
         out.write_all(&head)?;
         out.write_all(&self.bytes)?;
+        out.write_all(more)?;
         out.flush()
     }
 
@@ -176,8 +181,11 @@ impl Frame {
         let kind = Kind::ALL.into_iter().find(|&kind| kind as u8 == head[8]);
         let odd = || io::Error::from(io::ErrorKind::InvalidData);
         let kind = kind.filter(|_| length <= LONGEST).ok_or_else(odd)?;
+        // Room alone takes no memory, however many are promised.
         let mut bytes = Vec::new();
-        // As many as come, however many were promised.
+        bytes
+            .try_reserve_exact(length as usize)
+            .map_err(io::Error::other)?;
         from.take(length.into()).read_to_end(&mut bytes)?;
         match bytes.len() == length as usize {
             true => Ok((number, Self { kind, bytes })),
@@ -198,7 +206,7 @@ mod tests {
                 kind,
                 bytes: vec![kind as u8; 10],
             };
-            frame.write(number, &mut bytes).unwrap();
+            frame.write(&[], number, &mut bytes).unwrap();
         }
         let mut from = &bytes[..];
         for (number, kind) in (7..).zip(Kind::ALL) {

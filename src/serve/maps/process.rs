@@ -66,8 +66,11 @@ impl Reader {
         let mut child = Command::new(&command.program)
             .args(&command.arguments)
             .arg(path)
-            // Threads of the GNU library's would each keep what they freed for themselves.
-            .env("MALLOC_ARENA_MAX", "2")
+            // The GNU library would keep what was freed, for each thread on its own.
+            .envs([
+                ("MALLOC_ARENA_MAX", "2"),
+                ("MALLOC_MMAP_THRESHOLD_", "4194304"),
+            ])
             .stdin(Stdio::piped())
             .stdout(Stdio::piped())
             .stderr(Stdio::null())

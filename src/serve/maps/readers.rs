@@ -5,8 +5,9 @@ use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Duration;
 
 use axum::http::StatusCode;
+use tokio::sync::{OwnedSemaphorePermit, Semaphore};
 
-use super::frames::{Ask, Frame, Kind, Refused};
+use super::frames::{Ask, Frame, Kind, MOST_PIXELS, Refused, WindowQuery};
 use super::list::List;
 use super::process::{Reader, ReaderCommand, Trouble};
 use super::scan::Found;
@@ -16,6 +17,12 @@ use crate::serve::problem::Problem;
 const MOST_READERS: usize = 2;
 /// A process that takes longer is ended.
 const PATIENCE: Duration = Duration::from_secs(20);
+/// Megabytes of windows that are asked for or sent at a time.
+const ROOM: u32 = 32;
+/// Room is waited for so long.
+const FOR_ROOM: Duration = Duration::from_secs(10);
+/// Bytes of a pixel at most: a real, its status, and its bits.
+const BYTES_OF_PIXEL: usize = 10;
 /// How often a map is opened anew that is another one by now.
 const MOST_OPENED: usize = 3;
 
@@ -26,6 +33,8 @@ pub(in crate::serve) struct Maps {
     command: ReaderCommand,
     /// The one that was asked last comes last.
     readers: Mutex<Vec<(PathBuf, Arc<Reader>)>>,
+    /// Megabytes that answers may take.
+    room: Arc<Semaphore>,
 }
 
 impl Maps {
@@ -35,6 +44,20 @@ impl Maps {
             list: Arc::new(List::of(folder, command.clone())),
             command,
             readers: Mutex::default(),
+            room: Arc::new(Semaphore::new(ROOM as usize)),
+        }
+    }
+
+    /// Room for the answer about a window; it is waited for while others are sent.
+    pub(super) async fn room(&self, query: &WindowQuery) -> Result<OwnedSemaphorePermit, Problem> {
+        let pixels = |asked: Option<usize>| asked.unwrap_or(usize::MAX).min(MOST_PIXELS);
+        let height = query.y.as_ref().map_or(1, |_| pixels(query.h));
+        let bytes = pixels(query.w) * height * BYTES_OF_PIXEL;
+        let needed = (1 + (bytes >> 20) as u32).min(ROOM);
+        let room = Arc::clone(&self.room).acquire_many_owned(needed);
+        match tokio::time::timeout(FOR_ROOM, room).await {
+            Ok(Ok(room)) => Ok(room),
+            _ => Err(problem(Trouble::Busy)),
         }
     }
 

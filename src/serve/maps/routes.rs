@@ -2,12 +2,14 @@
 
 use std::sync::Arc;
 
+use axum::body::Bytes;
 use axum::extract::rejection::QueryRejection;
 use axum::extract::{Path, Query, State};
 use axum::http::StatusCode;
 use axum::http::header::CONTENT_TYPE;
 use axum::response::{IntoResponse, Response};
 use serde_json::Value;
+use tokio::sync::OwnedSemaphorePermit;
 use utoipa::OpenApi;
 use utoipa_axum::router::OpenApiRouter;
 use utoipa_axum::routes;
@@ -147,7 +149,24 @@ async fn window(
         let detail = "the ends of a window are finite numbers";
         return Err(Problem::of(StatusCode::UNPROCESSABLE_ENTITY, detail));
     }
-    asked(&maps, &id, Ask::Window(query)).await
+    let found = found(&maps, &id).await?;
+    let room = maps.room(&query).await?;
+    let Frame { bytes, .. } = maps.ask(&found, &Ask::Window(query)).await?;
+    // The room is given back when the last byte is sent.
+    let body = Bytes::from_owner(Sent { bytes, _room: room });
+    Ok(([(CONTENT_TYPE, "application/octet-stream")], body).into_response())
+}
+
+/// An answer that takes room until it is sent.
+struct Sent {
+    bytes: Vec<u8>,
+    _room: OwnedSemaphorePermit,
+}
+
+impl AsRef<[u8]> for Sent {
+    fn as_ref(&self) -> &[u8] {
+        &self.bytes
+    }
 }
 
 /// The curves in a plane
