@@ -1,6 +1,9 @@
 #!/usr/bin/env bash
-# Gets what the tests of the page need (Node, a Chromium, and the packages of tests/browser), and runs them in that browser with
-# the program at target/release/slipmap. `scripts/browser.sh bench` runs benches/explorer.mjs instead.
+# Gets what the tests of the page need (Node, a Chromium, and the packages of tests/browser), and runs them in that browser.
+#
+#   scripts/browser.sh              # the tests
+#   scripts/browser.sh bench …      # benches/explorer.mjs
+#   scripts/browser.sh pictures     # those of the page in README.md
 #
 # Sourced by test.sh for `have_browser` and `test_browser`.
 set -euo pipefail
@@ -56,26 +59,42 @@ copied() {
     cp "$SLIPMAP_ROOT"/tests/browser/*.mjs "$SLIPMAP_ROOT/benches/explorer.mjs" "$BROWSER_TESTS/run"
 }
 
+# The page without a server is tested where it was made.
 test_browser() {
     copied
+    [ -n "${SLIPMAP_STATIC_PAGE:-}" ] || rm "$BROWSER_TESTS/run/static.test.mjs"
     export SLIPMAP_ROOT SLIPMAP_PROGRAM=${SLIPMAP_PROGRAM:-$SLIPMAP_ROOT/target/release/slipmap}
     node --test --test-concurrency=1 --test-timeout=400000 --test-force-exit "$BROWSER_TESTS"/run/*.test.mjs
 }
 
-bench_browser() {
+# Leaves SLIPMAP_STATIC_PAGE empty where it cannot be made.
+make_static_page() {
+    SLIPMAP_STATIC_PAGE=
+    if have_wasm; then
+        SLIPMAP_STATIC_PAGE=$BROWSER_TESTS/page
+        "$SLIPMAP_ROOT/scripts/static-page.sh" "$SLIPMAP_STATIC_PAGE"
+    fi
+    export SLIPMAP_STATIC_PAGE
+}
+
+# pages PROGRAM …: one of the other programs beside the tests.
+pages() {
     copied
     export SLIPMAP_ROOT SLIPMAP_PROGRAM=${SLIPMAP_PROGRAM:-$SLIPMAP_ROOT/target/release/slipmap}
-    node "$BROWSER_TESTS/run/explorer.mjs" "$@"
+    node "$BROWSER_TESTS/run/$1" "${@:2}"
 }
 
 if [ "${BASH_SOURCE[0]}" = "$0" ]; then
     have_browser || die "Node $NODE_NEEDED or newer, npm or Chromium is missing and cannot be installed"
-    if [ "${1:-}" = bench ]; then
-        shift
-        bench_browser "$@"
-    else
-        # shellcheck disable=SC2086
-        cargo build --release --locked $SLIPMAP_CARGO_FEATURES
+    cd "$SLIPMAP_ROOT"
+    # shellcheck disable=SC2086
+    cargo build --release --locked $SLIPMAP_CARGO_FEATURES
+    case ${1:-} in
+    bench) pages explorer.mjs "${@:2}" ;;
+    pictures) pages pictures.mjs ;;
+    *)
+        make_static_page
         test_browser
-    fi
+        ;;
+    esac
 fi

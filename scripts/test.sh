@@ -1,11 +1,11 @@
 #!/usr/bin/env bash
-# Everything that is checked before a change goes in: formatting, lints, documentation, and the whole test suite with other
-# people's programs reading the maps, and a map on a Slurm of its own. Gets what is missing first. What cannot be had is left
-# out with a warning, or fails where it is here on every platform.
+# Everything that is checked before a change goes in: formatting, lints, documentation, the whole test suite with other people's
+# programs reading the maps, the page in a real browser, and a map on a Slurm of its own. Gets what is missing first. What
+# cannot be had is left out with a warning, or fails where it is here on every platform.
 set -euo pipefail
 
-# shellcheck source=scripts/setup.sh
-. "$(dirname "${BASH_SOURCE[0]}")/setup.sh"
+# shellcheck source=scripts/browser.sh
+. "$(dirname "${BASH_SOURCE[0]}")/browser.sh"
 cd "$SLIPMAP_ROOT"
 
 # ncdump, h5dump, Octave and a Python that can make virtual environments.
@@ -141,6 +141,12 @@ step() {
 install_readers
 install_python_packages
 install_languages
+if have_browser; then
+    browser=1
+else
+    browser=
+    warnings+=("the page is not tested in a browser: Node $NODE_NEEDED or newer, npm or Chromium is missing")
+fi
 check_static_page
 install_slurm
 install_cargo_deny
@@ -166,6 +172,10 @@ step scripts/features.sh
 RUSTDOCFLAGS="-D warnings" step cargo doc --locked --no-deps "${features[@]}"
 check_licences
 step cargo test --release --locked "${features[@]}" -- ${left_out[@]+"${left_out[@]}"}
+if [ -n "$browser" ]; then
+    make_static_page
+    step test_browser
+fi
 if have_slurm; then
     step tests/slurm/run.sh
 fi

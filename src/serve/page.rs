@@ -60,3 +60,24 @@ pub(super) async fn asset(Path(name): Path<String>) -> Result<Response, Problem>
     };
     Ok(([(CONTENT_TYPE, kind)], text).into_response())
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_file_of_the_page_is_handed_out() {
+        let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/src/serve/page");
+        // Of no use to a page that asks a server, and what is handed out as the page itself.
+        let besides = ["worker.js", "index.html"];
+        let mut found: Vec<String> = std::fs::read_dir(folder)
+            .unwrap()
+            .map(|entry| entry.unwrap().file_name().into_string().unwrap())
+            .filter(|name| !besides.contains(&name.as_str()))
+            .collect();
+        found.sort();
+        let mut known: Vec<&str> = FILES.iter().map(|&(name, _)| name).collect();
+        known.sort_unstable();
+        assert_eq!(found, known);
+    }
+}

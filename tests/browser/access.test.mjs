@@ -1,37 +1,10 @@
 // The page for those who see it small, dark, through a reader of the screen, or by keyboard alone.
 
 import assert from "node:assert/strict";
-import { mkdirSync, readFileSync } from "node:fs";
-import { createRequire } from "node:module";
-import { join } from "node:path";
-import { after, before, test } from "node:test";
-import { atRest, openBrowser, openPage, serve } from "./support.mjs";
+import { test } from "node:test";
+import { atRest, openPage, opened, picture, violations } from "./support.mjs";
 
-const axe = readFileSync(createRequire(import.meta.url).resolve("axe-core/axe.min.js"), "utf8");
-let [browser, server] = [null, null];
-before(async () => {
-  server = await serve();
-  browser = await openBrowser();
-});
-after(async () => {
-  await browser?.close();
-  await server?.end();
-});
-
-/** Where pictures of the page are left to be looked at, if somebody wants to. */
-async function picture(page, name) {
-  const folder = process.env.SLIPMAP_SCREENSHOTS;
-  if (!folder) return;
-  mkdirSync(folder, { recursive: true });
-  await page.screenshot({ path: join(folder, `${name}.png`), fullPage: true });
-}
-
-/** What axe-core finds wrong, in words. */
-async function violations(page) {
-  await page.evaluate(axe);
-  const { violations: found } = await page.evaluate(() => window.axe.run());
-  return found.flatMap(({ id, nodes }) => nodes.map(({ target }) => `${id}: ${target}`));
-}
+const { browser, server } = await opened();
 
 for (const width of [390, 1024, 1600]) {
   for (const colorScheme of ["light", "dark"]) {

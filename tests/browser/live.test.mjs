@@ -3,20 +3,12 @@
 import assert from "node:assert/strict";
 import { readFileSync, writeFileSync } from "node:fs";
 import { join } from "node:path";
-import { after, before, test } from "node:test";
+import { test } from "node:test";
 import {
-  atRest, chance, colourAt, newFolder, openBrowser, openPage, placeOf, serve, slipmap,
+  atRest, chance, colourAt, newFolder, openPage, opened, placeOf, serve, slipmap,
 } from "./support.mjs";
 
-let [browser, server] = [null, null];
-before(async () => {
-  server = await serve();
-  browser = await openBrowser();
-});
-after(async () => {
-  await browser?.close();
-  await server?.end();
-});
+const { browser, server } = await opened();
 
 const asked = (args) => JSON.parse(slipmap([...args, "--json"]));
 

@@ -4,30 +4,24 @@ import assert from "node:assert/strict";
 import { existsSync, readFileSync } from "node:fs";
 import { createServer } from "node:http";
 import { extname, join } from "node:path";
-import { after, before, test } from "node:test";
-import { atRest, openBrowser, openPage, serve, slipmap } from "./support.mjs";
+import { after, test } from "node:test";
+import { atRest, openPage, opened, slipmap } from "./support.mjs";
 
 const FOLDER = process.env.SLIPMAP_STATIC_PAGE;
 const TYPES = { ".html": "text/html", ".js": "text/javascript", ".css": "text/css", ".wasm": "application/wasm" };
 
-let [browser, files, server] = [null, null, null];
-before(async () => {
-  files = createServer((request, response) => {
-    const name = request.url === "/" ? "index.html" : request.url.slice(1).replace(/[?#].*/, "");
-    const file = join(FOLDER, name);
-    if (!/^[\w.-]+$/.test(name) || !existsSync(file)) return response.writeHead(404).end();
-    response.setHeader("Content-Type", TYPES[extname(name)] ?? "text/plain");
-    return response.end(readFileSync(file));
-  });
-  await new Promise((done) => files.listen(0, "127.0.0.1", done));
-  server = await serve();
-  browser = await openBrowser();
+const { browser, server } = await opened();
+const files = createServer((request, response) => {
+  const name = request.url === "/" ? "index.html" : request.url.slice(1).replace(/[?#].*/, "");
+  const file = join(FOLDER, name);
+  if (!/^[\w.-]+$/.test(name) || !existsSync(file)) return response.writeHead(404).end();
+  response.setHeader("Content-Type", TYPES[extname(name)] ?? "text/plain");
+  return response.end(readFileSync(file));
 });
-after(async () => {
-  await browser?.close();
-  await server?.end();
-  files?.closeAllConnections();
-  files?.close();
+await new Promise((done) => files.listen(0, "127.0.0.1", done));
+after(() => {
+  files.closeAllConnections();
+  files.close();
 });
 
 const address = () => `http://127.0.0.1:${files.address().port}/`;

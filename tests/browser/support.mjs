@@ -1,9 +1,11 @@
 // What the tests of the page and its benchmark share: a server, a browser, and ways to ask the page.
 
 import { spawn, execFileSync } from "node:child_process";
-import { mkdtempSync, rmSync } from "node:fs";
+import { mkdirSync, mkdtempSync, readFileSync, rmSync } from "node:fs";
+import { createRequire } from "node:module";
 import { tmpdir } from "node:os";
 import { join } from "node:path";
+import { after } from "node:test";
 import { chromium } from "playwright-core";
 
 export const ROOT = process.env.SLIPMAP_ROOT;
@@ -53,6 +55,33 @@ export const openBrowser = () =>
     ],
   });
 
+/** The browser and the server of a file of tests, until its last one. */
+export async function opened(args = []) {
+  const server = await serve(args);
+  const browser = await openBrowser();
+  after(async () => {
+    await browser.close();
+    await server.end();
+  });
+  return { browser, server };
+}
+
+/** Where pictures of the page are left to be looked at, if somebody wants to. */
+export async function picture(page, name) {
+  const folder = process.env.SLIPMAP_SCREENSHOTS;
+  if (!folder) return;
+  mkdirSync(folder, { recursive: true });
+  await page.screenshot({ path: join(folder, `${name}.png`), fullPage: true });
+}
+
+/** What axe-core finds wrong, in words. */
+export async function violations(page) {
+  const axe = createRequire(import.meta.url).resolve("axe-core/axe.min.js");
+  await page.evaluate(readFileSync(axe, "utf8"));
+  const { violations: found } = await page.evaluate(() => window.axe.run());
+  return found.flatMap(({ id, nodes }) => nodes.map(({ target }) => `${id}: ${target}`));
+}
+
 /**
  * A page of its own, with what went wrong in it.
  * @returns {Promise<import("playwright-core").Page & {faults: string[]}>}
@@ -86,6 +115,19 @@ export async function atRest(page) {
     const idle = (requests) => !requests.next && requests.underWay.size === 0;
     return plane.plane.rests && idle(live.requests) && idle(saved.windows);
   }, undefined, { timeout: 30000 });
+}
+
+/** Tries until nothing is thrown, for ten seconds. */
+export async function eventually(check) {
+  const until = Date.now() + 10000;
+  for (;;) {
+    try {
+      return await check();
+    } catch (error) {
+      if (Date.now() > until) throw error;
+      await new Promise((done) => setTimeout(done, 50));
+    }
+  }
 }
 
 /** The colour on the screen at a point of the chart, as [r, g, b]. */

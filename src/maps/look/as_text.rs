@@ -165,14 +165,6 @@ mod tests {
         }
     }
 
-    #[track_caller]
-    fn assert_same_motion(text: &str, plan: &Plan, setting: &Setting) {
-        let read: CaseSpec = text.parse().unwrap();
-        assert_same(&read.setting, setting, &[]);
-        let motion = plan.spec.simulation.case(setting, 0.0).unwrap();
-        assert_eq!(Some(read.case), motion);
-    }
-
     const START: [Parameter; 3] = [Parameter::XDot0, Parameter::A0, Parameter::SwitchOnPhase];
 
     #[test]

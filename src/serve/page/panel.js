@@ -105,6 +105,7 @@ export class Panel {
       ["stick-slip ends by", `${found.outcome}${ENDS[found.outcome] ? `: ${ENDS[found.outcome]}` : ""}`],
       ["in a period there", `stuck ${told(found.stick_time)}, slipping ${told(found.slip_time)}`],
       ["load reaches 0 from", found.v_liftoff === null ? "no velocity" : told(found.v_liftoff)],
+      ["asked by the protocol", found.protocol],
       ["found by", `${found.method}${found.decided ? "" : "; not decided beyond"}`],
     ]);
   }

@@ -11,6 +11,8 @@ const LOOK = 2500;
 const AGAIN = 60;
 /** The most pixels of a window each way. */
 const MOST_PIXELS = 2048;
+/** In all: more of a field of real numbers is refused. */
+const MOST_IN_ALL = 2 ** 21;
 const LINE_HEIGHT = 220;
 
 const ages = [[86400, "day"], [3600, "hour"], [60, "minute"], [1, "second"]];
@@ -110,8 +112,9 @@ export class Saved {
     element("map").addEventListener("submit", (event) => event.preventDefault());
     const set = (id, key, read) => element(id).addEventListener("change", (event) => {
       const { map } = this.state;
+      const before = map[key];
       map[key] = read(event.target);
-      if (key === "x" || key === "y") this.#axesChosen(key);
+      if (key === "x" || key === "y") this.#axesChosen(key, before);
       if (key === "xlog" || key === "ylog") this.#allInView();
       this.#build();
       this.#ask();
@@ -210,11 +213,12 @@ export class Saved {
   }
 
   /** Where both axes are the same now, the other one takes the place of this one. */
-  #axesChosen(key) {
+  #axesChosen(key, before) {
     const { map } = this.state;
     const other = key === "x" ? "y" : "x";
     if (map[key] === map[other]) {
-      map[other] = this.map.axes.map(({ name }) => name).find((name) => name !== map[key]) ?? null;
+      map[other] = before;
+      [map.xlog, map.ylog] = [map.ylog, map.xlog];
     }
     map.point = null;
     this.#allInView();
@@ -274,8 +278,9 @@ export class Saved {
   #ask() {
     const { map } = this.state;
     const { w, h } = this.plane.area();
-    const pixels = (length) => Math.min(MOST_PIXELS, Math.max(1, Math.round(length)));
     const [xs, ys] = this.plane.view;
+    const part = Math.min(1, Math.sqrt(MOST_IN_ALL / (w * h)));
+    const pixels = (length) => Math.min(MOST_PIXELS, Math.max(1, Math.floor(part * length)));
     const query = { field: map.field, x: map.x, at: this.#at([map.x, map.y]), w: pixels(w), h: pixels(h),
       x0: xs.from, x1: xs.to, xscale: xs.log ? "log" : "linear" };
     if (map.y) Object.assign(query, { y: map.y, y0: ys.from, y1: ys.to, yscale: ys.log ? "log" : "linear" });
@@ -332,7 +337,8 @@ export class Saved {
       curves: this.curves.list,
       at: (answer.at ?? []).map(({ name, value }) => [name, value]),
       milliseconds: answer.milliseconds,
-      note: answer.complete ? `read in ${answer.milliseconds.toFixed(0)} ms`
+      note: answer.damage ? `damaged: ${answer.damage}`
+        : answer.complete ? `read in ${answer.milliseconds.toFixed(0)} ms`
         : `reading, ${Math.floor(100 * answer.progress)} %`,
       exact: true,
       rests: answer.complete,
