@@ -1,18 +1,19 @@
-//! Time of a critical velocity by each of its roads, one core.
+//! Time of a critical velocity by each of its methods, one core.
 //!
 //! `cargo bench --bench critical`. Random problems (seed fixed): weakening and Coulomb friction
 //! under load, velocity and mixed control; `SLIPMAP_CELLS` asks for more than 300. Each cell is
 //! done from scratch as `slipmap vc` does it, and by simulation alone right after, which waits for
-//! every outcome; medians, means and the slowest cell of every road. Then lines of 256 delays as a
+//! every outcome; medians, means and the slowest cell of every method. Then lines of 256 delays as a
 //! map does them, where cells start from their neighbours; every block is timed three times, and
 //! the least counts: per cell, everything included, and each single visit to a cell.
 
 use std::cell::RefCell;
 use std::time::Instant;
 
-use slipmap::critical::follow::Pace;
-use slipmap::critical::line::{BLOCK, critical_velocities};
-use slipmap::critical::{Critical, End, Method, Problem, by_simulation, critical_velocity};
+use slipmap::critical::along_delay::{BLOCK, critical_velocities};
+use slipmap::critical::{
+    CriticalVelocity, Method, Problem, RampOptions, Transition, by_simulation, critical_velocity,
+};
 use slipmap::slip::motion::Accuracy;
 
 #[path = "../tests/common/chance_problem.rs"]
@@ -21,10 +22,10 @@ use chance_problem::Chance;
 
 struct Timed {
     problem: Problem,
-    found: Critical,
+    found: CriticalVelocity,
     micros: f64,
     simulated_micros: f64,
-    simulated: Critical,
+    simulated: CriticalVelocity,
     agrees: bool,
 }
 
@@ -42,24 +43,24 @@ fn main() {
         tolerance: 1e-9,
         ..Accuracy::default()
     };
-    let patient = Pace {
+    let patient = RampOptions {
         patient: true,
-        ..Pace::default()
+        ..RampOptions::default()
     };
     let mut all = Vec::new();
     for _ in 0..cells {
         let problem = chance.problem();
         let (found, micros) = timed(|| critical_velocity(&problem));
         let (simulated, simulated_micros) = timed(|| by_simulation(&problem, &patient, accuracy));
-        let value = |c: &Critical| {
-            if c.end == End::LiftOff {
+        let value = |c: &CriticalVelocity| {
+            if c.transition == Transition::LiftOff {
                 c.v_liftoff
             } else {
                 c.vc
             }
         };
-        let agrees =
-            found.end == simulated.end && (value(&found) / value(&simulated) - 1.0).abs() < 1e-4;
+        let agrees = found.transition == simulated.transition
+            && (value(&found) / value(&simulated) - 1.0).abs() < 1e-4;
         all.push(Timed {
             problem,
             found,
@@ -125,7 +126,8 @@ fn lines(cells: usize) {
             let mut runs = [once(), once(), once()];
             runs.sort_by(|p, q| p.1.total_cmp(&q.1));
             let (found, micros, begun) = &runs[0];
-            let orbit = |c: &Option<Critical>| c.is_some_and(|c| c.method == Method::GrazeOrbit);
+            let orbit =
+                |c: &Option<CriticalVelocity>| c.is_some_and(|c| c.method == Method::GrazeOrbit);
             if found.iter().all(orbit) {
                 by_orbit.push(micros / block.len() as f64);
                 let each = begun.windows(2).map(|w| (w[1] - w[0]).as_secs_f64() * 1e6);
@@ -166,6 +168,6 @@ fn row<'t>(name: &str, times: impl Iterator<Item = (&'t Timed, f64)>) {
         p.alpha_v,
         p.alpha_n,
         p.tau,
-        slowest.found.end.name(),
+        slowest.found.transition.name(),
     );
 }

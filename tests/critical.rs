@@ -1,4 +1,4 @@
-//! The critical velocity against reference values, the closed form of the limit, and its roads
+//! The critical velocity against reference values, the closed form of the limit, and its methods
 //! against one another.
 //!
 //! Units: M = κ = N0 = 1, so that everything is dimensionless as in `slipmap::slip::motion`.
@@ -7,12 +7,12 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
-use slipmap::critical::follow::Pace;
+use slipmap::critical::along_delay::{BLOCK, critical_velocities};
 use slipmap::critical::limit::CoulombLimit;
-use slipmap::critical::line::{BLOCK, critical_velocities};
-use slipmap::critical::switch_on::{Phase, Scan, Survival, Trials, windows};
+use slipmap::critical::switch_on::{Phase, Scan, Trials, windows};
 use slipmap::critical::{
-    Critical, End, GRAZE_PRECISION, Method, Problem, by_simulation, critical_velocity,
+    CriticalVelocity, GRAZE_PRECISION, Method, Options, Problem, RampOptions, Regime, Transition,
+    by_simulation, critical_velocity,
 };
 use slipmap::model::{FrictionLaw, Table};
 use slipmap::slip::motion::Accuracy;
@@ -30,6 +30,7 @@ fn problem(law: FrictionLaw, alpha_v: f64, alpha_n: f64, tau: f64) -> Problem {
         alpha_n,
         tau,
         stop: Stop::default(),
+        options: Options::default(),
     }
 }
 
@@ -50,17 +51,17 @@ fn tolerance(tolerance: f64) -> Accuracy {
 }
 
 /// By simulation alone, with steps of its own, every loss of stick-slip waited for.
-fn simulated(problem: &Problem) -> Critical {
+fn simulated(problem: &Problem) -> CriticalVelocity {
     simulated_by(problem, 0.35)
 }
 
 /// The same, with steps of v0 no larger than `first`, relative.
-fn simulated_by(problem: &Problem, first: f64) -> Critical {
-    let pace = Pace {
+fn simulated_by(problem: &Problem, first: f64) -> CriticalVelocity {
+    let pace = RampOptions {
         first,
         largest: first,
         patient: true,
-        ..Pace::default()
+        ..RampOptions::default()
     };
     by_simulation(problem, &pace, tolerance(1e-9))
 }
@@ -82,7 +83,7 @@ fn reference() -> Vec<(Problem, f64, f64)> {
 }
 
 #[test]
-fn the_reference_is_met_by_every_road() {
+fn the_reference_is_met_by_every_method() {
     let rows = reference();
     assert!(rows.len() >= 23);
     for (problem, expected, n_min) in rows {
@@ -93,7 +94,7 @@ fn the_reference_is_met_by_every_road() {
                 assert!((found.n_min - n_min).abs() < 0.02, "{n_min} {found:?}");
                 assert!(found.stick_time > 0.0 && found.slip_time > 0.0);
             } else {
-                assert_eq!(found.end, End::LiftOff, "{problem:?}");
+                assert_eq!(found.transition, Transition::LiftOff, "{problem:?}");
                 assert!(found.vc.is_nan() && found.v_liftoff > 0.0 && found.v_liftoff < expected);
             }
         }
@@ -104,7 +105,7 @@ fn the_reference_is_met_by_every_road() {
 fn the_letters_figure_3() {
     for (problem, expected) in [(fig3a(), 0.344467), (letters(0.0, -10.0, 0.5), 0.021540)] {
         for found in [critical_velocity(&problem), simulated(&problem)] {
-            assert_eq!(found.end, End::Grazing);
+            assert_eq!(found.transition, Transition::Grazing);
             assert!((found.vc - expected).abs() < 2e-6, "{found:?}");
         }
     }
@@ -156,12 +157,12 @@ fn switching_on_at_a_phase() {
         let mut trials = Trials::new(&problem, Phase::After(phase), tolerance(1e-9), 50_000);
         assert_eq!(
             trials.at(expected * (1.0 - 1e-5)),
-            Survival::Survives,
+            Regime::Periodic,
             "{phase}"
         );
         assert_ne!(
             trials.at(expected * (1.0 + 1e-5)),
-            Survival::Survives,
+            Regime::Periodic,
             "{phase}"
         );
     }
@@ -183,7 +184,7 @@ fn survival_at_the_stop_is_re_entrant() {
         let mut slips = Trials::new(&problem, Phase::After(0.0), tolerance(1e-9), 50_000);
         let slip = slips.uncontrolled_cycle(v0).unwrap().slip_time;
         let mut trials = Trials::new(&problem, Phase::After(slip), tolerance(1e-9), 50_000);
-        trials.at(v0) == Survival::Survives
+        trials.at(v0) == Regime::Periodic
     };
     for (edge, above) in [(0.26695, false), (0.27661, true), (0.344467, false)] {
         assert_eq!(at_stop(edge - 2e-5), !above, "below {edge}");
@@ -197,18 +198,18 @@ fn the_worst_phase_of_a_delay_too_long_is_undecided() {
     let problem = letters(0.0, -10.0, 1e8);
     for phase in [Phase::After(0.0), Phase::Worst(4)] {
         let mut trials = Trials::new(&problem, phase, tolerance(1e-9), 50_000);
-        assert_eq!(trials.at(0.35), Survival::Undecided, "{phase:?}");
+        assert_eq!(trials.at(0.35), Regime::Undecided, "{phase:?}");
     }
 }
 
 /// A search that is cut off says so.
 #[test]
 fn a_search_of_too_many_trials_is_undecided() {
-    let pace = Pace {
+    let pace = RampOptions {
         first: 1e-3,
         largest: 1e-3,
         patient: true,
-        ..Pace::default()
+        ..RampOptions::default()
     };
     let found = by_simulation(&fig3a(), &pace, tolerance(1e-9));
     assert!(!found.decided, "{found:?}");
@@ -221,7 +222,7 @@ fn cases(default: usize) -> usize {
 }
 
 #[test]
-fn the_roads_agree() {
+fn the_methods_agree() {
     let mut chance = Chance(20261121);
     let (mut claimed, mut worst) = (0, 0.0_f64);
     let mut others = Vec::new();
@@ -236,8 +237,8 @@ fn the_roads_agree() {
             continue;
         }
         claimed += u32::from(fast.decided);
-        let value = |c: &Critical| {
-            if c.end == End::LiftOff {
+        let value = |c: &CriticalVelocity| {
+            if c.transition == Transition::LiftOff {
                 c.v_liftoff
             } else {
                 c.vc
@@ -249,7 +250,7 @@ fn the_roads_agree() {
         for first in [0.35, 0.6, 0.15] {
             let slow = simulated_by(&problem, first);
             let difference = (value(&fast) / value(&slow) - 1.0).abs();
-            if fast.end == slow.end && difference < 1e-4 {
+            if fast.transition == slow.transition && difference < 1e-4 {
                 worst = worst.max(difference);
                 differs = None;
                 break;
@@ -286,18 +287,37 @@ fn the_last_kind_of_stick_slip_counts() {
     for (problem, end, expected) in [
         // A graze at 0.6009, after which the block swings up to 0.53 v0 and then comes to stick
         // again.
-        (of(-2.0, -0.5753, 0.0, 4.733), End::Grazing, 1.001322),
+        (of(-2.0, -0.5753, 0.0, 4.733), Transition::Grazing, 1.001322),
         // It turns back at its stops from 0.8735 on.
-        (of(-1.5842, 0.0, -3.0022, 0.0397), End::Fold, 3.003350),
-        (of(-0.8678, 0.0, -8.224, 0.03405), End::Grazing, 3.003046),
+        (
+            of(-1.5842, 0.0, -3.0022, 0.0397),
+            Transition::Fold,
+            3.003350,
+        ),
+        (
+            of(-0.8678, 0.0, -8.224, 0.03405),
+            Transition::Grazing,
+            3.003046,
+        ),
         // Irregular from 0.19 on, periodic again later.
-        (of(-1.3719, -0.5781, 0.0, 9.5), End::Grazing, 1.372641),
+        (
+            of(-1.3719, -0.5781, 0.0, 9.5),
+            Transition::Grazing,
+            1.372641,
+        ),
         // Its period is doubled at last.
-        (of(-0.7522, -1.3936, 0.0, 0.5202), End::Grazing, 2.923537),
+        (
+            of(-0.7522, -1.3936, 0.0, 0.5202),
+            Transition::Grazing,
+            2.923537,
+        ),
     ] {
         let found = critical_velocity(&problem);
         println!("{found:?}");
-        assert!(found.decided && found.end == end, "{problem:?} {found:?}");
+        assert!(
+            found.decided && found.transition == end,
+            "{problem:?} {found:?}"
+        );
         assert!(
             (found.vc / expected - 1.0).abs() < 1e-4,
             "{problem:?} {found:?}"
@@ -420,7 +440,10 @@ fn irregular_ends_are_decided_where_ramps_agree() {
     ] {
         let law = FrictionLaw::weakening(law[0], law[1], 1.0).unwrap();
         let found = critical_velocity(&problem(law, alpha_v, 0.0, tau));
-        assert!(found.decided && found.end == End::Irregular, "{found:?}");
+        assert!(
+            found.decided && found.transition == Transition::Irregular,
+            "{found:?}"
+        );
         assert!((found.vc / vc - 1.0).abs() < 1e-4, "{found:?} {vc}");
     }
 }
@@ -446,13 +469,16 @@ fn lines_are_what_their_cells_are() {
             if !(found.decided && alone.decided) {
                 continue;
             }
-            assert_eq!(found.end, alone.end, "{problem:?}\n{found:?}\n{alone:?}");
+            assert_eq!(
+                found.transition, alone.transition,
+                "{problem:?}\n{found:?}\n{alone:?}"
+            );
             let values = [(found.vc, alone.vc), (found.v_liftoff, alone.v_liftoff)];
             for (a, b) in values.into_iter().filter(|(a, _)| *a > 0.0) {
                 worst = worst.max((a / b - 1.0).abs());
             }
             // As many slips in a period.
-            if found.end == End::Grazing {
+            if found.transition == Transition::Grazing {
                 worst_time = worst_time.max((found.slip_time / alone.slip_time - 1.0).abs());
             }
             continued += u32::from(found.method == Method::GrazeOrbit);
@@ -580,7 +606,7 @@ fn kinds_that_end_alike_are_told_apart() {
 fn uncontrolled_stick_slip() {
     let coulomb = problem(FrictionLaw::coulomb(0.6, 1.0).unwrap(), 0.0, 0.0, 1.0);
     let found = critical_velocity(&coulomb);
-    assert!(found.decided && found.end == End::Persists && found.vc.is_nan());
+    assert!(found.decided && found.transition == Transition::Persists && found.vc.is_nan());
     let weakening = letters(0.0, 0.0, 1.0);
     let [fast, slow] = [critical_velocity(&weakening), simulated(&weakening)];
     assert!(fast.decided && slow.decided, "{fast:?} {slow:?}");
@@ -608,7 +634,11 @@ fn a_search_stops_anywhere() {
         let text = format!("{asked:?}");
         let search = std::thread::spawn(move || {
             match i % 4 {
-                3 => drop(by_simulation(&asked, &Pace::default(), Accuracy::default())),
+                3 => drop(by_simulation(
+                    &asked,
+                    &RampOptions::default(),
+                    Accuracy::default(),
+                )),
                 _ => drop(critical_velocity(&asked)),
             }
             Instant::now()

@@ -2,7 +2,7 @@
 //! sweeps.
 
 use slipmap::critical::limit::CoulombLimit;
-use slipmap::critical::{Critical, Problem, critical_velocity};
+use slipmap::critical::{CriticalVelocity, Options, Problem, critical_velocity};
 use slipmap::linear::MarginalTolerance;
 use slipmap::linear::rightmost::Rightmost;
 use slipmap::model::FrictionLaw;
@@ -192,6 +192,7 @@ fn letters(alpha_v: f64, alpha_n: f64, tau: f64) -> Problem {
         alpha_n,
         tau,
         stop: Stop::default(),
+        options: Options::default(),
     }
 }
 
@@ -204,7 +205,7 @@ fn letters(alpha_v: f64, alpha_n: f64, tau: f64) -> Problem {
 #[test]
 fn velocity_control_needs_short_sticks() {
     let smooth = |problem: &Problem| {
-        let Critical { vc, decided, .. } = critical_velocity(problem);
+        let CriticalVelocity { vc, decided, .. } = critical_velocity(problem);
         (decided && problem.count(1.001 * vc).stable()).then_some(vc)
     };
     let lowest = (0..7)
@@ -230,6 +231,7 @@ fn coulomb(gamma: f64, tau: f64) -> Problem {
         alpha_n: -2.0 * gamma / (0.5 * tau),
         tau,
         stop: Stop::default(),
+        options: Options::default(),
     }
 }
 

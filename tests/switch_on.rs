@@ -5,8 +5,8 @@
 
 use std::path::Path;
 
-use slipmap::critical::Problem;
-use slipmap::critical::switch_on::{Phase, Scan, Survival, Trials, windows};
+use slipmap::critical::switch_on::{Phase, Scan, Trials, windows};
+use slipmap::critical::{Options, Problem, Regime};
 use slipmap::model::{Control, FrictionLaw, Oscillator, Table};
 use slipmap::slip::case::{Case, Start};
 use slipmap::slip::cycle::{NoCycle, after_release};
@@ -107,7 +107,7 @@ fn maps_hold_every_fate_of_the_reference() {
     }
 }
 
-/// Survival by the protocol tells what the motions do.
+/// Regime by the protocol tells what the motions do.
 #[test]
 fn trials_tell_every_fate_of_the_reference() {
     for row in rows(FATES) {
@@ -117,10 +117,10 @@ fn trials_tell_every_fate_of_the_reference() {
         let gains = (number(alpha_v), number(alpha_n));
         let problem = problem(law(kind, mu0, v_s), gains, number(tau));
         let told = match survival(&problem, number(phase), number(v0)) {
-            Survival::Survives | Survival::Irregular => "survives",
-            Survival::Ends => "ends",
-            Survival::LiftOff => "lift",
-            Survival::NoStickSlip | Survival::Undecided => "not told",
+            Regime::Periodic | Regime::Irregular => "survives",
+            Regime::Ended | Regime::Slips => "ends",
+            Regime::LiftOff => "lift",
+            Regime::NoStickSlip | Regime::Undecided => "not told",
         };
         assert_eq!(told, expected, "{row:?}");
     }
@@ -134,10 +134,11 @@ fn problem(law: FrictionLaw, (alpha_v, alpha_n): (f64, f64), tau: f64) -> Proble
         alpha_n,
         tau,
         stop: Stop::default(),
+        options: Options::default(),
     }
 }
 
-fn survival(problem: &Problem, phase: f64, v0: f64) -> Survival {
+fn survival(problem: &Problem, phase: f64, v0: f64) -> Regime {
     let steps = Scan::default().steps;
     Trials::new(problem, Phase::After(phase), Accuracy::of(1e-9), steps).at(v0)
 }

@@ -1,80 +1,380 @@
-//! The critical velocity by simulation: stick-slip is followed while v0 is raised, carrying the
-//! state.
+//! The protocol `follow`: the largest v0 at which stick-slip persists while v0 is raised slowly, by
+//! the first method that leads to it.
+//!
+//! One kind of stick-slip after the other is continued to the event where it ends or becomes of the
+//! next kind; irregular stick-slip in between is crossed by simulation.
 
-use super::hold::{Holding, hold};
-pub use super::pace::{Fate, Followed, Pace, Sustained};
-use super::problem::Problem;
-use super::raise::raise;
+use super::after_event::sequel;
+use super::confirmation::{confirmed, gliding, told};
+use super::continuation::{Point, continue_to_checked_event, is_jump};
+use super::delay_step::Track;
+use super::end_of_branch::{approach, verify};
+use super::memoryless::end_without_memory;
+use super::options::RampOptions;
+use super::problem::{CriticalVelocity, Method, Problem};
+use super::ramp;
+use super::regime::Regime;
+use super::transition::{Ending, Sequel, Transition};
+use super::with_history::WithHistory;
 use crate::slip::motion::{Accuracy, Motion};
 
-/// Where v0 starts, in order, until stick-slip is sustained there; in units of μ_S N0/√(κM).
-pub const STARTS: [f64; 6] = [1e-2, 1e-1, 1e-3, 1e-4, 1e-5, 1e-6];
-
-/// Follows stick-slip of `problem` from low v0 on.
+/// The largest v0 at which stick-slip of `problem` persists while v0 is raised from low values:
+/// protocol `follow`.
 #[must_use]
-pub fn critical_velocity(problem: &Problem, pace: &Pace, accuracy: Accuracy) -> Followed {
-    let scale = problem.law.mu_s();
-    let mut lost: Option<Sustained> = None;
-    for start in STARTS {
-        let v0 = start * scale;
-        let lifted = |lost: &Sustained| lost.fate == Fate::LiftOff && lost.v0 < v0;
-        if lost.as_ref().is_some_and(lifted) {
-            // What is asked for is the smallest v0 of lift-off.
-            continue;
+pub fn critical_velocity(problem: &Problem) -> CriticalVelocity {
+    from_scratch(problem).0
+}
+
+/// The critical velocity, and what a neighbour may start from.
+pub(super) fn from_scratch(problem: &Problem) -> (CriticalVelocity, Option<Track<'_>>) {
+    if problem.persists_without_control() {
+        let persists = Transition::Persists;
+        let critical = CriticalVelocity::nothing(f64::NAN, persists, Method::Simulation);
+        return (critical, None);
+    }
+    let accuracy = Accuracy::of(problem.options.continuation.tolerance);
+    if let Some(ending) = end_without_memory(problem, accuracy) {
+        let critical = ending.critical_velocity(Method::GrazeSlip);
+        return match ends_below_the_start(problem, &critical) && starts_above(problem, accuracy) {
+            true => (simulated(problem), None),
+            false => (critical, None),
+        };
+    }
+    let Some((branch, first)) = WithHistory::from_low_velocity(problem, accuracy) else {
+        return (simulated(problem), None);
+    };
+    let [crossing_step, other_step] = problem.options.transition.crossing_steps;
+    let mut kinds = Kinds {
+        problem,
+        crossing_step,
+        entry: None,
+    };
+    let largest = problem.options.continuation.largest_step;
+    let (mut critical, mut track) = kinds.end(branch, first, largest);
+    if let Some(entry) = kinds.entry.take()
+        && critical.decided
+    {
+        kinds.crossing_step = other_step;
+        let again = kinds.again((*entry).clone());
+        let glided = kinds.glide(*entry, &critical);
+        critical.decided = critical.ends_like(&again) && critical.ends_like(&glided);
+    }
+    if let Some(track) = &mut track {
+        track.decided = critical.decided;
+    }
+    (critical, track)
+}
+
+/// Whether stick-slip of one slip ends below the velocity from which v0 is raised at first.
+fn ends_below_the_start(problem: &Problem, critical: &CriticalVelocity) -> bool {
+    critical.vc < problem.options.ramp.starts[0] * problem.law.mu_s()
+}
+
+/// Whether there is stick-slip at the velocity that comes next then.
+fn starts_above(problem: &Problem, accuracy: Accuracy) -> bool {
+    let v0 = problem.options.ramp.starts[1] * problem.law.mu_s();
+    let mut motion = problem.released(v0, accuracy);
+    matches!(
+        sequel(problem, &mut motion),
+        Sequel::Periodic(_) | Sequel::Irregular
+    )
+}
+
+/// Stick-slip from which simulation has to go on, by this relative step of v0 at first. Motions at
+/// less and less high v0, each for the case that the one before is not sustained.
+struct Handover {
+    motions: Vec<Motion>,
+    step: f64,
+}
+
+/// What is found, and what a neighbour may start from.
+type Found<'p> = (CriticalVelocity, Option<Track<'p>>);
+
+/// One kind of stick-slip after the other.
+struct Kinds<'p> {
+    problem: &'p Problem,
+    /// The largest step through irregular stick-slip.
+    crossing_step: f64,
+    /// Where irregular stick-slip was come to first.
+    entry: Option<Box<Motion>>,
+}
+
+impl<'p> Kinds<'p> {
+    /// The end of stick-slip from a point of a branch on, by this relative `step` of v0 at first.
+    fn end(&mut self, branch: WithHistory<'p, Motion>, at: Point, step: f64) -> Found<'p> {
+        match self.follow(branch, at, step) {
+            Ok(found) => found,
+            Err(handover) => (simulated_from(self.problem, handover), None),
         }
-        let motion = start_sticking(problem, v0, accuracy);
-        let followed = from(problem, motion, pace);
-        if followed.last.is_some() {
-            return followed;
+    }
+
+    fn follow(
+        &mut self,
+        mut branch: WithHistory<'p, Motion>,
+        mut from: Point,
+        mut step: f64,
+    ) -> Result<Found<'p>, Handover> {
+        let options = &self.problem.options.continuation;
+        for kind in 0..options.most_kinds {
+            let start = branch.map().clone();
+            let (located, at) = continue_to_checked_event(&mut branch, from, step, options);
+            let ending = located
+                .and_then(|located| approach(&mut branch, located, &at, &self.problem.options));
+            let seen = ending.map(|ending| (ending, verify(self.problem, &mut branch, &ending)));
+            let (sequel, motion, beyond) = match seen {
+                Ok((ending, Sequel::Ends(_))) => {
+                    return Ok(self.ended(branch, at, &ending, kind));
+                }
+                Ok((ending, Sequel::Undetermined(_))) if ending.event.may_end() => {
+                    look_beyond(self.problem, &branch, &at)
+                }
+                Ok((_, sequel)) => (sequel, branch.tried().clone(), options.first_step),
+                Err(_) => look_beyond(self.problem, &branch, &at),
+            };
+            let handover = |branch: &WithHistory<'p, Motion>, step| Handover {
+                motions: [branch.map().clone(), start.clone()].to_vec(),
+                step,
+            };
+            let next = match sequel {
+                Sequel::Irregular => self.cross(motion),
+                Sequel::Periodic(slips) => Ok((motion, slips)),
+                Sequel::Ends(_) => return Err(handover(&branch, beyond)),
+                Sequel::Undetermined(_) => return Err(handover(&branch, options.first_step)),
+            };
+            let (motion, slips) = match next {
+                Ok(next) => next,
+                Err(critical) => return Ok((critical, None)),
+            };
+            let next = WithHistory::in_stick_slip(self.problem, motion, slips);
+            let before = std::mem::replace(&mut branch, next);
+            let Some(first) = branch.first_point() else {
+                return Err(handover(&before, options.first_step));
+            };
+            step = match is_jump(&at.orbit.period, &first.orbit.period, 0.0, options) {
+                true => options.first_step,
+                false => options.step_past_graze,
+            };
+            from = first;
         }
-        // Where stick-slip was lost otherwise before, a lift-off at a larger start is that of the
-        // start alone.
-        let lower = followed.lost.as_ref().is_some_and(|now| {
-            let lowest = lost.as_ref().map_or(f64::INFINITY, |lost| lost.v0);
-            now.fate == Fate::LiftOff && now.v0 < lowest
+        Err(Handover {
+            motions: vec![branch.map().clone()],
+            step: options.first_step,
+        })
+    }
+
+    /// The end that the last kind of stick-slip has, after so many others.
+    fn ended(
+        &self,
+        branch: WithHistory<'p, Motion>,
+        at: Point,
+        ending: &Ending,
+        others: usize,
+    ) -> Found<'p> {
+        let ending = ending.of_stick_slip();
+        let critical = ending.critical_velocity(Method::GrazeOrbit);
+        let mut track = Track::new(self.problem, branch, at, &ending);
+        track.one_kind = others == 0 && self.entry.is_none();
+        (critical, Some(track))
+    }
+
+    /// Through irregular stick-slip, to where it repeats again; else to its end.
+    fn cross(&mut self, motion: Motion) -> Result<(Motion, usize), CriticalVelocity> {
+        if self.entry.is_none() {
+            self.entry = Some(Box::new(motion.clone()));
+        }
+        let v0 = motion.parameters().v0;
+        let usual = &self.problem.options.ramp;
+        let options = RampOptions {
+            first: self.crossing_step,
+            largest: self.crossing_step,
+            unseen: self.crossing_step,
+            last: self.problem.options.transition.last_crossing_step,
+            until_periodic: true,
+            ..*usual
+        };
+        let (ramped, motion) = ramp::from(self.problem, motion, &options);
+        match ramped.last {
+            Some(last) if last.regime == Regime::Periodic => {
+                Ok((motion, last.summary.slips as usize))
+            }
+            Some(_) => Err(told(&ramped, usual)),
+            // It was lost where it was come to.
+            None => {
+                let (lost, by) = (Transition::Irregular, Method::Simulation);
+                Err(CriticalVelocity {
+                    decided: false,
+                    ..CriticalVelocity::nothing(v0, lost, by)
+                })
+            }
+        }
+    }
+
+    /// Once more from the first irregular stick-slip on.
+    fn again(&mut self, entry: Motion) -> CriticalVelocity {
+        let (motion, slips) = match self.cross(entry) {
+            Ok(periodic) => periodic,
+            Err(critical) => return critical,
+        };
+        let step = self.problem.options.continuation.first_step;
+        let mut branch = WithHistory::in_stick_slip(self.problem, motion, slips);
+        if let Some(first) = branch.first_point() {
+            return self.end(branch, first, step).0;
+        }
+        let motions = vec![branch.map().clone()];
+        simulated_from(self.problem, Handover { motions, step })
+    }
+
+    /// Once more from the first irregular stick-slip on, while v0 glides to near the end that was
+    /// `found`.
+    fn glide(&mut self, mut entry: Motion, found: &CriticalVelocity) -> CriticalVelocity {
+        let usual = &self.problem.options.ramp;
+        let options = gliding(found, usual);
+        let v_max = options.v_max.min(options.glide / self.problem.law.mu_s());
+        if entry.parameters().v0 < options.glide {
+            let options = RampOptions { v_max, ..options };
+            let (ramped, motion) = ramp::from(self.problem, entry, &options);
+            if ramped.lost.is_some() || ramped.last.is_none() || !ramped.complete {
+                return told(&ramped, usual);
+            }
+            entry = motion;
+        }
+        self.again(entry)
+    }
+}
+
+/// What became of stick-slip that was lost from sight at its last point, the motion that came to
+/// it, and how far beyond, relative.
+fn look_beyond(
+    problem: &Problem,
+    branch: &WithHistory<'_, Motion>,
+    at: &Point,
+) -> (Sequel, Motion, f64) {
+    let mut motion = branch.map().clone();
+    let from = motion.parameters().v0;
+    let same = Sequel::Periodic(at.orbit.period.cycles().len());
+    let (mut next, mut beyond) = (same, 0.0);
+    for distance in problem.options.transition.past_lost {
+        beyond = distance;
+        motion.set_v0(from * (1.0 + beyond));
+        next = sequel(problem, &mut motion);
+        if next != same {
+            break;
+        }
+    }
+    (next, motion, beyond)
+}
+
+/// By simulation from the first of some motions in stick-slip that is sustained; from low
+/// velocities where none is.
+fn simulated_from(problem: &Problem, Handover { motions, step }: Handover) -> CriticalVelocity {
+    let usual = &problem.options.ramp;
+    for motion in motions {
+        let search = |options: &RampOptions, tolerance: f64| {
+            let mut motion = motion.clone();
+            motion.refine(Accuracy::of(tolerance));
+            let first = step * options.first;
+            ramp::from(problem, motion, &RampOptions { first, ..*options }).0
+        };
+        let patient = RampOptions {
+            patient: true,
+            ..*usual
+        };
+        let ramped = search(&patient, usual.tolerance);
+        if ramped.last.is_some() {
+            return confirmed(&ramped, &patient, usual, search);
+        }
+    }
+    simulated(problem)
+}
+
+/// By simulation from low velocities on.
+fn simulated(problem: &Problem) -> CriticalVelocity {
+    let usual = &problem.options.ramp;
+    let search = |options: &RampOptions, tolerance: f64| {
+        ramp::from_low_velocity(problem, options, Accuracy::of(tolerance))
+    };
+    confirmed(&search(usual, usual.tolerance), usual, usual, search)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::synthetic::{letters, problem};
+    use super::super::work::{self, Work};
+    use super::*;
+    use crate::model::FrictionLaw;
+
+    /// Known cells, each with the work that finding them takes: fewer trials and steps are better,
+    /// more have to have a reason.
+    #[test]
+    fn known_cells_take_no_more_work() {
+        let weaker = |slope: f64, alpha_v: f64, tau: f64| {
+            let law = FrictionLaw::weakening(0.5, -0.5 / slope, 1.0).unwrap();
+            problem(law, alpha_v, 0.0, tau)
+        };
+        let cells = [
+            (letters(-0.33, 0.0, 4.15), 0.344467, Method::GrazeOrbit),
+            (letters(0.0, -10.0, 0.5), 0.021540, Method::GrazeSlip),
+            (weaker(-2.0, -0.5753, 4.733), 1.001322, Method::Simulation),
+            (
+                weaker(-0.7522, -1.3936, 0.5202),
+                2.923537,
+                Method::GrazeOrbit,
+            ),
+        ];
+        let works = cells.map(|(problem, vc, method)| {
+            let (found, Work { trials, steps }) = work::of(|| critical_velocity(&problem));
+            assert!((found.vc / vc - 1.0).abs() < 1e-4, "{problem:?} {found:?}");
+            assert!(found.decided && found.method == method, "{found:?}");
+            (trials, steps)
         });
-        if lost.is_none() || lower {
-            lost = followed.lost;
+        assert_eq!(works, [(26, 3565), (11, 268), (48, 10228), (24, 2489)]);
+    }
+
+    #[test]
+    fn without_control_coulomb_friction_persists() {
+        let law = FrictionLaw::coulomb(0.5, 1.0).unwrap();
+        let found = critical_velocity(&problem(law, 0.0, 0.0, 1.0));
+        assert_eq!(found.transition, Transition::Persists);
+        assert!(found.vc.is_nan() && found.decided);
+    }
+
+    /// What was lost from sight is looked for beyond its last point, as far as it is the same.
+    #[test]
+    fn a_branch_that_was_lost_is_recognised() {
+        let problem = letters(-0.33, 0.0, 4.15);
+        let accuracy = Accuracy::of(1e-6);
+        let (mut branch, mut at) = WithHistory::from_low_velocity(&problem, accuracy).unwrap();
+        let options = &problem.options.continuation;
+        for v0 in [0.05, 0.2] {
+            use super::super::continuation::Branch;
+            let orbit = branch.orbit_at(v0, Some(&at.orbit.period), 0.01).unwrap();
+            branch.accept();
+            at = Point::first(v0, orbit, 0.01);
         }
+        let (same, _, beyond) = look_beyond(&problem, &branch, &at);
+        assert_eq!((same, beyond), (Sequel::Periodic(1), 2e-2));
+        // From just below v_c = 0.344467 it is lost at the first place beyond that.
+        let (_, at) = continue_to_checked_event(&mut branch, at, 0.1, options);
+        let (next, motion, beyond) = look_beyond(&problem, &branch, &at);
+        assert!(matches!(next, Sequel::Ends(_)), "{next:?}");
+        assert!(
+            motion.parameters().v0 > 0.344467 && beyond < 2e-2,
+            "{beyond}"
+        );
     }
-    Followed {
-        last: None,
-        lost,
-        complete: true,
-        creeps: false,
-        vanish: false,
-        graze_way: f64::INFINITY,
-    }
-}
 
-/// Follows a motion in stick-slip of `problem` from the v0 it has, while v0 is raised.
-#[must_use]
-pub fn from(problem: &Problem, mut motion: Motion, pace: &Pace) -> Followed {
-    carry(problem, &mut motion, pace)
-}
-
-/// Follows a motion in stick-slip from the v0 it has, as [`from`] does, and leaves it where it
-/// comes to.
-pub fn carry(problem: &Problem, motion: &mut Motion, pace: &Pace) -> Followed {
-    let v0 = motion.parameters().v0;
-    let how = Holding::new(pace, f64::INFINITY);
-    let first = hold(problem, motion, v0, &how);
-    if first.persists() {
-        return raise(problem, motion, first, pace);
+    /// Where the first of some motions is not sustained the next one is gone on with.
+    #[test]
+    fn simulation_goes_on_from_what_is_sustained() {
+        let problem = letters(-0.33, 0.0, 4.15);
+        let motion = |v0: f64| problem.released(v0, Accuracy::of(1e-6));
+        let handover = Handover {
+            motions: vec![motion(0.5), motion(0.3)],
+            step: 0.02,
+        };
+        let found = simulated_from(&problem, handover);
+        assert_eq!(found.method, Method::Simulation);
+        assert!((found.vc / 0.344467 - 1.0).abs() < 1e-5, "{found:?}");
+        assert!(found.decided && found.transition == Transition::Grazing);
     }
-    Followed {
-        last: None,
-        lost: Some(first),
-        complete: true,
-        creeps: false,
-        vanish: false,
-        graze_way: f64::INFINITY,
-    }
-}
-
-/// At the end of a stick without memory, with control.
-pub(super) fn start_sticking(problem: &Problem, v0: f64, accuracy: Accuracy) -> Motion {
-    let mut motion = problem.at_rest(v0, accuracy);
-    motion.release_from(problem.law.mu_s());
-    motion
 }

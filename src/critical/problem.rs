@@ -1,5 +1,8 @@
-//! What is asked: the controlled oscillator whose critical velocity is looked for.
+//! What is asked, the controlled oscillator whose critical velocity is looked for, and what is
+//! told.
 
+use super::options::Options;
+use super::transition::Transition;
 use crate::linear::rightmost::Rightmost;
 use crate::linear::{Count, Crossings, MarginalTolerance};
 use crate::model::friction::Kind;
@@ -23,6 +26,8 @@ pub struct Problem {
     pub tau: f64,
     /// What ends the search: its answer then means nothing.
     pub stop: Stop,
+    /// What tunes the search.
+    pub options: Options,
 }
 
 impl Problem {
@@ -46,11 +51,19 @@ impl Problem {
         Motion::new(self.at(v0, 0.0), accuracy, 0.0, 0.0).heeding(self.stop.clone())
     }
 
-    /// How long to wait for a motion's outcome at `v0`: transients, many delays, and thirty of the
-    /// longest cycles.
+    /// A block under control that is released at t = 0 from a stick without memory at `v0`.
+    pub(super) fn released(&self, v0: f64, accuracy: Accuracy) -> Motion {
+        let mut motion = self.at_rest(v0, accuracy);
+        motion.release_from(self.law.mu_s());
+        motion
+    }
+
+    /// How long to wait for a motion's outcome at `v0`: transients, many delays, and many of
+    /// the longest cycles.
     pub(super) fn patience(&self, v0: f64) -> f64 {
         let longest_cycle = 2.0 * self.law.mu_s() / v0 + 10.0;
-        600.0 + 20.0 * self.tau + 30.0 * longest_cycle
+        let [always, delays, cycles] = self.options.ramp.patience;
+        always + delays * self.tau + cycles * longest_cycle
     }
 
     /// The groups of linear stability at `v0`.
@@ -90,5 +103,187 @@ impl Problem {
         let uncontrolled = self.alpha_v == 0.0 && self.alpha_n == 0.0;
         let mu_s = self.law.mu_s();
         uncontrolled && matches!(self.law.kind(), Kind::Coulomb { mu0 } if *mu0 < mu_s)
+    }
+}
+
+/// What gave a critical velocity.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum Method {
+    /// The return map without memory, at its graze or at its lift-off.
+    GrazeSlip,
+    /// The return map with its history, at its graze, at its lift-off or where its stick vanishes.
+    GrazeOrbit,
+    /// Simulation while v0 is raised, see [`super::by_simulation`].
+    Simulation,
+}
+
+impl Method {
+    /// All, in the order of their numbers in a map.
+    pub const ALL: [Self; 3] = [Self::GrazeSlip, Self::GrazeOrbit, Self::Simulation];
+
+    /// The name in maps and messages.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::GrazeSlip => "graze-slip",
+            Self::GrazeOrbit => "graze-orbit",
+            Self::Simulation => "simulation",
+        }
+    }
+}
+
+/// The critical velocity of a problem, in the units of [`crate::slip::motion`]; NaN for what there
+/// is not.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct CriticalVelocity {
+    /// The largest v0 at which stick-slip persists; 0 where it never does.
+    pub vc: f64,
+    /// How it ends there.
+    pub transition: Transition,
+    /// What gave the answer.
+    pub method: Method,
+    /// The smallest v0 at which N ≤ 0 occurs, where that ends stick-slip.
+    pub v_liftoff: f64,
+    /// Time stuck in a period at v_c.
+    pub stick_time: f64,
+    /// Time in slip in a period at v_c.
+    pub slip_time: f64,
+    /// The smallest N at v_c.
+    pub n_min: f64,
+    /// Whether stick-slip was sustained at any v0 that was tried.
+    pub sustained: bool,
+    /// Whether it is known what becomes of the motion beyond v_c.
+    pub decided: bool,
+}
+
+impl CriticalVelocity {
+    /// The v0 at which stick-slip ends, or the model with it; NaN where it persists.
+    #[must_use]
+    pub fn end_of_stick_slip(&self) -> f64 {
+        match self.transition {
+            Transition::LiftOff => self.v_liftoff,
+            _ => self.vc,
+        }
+    }
+
+    /// Whether `other` says the same of the end of stick-slip: at v_c, or the velocity of lift-off,
+    /// within [`GRAZE_PRECISION`].
+    ///
+    /// Both have to lift off, to persist or never to be stick-slip; by which of the other ends it
+    /// is lost is told from the last v0 that holds it alone, whose cycles need not have come to
+    /// repeat, so that is not compared.
+    #[must_use]
+    pub fn ends_like(&self, other: &Self) -> bool {
+        let near =
+            |a: f64, b: f64| a.is_nan() && b.is_nan() || (a - b).abs() <= GRAZE_PRECISION * a.abs();
+        let apart = |of: Transition| {
+            matches!(
+                of,
+                Transition::LiftOff | Transition::Persists | Transition::Never
+            )
+        };
+        let alike = self.transition == other.transition
+            || !apart(self.transition) && !apart(other.transition);
+        alike && near(self.vc, other.vc) && near(self.v_liftoff, other.v_liftoff)
+    }
+
+    /// The end at `vc`, of which nothing more is known.
+    pub(super) fn nothing(vc: f64, transition: Transition, method: Method) -> Self {
+        Self {
+            vc,
+            transition,
+            method,
+            v_liftoff: f64::NAN,
+            stick_time: f64::NAN,
+            slip_time: f64::NAN,
+            n_min: f64::NAN,
+            sustained: transition != Transition::Never,
+            decided: true,
+        }
+    }
+
+    /// N ≤ 0 from `v0` on.
+    pub(super) fn of_lift_off(v0: f64, method: Method) -> Self {
+        Self {
+            v_liftoff: v0,
+            n_min: 0.0,
+            ..Self::nothing(f64::NAN, Transition::LiftOff, method)
+        }
+    }
+}
+
+/// The critical velocity with all windows of v0 in which stick-slip survives.
+#[derive(Debug, Clone, PartialEq)]
+pub struct CriticalWindows {
+    /// v_c and what there is at it.
+    pub critical: CriticalVelocity,
+    /// Where stick-slip survives, up to the largest v0 at which it is looked for: v0 from and to,
+    /// increasing. The last one may end at v_c, where N ≤ 0 occurs, or with the range.
+    pub windows: Vec<[f64; 2]>,
+}
+
+/// v_c by a graze is known to about this, relative.
+pub const GRAZE_PRECISION: f64 = 1e-4;
+
+#[cfg(test)]
+mod tests {
+    use super::super::synthetic::{letters, problem};
+    use super::*;
+
+    #[test]
+    fn sliding_of_figure_3_is_counted() {
+        let figure = letters(-0.33, 0.0, 4.15);
+        assert!(figure.count(0.35).stable());
+        assert!(
+            figure
+                .stable_abscissa(0.35)
+                .is_some_and(|abscissa| abscissa < 0.0)
+        );
+        let shorter = letters(-0.33, 0.0, 1.0);
+        assert!(!shorter.count(0.35).stable() && shorter.stable_abscissa(0.35).is_none());
+        let groups = figure.groups(0.35);
+        assert!((groups.a_v + 0.33).abs() < 1e-15 && groups.b < 0.0 && groups.a_n == 0.0);
+    }
+
+    #[test]
+    fn control_acts_only_where_there_is_a_gain() {
+        assert_eq!(letters(-0.33, 0.0, 1.0).at(0.3, 2.0).switch_on, 2.0);
+        assert_eq!(letters(0.0, 0.0, 1.0).at(0.3, 2.0).switch_on, f64::INFINITY);
+    }
+
+    #[test]
+    fn coulomb_friction_without_control_keeps_stick_slip() {
+        let coulomb = |mu0: f64, alpha_n: f64| {
+            let law = FrictionLaw::coulomb(mu0, 1.0).unwrap();
+            problem(law, 0.0, alpha_n, 1.0).persists_without_control()
+        };
+        assert!(coulomb(0.5, 0.0) && !coulomb(0.5, -0.1) && !coulomb(1.0, 0.0));
+        assert!(!letters(0.0, 0.0, 1.0).persists_without_control());
+    }
+
+    #[test]
+    fn low_velocities_are_waited_for_longer() {
+        let problem = letters(-0.33, 0.0, 4.0);
+        // 600 and 20 delays, and 30 cycles of 2 μ_S/v0 and 10.
+        assert!((problem.patience(0.1) - (680.0 + 30.0 * 30.0)).abs() < 1e-9);
+    }
+
+    #[test]
+    fn answers_are_compared_at_v_c_or_at_lift_off() {
+        let of =
+            |vc: f64, transition| CriticalVelocity::nothing(vc, transition, Method::Simulation);
+        let graze = of(0.3, Transition::Grazing);
+        assert!(graze.ends_like(&of(0.30002, Transition::Fold)));
+        assert!(!graze.ends_like(&of(0.3001, Transition::Grazing)));
+        assert!(!graze.ends_like(&of(f64::NAN, Transition::Persists)));
+        let lifted = CriticalVelocity::of_lift_off(0.2, Method::GrazeOrbit);
+        assert!(lifted.ends_like(&CriticalVelocity::of_lift_off(0.20001, Method::Simulation)));
+        assert!(!lifted.ends_like(&graze) && !graze.ends_like(&lifted));
+        assert_eq!(
+            (lifted.end_of_stick_slip(), graze.end_of_stick_slip()),
+            (0.2, 0.3)
+        );
+        let never = of(0.0, Transition::Never);
+        assert!(!never.sustained && graze.sustained && never.ends_like(&never));
     }
 }

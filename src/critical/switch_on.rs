@@ -1,8 +1,9 @@
 //! The critical velocity by the protocol `switch-on`: control is switched on at a phase of
 //! uncontrolled stick-slip, and the velocities v0 at which stick-slip survives that form windows.
 
+use super::observers::Sticking;
 use super::problem::Problem;
-use super::sticking::Sticking;
+use super::regime::Regime;
 use crate::model::elementary::pow;
 use crate::slip::cycle::{NoCycle, UncontrolledCycle, restart_after_release};
 use crate::slip::motion::{Accuracy, Motion};
@@ -50,42 +51,6 @@ impl Default for Scan {
     }
 }
 
-/// What switching on comes to at one v0.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Survival {
-    /// Stick-slip goes on, periodically.
-    Survives,
-    /// It goes on for as long as was waited, in cycles that do not come to repeat: it may be lost
-    /// by chance yet.
-    Irregular,
-    /// It does not.
-    Ends,
-    /// N ≤ 0.
-    LiftOff,
-    /// There is no uncontrolled stick-slip at this v0.
-    NoStickSlip,
-    /// Not told within the steps allowed, or too many cycles in a delay.
-    Undecided,
-}
-
-impl Survival {
-    /// Whether stick-slip goes on.
-    #[must_use]
-    pub const fn survives(self) -> bool {
-        matches!(self, Self::Survives | Self::Irregular)
-    }
-
-    const fn lifts(self) -> bool {
-        matches!(self, Self::LiftOff)
-    }
-
-    /// Whether an edge next to this one is where it was found to be: what ends by chance ends
-    /// elsewhere with the next error.
-    const fn certain(self) -> bool {
-        !matches!(self, Self::Irregular | Self::Undecided)
-    }
-}
-
 /// Where stick-slip survives.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Windows {
@@ -108,9 +73,6 @@ impl Windows {
         self.survives.last().map(|window| window[1])
     }
 }
-
-/// About how many steps an uncontrolled cycle takes.
-const STEPS_OF_A_CYCLE: u64 = 40;
 
 /// Tries one v0 after the other in the memory of one motion.
 pub struct Trials<'p> {
@@ -144,36 +106,40 @@ impl<'p> Trials<'p> {
     }
 
     /// What becomes of stick-slip at `v0`.
-    pub fn at(&mut self, v0: f64) -> Survival {
+    pub fn at(&mut self, v0: f64) -> Regime {
         match self.phase {
-            Phase::After(phase) => self.once(v0, phase, LONGEST).0,
+            Phase::After(phase) => {
+                let longest = self.problem.options.switch_on.longest;
+                self.once(v0, phase, longest).0
+            }
             Phase::Worst(phases) => self.worst(v0, phases),
         }
     }
 
     /// Survives if it does at one phase; else what is told first of: irregular, lift-off,
     /// undecided, the end.
-    fn worst(&mut self, v0: f64, phases: u32) -> Survival {
-        let (mut worst, period) = self.once(v0, 0.0, LONGEST);
+    fn worst(&mut self, v0: f64, phases: u32) -> Regime {
+        let long = self.problem.options.switch_on.longest;
+        let (mut worst, period) = self.once(v0, 0.0, long);
         if period.is_nan() {
             // Without an uncontrolled cycle there are no phases.
             return worst;
         }
-        let rank = |survival: Survival| match survival {
-            Survival::Survives => 4,
-            Survival::Irregular => 3,
-            Survival::LiftOff => 2,
-            Survival::Undecided => 1,
-            Survival::Ends | Survival::NoStickSlip => 0,
+        let rank = |regime: Regime| match regime {
+            Regime::Periodic => 4,
+            Regime::Irregular => 3,
+            Regime::LiftOff => 2,
+            Regime::Undecided => 1,
+            Regime::Slips | Regime::Ended | Regime::NoStickSlip => 0,
         };
         for i in 1..phases {
-            if worst == Survival::Survives {
+            if worst == Regime::Periodic {
                 return worst;
             }
             // After one that is not told only what is seen soon counts.
             let longest = match worst {
-                Survival::Undecided => 1.0,
-                _ => LONGEST,
+                Regime::Undecided => 1.0,
+                _ => long,
             };
             let phase = period * f64::from(i) / f64::from(phases);
             let (next, _) = self.once(v0, phase, longest);
@@ -186,13 +152,13 @@ impl<'p> Trials<'p> {
 
     /// At one phase, with the uncontrolled period. What becomes of a slip is waited for `longest`
     /// times as long as stick-slip is waited for to repeat.
-    fn once(&mut self, v0: f64, phase: f64, longest: f64) -> (Survival, f64) {
+    fn once(&mut self, v0: f64, phase: f64, longest: f64) -> (Regime, f64) {
         let parameters = self.problem.at(v0, 0.0);
         let restarted = restart_after_release(&mut self.motion, &parameters, self.accuracy, phase);
         let cycle = match restarted {
             Ok(cycle) => cycle,
-            Err(NoCycle::NoStickSlip) => return (Survival::NoStickSlip, f64::NAN),
-            Err(NoCycle::LongDelay) => return (Survival::Undecided, f64::NAN),
+            Err(NoCycle::NoStickSlip) => return (Regime::NoStickSlip, f64::NAN),
+            Err(NoCycle::LongDelay) => return (Regime::Undecided, f64::NAN),
         };
         let patience = cycle.period() + self.problem.patience(v0);
         let limits = Limits {
@@ -202,28 +168,21 @@ impl<'p> Trials<'p> {
             repeated: 1e-6,
             cycles: usize::MAX,
         };
-        let mut sticking = Sticking::new(patience, limits.stable_abscissa.is_some());
+        let slides = limits.stable_abscissa.is_some();
+        let mut sticking = Sticking::new(patience, slides, &self.problem.options.switch_on);
         let summary = follow(&mut self.motion, &limits, &mut sticking);
         let cycles = 1.0 + self.problem.tau / cycle.period();
-        self.spent += summary.steps + STEPS_OF_A_CYCLE * cycles as u64;
-        let survival = match summary.outcome {
-            Outcome::StickSlip => Survival::Survives,
-            Outcome::LiftOff => Survival::LiftOff,
-            Outcome::NoCycle => Survival::NoStickSlip,
-            Outcome::Sliding | Outcome::Oscillation | Outcome::Diverged => Survival::Ends,
-            Outcome::Undecided if self.motion.outgrows_its_past() => Survival::Undecided,
-            Outcome::Undecided if sticking.goes_on() => Survival::Irregular,
-            Outcome::Undecided if sticking.calms_down() => Survival::Ends,
-            Outcome::Undecided => Survival::Undecided,
+        self.spent += summary.steps + self.problem.options.switch_on.steps_of_cycle * cycles as u64;
+        let regime = match summary.outcome {
+            Outcome::Undecided if self.motion.outgrows_its_past() => Regime::Undecided,
+            Outcome::Undecided if sticking.goes_on() => Regime::Irregular,
+            Outcome::Undecided if sticking.calms_down() => Regime::Ended,
+            outcome => Regime::of(outcome),
         };
-        (survival, cycle.period())
+        (regime, cycle.period())
     }
 }
 
-/// A block that slips is waited for until it is known what becomes of it, so many times as long at
-/// most as stick-slip is waited for to repeat: near an unstable oscillation, or where sliding is
-/// hardly stable or unstable, that takes long.
-const LONGEST: f64 = 100.0;
 /// The windows of v0 in which stick-slip of `problem` survives switching on at `phase`.
 #[must_use]
 pub fn windows(problem: &Problem, phase: Phase, scan: &Scan, accuracy: Accuracy) -> Windows {
@@ -248,7 +207,7 @@ pub fn windows(problem: &Problem, phase: Phase, scan: &Scan, accuracy: Accuracy)
 }
 
 /// A velocity, and what switching on comes to there.
-type Tried = (f64, Survival);
+type Tried = (f64, Regime);
 
 /// What is found on the way from one velocity to the next.
 struct Walk {
@@ -260,14 +219,14 @@ struct Walk {
 
 impl Walk {
     fn from(first: Tried) -> Self {
-        let (v0, survival) = first;
+        let (v0, regime) = first;
         Self {
             before: first,
-            open: survival.survives().then_some(v0),
+            open: regime.persists().then_some(v0),
             found: Windows {
                 survives: Vec::new(),
-                v_liftoff: survival.lifts().then_some(v0),
-                decided: survival != Survival::Undecided,
+                v_liftoff: lifts(regime).then_some(v0),
+                decided: regime != Regime::Undecided,
                 complete: true,
             },
         }
@@ -276,18 +235,18 @@ impl Walk {
     /// Goes on to `here`.
     fn to(&mut self, here: Tried, trials: &mut Trials, precision: f64) {
         let before = std::mem::replace(&mut self.before, here);
-        self.found.decided &= here.1 != Survival::Undecided;
-        if before.1.survives() != here.1.survives() {
-            let sides = edge(trials, (before, here), precision, Survival::survives);
-            self.found.decided &= sides.iter().all(|side| side.1.certain());
+        self.found.decided &= here.1 != Regime::Undecided;
+        if before.1.persists() != here.1.persists() {
+            let sides = edge(trials, (before, here), precision, Regime::persists);
+            self.found.decided &= sides.iter().all(|side| certain(side.1));
             let edge = between(sides);
             match self.open.take() {
                 Some(from) => self.found.survives.push([from, edge]),
                 None => self.open = Some(edge),
             }
         }
-        if self.found.v_liftoff.is_none() && here.1.lifts() {
-            let sides = edge(trials, (before, here), precision, Survival::lifts);
+        if self.found.v_liftoff.is_none() && lifts(here.1) {
+            let sides = edge(trials, (before, here), precision, lifts);
             self.found.v_liftoff = Some(between(sides));
         }
     }
@@ -305,16 +264,16 @@ fn edge(
     trials: &mut Trials,
     (mut low, mut high): (Tried, Tried),
     precision: f64,
-    answer: impl Fn(Survival) -> bool,
+    answer: impl Fn(Regime) -> bool,
 ) -> [Tried; 2] {
     let at_low = answer(low.1);
     while high.0 - low.0 > precision * high.0 {
         let middle = 0.5 * (low.0 + high.0);
-        let survival = trials.at(middle);
-        if answer(survival) == at_low {
-            low = (middle, survival);
+        let regime = trials.at(middle);
+        if answer(regime) == at_low {
+            low = (middle, regime);
         } else {
-            high = (middle, survival);
+            high = (middle, regime);
         }
     }
     [low, high]
@@ -322,4 +281,72 @@ fn edge(
 
 fn between([low, high]: [Tried; 2]) -> f64 {
     0.5 * (low.0 + high.0)
+}
+
+const fn lifts(regime: Regime) -> bool {
+    matches!(regime, Regime::LiftOff)
+}
+
+/// Whether an edge next to this regime is where it was found to be: what ends by chance ends
+/// elsewhere with the next error.
+const fn certain(regime: Regime) -> bool {
+    !matches!(regime, Regime::Irregular | Regime::Undecided)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::synthetic::letters;
+    use super::*;
+
+    /// Without control sticks vanish at v0 = 4.1414.
+    #[test]
+    fn a_window_ends_where_sticks_vanish() {
+        let problem = letters(0.0, 0.0, 1.0);
+        let scan = Scan {
+            v_min: 1.0,
+            v_max: 10.0,
+            points: 5,
+            ..Scan::default()
+        };
+        let found = windows(&problem, Phase::After(0.0), &scan, Accuracy::of(1e-9));
+        assert!(found.decided && found.complete && found.v_liftoff.is_none());
+        assert_eq!((found.survives.len(), found.survives[0][0]), (1, 1.0));
+        assert!((found.top().unwrap() - 4.1414).abs() < 1e-4, "{found:?}");
+        let few = Scan {
+            total_steps: 10,
+            ..scan
+        };
+        let cut_off = windows(&problem, Phase::After(0.0), &few, Accuracy::of(1e-9));
+        assert!(!cut_off.complete && !cut_off.decided);
+    }
+
+    /// Of the phases of Fig. 3(a) at 0.3 some keep stick-slip, the release does not.
+    #[test]
+    fn the_worst_phase_keeps_stick_slip() {
+        let problem = letters(-0.33, 0.0, 4.15);
+        let at = |phase| Trials::new(&problem, phase, Accuracy::of(1e-9), 50_000).at(0.3);
+        assert_eq!(at(Phase::After(0.0)), Regime::Ended);
+        assert_eq!(at(Phase::After(1.0)), Regime::Periodic);
+        assert_eq!(at(Phase::Worst(8)), Regime::Periodic);
+        // There is no uncontrolled stick-slip beyond 4.1414.
+        let mut beyond = Trials::new(&problem, Phase::Worst(8), Accuracy::of(1e-9), 50_000);
+        assert_eq!(beyond.at(5.0), Regime::NoStickSlip);
+        assert!(beyond.uncontrolled_cycle(5.0).is_none());
+        assert!(beyond.uncontrolled_cycle(0.35).is_some());
+    }
+
+    #[test]
+    fn windows_begin_and_end_between_velocities() {
+        let mut walk = Walk::from((1.0, Regime::Ended));
+        assert!(walk.open.is_none() && walk.found.decided);
+        walk.open = Some(1.5);
+        walk.before = (2.0, Regime::Periodic);
+        assert_eq!(walk.end().survives, [[1.5, 2.0]]);
+        assert!(certain(Regime::Slips) && !certain(Regime::Irregular));
+        assert!(lifts(Regime::LiftOff) && !lifts(Regime::Ended));
+        assert_eq!(
+            Walk::from((1.0, Regime::LiftOff)).found.v_liftoff,
+            Some(1.0)
+        );
+    }
 }

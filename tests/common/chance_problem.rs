@@ -1,6 +1,6 @@
 //! Problems of critical velocities by chance, for tests and benches alike.
 
-use slipmap::critical::Problem;
+use slipmap::critical::{Options, Problem};
 use slipmap::model::{FrictionLaw, Table};
 use slipmap::slip::stop::Stop;
 
@@ -51,6 +51,7 @@ impl Chance {
             alpha_n,
             tau,
             stop: Stop::default(),
+            options: Options::default(),
         }
     }
 }

@@ -1,8 +1,8 @@
 //! slipmap's answers beside the referee's: each question is asked of both, of the referee by two
 //! step sizes.
 
-use slipmap::critical::switch_on::{Phase, Survival, Trials};
-use slipmap::critical::{self, Critical, Problem, critical_velocity};
+use slipmap::critical::switch_on::{Phase, Trials};
+use slipmap::critical::{self, CriticalVelocity, Options, Problem, Regime, critical_velocity};
 use slipmap::model::{FrictionLaw, Table};
 use slipmap::slip::motion;
 use slipmap::slip::outcome::Outcome;
@@ -175,11 +175,11 @@ pub(crate) fn known_velocity(setting: &Setting, expected: End) -> Verdict {
 }
 
 /// What slipmap says of the end of stick-slip, in the referee's words.
-pub(crate) fn end(found: &Critical) -> End {
-    match found.end {
-        critical::End::LiftOff => End::LiftsOff(found.v_liftoff),
-        critical::End::Persists => End::Persists,
-        critical::End::Never => End::Never,
+pub(crate) fn end(found: &CriticalVelocity) -> End {
+    match found.transition {
+        critical::Transition::LiftOff => End::LiftsOff(found.v_liftoff),
+        critical::Transition::Persists => End::Persists,
+        critical::Transition::Never => End::Never,
         _ => End::Lost(found.vc),
     }
 }
@@ -193,6 +193,7 @@ pub(crate) fn problem(setting: &Setting) -> Problem {
         alpha_n: setting.alpha_n,
         tau: setting.tau,
         stop: Stop::default(),
+        options: Options::default(),
     }
 }
 
@@ -239,11 +240,11 @@ pub(crate) fn fate_of_trial(setting: &Setting, phase: f64) -> Option<Fate> {
     let accuracy = motion::Accuracy::of(1e-9);
     let mut trials = Trials::new(&problem, Phase::After(phase), accuracy, MOST_STEPS as u64);
     match trials.at(setting.v0) {
-        Survival::Survives | Survival::Irregular => Some(Fate::Survives),
-        Survival::Ends => Some(Fate::Ends),
-        Survival::LiftOff => Some(Fate::LiftsOff),
-        Survival::NoStickSlip => Some(Fate::NoCycle),
-        Survival::Undecided => None,
+        Regime::Periodic | Regime::Irregular => Some(Fate::Survives),
+        Regime::Ended | Regime::Slips => Some(Fate::Ends),
+        Regime::LiftOff => Some(Fate::LiftsOff),
+        Regime::NoStickSlip => Some(Fate::NoCycle),
+        Regime::Undecided => None,
     }
 }
 

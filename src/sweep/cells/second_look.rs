@@ -1,15 +1,15 @@
 //! A cell of a map, looked at once more by methods that did not compute it.
 
 use super::vc;
-use crate::critical::switch_on::{Phase, Survival};
-use crate::critical::{Critical, End, Method};
+use crate::critical::switch_on::Phase;
+use crate::critical::{CriticalVelocity, Method, Regime, Transition};
 use crate::linear::certificate::roots_right_of;
 use crate::linear::status::{DISAGREE, MARGINAL, NOT_CONVERGED, SATURATED};
 use crate::model::{Groups, ModelError};
 use crate::slip::case::Case;
 use crate::slip::motion::{Accuracy, Integrator};
 use crate::slip::outcome::Outcome;
-use crate::sweep::input::field::{Field, number_of_end};
+use crate::sweep::input::field::{Field, number_of_transition};
 use crate::sweep::input::search::Protocol;
 use crate::sweep::input::setting::Setting;
 use crate::sweep::plan::Plan;
@@ -192,26 +192,26 @@ fn critical_velocity(
         return Ok(Answer::Open);
     }
     let number = (stored.value)(Field::Outcome);
-    let is_it = |end: &End| f64::from(number_of_end(*end)) == number;
-    let Some(end) = End::ALL.into_iter().find(is_it) else {
+    let is_it = |transition: &Transition| f64::from(number_of_transition(*transition)) == number;
+    let Some(transition) = Transition::ALL.into_iter().find(is_it) else {
         return Ok(Answer::Differs);
     };
-    if end == End::LiftOff && !holds_liftoff {
+    if transition == Transition::LiftOff && !holds_liftoff {
         return Ok(Answer::Open);
     }
     let asked = vc::asked(setting)?;
-    let found = Critical {
+    let found = CriticalVelocity {
         vc: (stored.value)(Field::Vc),
-        end,
+        transition,
         method: Method::Simulation,
-        v_liftoff: match end {
-            End::LiftOff => (stored.value)(Field::VLiftoff),
+        v_liftoff: match transition {
+            Transition::LiftOff => (stored.value)(Field::VLiftoff),
             _ => f64::NAN,
         },
         stick_time: f64::NAN,
         slip_time: f64::NAN,
         n_min: f64::NAN,
-        sustained: end != End::Never,
+        sustained: transition != Transition::Never,
         decided: true,
     };
     let agrees = asked.simulation_agrees(&found, Integrator::Collocation);
@@ -225,7 +225,7 @@ const BESIDE: f64 = 1e-4;
 /// The worst of many phases is left open: it would take as many motions.
 fn switched_on(setting: &Setting, stored: &Stored, phase: Phase) -> Result<Answer, ModelError> {
     let vc = (stored.value)(Field::Vc);
-    let lost = f64::from(number_of_end(End::Lost));
+    let lost = f64::from(number_of_transition(Transition::Lost));
     let told_here = stored.status & (NOT_CONVERGED | DISAGREE) == 0;
     if !told_here || matches!(phase, Phase::Worst(_)) || (stored.value)(Field::Outcome) != lost {
         return Ok(Answer::Open);
@@ -233,8 +233,8 @@ fn switched_on(setting: &Setting, stored: &Stored, phase: Phase) -> Result<Answe
     let asked = vc::asked(setting)?;
     let [below, above] = asked.survives_beside(vc, BESIDE, phase, Integrator::Collocation);
     Ok(match (below, above) {
-        (Survival::Irregular | Survival::Undecided, _) => Answer::Open,
-        (_, Survival::Irregular | Survival::Undecided) => Answer::Open,
-        _ => told(below.survives() && !above.survives()),
+        (Regime::Irregular | Regime::Undecided, _) => Answer::Open,
+        (_, Regime::Irregular | Regime::Undecided) => Answer::Open,
+        _ => told(below.persists() && !above.persists()),
     })
 }

@@ -1,9 +1,9 @@
 //! The critical velocity in the units of a setting, by one protocol or the other.
 
-use crate::critical::follow::Pace;
-use crate::critical::switch_on::{self, Phase, Scan, Survival, Trials, Windows};
+use crate::critical::switch_on::{self, Phase, Scan, Trials, Windows};
 use crate::critical::{
-    Critical, CriticalWindows, End, Method, Problem, by_simulation, critical_velocity, line,
+    CriticalVelocity, CriticalWindows, Method, Options, Problem, RampOptions, Regime, Transition,
+    along_delay, by_simulation, critical_velocity,
 };
 use crate::linear::roots::narrowed;
 use crate::linear::{Crossings, MarginalTolerance};
@@ -63,6 +63,7 @@ pub fn asked(setting: &Setting) -> Result<Asked, ModelError> {
         alpha_n: control.alpha_n / oscillator.stiffness(),
         tau: tau / units.time,
         stop: Stop::default(),
+        options: Options::default(),
     };
     Ok(Asked { problem, units })
 }
@@ -101,7 +102,7 @@ impl Asked {
         beside: f64,
         phase: Phase,
         integrator: Integrator,
-    ) -> [Survival; 2] {
+    ) -> [Regime; 2] {
         let Self { problem, units } = self;
         let accuracy = Accuracy {
             integrator,
@@ -116,13 +117,17 @@ impl Asked {
 
     /// Whether simulation alone, with steps of v0 of its own by this `integrator`, agrees with
     /// `found`, the answer by the protocol `follow`: it has to see stick-slip end at the same
-    /// velocity, see [`Critical::ends_like`].
+    /// velocity, see [`CriticalVelocity::ends_like`].
     ///
     /// Large steps may throw stick-slip from one kind to another, which ends elsewhere: it differs
     /// where the smallest steps say so, or two larger ones come to the same other end. None where
     /// that does not tell, or the cell is not decided and claims nothing.
     #[must_use]
-    pub fn simulation_agrees(&self, found: &Critical, integrator: Integrator) -> Option<bool> {
+    pub fn simulation_agrees(
+        &self,
+        found: &CriticalVelocity,
+        integrator: Integrator,
+    ) -> Option<bool> {
         let Self { problem, units } = self;
         if !found.decided {
             return None;
@@ -131,19 +136,19 @@ impl Asked {
         let tolerances = sample_tolerances(integrator);
         let steps = SAMPLE_STEPS.into_iter().zip(tolerances);
         for (([first, unseen], tolerance), other) in steps.zip(&mut others) {
-            let pace = Pace {
+            let options = RampOptions {
                 first,
                 largest: first,
                 unseen,
                 patient: true,
                 total_steps: SAMPLE_TOTAL_STEPS,
-                ..Pace::default()
+                ..RampOptions::default()
             };
             let accuracy = Accuracy {
                 integrator,
                 ..Accuracy::of(tolerance)
             };
-            let again = by_simulation(problem, &pace, accuracy);
+            let again = by_simulation(problem, &options, accuracy);
             if found.ends_like(&in_units(&again, units)) && tells(&again) {
                 return Some(true);
             }
@@ -181,10 +186,10 @@ impl Asked {
                 let accuracy = Accuracy::of(SWITCH_ON_ACCURACY);
                 let steps = Scan::default().steps;
                 match Trials::new(problem, phase, accuracy, steps).at(speed) {
-                    Survival::Survives | Survival::Irregular => Class::Bistable,
-                    Survival::Ends | Survival::NoStickSlip => Class::Stable,
-                    Survival::LiftOff => Class::LiftOff,
-                    Survival::Undecided => Class::Undecided,
+                    Regime::Periodic | Regime::Irregular => Class::Bistable,
+                    Regime::Ended | Regime::Slips | Regime::NoStickSlip => Class::Stable,
+                    Regime::LiftOff => Class::LiftOff,
+                    Regime::Undecided => Class::Undecided,
                 }
             }
         }
@@ -217,25 +222,25 @@ impl Asked {
 }
 
 /// The critical velocities of a block of a line by the protocol `follow`, see
-/// [`line::critical_velocities`].
+/// [`along_delay::critical_velocities`].
 #[must_use]
 pub fn find_in_line(
     problems: &[Problem],
     units: &CaseUnits,
     stopped: impl Fn() -> bool,
 ) -> Vec<Option<CriticalWindows>> {
-    let found = line::critical_velocities(problems, stopped).into_iter();
+    let found = along_delay::critical_velocities(problems, stopped).into_iter();
     let told = problems.iter().zip(found);
     told.map(|(problem, critical)| critical.map(|found| followed(&found, problem, units)))
         .collect()
 }
 
 /// By the protocol `follow` there is one window, from rest to where stick-slip ends, or none.
-fn followed(found: &Critical, problem: &Problem, units: &CaseUnits) -> CriticalWindows {
+fn followed(found: &CriticalVelocity, problem: &Problem, units: &CaseUnits) -> CriticalWindows {
     let critical = in_units(found, units);
-    let top = match critical.end {
-        End::LiftOff => critical.v_liftoff,
-        End::Persists => Protocol::Follow.v_max() * problem.law.mu_s() * units.velocity,
+    let top = match critical.transition {
+        Transition::LiftOff => critical.v_liftoff,
+        Transition::Persists => Protocol::Follow.v_max() * problem.law.mu_s() * units.velocity,
         _ => critical.vc,
     };
     CriticalWindows {
@@ -251,19 +256,19 @@ fn followed(found: &Critical, problem: &Problem, units: &CaseUnits) -> CriticalW
 /// only, or not all v0 were tried.
 fn switched_on(found: &Windows, v_max: f64, velocity: f64) -> CriticalWindows {
     let top = found.top();
-    let (vc, end) = match top {
-        _ if !found.complete => (f64::NAN, End::Never),
-        None if found.v_liftoff.is_some() => (f64::NAN, End::LiftOff),
-        None if !found.decided => (f64::NAN, End::Never),
-        None => (0.0, End::Never),
-        Some(top) if top >= v_max * (1.0 - 1e-9) => (f64::NAN, End::Persists),
-        Some(top) => (top, End::Lost),
+    let (vc, transition) = match top {
+        _ if !found.complete => (f64::NAN, Transition::Never),
+        None if found.v_liftoff.is_some() => (f64::NAN, Transition::LiftOff),
+        None if !found.decided => (f64::NAN, Transition::Never),
+        None => (0.0, Transition::Never),
+        Some(top) if top >= v_max * (1.0 - 1e-9) => (f64::NAN, Transition::Persists),
+        Some(top) => (top, Transition::Lost),
     };
     let edge = |v: f64| v * velocity;
     CriticalWindows {
-        critical: Critical {
+        critical: CriticalVelocity {
             vc: edge(vc),
-            end,
+            transition,
             method: Method::Simulation,
             v_liftoff: edge(found.v_liftoff.unwrap_or(f64::NAN)),
             stick_time: f64::NAN,
@@ -277,8 +282,8 @@ fn switched_on(found: &Windows, v_max: f64, velocity: f64) -> CriticalWindows {
 }
 
 /// `found` in physical units.
-fn in_units(found: &Critical, units: &CaseUnits) -> Critical {
-    Critical {
+fn in_units(found: &CriticalVelocity, units: &CaseUnits) -> CriticalVelocity {
+    CriticalVelocity {
         vc: found.vc * units.velocity,
         v_liftoff: found.v_liftoff * units.velocity,
         stick_time: found.stick_time * units.time,
@@ -310,8 +315,8 @@ const fn sample_tolerances(integrator: Integrator) -> [f64; 3] {
 }
 
 /// Whether searches by smaller and smaller steps that came to other ends contradict a cell.
-fn differs(others: &[Option<Critical>]) -> bool {
-    let alike = |pair: &[Option<Critical>]| match pair {
+fn differs(others: &[Option<CriticalVelocity>]) -> bool {
+    let alike = |pair: &[Option<CriticalVelocity>]| match pair {
         [Some(one), Some(other)] => one.ends_like(other),
         _ => false,
     };
@@ -320,20 +325,20 @@ fn differs(others: &[Option<Critical>]) -> bool {
 
 /// Whether what a simulation came to says anything: one that gave up has found an end, but not that
 /// there is none.
-fn tells(again: &Critical) -> bool {
-    again.decided || !matches!(again.end, End::Persists | End::Never)
+fn tells(again: &CriticalVelocity) -> bool {
+    again.decided || !matches!(again.transition, Transition::Persists | Transition::Never)
 }
 
 /// The class of `v0` by the protocol `follow`, up to `v_max`, where sliding at `v0` is linearly
 /// stable.
-fn beside_sliding(v0: f64, critical: &Critical, v_max: f64) -> Class {
-    match critical.end {
+fn beside_sliding(v0: f64, critical: &CriticalVelocity, v_max: f64) -> Class {
+    match critical.transition {
         _ if !critical.decided => Class::Undecided,
-        End::LiftOff if v0 >= critical.v_liftoff => Class::LiftOff,
-        End::LiftOff if !critical.sustained => Class::Stable,
-        End::LiftOff => Class::Bistable,
-        End::Persists if v0 > v_max => Class::Undecided,
-        End::Persists => Class::Bistable,
+        Transition::LiftOff if v0 >= critical.v_liftoff => Class::LiftOff,
+        Transition::LiftOff if !critical.sustained => Class::Stable,
+        Transition::LiftOff => Class::Bistable,
+        Transition::Persists if v0 > v_max => Class::Undecided,
+        Transition::Persists => Class::Bistable,
         _ if v0 > critical.vc => Class::Stable,
         _ => Class::Bistable,
     }
@@ -349,16 +354,16 @@ mod tests {
     use super::*;
     use crate::model::FrictionLaw;
 
-    fn critical(end: End, vc: f64, v_liftoff: f64) -> Critical {
-        Critical {
+    fn critical(transition: Transition, vc: f64, v_liftoff: f64) -> CriticalVelocity {
+        CriticalVelocity {
             vc,
-            end,
+            transition,
             method: Method::Simulation,
             v_liftoff,
             stick_time: f64::NAN,
             slip_time: f64::NAN,
             n_min: f64::NAN,
-            sustained: end != End::Never,
+            sustained: transition != Transition::Never,
             decided: true,
         }
     }
@@ -366,17 +371,21 @@ mod tests {
     #[test]
     fn stick_slip_beside_stable_sliding() {
         let none = f64::NAN;
-        for (end, vc, v_liftoff, at, class) in [
-            (End::Grazing, 0.3, none, 0.29, Class::Bistable),
-            (End::Grazing, 0.3, none, 0.31, Class::Stable),
-            (End::Never, 0.0, none, 1e-9, Class::Stable),
-            (End::LiftOff, none, 0.2, 0.1, Class::Bistable),
-            (End::LiftOff, none, 0.2, 0.2, Class::LiftOff),
-            (End::Persists, none, none, 5.0, Class::Bistable),
-            (End::Persists, none, none, 101.0, Class::Undecided),
+        for (transition, vc, v_liftoff, at, class) in [
+            (Transition::Grazing, 0.3, none, 0.29, Class::Bistable),
+            (Transition::Grazing, 0.3, none, 0.31, Class::Stable),
+            (Transition::Never, 0.0, none, 1e-9, Class::Stable),
+            (Transition::LiftOff, none, 0.2, 0.1, Class::Bistable),
+            (Transition::LiftOff, none, 0.2, 0.2, Class::LiftOff),
+            (Transition::Persists, none, none, 5.0, Class::Bistable),
+            (Transition::Persists, none, none, 101.0, Class::Undecided),
         ] {
-            let mut critical = critical(end, vc, v_liftoff);
-            assert_eq!(beside_sliding(at, &critical, 100.0), class, "{end:?} {at}");
+            let mut critical = critical(transition, vc, v_liftoff);
+            assert_eq!(
+                beside_sliding(at, &critical, 100.0),
+                class,
+                "{transition:?} {at}"
+            );
             critical.decided = false;
             let unknown = beside_sliding(at, &critical, 100.0);
             assert_eq!(unknown, Class::Undecided);
@@ -387,7 +396,7 @@ mod tests {
     /// below.
     #[test]
     fn lift_off_without_stick_slip_below() {
-        let mut lifted = critical(End::LiftOff, f64::NAN, 0.2);
+        let mut lifted = critical(Transition::LiftOff, f64::NAN, 0.2);
         lifted.sustained = false;
         for (v0, class) in [(0.1, Class::Stable), (0.2, Class::LiftOff)] {
             assert_eq!(beside_sliding(v0, &lifted, 100.0), class);
@@ -405,6 +414,7 @@ mod tests {
             alpha_n: 0.0,
             tau: 1.0,
             stop: Stop::default(),
+            options: Options::default(),
         };
         let units = CaseUnits {
             time: 1.0,
@@ -412,20 +422,20 @@ mod tests {
             velocity: 3.0,
             force: 1.0,
         };
-        let windows = |found: &Critical| followed(found, &problem, &units).windows;
+        let windows = |found: &CriticalVelocity| followed(found, &problem, &units).windows;
         let none = f64::NAN;
-        for (end, vc, v_liftoff, top) in [
-            (End::Grazing, 0.3, none, 0.9),
-            (End::LiftOff, none, 0.2, 0.6),
+        for (transition, vc, v_liftoff, top) in [
+            (Transition::Grazing, 0.3, none, 0.9),
+            (Transition::LiftOff, none, 0.2, 0.6),
             // v_max is 100 μ_S.
-            (End::Persists, none, none, 600.0),
+            (Transition::Persists, none, none, 600.0),
         ] {
-            let found = windows(&critical(end, vc, v_liftoff));
-            assert_eq!(found.len(), 1, "{end:?}");
+            let found = windows(&critical(transition, vc, v_liftoff));
+            assert_eq!(found.len(), 1, "{transition:?}");
             assert!(found[0][0] == 0.0 && (found[0][1] / top - 1.0).abs() < 1e-14);
         }
-        assert!(windows(&critical(End::Never, 0.0, none)).is_empty());
-        let mut lifted = critical(End::LiftOff, none, 0.2);
+        assert!(windows(&critical(Transition::Never, 0.0, none)).is_empty());
+        let mut lifted = critical(Transition::LiftOff, none, 0.2);
         lifted.sustained = false;
         assert!(windows(&lifted).is_empty());
     }
@@ -434,16 +444,16 @@ mod tests {
     /// came to an end says where.
     #[test]
     fn who_gives_up_does_not_agree() {
-        for (end, alone) in [
-            (End::Persists, false),
-            (End::Never, false),
-            (End::Grazing, true),
-            (End::LiftOff, true),
+        for (transition, alone) in [
+            (Transition::Persists, false),
+            (Transition::Never, false),
+            (Transition::Grazing, true),
+            (Transition::LiftOff, true),
         ] {
-            let mut again = critical(end, 0.3, 0.3);
+            let mut again = critical(transition, 0.3, 0.3);
             assert!(tells(&again));
             again.decided = false;
-            assert_eq!(tells(&again), alone, "{end:?}");
+            assert_eq!(tells(&again), alone, "{transition:?}");
         }
     }
 
@@ -451,7 +461,7 @@ mod tests {
     /// been thrown to where it ends.
     #[test]
     fn ends_elsewhere_contradict_together() {
-        let at = |vc: f64| Some(critical(End::Grazing, vc, f64::NAN));
+        let at = |vc: f64| Some(critical(Transition::Grazing, vc, f64::NAN));
         for (others, contradict) in [
             ([at(0.1), at(0.3), None], false),
             ([at(0.3), None, None], false),
@@ -475,10 +485,13 @@ mod tests {
         };
         let two = vec![[0.001, 0.2], [0.3, 0.4]];
         let found = switched_on(&windows(two, Some(0.25)), 10.0, 2.0);
-        assert_eq!((found.critical.vc, found.critical.end), (0.8, End::Lost));
+        assert_eq!(
+            (found.critical.vc, found.critical.transition),
+            (0.8, Transition::Lost)
+        );
         assert_eq!(found.windows, [[0.002, 0.4], [0.6, 0.8]]);
         let found = switched_on(&windows(vec![[0.1, 10.0]], None), 10.0, 1.0);
-        assert!(found.critical.vc.is_nan() && found.critical.end == End::Persists);
+        assert!(found.critical.vc.is_nan() && found.critical.transition == Transition::Persists);
         assert_eq!(found.windows.len(), 1);
         let cut = Windows {
             decided: false,
@@ -488,8 +501,8 @@ mod tests {
         let found = switched_on(&cut, 10.0, 1.0);
         assert!(found.critical.vc.is_nan() && !found.critical.decided);
         let found = switched_on(&windows(vec![], None), 10.0, 1.0);
-        assert!(found.critical.vc == 0.0 && found.critical.end == End::Never);
+        assert!(found.critical.vc == 0.0 && found.critical.transition == Transition::Never);
         let found = switched_on(&windows(vec![], Some(0.1)), 10.0, 1.0);
-        assert!(found.critical.vc.is_nan() && found.critical.end == End::LiftOff);
+        assert!(found.critical.vc.is_nan() && found.critical.transition == Transition::LiftOff);
     }
 }

@@ -6,7 +6,7 @@ use std::ops::Range;
 use super::buffers::TileBuffers;
 use super::line::{Here, SlowLine};
 use super::vc::{self, Asked};
-use crate::critical::line::BLOCK;
+use crate::critical::along_delay::BLOCK;
 use crate::critical::{CriticalWindows, Problem};
 use crate::linear::MarginalTolerance;
 use crate::linear::status::{DISAGREE, NOT_CONVERGED, SAMPLED};

@@ -6,7 +6,7 @@ use super::catalogue::catalogue;
 use super::class::Class;
 use super::source::{OfRoots, Slope, Source};
 use super::units::Units;
-use crate::critical::{Critical, End, Method};
+use crate::critical::{CriticalVelocity, Method, Transition};
 use crate::slip::outcome::Outcome;
 
 /// How a field is stored.
@@ -556,18 +556,18 @@ catalogue! {
 }
 
 /// Names of all that a motion or stick-slip can come to, in the order of their numbers in maps:
-/// those of [`Outcome`], then those of [`End`] that are no outcome as well.
-pub const OUTCOMES: [&str; Outcome::ALL.len() + End::ALL.len() - 1] = {
-    let mut names = [""; Outcome::ALL.len() + End::ALL.len() - 1];
+/// those of [`Outcome`], then those of [`Transition`] that are no outcome as well.
+pub const OUTCOMES: [&str; Outcome::ALL.len() + Transition::ALL.len() - 1] = {
+    let mut names = [""; Outcome::ALL.len() + Transition::ALL.len() - 1];
     let mut i = 0;
     while i < Outcome::ALL.len() {
         names[i] = Outcome::ALL[i].name();
         i += 1;
     }
     let mut j = 0;
-    while j < End::ALL.len() {
-        if !matches!(End::ALL[j], End::LiftOff) {
-            names[i] = End::ALL[j].name();
+    while j < Transition::ALL.len() {
+        if !matches!(Transition::ALL[j], Transition::LiftOff) {
+            names[i] = Transition::ALL[j].name();
             i += 1;
         }
         j += 1;
@@ -578,20 +578,20 @@ pub const OUTCOMES: [&str; Outcome::ALL.len() + End::ALL.len() - 1] = {
 /// The place in [`OUTCOMES`] of what is told of stick-slip: undecided where none was found, but not
 /// everywhere.
 #[must_use]
-pub fn number_of_outcome(critical: &Critical) -> u8 {
-    match critical.end {
-        End::Never if !critical.decided => Outcome::Undecided as u8,
-        end => number_of_end(end),
+pub fn number_of_outcome(critical: &CriticalVelocity) -> u8 {
+    match critical.transition {
+        Transition::Never if !critical.decided => Outcome::Undecided as u8,
+        transition => number_of_transition(transition),
     }
 }
 
-/// The place of an end in [`OUTCOMES`].
-pub(crate) fn number_of_end(end: End) -> u8 {
+/// The place of a transition in [`OUTCOMES`].
+pub(crate) fn number_of_transition(transition: Transition) -> u8 {
     let first = Outcome::ALL.len() as u8;
-    match end {
-        End::LiftOff => Outcome::LiftOff as u8,
-        _ if end < End::LiftOff => first + end as u8,
-        _ => first + end as u8 - 1,
+    match transition {
+        Transition::LiftOff => Outcome::LiftOff as u8,
+        _ if transition < Transition::LiftOff => first + transition as u8,
+        _ => first + transition as u8 - 1,
     }
 }
 
@@ -807,9 +807,10 @@ mod tests {
     }
 
     #[test]
-    fn every_end_has_the_number_of_its_name() {
-        for end in End::ALL {
-            assert_eq!(OUTCOMES[usize::from(number_of_end(end))], end.name());
+    fn every_transition_has_the_number_of_its_name() {
+        for transition in Transition::ALL {
+            let number = number_of_transition(transition);
+            assert_eq!(OUTCOMES[usize::from(number)], transition.name());
         }
         for outcome in Outcome::ALL {
             assert_eq!(OUTCOMES[outcome as usize], outcome.name());

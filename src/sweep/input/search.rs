@@ -2,9 +2,8 @@
 
 use super::parameter::Parameter;
 use super::setting::Setting;
-use crate::critical::GRAZE_PRECISION;
-use crate::critical::follow::Pace;
 use crate::critical::switch_on::{Phase, Scan};
+use crate::critical::{GRAZE_PRECISION, RampOptions};
 
 /// Phases over one cycle for the worst case.
 pub const PHASES: u32 = 32;
@@ -51,7 +50,7 @@ impl Protocol {
     #[must_use]
     pub fn v_max(self) -> f64 {
         match self {
-            Self::Follow => Pace::default().v_max,
+            Self::Follow => RampOptions::default().v_max,
             Self::SwitchOn(_) => Scan::default().v_max,
         }
     }

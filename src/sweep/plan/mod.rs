@@ -39,7 +39,7 @@ const DELAYS_PER_TILE: usize = 1 << 17;
 pub const BLOCK_OF_DELAYS: usize = crate::linear::track::BLOCK;
 /// Lines are cut at multiples of this where critical velocities start from their neighbours;
 /// divides the one of roots.
-const BLOCK_OF_VC: usize = crate::critical::line::BLOCK;
+const BLOCK_OF_VC: usize = crate::critical::along_delay::BLOCK;
 const _: () = assert!(BLOCK_OF_DELAYS.is_multiple_of(BLOCK_OF_VC));
 /// More cells than this are refused.
 pub const MOST_CELLS: u64 = 10_000_000_000_000;

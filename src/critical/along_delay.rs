@@ -1,5 +1,4 @@
-//! The critical velocities of a line of delays: each end of stick-slip starts from its neighbour's
-//! orbit.
+//! Continuation along a line of delays: the search at each starts from its neighbour's orbit.
 //!
 //! Such a continuation may go on along a branch of ends that stick-slip raised from low velocities
 //! does not come to. So the cells at both ends of a stretch are looked for from scratch, and what
@@ -8,25 +7,13 @@
 //! scratch. A line is cut into blocks for that, so that the answer in a cell depends on its block
 //! alone.
 
-use super::answer::{Critical, Method};
-use super::problem::Problem;
-use super::search::from_scratch;
-use super::track::Track;
+use super::delay_step::Track;
+use super::follow::from_scratch;
+use super::options::AlongDelayOptions;
+use super::problem::{CriticalVelocity, Method, Problem};
 
 /// Cells of a block; blocks start at multiples of it.
 pub const BLOCK: usize = 128;
-/// Cells of a stretch, at both ends of which cells are looked for from scratch; and the same where
-/// stick-slip of one kind followed that of another on the way to its end, and may end earlier.
-const STRETCH: usize = 64;
-const SHORT_STRETCH: usize = 16;
-/// An end that is not where it was expected is looked for from scratch, unless one was so few cells
-/// before.
-const SURPRISES: usize = 2;
-/// How well a continuation has to meet what was found from scratch, relative; and how well in the
-/// time of slip, which tells how many slips a period has.
-const MEETS: f64 = 3e-5;
-const MEETS_IN_TIME: f64 = 1e-2;
-
 /// The critical velocities of a block of a line: problems that differ by their delay alone, which
 /// increases. `stopped` is asked before every visit to a cell; where it came first, some are none
 /// and the others are not to be used.
@@ -34,7 +21,7 @@ const MEETS_IN_TIME: f64 = 1e-2;
 pub fn critical_velocities(
     problems: &[Problem],
     stopped: impl Fn() -> bool,
-) -> Vec<Option<Critical>> {
+) -> Vec<Option<CriticalVelocity>> {
     let mut block = Block {
         problems,
         found: vec![None; problems.len()],
@@ -52,18 +39,25 @@ pub fn critical_velocities(
 
 struct Block<'p> {
     problems: &'p [Problem],
-    found: Vec<Option<Critical>>,
+    found: Vec<Option<CriticalVelocity>>,
     stopped: &'p dyn Fn() -> bool,
 }
 
-impl Block<'_> {
+impl<'p> Block<'p> {
+    /// The options of its first problem count for all.
+    fn options(&self) -> &'p AlongDelayOptions {
+        &self.problems[0].options.along_delay
+    }
+
     /// Looks for a cell from scratch.
-    fn start(&mut self, cell: usize) -> Option<Track> {
+    fn start(&mut self, cell: usize) -> Option<Track<'p>> {
         if (self.stopped)() {
             return None;
         }
         let (critical, mut track) = from_scratch(&self.problems[cell]);
-        let alike = |c: &&Critical| c.end == critical.end && c.method == critical.method;
+        let alike = |c: &&CriticalVelocity| {
+            c.transition == critical.transition && c.method == critical.method
+        };
         for before in (0..cell).rev().take(2) {
             let Some(known) = self.found[before].as_ref().filter(alike) else {
                 break;
@@ -78,10 +72,21 @@ impl Block<'_> {
 
     /// Fills the cells between two that were found from scratch, the first one with its track; the
     /// track that led to the last one if one did.
-    fn fill(&mut self, mut first: usize, last: usize, mut track: Option<Track>) -> Option<Track> {
+    fn fill(
+        &mut self,
+        mut first: usize,
+        last: usize,
+        mut track: Option<Track<'p>>,
+    ) -> Option<Track<'p>> {
         while first < last && !(self.stopped)() {
+            let options = self.options();
             let one_kind = track.as_ref().is_none_or(|track| track.one_kind);
-            let next = first + if one_kind { STRETCH } else { SHORT_STRETCH };
+            let next = first
+                + if one_kind {
+                    options.stretch
+                } else {
+                    options.short_stretch
+                };
             if next < last {
                 let there = self.start(next);
                 track = match (self.fill(first, next, track), there) {
@@ -143,36 +148,39 @@ impl Block<'_> {
     }
 
     /// Looks for a cell from scratch that was continued to: whether that meets, and its track.
-    fn meet(&mut self, cell: usize) -> (bool, Option<Track>) {
+    fn meet(&mut self, cell: usize) -> (bool, Option<Track<'p>>) {
         let continued = self.found[cell];
         let track = self.start(cell);
         let both = continued.zip(self.found[cell]);
-        (both.is_some_and(|(a, b)| meets(&a, &b)), track)
+        (
+            both.is_some_and(|(a, b)| meets(&a, &b, self.options())),
+            track,
+        )
     }
 
     /// Continues from `first` on; how far it is known to lead, to `last` if it meets what is known
     /// there, and whether that cell was found from scratch.
-    fn advance(&mut self, first: usize, last: usize, track: &mut Track) -> (usize, bool) {
+    fn advance(&mut self, first: usize, last: usize, track: &mut Track<'p>) -> (usize, bool) {
         let (mut seen, mut checked) = (first, first);
         for cell in first + 1..=last {
             if (self.stopped)() {
                 return (seen, seen == checked);
             }
             let next = track.next(&self.problems[cell]);
-            let found = next.and_then(|found| found.told(Method::GrazeOrbit));
+            let found = next.map(|ending| ending.critical_velocity(Method::GrazeOrbit));
             let Some(mut critical) = found else {
                 return (seen, seen == checked);
             };
             critical.decided = track.decided;
             if cell == last {
-                if self.found[last].is_none_or(|there| !meets(&there, &critical)) {
+                if self.found[last].is_none_or(|there| !meets(&there, &critical, self.options())) {
                     return (seen, seen == checked);
                 }
                 self.doubt(first, last);
                 return (last, true);
             }
             self.found[cell] = Some(critical);
-            if track.surprised() && cell >= checked + SURPRISES {
+            if track.surprised() && cell >= checked + self.options().surprises {
                 // Where ends change as fast as that along the line, stick-slip may have another one
                 // below.
                 if !self.meet(cell).0 {
@@ -188,12 +196,92 @@ impl Block<'_> {
 }
 
 /// Whether two answers are one.
-fn meets(a: &Critical, b: &Critical) -> bool {
+fn meets(a: &CriticalVelocity, b: &CriticalVelocity, options: &AlongDelayOptions) -> bool {
     let near =
         |within: f64, a: f64, b: f64| a.is_nan() && b.is_nan() || (a - b).abs() <= within * a.abs();
-    a.end == b.end
+    a.transition == b.transition
         && a.method == b.method
-        && near(MEETS, a.vc, b.vc)
-        && near(MEETS, a.v_liftoff, b.v_liftoff)
-        && near(MEETS_IN_TIME, a.slip_time, b.slip_time)
+        && near(options.meets, a.vc, b.vc)
+        && near(options.meets, a.v_liftoff, b.v_liftoff)
+        && near(options.meets_in_time, a.slip_time, b.slip_time)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::synthetic::letters;
+    use super::super::work;
+    use super::*;
+    use std::cell::Cell;
+
+    fn line(from: f64, to: f64, cells: usize) -> Vec<Problem> {
+        let tau = |i: usize| from + (to - from) * i as f64 / (cells - 1) as f64;
+        (0..cells).map(|i| letters(-0.33, 0.0, tau(i))).collect()
+    }
+
+    #[test]
+    fn a_line_is_what_its_cells_are_from_scratch_for_less_work() {
+        let problems = line(4.0, 4.2, 41);
+        let (found, along) = work::of(|| critical_velocities(&problems, || false));
+        let scratch = || {
+            problems
+                .iter()
+                .map(|one| from_scratch(one).0)
+                .collect::<Vec<_>>()
+        };
+        let (scratch, alone) = work::of(scratch);
+        for (one, other) in found.iter().zip(&scratch) {
+            let one = one.unwrap();
+            assert_eq!(one.transition, other.transition);
+            assert!((one.vc / other.vc - 1.0).abs() < 1e-4, "{one:?} {other:?}");
+        }
+        assert!(3 * along.trials < alone.trials, "{along:?} {alone:?}");
+        assert!(3 * along.steps < alone.steps, "{along:?} {alone:?}");
+    }
+
+    #[test]
+    fn a_line_that_is_stopped_has_cells_without_an_answer() {
+        let problems = line(4.0, 4.2, 5);
+        let visits = Cell::new(0);
+        let found = critical_velocities(&problems, || {
+            visits.set(visits.get() + 1);
+            visits.get() > 2
+        });
+        assert!(found[0].is_some() && found[4].is_some());
+        assert!(found[1..4].iter().all(Option::is_none));
+        assert!(critical_velocities(&[], || false).is_empty());
+        let one = critical_velocities(&problems[..1], || false);
+        assert!(one.len() == 1 && one[0].is_some());
+    }
+
+    #[test]
+    fn answers_meet_in_velocity_and_in_slip_time() {
+        let options = AlongDelayOptions::default();
+        let one = from_scratch(&letters(-0.33, 0.0, 4.15)).0;
+        let other = |vc: f64, slip_time: f64| CriticalVelocity {
+            vc: one.vc * vc,
+            slip_time: one.slip_time * slip_time,
+            ..one
+        };
+        assert!(meets(&one, &other(1.00002, 1.005), &options));
+        assert!(!meets(&one, &other(1.00004, 1.0), &options));
+        assert!(!meets(&one, &other(1.0, 1.02), &options));
+    }
+
+    #[test]
+    fn what_is_in_doubt_at_the_end_is_so_on_the_way() {
+        let problems = line(4.1, 4.2, 3);
+        let decided = Some(from_scratch(&problems[0]).0);
+        let open = decided.map(|found| CriticalVelocity {
+            decided: false,
+            ..found
+        });
+        let mut block = Block {
+            problems: &problems,
+            found: vec![decided, decided, open],
+            stopped: &|| false,
+        };
+        block.doubt(0, 2);
+        let told = block.found.iter().map(|found| found.unwrap().decided);
+        assert_eq!(told.collect::<Vec<_>>(), [true, false, false]);
+    }
 }

@@ -1,0 +1,574 @@
+//! Continuation of a branch of periodic orbits in v0, to where an event function vanishes.
+//!
+//! The event functions g(v0) of the last two orbits predict the event: the secant of each meets
+//! zero somewhere, and the first of these places is where the branch is expected to end. A step
+//! takes a share of the way there. The corrector is the return map itself, iterated until periods
+//! repeat ([`Branch::orbit_at`]); a step from which it does not lead back to an orbit of the same
+//! kind is undone and made smaller. Step size rules stand in [`StepControl`], all numbers in
+//! [`ContinuationOptions`].
+
+use crate::model::elementary::power;
+use crate::slip::motion::Accuracy;
+
+use super::event_functions::{Event, EventFunctions};
+use super::options::ContinuationOptions;
+use super::return_map::{NoReturn, Period};
+use super::transition::{Located, Undetermined};
+
+/// A periodic orbit of stick-slip at one v0.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Orbit {
+    /// The last period that was followed.
+    pub period: Period,
+    /// The event functions, which may be the limit that periods converge to.
+    pub events: EventFunctions,
+}
+
+impl Orbit {
+    /// Of one period, as it is.
+    pub(super) fn of(period: Period) -> Self {
+        let events = period.event_functions();
+        Self { period, events }
+    }
+}
+
+/// A branch of periodic orbits, one at each v0.
+pub(super) trait Branch {
+    /// The orbit at `v0`, from where the last one that was accepted leads; `expected` is the period
+    /// nearby. With memory periods are followed until their event functions differ by no more than
+    /// `settled`, relative; one period where that is infinite.
+    ///
+    /// # Errors
+    /// See [`NoReturn`].
+    fn orbit_at(
+        &mut self,
+        v0: f64,
+        expected: Option<&Period>,
+        settled: f64,
+    ) -> Result<Orbit, NoReturn>;
+
+    /// Goes on from the last orbit that was found.
+    fn accept(&mut self);
+
+    /// Goes on with another accuracy.
+    fn refine(&mut self, accuracy: Accuracy);
+}
+
+/// A branch whose blocks can be released at any v0 nearby.
+pub(super) trait Releases {
+    /// What is released: a motion.
+    type Map;
+
+    /// A block that is released at `v0`, with a past like that of the orbits that were accepted.
+    fn release_at(&mut self, v0: f64) -> &mut Self::Map;
+}
+
+/// An accepted orbit on the way.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Point {
+    pub v0: f64,
+    pub orbit: Orbit,
+    /// How settled the orbit is, see [`Branch::orbit_at`].
+    pub settled: f64,
+    /// The derivatives of the event functions with respect to v0; NaN before they are known.
+    pub slopes: EventFunctions,
+    /// Whether they are of this problem, not of one with another delay.
+    pub own_slopes: bool,
+    /// Where the event was predicted before this point was reached; NaN where it was not.
+    pub predicted: f64,
+}
+
+/// Where the first event function vanishes, as the slopes at a point tell.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Prediction {
+    /// The relative step of v0 that leads there; +∞ where none vanishes.
+    pub step: f64,
+    /// The event.
+    pub event: Event,
+}
+
+impl Point {
+    /// Before anything is known of how it changes.
+    pub(super) fn first(v0: f64, orbit: Orbit, settled: f64) -> Self {
+        Self {
+            v0,
+            orbit,
+            settled,
+            slopes: EventFunctions::UNKNOWN,
+            own_slopes: true,
+            predicted: f64::NAN,
+        }
+    }
+
+    /// The predictor: the first zero of an event function on the secant of the last two points.
+    pub(super) fn predict(&self) -> Prediction {
+        let mut first = Prediction {
+            step: f64::INFINITY,
+            event: Event::LiftOff,
+        };
+        let slopes = self.slopes.each();
+        for ((event, value), (_, slope)) in self.orbit.events.each().into_iter().zip(slopes) {
+            let step = -value / slope / self.v0;
+            if step >= 0.0 && step < first.step {
+                first = Prediction { step, event };
+            }
+        }
+        first
+    }
+
+    /// The v0 at which the event is predicted; +∞ where none is.
+    fn end(&self) -> f64 {
+        self.v0 * (1.0 + self.predict().step)
+    }
+
+    /// Whether the event is near, and where it was predicted before.
+    fn agrees(&self, options: &ContinuationOptions) -> bool {
+        let end = self.end();
+        let near = end / self.v0 - 1.0 < options.quite_near;
+        near && (end / self.predicted - 1.0).abs() < options.agreement
+    }
+
+    /// Whether the event is near enough for slopes that are not its own.
+    fn tells(&self, options: &ContinuationOptions) -> bool {
+        let end = self.end();
+        let as_predicted = (end / self.predicted - 1.0).abs() < options.borrowed;
+        self.own_slopes || as_predicted && end / self.v0 - 1.0 < options.borrowed
+    }
+
+    /// The next point.
+    fn moved_to(&self, v0: f64, orbit: Orbit, settled: f64) -> Self {
+        let (mut slopes, mut own_slopes) = (self.slopes, self.own_slopes);
+        // At the same v0 only the event functions are better known.
+        if v0 > self.v0 {
+            let step = v0 - self.v0;
+            slopes = orbit
+                .events
+                .with(&self.orbit.events, |now, before| (now - before) / step);
+            own_slopes = true;
+        }
+        Self {
+            v0,
+            orbit,
+            settled,
+            slopes,
+            own_slopes,
+            predicted: self.end(),
+        }
+    }
+}
+
+/// How settled an orbit has to be after a relative step of v0.
+fn settled_after(step: f64, options: &ContinuationOptions) -> f64 {
+    if step >= options.large_step {
+        options.settled_after_large
+    } else if step >= options.middling_step {
+        options.settled_after_middling
+    } else if step >= options.small_step {
+        options.settled
+    } else {
+        options.settled_after_small * options.settled
+    }
+}
+
+/// How far the next step may go.
+///
+/// A step that failed halves the next one, one that succeeded doubles it, up to a largest one. A v0
+/// that failed is no bound: it may have been the size of the step. So it is come nearer to by half
+/// of the way, until a step much smaller than the one that failed there leads beyond it.
+#[derive(Debug, Clone, Copy)]
+struct StepControl<'o> {
+    options: &'o ContinuationOptions,
+    /// The largest relative step for now.
+    largest: f64,
+    /// The v0 of the last step that failed, unless one beyond it has not, and the step that led
+    /// there.
+    failed: Option<(f64, f64)>,
+}
+
+impl StepControl<'_> {
+    /// The relative step from `v0` where `wanted` is asked for.
+    fn step(&self, v0: f64, wanted: f64) -> f64 {
+        let step = wanted.min(self.largest);
+        let Some((failed, by)) = self.failed else {
+            return step;
+        };
+        let room = failed / v0 - 1.0;
+        let retry = self.options.retry_share * by;
+        if step < room || step <= retry {
+            step
+        } else if room <= retry {
+            // It may have been the size of the step that failed there.
+            retry
+        } else {
+            0.5 * room
+        }
+    }
+
+    fn failed(&mut self, v0: f64, step: f64) {
+        self.failed = Some((v0, step));
+        self.largest = self.options.reduction * step;
+    }
+
+    fn succeeded(&mut self, v0: f64, step: f64) {
+        let growth = self.options.growth;
+        self.largest = (growth * self.largest).min(self.options.largest_step);
+        if self.failed.is_some_and(|(failed, _)| failed <= v0) {
+            (self.failed, self.largest) = (None, growth * step);
+        }
+    }
+}
+
+/// Follows `branch` from a point to the first zero of an event function, by `first_step` at first,
+/// relative; with the last point.
+pub(super) fn continue_to_event(
+    branch: &mut impl Branch,
+    mut at: Point,
+    first_step: f64,
+    options: &ContinuationOptions,
+) -> (Result<Located, Undetermined>, Point) {
+    let mut control = StepControl {
+        options,
+        largest: first_step,
+        failed: None,
+    };
+    let mut last = false;
+    for _ in 0..options.most_trials {
+        let gap = at.predict().step;
+        let share = match at.own_slopes {
+            true => options.share,
+            false => options.first_share,
+        };
+        let mut step = control.step(at.v0, share * gap);
+        if (step < options.share * options.near || at.agrees(options)) && at.tells(options) {
+            if at.settled > options.settled {
+                step = 0.0;
+            } else if last || gap < options.near || at.agrees(options) {
+                return (locate(&at, options), at);
+            } else {
+                // Once more, beyond where the last one failed.
+                (last, step) = (true, options.last_step * options.near);
+            }
+        }
+        let (next, settled) = (at.v0 * (1.0 + step), settled_after(step, options));
+        match branch.orbit_at(next, Some(&at.orbit.period), settled) {
+            Ok(orbit)
+                if step > options.jump
+                    && is_jump(&at.orbit.period, &orbit.period, step, options) =>
+            {
+                control.failed(next, step);
+            }
+            Ok(orbit) => {
+                branch.accept();
+                at = at.moved_to(next, orbit, settled);
+                control.succeeded(next, step);
+                last = false;
+            }
+            // A start that is not sustained.
+            Err(NoReturn::StopMissed | NoReturn::LiftOff) if step == 0.0 => {
+                return (Err(Undetermined::NotSustained), at);
+            }
+            Err(NoReturn::Undefined | NoReturn::NotSettled) if step < options.unsettled_step => {
+                return (Err(Undetermined::NotSettled), at);
+            }
+            Err(NoReturn::OutsideDomain) => return (Err(Undetermined::OutsideDomain), at),
+            Err(_) => control.failed(next, step),
+        }
+    }
+    (Err(Undetermined::TooManyTrials), at)
+}
+
+/// The event that vanishes next at the last point, if it is near.
+fn locate(at: &Point, options: &ContinuationOptions) -> Result<Located, Undetermined> {
+    let Prediction { step, event } = at.predict();
+    // The load of periods that have not quite come to rest says less than the depth of their stops.
+    let (near_graze, near_other) = match at.agrees(options) {
+        true => (options.quite_near, options.quite_near),
+        false => (options.near_graze * options.near, options.near),
+    };
+    let near = match event {
+        Event::LiftOff | Event::StickVanishes => near_other,
+        Event::Graze(_) | Event::Reversal | Event::NewStop => near_graze,
+    };
+    if step < near {
+        let v0 = at.v0 * (1.0 + step);
+        Ok(Located { event, v0 })
+    } else {
+        Err(Undetermined::NoEvent)
+    }
+}
+
+/// Whether a relative `step` of v0 threw stick-slip from one kind to another: the mean cycle or the
+/// mean slip of its period changed by more than such a step explains, or it turns back more or less
+/// often.
+pub(super) fn is_jump(
+    before: &Period,
+    after: &Period,
+    step: f64,
+    options: &ContinuationOptions,
+) -> bool {
+    let same = before.reversals() == after.reversals();
+    !same || times_jump(before.mean_times(), after.mean_times(), step, options)
+}
+
+/// The same, told from the durations of mean cycles and slips alone.
+pub(super) fn times_jump(
+    before: [f64; 2],
+    after: [f64; 2],
+    step: f64,
+    options: &ContinuationOptions,
+) -> bool {
+    let [cycle, slip] = [0, 1].map(|i| after[i] / before[i]);
+    let shortest = options.shorter_cycle / (1.0 + step);
+    // Where sticks are not known, slips tell.
+    let same_cycle = cycle.is_nan() || (shortest..=options.longer_cycle).contains(&cycle);
+    !same_cycle || !(options.shorter_slip..=options.longer_slip).contains(&slip)
+}
+
+/// Follows `branch` as [`continue_to_event`] does, and once more from nearby with a finer
+/// integration where the event is at a low v0, at which it is not known without; or where it is
+/// another one by it. An event that only the coarse one has is undetermined.
+pub(super) fn continue_to_checked_event<B: Branch + Clone>(
+    branch: &mut B,
+    from: Point,
+    first_step: f64,
+    options: &ContinuationOptions,
+) -> (Result<Located, Undetermined>, Point) {
+    let (located, at) = continue_to_event(branch, from, first_step, options);
+    if located.is_err() {
+        return (located, at);
+    }
+    let finer = |by: f64| Accuracy::of(options.tolerance * by);
+    if at.v0 < options.slow {
+        branch.refine(finer(at.v0 / options.slow));
+        return locate_again(branch, &at, options);
+    }
+    let roughly = branch.clone();
+    let by = options.finer * power(options.fast / at.v0, 2).min(1.0);
+    branch.refine(finer(by));
+    if !is_same_event(branch, &at, options) {
+        let (again, finely) = locate_again(branch, &at, options);
+        if again.is_ok() {
+            return (again, finely);
+        }
+        *branch = roughly;
+        return (again, at);
+    }
+    *branch = roughly;
+    (located, at)
+}
+
+/// Follows the last bit of the way to the event near `at` once more.
+fn locate_again(
+    branch: &mut impl Branch,
+    at: &Point,
+    options: &ContinuationOptions,
+) -> (Result<Located, Undetermined>, Point) {
+    let v0 = at.v0 * (1.0 - options.back);
+    let Ok(orbit) = branch.orbit_at(v0, Some(&at.orbit.period), options.settled) else {
+        return (Err(Undetermined::NotSustained), *at);
+    };
+    branch.accept();
+    let from = Point {
+        slopes: at.slopes,
+        ..Point::first(v0, orbit, options.settled)
+    };
+    continue_to_event(branch, from, options.back, options)
+}
+
+/// Whether the event function that vanishes next says by the branch as it is now that the event is
+/// where it was located before.
+fn is_same_event(branch: &mut impl Branch, at: &Point, options: &ContinuationOptions) -> bool {
+    let event = at.predict().event;
+    match branch.orbit_at(at.v0, Some(&at.orbit.period), options.settled) {
+        Ok(orbit) => {
+            let change = orbit.events.of(event) - at.orbit.events.of(event);
+            (change / at.slopes.of(event) / at.v0).abs() < options.same_event
+        }
+        Err(_) => false,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::synthetic::{Family, LOGISTIC, Synthetic, logistic_pair};
+    use super::super::with_history::WithHistory;
+    use super::*;
+
+    /// Continues a branch of a synthetic map from `v0`, where its orbit is near `x`.
+    fn continued(
+        family: Family,
+        (v0, x): (f64, f64),
+        slips: usize,
+    ) -> (Result<Located, Undetermined>, Point) {
+        continued_by(0.1, family, (v0, x), slips)
+    }
+
+    /// The same by steps no larger than this.
+    fn continued_by(
+        largest_step: f64,
+        family: Family,
+        (v0, x): (f64, f64),
+        slips: usize,
+    ) -> (Result<Located, Undetermined>, Point) {
+        let options = ContinuationOptions {
+            largest_step,
+            most_trials: 500,
+            ..ContinuationOptions::default()
+        };
+        let map = Synthetic::new(family, v0, x);
+        let mut branch = WithHistory::new(map, slips, 100.0, &options);
+        let first = branch.first_point().unwrap();
+        continue_to_checked_event(&mut branch, first, largest_step, &options)
+    }
+
+    #[test]
+    fn every_event_is_located_where_its_function_vanishes() {
+        for event in [
+            Event::Graze(0),
+            Event::LiftOff,
+            Event::StickVanishes,
+            Event::Reversal,
+            Event::NewStop,
+        ] {
+            for v0 in [0.01, 0.3, 0.9] {
+                let (found, _) = continued(Family::Vanishing(event), (v0, 0.5), 1);
+                let found = found.unwrap();
+                assert_eq!(found.event, event);
+                assert!((found.v0 - 1.0).abs() < 1e-6, "{v0} {found:?}");
+            }
+        }
+    }
+
+    /// The depth of a stop is smooth where the orbit is a square root of the way to the graze.
+    #[test]
+    fn a_graze_is_located_although_the_map_is_a_square_root_there() {
+        for s in [0.0, 1e-5, 1e-4] {
+            let (found, at) = continued(Family::Nordmark(s), (0.2, 0.0), 1);
+            let found = found.unwrap();
+            assert_eq!(found.event, Event::Graze(0));
+            assert!((found.v0 - 1.0).abs() < 1e-5, "{s} {found:?}");
+            let depth = ((s * s + 1.0 - at.v0).sqrt() - s).powi(2);
+            assert!((at.orbit.events.depth[0] - depth).abs() < 1e-6 * at.v0);
+        }
+    }
+
+    /// The period doubles before the graze: small steps lose the branch there. Large ones, after
+    /// which periods need not come to rest, may pass; so the end of a branch is checked.
+    #[test]
+    fn a_branch_that_loses_its_stability_is_not_settled() {
+        for s in [0.1, 0.3_f64] {
+            let doubles = 1.0 - 7.0 * s * s / 9.0;
+            let (found, at) = continued_by(0.01, Family::Nordmark(s), (0.2, -0.1), 1);
+            assert_eq!(found, Err(Undetermined::NotSettled), "{s}");
+            assert!(at.v0 < doubles && at.v0 > 0.9 * doubles, "{s} {at:?}");
+        }
+        let (found, at) = continued_by(0.01, LOGISTIC, (2.2, 0.5), 1);
+        assert_eq!(found, Err(Undetermined::NotSettled));
+        assert!(at.v0 > 2.7 && at.v0 < 3.0, "{at:?}");
+    }
+
+    #[test]
+    fn a_saddle_node_is_not_passed() {
+        let (found, at) = continued_by(0.01, Family::SaddleNode, (0.3, 0.8), 1);
+        assert_eq!(found, Err(Undetermined::NotSettled));
+        assert!(at.v0 > 0.9 && at.v0 < 1.0, "{at:?}");
+    }
+
+    /// Of a period of two slips the deeper one grazes; which one that is depends on the start.
+    #[test]
+    fn a_slip_of_a_doubled_period_grazes() {
+        const GRAZE: f64 = 0.84;
+        let (mut low, mut high) = (3.2, 3.45);
+        for _ in 0..60 {
+            let middle = 0.5 * (low + high);
+            match logistic_pair(middle) < GRAZE {
+                true => low = middle,
+                false => high = middle,
+            }
+        }
+        let pair = [
+            logistic_pair(3.25),
+            3.25 * logistic_pair(3.25) * (1.0 - logistic_pair(3.25)),
+        ];
+        for (slip, x) in pair.into_iter().enumerate() {
+            let (found, _) = continued(Family::Logistic(GRAZE), (3.25, x), 2);
+            let found = found.unwrap();
+            assert_eq!(found.event, Event::Graze(slip));
+            assert!((found.v0 - low).abs() < 1e-5, "{found:?} {low}");
+        }
+    }
+
+    #[test]
+    fn the_first_zero_is_predicted() {
+        let orbit = |events| Orbit {
+            events,
+            ..Orbit::of(Period::of(super::super::return_map::Cycle::NONE))
+        };
+        let before = EventFunctions {
+            load: 1.0,
+            dip: 2.0,
+            missing_force: 0.5,
+            ..EventFunctions::UNKNOWN
+        };
+        let now = EventFunctions {
+            load: 0.8,
+            dip: 1.2,
+            missing_force: 0.6,
+            ..EventFunctions::UNKNOWN
+        };
+        let first = Point::first(1.0, orbit(before), 0.05);
+        assert_eq!(first.predict().step, f64::INFINITY);
+        let next = first.moved_to(1.1, orbit(now), 0.05);
+        // The load vanishes at 1.5, the dip at 1.25, the missing force grows.
+        let found = next.predict();
+        assert_eq!(found.event, Event::NewStop);
+        assert!((1.1 * (1.0 + found.step) - 1.25).abs() < 1e-12, "{found:?}");
+    }
+
+    #[test]
+    fn steps_grow_shrink_and_pass_what_failed_by_its_size() {
+        let options = ContinuationOptions::default();
+        let mut control = StepControl {
+            options: &options,
+            largest: 0.1,
+            failed: None,
+        };
+        assert_eq!(control.step(1.0, 5.0), 0.1);
+        control.succeeded(1.1, 0.1);
+        assert_eq!(control.step(1.1, 5.0), 0.2);
+        control.failed(1.32, 0.2);
+        assert_eq!(control.largest, 0.1);
+        // From 1.1 by no more than 0.1, and from nearer by half of the way.
+        assert_eq!(control.step(1.1, 5.0), 0.1);
+        let room = 1.32 / 1.25 - 1.0;
+        assert_eq!(control.step(1.25, 5.0), 0.3 * 0.2);
+        assert!(room < 0.3 * 0.2);
+        // A step beyond it that succeeds forgets it.
+        control.succeeded(1.325, 0.06);
+        assert_eq!((control.failed, control.largest), (None, 0.12));
+        for _ in 0..10 {
+            control.succeeded(2.0, 0.1);
+        }
+        assert_eq!(control.largest, options.largest_step);
+    }
+
+    #[test]
+    fn small_steps_have_to_settle_better() {
+        let options = ContinuationOptions::default();
+        let settled = [1.0, 0.1, 0.01, 1e-3].map(|step| settled_after(step, &options));
+        assert!(settled.is_sorted_by(|a, b| a > b), "{settled:?}");
+    }
+
+    #[test]
+    fn a_jump_is_more_than_a_step_explains() {
+        let options = ContinuationOptions::default();
+        let jumps = |cycle: f64, slip: f64, step| {
+            times_jump([10.0, 4.0], [10.0 * cycle, 4.0 * slip], step, &options)
+        };
+        assert!(!jumps(0.9, 1.1, 0.0) && jumps(0.7, 1.1, 0.0));
+        // Sticks shorten in proportion to v0.
+        assert!(!jumps(0.5, 1.0, 1.0) && jumps(0.39, 1.0, 1.0));
+        assert!(jumps(1.3, 1.0, 0.5) && jumps(1.0, 0.7, 0.5) && jumps(1.0, 1.5, 0.5));
+        assert!(!times_jump([f64::NAN, 4.0], [f64::NAN, 4.4], 0.0, &options));
+    }
+}

@@ -1,0 +1,396 @@
+//! One step of continuation in the delay: the end of a branch at one delay as the start of the
+//! search at the next.
+//!
+//! The ends at the last four delays predict the next one; the pasts at the last two, both taken
+//! just below their ends, predict the orbit just below that. From there v0 is raised by the same
+//! continuation as in a search from scratch.
+
+use super::continuation::{Point, continue_to_event, is_jump};
+use super::end_of_branch::{approach, verify};
+use super::event_functions::Event;
+use super::options::AlongDelayOptions;
+use super::problem::Problem;
+use super::transition::{Ending, Sequel, Undetermined};
+use super::with_history::{Released, WithHistory};
+use crate::model::elementary::{exp, ln};
+use crate::slip::motion::Motion;
+
+/// The end of a branch, from which the next cell of a line starts.
+#[derive(Debug, Clone)]
+pub(super) struct Track<'o> {
+    options: &'o AlongDelayOptions,
+    branch: WithHistory<'o, Motion>,
+    at: Point,
+    /// The state at the end of the cell before the last one.
+    before: Option<Released<Motion>>,
+    /// Delays and ends of the cells before, the last ones.
+    ends: Vec<(f64, f64)>,
+    /// How it ends.
+    event: Event,
+    /// How far off the end was last predicted, relative.
+    off: f64,
+    /// How far below the predicted end the next cell starts at least, relative.
+    near: f64,
+    /// Cells in a row that ended by the slopes of one before.
+    borrowed: u32,
+    /// How clearly stick-slip was seen to end where that was looked at last, the delay there, and
+    /// the change with the delay's logarithm; NaN where it is not known.
+    clear: f64,
+    seen_at: f64,
+    change: f64,
+    /// Ends since then, and the time in slip at that one.
+    unseen: u32,
+    slip_seen: f64,
+    /// Whether it is known that stick-slip leads there.
+    pub decided: bool,
+    /// Whether stick-slip is of one kind all the way from low velocities.
+    pub one_kind: bool,
+}
+
+/// The number of ends that a prediction is made of.
+const KNOWN_ENDS: usize = 4;
+
+/// From how far below the predicted end a cell starts, relative: at first, and at least.
+fn nearest(event: Event, options: &AlongDelayOptions) -> [f64; 2] {
+    match event {
+        Event::LiftOff => [options.lift_off_first, options.lift_off_least],
+        Event::Graze(_) => [options.graze_first, options.graze_least],
+        Event::StickVanishes | Event::Reversal | Event::NewStop => {
+            [options.vanish_first, options.vanish_least]
+        }
+    }
+}
+
+/// What a start is made from, and how near its end the next cell may start.
+struct Start {
+    from: Point,
+    /// Not nearer than the first number, and not farther than the second, unless something else
+    /// asks for it; relative.
+    next_within: [f64; 2],
+}
+
+impl<'o> Track<'o> {
+    /// From an `ending` of `problem` that follows the last point of `branch`.
+    pub(super) fn new(
+        problem: &'o Problem,
+        branch: WithHistory<'o, Motion>,
+        at: Point,
+        ending: &Ending,
+    ) -> Self {
+        let options = &problem.options.along_delay;
+        Self {
+            options,
+            branch,
+            at,
+            before: None,
+            ends: vec![(problem.tau, ending.v0)],
+            event: ending.event,
+            off: options.first_off,
+            near: nearest(ending.event, options)[0],
+            borrowed: 0,
+            clear: f64::NAN,
+            seen_at: f64::NAN,
+            change: f64::NAN,
+            unseen: 0,
+            slip_seen: f64::NAN,
+            decided: true,
+            one_kind: true,
+        }
+    }
+
+    /// This end, with what is known of one that was come to from scratch at this delay.
+    pub(super) fn like(mut self, other: &Self) -> Self {
+        (self.decided, self.one_kind) = (other.decided, other.one_kind);
+        self
+    }
+
+    /// The end of stick-slip of `problem`, which differs by its delay alone from the one before;
+    /// none where the branch before does not lead to it. After that the track is of no more use.
+    pub(super) fn next(&mut self, problem: &Problem) -> Option<Ending> {
+        let mut trials = self.options.most_trials;
+        self.approach(problem, &mut trials)
+    }
+
+    /// The end at the delay of `problem`, by way of delays in between where the whole way is too
+    /// far, within so many `trials`.
+    fn approach(&mut self, problem: &Problem, trials: &mut u32) -> Option<Ending> {
+        let first = nearest(self.event, self.options)[0];
+        loop {
+            *trials = trials.checked_sub(1)?;
+            let from = self.clone();
+            let sequel = match self.attempt(problem) {
+                Ok(ending) => return Some(ending),
+                Err(sequel) => sequel,
+            };
+            *self = from;
+            if self.near >= first {
+                match sequel {
+                    Sequel::Undetermined(_) => break,
+                    _ => return None,
+                }
+            }
+            // It may have been too near.
+            self.near = first;
+        }
+        let last = self.ends.last()?.0;
+        if (problem.tau / last - 1.0).abs() < self.options.least_change {
+            return None;
+        }
+        let between = Problem {
+            tau: last + self.options.part * (problem.tau - last),
+            ..problem.clone()
+        };
+        self.approach(&between, trials)?;
+        self.approach(problem, trials)
+    }
+
+    /// The end at the delay of `problem`; else what is there in its place.
+    fn attempt(&mut self, problem: &Problem) -> Result<Ending, Sequel> {
+        let (tau, options) = (problem.tau, self.options);
+        let predicted = self.predicted(tau);
+        let ended = self.branch.accepted().clone();
+        let Start { from, next_within } =
+            self.set_out(tau, predicted).map_err(Sequel::Undetermined)?;
+        let first = *self.branch.first_events();
+        let continuation = &problem.options.continuation;
+        let (located, at) =
+            continue_to_event(&mut self.branch, from, options.farthest, continuation);
+        let event = at.predict().event;
+        let start = from.orbit.events.of(event);
+        let transient = (first.of(event) - start) / at.slopes.of(event) / at.v0;
+        self.near = (options.room * transient)
+            .max(next_within[0])
+            .min(next_within[1])
+            .max(nearest(self.event, options)[1]);
+        let ending = located
+            .and_then(|located| approach(&mut self.branch, located, &at, &problem.options))
+            .map_err(Sequel::Undetermined)?;
+        match self.look(problem, &ending, predicted, at.orbit.period.slip_time()) {
+            Sequel::Ends(_) => {}
+            other => return Err(other),
+        }
+        self.off = (ending.v0 / predicted - 1.0).abs();
+        self.borrowed = if at.own_slopes { 0 } else { self.borrowed + 1 };
+        self.at = at;
+        self.event = ending.event;
+        self.before = Some(ended);
+        if self.ends.len() == KNOWN_ENDS {
+            self.ends.remove(0);
+        }
+        self.ends.push((tau, ending.v0));
+        Ok(ending)
+    }
+
+    /// A first point at the delay `tau`, below the `predicted` end.
+    fn set_out(&mut self, tau: f64, predicted: f64) -> Result<Start, Undetermined> {
+        let options = self.options;
+        let last = *self.ends.last().ok_or(Undetermined::NotSustained)?;
+        if (tau / last.0 - 1.0).abs() > options.largest_change {
+            return Err(Undetermined::OutsideDomain);
+        }
+        let mut near = (2.0 * self.off).max(self.near).min(options.farthest);
+        if self.before.is_none() {
+            // An orbit that has to change starts with a transient, a small one where its past is
+            // extrapolated.
+            let change = (predicted / last.1 - 1.0).abs();
+            near = (options.off_by_change * change).clamp(near, options.farthest);
+        }
+        let off = match self.borrowed >= options.most_borrowed {
+            true => near.max(options.for_slopes),
+            false => near,
+        };
+        let mut next_within = [0.0, options.nearer * near];
+        let [farther, far] = options.farther.map(|factor| factor * off);
+        let farthest = options.farthest_of_all * options.farthest;
+        for off in [off, farther, far.min(options.farthest), farthest] {
+            if let Some(from) = self.start(tau, predicted * (1.0 - off)) {
+                let from = Point { predicted, ..from };
+                return Ok(Start { from, next_within });
+            }
+            next_within = [off, options.nearer * options.farther[0] * off];
+        }
+        Err(Undetermined::NotSustained)
+    }
+
+    /// What follows an ending, looked at unless that can be told from the ends before. There it was
+    /// `predicted`, and its orbit slips for `slip` in a period.
+    fn look(&mut self, problem: &Problem, ending: &Ending, predicted: f64, slip: f64) -> Sequel {
+        if !ending.event.may_end() {
+            return Sequel::Periodic(self.at.orbit.period.cycles().len());
+        }
+        let alike = ending.event == self.event
+            && (ending.v0 / predicted - 1.0).abs() < self.options.as_expected
+            && (slip / self.slip_seen - 1.0).abs() < self.options.same_slip;
+        if alike && self.may_be_unseen(problem.tau) {
+            self.unseen += 1;
+            return Sequel::Ends(self.clear);
+        }
+        let seen = verify(problem, &mut self.branch, ending);
+        if let Sequel::Ends(clear) = seen {
+            self.see(problem.tau, clear);
+            self.slip_seen = slip;
+        }
+        seen
+    }
+
+    /// Whether the next end, at `tau`, may be taken for that of stick-slip because it clearly ended
+    /// at those before: what the block does beyond them changes smoothly along a line.
+    fn may_be_unseen(&self, tau: f64) -> bool {
+        let options = self.options;
+        if self.unseen == options.most_unseen {
+            return false;
+        }
+        if self.event == Event::StickVanishes {
+            // Sticks are as short beyond their end as before it: only a small change says that
+            // nothing else becomes of it.
+            let near = |last: &(f64, f64)| (tau / last.0 - 1.0).abs() < options.small_change;
+            return self.clear > 0.0 && self.ends.last().is_some_and(near);
+        }
+        // Not for NaN.
+        let since = ln(tau / self.seen_at).abs();
+        self.clear > options.clear && options.caution * self.change * since < self.clear
+    }
+
+    /// Learns how clearly stick-slip ends at `tau`.
+    fn see(&mut self, tau: f64, clear: f64) {
+        self.change = ((clear - self.clear) / ln(tau / self.seen_at)).abs();
+        (self.clear, self.seen_at, self.unseen) = (clear, tau, 0);
+    }
+
+    /// Whether the last end was not where the ends before predicted it.
+    pub(super) fn surprised(&self) -> bool {
+        self.ends.len() == KNOWN_ENDS && self.off > self.options.surprise
+    }
+
+    /// Whether it was seen that stick-slip ends where the last cell says.
+    pub(super) fn seen(&self) -> bool {
+        self.unseen == 0
+    }
+
+    /// A first point at another delay.
+    fn start(&mut self, tau: f64, v0: f64) -> Option<Point> {
+        let last = self.ends.last()?.0;
+        let before = match (&self.ends[..], &mut self.before) {
+            ([.., one, other], Some(before)) => Some((before, (tau - other.0) / (other.0 - one.0))),
+            _ => None,
+        };
+        let point = self.branch.restart(before, (v0, tau), &self.at)?;
+        let change = (v0 / self.at.v0 - 1.0).abs().max((tau / last - 1.0).abs());
+        let (here, there) = (&self.at.orbit.period, &point.orbit.period);
+        (!is_jump(here, there, change, self.branch.options())).then_some(point)
+    }
+
+    /// Learns of the cell before, whose end was found otherwise: an end like its own predicts the
+    /// next one better.
+    pub(super) fn recall(&mut self, tau: f64, end: f64) {
+        if self.ends.len() < KNOWN_ENDS && self.ends.first().is_some_and(|first| tau < first.0) {
+            self.ends.insert(0, (tau, end));
+            let least = nearest(self.event, self.options)[1];
+            self.off = least.max(self.options.recalled * self.off);
+        }
+    }
+
+    /// The end at `tau`: its logarithm as the polynomial of that of the delay through the last ones
+    /// (Neville).
+    fn predicted(&self, tau: f64) -> f64 {
+        let n = self.ends.len();
+        let mut logs = [(0.0, 0.0); KNOWN_ENDS];
+        for (log, end) in logs.iter_mut().zip(&self.ends) {
+            *log = (ln(end.0), ln(end.1));
+        }
+        let (x, mut p) = (ln(tau), logs.map(|log| log.1));
+        for k in 1..n {
+            for i in 0..n - k {
+                let (low, high) = (logs[i].0, logs[i + k].0);
+                p[i] = ((x - high) * p[i] + (low - x) * p[i + 1]) / (low - high);
+            }
+        }
+        // Not far from the last one, whatever the polynomial does.
+        let (last, farthest) = (logs[n - 1].1, self.options.farthest_log);
+        exp(p[0].clamp(last - farthest, last + farthest))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::follow::from_scratch;
+    use super::super::synthetic::letters;
+    use super::*;
+
+    fn track(problem: &Problem) -> Track<'_> {
+        from_scratch(problem).1.unwrap()
+    }
+
+    /// The letter's Fig. 3(a), and delays nearby.
+    #[test]
+    fn each_delay_starts_from_the_one_before() {
+        let problems = [4.15, 4.16, 4.17, 4.18, 4.2].map(|tau| letters(-0.33, 0.0, tau));
+        let mut track = track(&problems[0]);
+        for problem in &problems[1..] {
+            let found = track.next(problem).unwrap();
+            let scratch = from_scratch(problem).0.vc;
+            assert!(
+                (found.v0 / scratch - 1.0).abs() < 3e-5,
+                "{found:?} {scratch}"
+            );
+            assert_eq!(found.event, Event::Graze(0));
+        }
+        assert_eq!(track.ends.len(), KNOWN_ENDS);
+    }
+
+    /// A power of the delay is a line in logarithms, a cubic of it one through four ends.
+    #[test]
+    fn ends_are_predicted_by_a_polynomial_of_logarithms() {
+        let problem = letters(-0.33, 0.0, 4.15);
+        let mut track = track(&problem);
+        track.ends = vec![(1.0, 0.5), (1.1, 0.5 * 1.1 * 1.1), (1.2, 0.5 * 1.2 * 1.2)];
+        assert!((track.predicted(1.3) - 0.5 * 1.3 * 1.3).abs() < 1e-12);
+        let cubic = |tau: f64| 0.3 * (0.2 * tau.ln().powi(3) - tau.ln()).exp();
+        track.ends = [1.0, 1.2, 1.5, 1.6].map(|tau| (tau, cubic(tau))).to_vec();
+        assert!((track.predicted(1.7) / cubic(1.7) - 1.0).abs() < 1e-12);
+        // Not far from the last one.
+        track.ends = vec![(1.0, 0.1), (1.01, 0.5)];
+        assert!((track.predicted(2.0) - 0.5 * 0.5_f64.exp()).abs() < 1e-12);
+    }
+
+    #[test]
+    fn what_follows_is_looked_at_unless_it_was_clear() {
+        let problem = letters(-0.33, 0.0, 4.15);
+        let mut track = track(&problem);
+        assert!(!track.may_be_unseen(4.16));
+        track.see(4.0, 0.3);
+        assert!(!track.may_be_unseen(4.01), "how it changes is not known");
+        track.see(4.05, 0.31);
+        assert!(track.may_be_unseen(4.1) && track.seen());
+        // It may have changed by a sixth of itself.
+        assert!(!track.may_be_unseen(5.5));
+        track.unseen = track.options.most_unseen;
+        assert!(!track.may_be_unseen(4.1) && !track.seen());
+        track.unseen = 0;
+        track.clear = 1e-3;
+        assert!(!track.may_be_unseen(4.1));
+        // Where a stick vanishes only a small change of the delay says so.
+        track.event = Event::StickVanishes;
+        assert!(track.may_be_unseen(4.2) && !track.may_be_unseen(4.4));
+    }
+
+    #[test]
+    fn no_start_is_far_away() {
+        let problem = letters(-0.33, 0.0, 4.15);
+        let mut track = track(&problem);
+        assert!(track.set_out(7.0, 0.3).is_err());
+        assert!(track.next(&letters(-0.33, 0.0, 9.0)).is_none());
+    }
+
+    #[test]
+    fn an_end_before_the_first_one_is_recalled() {
+        let problem = letters(-0.33, 0.0, 4.15);
+        let mut track = track(&problem);
+        track.recall(4.2, 0.4);
+        assert_eq!(track.ends.len(), 1);
+        track.recall(4.1, 0.34);
+        assert_eq!(track.ends[0], (4.1, 0.34));
+        assert!((track.off - 0.25 * 0.02).abs() < 1e-15);
+        assert!(!track.surprised());
+    }
+}

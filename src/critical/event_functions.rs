@@ -1,0 +1,167 @@
+//! Event functions: what is positive along a branch of periodic stick-slip and vanishes where the
+//! branch ends or becomes another one.
+//!
+//! All have one sign: positive before the event, zero at it. The numbers are those of the page in
+//! [`super`].
+//!
+//! ```text
+//! depth          g_i = −min ẋ beyond the stop of slip i     g = 0: the stop is a graze     (E1)
+//! load           min N over the period                      g = 0: lift-off                (E2)
+//! stick time     the shortest stick                         g = 0: the stick vanishes      (E3)
+//! missing force  the least μ_S N − |κa| at a stop           g = 0: the block turns back    (E4)
+//! dip            the lowest minimum of ẋ before a stop      g = 0: a new stop              (E5)
+//! ```
+//!
+//! (E1) is known on both sides of zero: the Taylor polynomial of the last step of a slip goes on
+//! beyond the stop as if friction had not changed its sign there. So it is smooth in v0, where the
+//! slip time has a square root.
+
+/// The most slips in a period that is followed by continuation.
+pub(super) const MOST_SLIPS: usize = 4;
+
+/// The number of event functions.
+pub(super) const EVENTS: usize = MOST_SLIPS + 4;
+
+/// The zero of an event function.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Event {
+    /// The stop of this slip, counted from 0, is a graze: ẋ = ẍ = 0 (E1).
+    Graze(usize),
+    /// N = 0 (E2).
+    LiftOff,
+    /// A stick of length 0 (E3).
+    StickVanishes,
+    /// At a stop the spring is as strong as static friction: the block turns back (E4).
+    Reversal,
+    /// A minimum of ẋ before a stop comes down to 0: a new stop (E5).
+    NewStop,
+}
+
+impl Event {
+    /// Whether stick-slip, or the model, may end there. Else it becomes of another kind.
+    pub(super) const fn may_end(self) -> bool {
+        matches!(self, Self::Graze(_) | Self::LiftOff | Self::StickVanishes)
+    }
+
+    /// Whether its event function is a velocity; else it is a force or a time.
+    const fn of_velocity(self) -> bool {
+        matches!(self, Self::Graze(_) | Self::NewStop)
+    }
+}
+
+/// The event functions of one period; NaN for what the period does not have. Their derivatives with
+/// respect to v0 are such numbers as well.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct EventFunctions {
+    /// How far below 0 each slip would have gone beyond its stop, in N0/√(κM).
+    pub depth: [f64; MOST_SLIPS],
+    /// The smallest load, in N0.
+    pub load: f64,
+    /// The shortest stick, in √(M/κ).
+    pub stick_time: f64,
+    /// The least force that is missing at a stop for the block to turn back, in N0.
+    pub missing_force: f64,
+    /// The lowest minimum of ẋ > 0 before a stop, in N0/√(κM).
+    pub dip: f64,
+}
+
+impl EventFunctions {
+    /// Nothing is known.
+    pub(super) const UNKNOWN: Self = Self {
+        depth: [f64::NAN; MOST_SLIPS],
+        load: f64::NAN,
+        stick_time: f64::NAN,
+        missing_force: f64::NAN,
+        dip: f64::NAN,
+    };
+
+    /// Each with its event: (E1) to (E5) in order.
+    pub(super) fn each(&self) -> [(Event, f64); EVENTS] {
+        let mut all = [(Event::LiftOff, self.load); EVENTS];
+        for (slip, (one, depth)) in all.iter_mut().zip(self.depth).enumerate() {
+            *one = (Event::Graze(slip), depth);
+        }
+        all[MOST_SLIPS + 1] = (Event::StickVanishes, self.stick_time);
+        all[MOST_SLIPS + 2] = (Event::Reversal, self.missing_force);
+        all[MOST_SLIPS + 3] = (Event::NewStop, self.dip);
+        all
+    }
+
+    /// The one that vanishes at `event`.
+    pub(super) fn of(&self, event: Event) -> f64 {
+        match event {
+            Event::Graze(slip) => self.depth[slip],
+            Event::LiftOff => self.load,
+            Event::StickVanishes => self.stick_time,
+            Event::Reversal => self.missing_force,
+            Event::NewStop => self.dip,
+        }
+    }
+
+    /// What `f` makes of each of these and the same one of `other`.
+    pub(super) fn with(&self, other: &Self, f: impl Fn(f64, f64) -> f64) -> Self {
+        Self {
+            depth: std::array::from_fn(|slip| f(self.depth[slip], other.depth[slip])),
+            load: f(self.load, other.load),
+            stick_time: f(self.stick_time, other.stick_time),
+            missing_force: f(self.missing_force, other.missing_force),
+            dip: f(self.dip, other.dip),
+        }
+    }
+
+    /// What is noise in the one of `event` at `v0`, where forces and times are known to `noise`.
+    pub(super) fn noise(event: Event, noise: f64, v0: f64) -> f64 {
+        match event.of_velocity() {
+            true => noise * v0,
+            false => noise,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn some() -> EventFunctions {
+        EventFunctions {
+            depth: [0.1, 0.2, f64::NAN, f64::NAN],
+            load: 0.3,
+            stick_time: 0.4,
+            missing_force: 0.5,
+            dip: 0.6,
+        }
+    }
+
+    #[test]
+    fn each_has_its_event() {
+        let all = some();
+        let found: Vec<f64> = all.each().iter().map(|one| one.1).collect();
+        assert_eq!(found[..2], [0.1, 0.2]);
+        assert_eq!(found[MOST_SLIPS..], [0.3, 0.4, 0.5, 0.6]);
+        for (event, value) in all.each() {
+            assert_eq!(all.of(event).to_bits(), value.to_bits(), "{event:?}");
+        }
+    }
+
+    #[test]
+    fn they_are_combined_one_by_one() {
+        let sum = some().with(&some(), |a, b| a + b);
+        assert_eq!((sum.depth[1], sum.dip), (0.4, 1.2));
+        assert!(sum.depth[2].is_nan());
+    }
+
+    #[test]
+    fn velocities_have_noise_in_proportion_to_v0() {
+        let noise = |event| EventFunctions::noise(event, 1e-6, 0.01);
+        assert_eq!(noise(Event::Graze(0)), noise(Event::NewStop));
+        assert_eq!(noise(Event::LiftOff), 1e-6);
+        assert_eq!(noise(Event::StickVanishes), 1e-6);
+        assert!(noise(Event::NewStop) < 1.1e-8);
+    }
+
+    #[test]
+    fn at_some_events_stick_slip_only_changes() {
+        let ends = some().each().map(|(event, _)| event.may_end());
+        assert_eq!(ends, [true, true, true, true, true, true, false, false]);
+    }
+}

@@ -1,0 +1,115 @@
+//! The numbers that tune a search for a critical velocity, a table of them for each of its parts.
+//!
+//! Every option has its reason, its default and its range beside it. The defaults are what maps
+//! are computed with; benches/critical_options.rs tells what each of them changes.
+
+#[macro_use]
+mod table;
+mod along_delay;
+mod continuation;
+mod ramp;
+mod switch_on;
+mod transition;
+
+pub use along_delay::AlongDelayOptions;
+pub use continuation::ContinuationOptions;
+pub use ramp::RampOptions;
+pub use switch_on::SwitchOnOptions;
+pub use transition::TransitionOptions;
+
+/// All options of a search.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Options {
+    /// Continuation in v0.
+    pub continuation: ContinuationOptions,
+    /// What follows an event.
+    pub transition: TransitionOptions,
+    /// Continuation along a line of delays.
+    pub along_delay: AlongDelayOptions,
+    /// Simulation while v0 is raised.
+    pub ramp: RampOptions,
+    /// Switching control on.
+    pub switch_on: SwitchOnOptions,
+}
+
+impl Options {
+    /// The names of all options, such as `continuation.share`.
+    pub fn names() -> impl Iterator<Item = String> {
+        let tables = [
+            ("continuation", ContinuationOptions::NAMES),
+            ("transition", TransitionOptions::NAMES),
+            ("along_delay", AlongDelayOptions::NAMES),
+            ("ramp", RampOptions::NAMES),
+            ("switch_on", SwitchOnOptions::NAMES),
+        ];
+        let names = |(table, names): (&'static str, &'static [&'static str])| {
+            names.iter().map(move |name| format!("{table}.{name}"))
+        };
+        tables.into_iter().flat_map(names)
+    }
+
+    /// Multiplies the option of this name, or each of its numbers, by `factor`. False where that
+    /// changes nothing or leaves the range of the option.
+    pub fn scale(&mut self, name: &str, factor: f64) -> bool {
+        let Some((table, name)) = name.split_once('.') else {
+            return false;
+        };
+        match table {
+            "continuation" => self.continuation.scale(name, factor),
+            "transition" => self.transition.scale(name, factor),
+            "along_delay" => self.along_delay.scale(name, factor),
+            "ramp" => self.ramp.scale(name, factor),
+            "switch_on" => self.switch_on.scale(name, factor),
+            _ => false,
+        }
+    }
+
+    /// Whether every option lies in its range.
+    #[must_use]
+    pub fn within_ranges(&self) -> bool {
+        self.continuation.within_ranges()
+            && self.transition.within_ranges()
+            && self.along_delay.within_ranges()
+            && self.ramp.within_ranges()
+            && self.switch_on.within_ranges()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn defaults_lie_in_their_ranges() {
+        assert!(Options::default().within_ranges());
+        let mut outside = Options::default();
+        outside.continuation.share = 1.5;
+        assert!(!outside.within_ranges());
+    }
+
+    #[test]
+    fn what_is_usual_is_not_told() {
+        let mut options = ContinuationOptions::default();
+        assert_eq!(format!("{options:?}"), "ContinuationOptions { .. }");
+        options.share = 0.5;
+        assert_eq!(
+            format!("{options:?}"),
+            "ContinuationOptions { share: 0.5, .. }"
+        );
+    }
+
+    #[test]
+    fn every_option_has_a_name_by_which_it_is_scaled() {
+        let names: Vec<String> = Options::names().collect();
+        assert!(names.len() > 60, "{}", names.len());
+        for name in &names {
+            let changes = |factor| Options::default().scale(name, factor);
+            let changed = changes(0.9) || changes(1.1);
+            // Switches and what is 0 by default stay.
+            let fixed = ["ramp.until_periodic", "ramp.patient", "ramp.glide"];
+            assert_eq!(changed, !fixed.contains(&name.as_str()), "{name}");
+        }
+        assert!(!Options::default().scale("ramp.nothing", 2.0));
+        assert!(!Options::default().scale("nothing", 2.0));
+    }
+}

@@ -1,0 +1,114 @@
+//! Options of simulation while v0 is raised.
+
+options! {
+    /// How stick-slip is followed while v0 is raised, how long it is waited for what it comes to,
+    /// and what confirms the answer. Steps are relative, times in units of √(M/κ).
+    RampOptions {
+        /// The first step of v0. Large ones are cheap; those that lose stick-slip are undone.
+        first: f64 = 0.6, in 1e-6..=10.0;
+        /// The largest one.
+        largest: f64 = 0.6, in 1e-6..=10.0;
+        /// The largest one where cycles do not show whether stick-slip is of the same kind.
+        unseen: f64 = 0.1, in 1e-6..=10.0;
+        /// The last step: v_c is known to it.
+        last: f64 = 1e-6, in 1e-12..=1e-2;
+        /// Up to this v0, in the units of a motion, v0 glides: it is held for a few cycles only,
+        /// and what stick-slip comes to there is not waited for. 0 where every v0 is held.
+        glide: f64 = 0.0, in 0.0..=f64::INFINITY;
+        /// The most v0 that are tried.
+        trials: u32 = 400, in 1..=1_000_000;
+        /// v0 up to which stick-slip is followed, in units of μ_S N0/√(κM); by continuation as
+        /// well.
+        v_max: f64 = 100.0, in 1e-3..=1e6;
+        /// How well cycles have to repeat near the end.
+        repeated: f64 = 1e-6, in 1e-12..=1e-2;
+        /// The most steps of the integrator at one v0.
+        steps: u64 = 50_000, in 100..=1_000_000_000;
+        /// The most at all v0 together: some seconds.
+        total_steps: u64 = 3_000_000, in 100..=1_000_000_000_000;
+        /// Whether the search ends where stick-slip has come to repeat.
+        until_periodic: bool = false, in false..=true;
+        /// Whether every loss of stick-slip is waited for until the outcome of the motion is known.
+        /// Else it counts once the minima of ẋ no longer fall, and only the last one is waited for
+        /// longer.
+        patient: bool = false, in false..=true;
+
+        /// Start velocities, over μ_S, in order, until stick-slip is sustained at one.
+        starts: [f64; 6] = [1e-2, 1e-1, 1e-3, 1e-4, 1e-5, 1e-6], in 1e-9..=1.0;
+        /// The share of the way to the predicted end that is taken at first.
+        share: f64 = 0.9, in 0.5..=0.999;
+        /// And at least: near its end stick-slip attracts from less and less far, and the share
+        /// falls with each loss.
+        least_share: f64 = 0.2, in 0.01..=0.9;
+        /// After a step that failed the next is smaller by this factor.
+        reduction: f64 = 0.5, in 0.1..=0.9;
+        /// After a step that succeeded the next may be larger by this factor.
+        growth: f64 = 2.0, in 1.1..=10.0;
+        /// Where stick-slip was lost is tried once more from this much nearer: it may have been the
+        /// size of the step that lost it.
+        nearby: f64 = 0.15, in 0.01..=0.9;
+        /// The share of the last step below which two v0 are as near as asked for.
+        near_enough: f64 = 0.75, in 0.5..=1.0;
+        /// Surviving so often where it had been lost, on a short way, stick-slip is thrown off by
+        /// chance.
+        most_passed: u32 = 6, in 1..=1_000;
+        /// That short way.
+        short_way: f64 = 1e-3, in 1e-9..=0.1;
+        /// The last step from irregular stick-slip: one v0 after the other persists and is lost by
+        /// chance on the last bit of the way.
+        last_irregular: f64 = 2e-5, in 1e-12..=1e-2;
+        /// Steps below this carry a motion along its attractor.
+        careful: f64 = 0.02, in 1e-6..=1.0;
+        /// How well cycles have to repeat after larger ones.
+        roughly: f64 = 1e-4, in 1e-12..=1e-2;
+        /// Steps no larger than this look for an end: irregular stick-slip is held for long.
+        final_step: f64 = 2e-3, in 1e-9..=1.0;
+        /// The way within which sticks that become shorter vanish.
+        soon: f64 = 1e-2, in 1e-9..=1.0;
+
+        /// How long a motion is waited for: always, so many delays, and so many of the longest
+        /// cycles.
+        patience: [f64; 3] = [600.0, 20.0, 30.0], in 0.0..=1e6;
+        /// Stick-slip that does not repeat within so many cycles, and so many more for each unit of
+        /// the delay, is irregular: while v0 glides.
+        cycles_gliding: [f64; 2] = [4.0, 0.5], in 0.0..=1e4;
+        /// The same after usual steps.
+        cycles: [f64; 2] = [12.0, 1.0], in 0.0..=1e4;
+        /// The same where it is looked at for long.
+        cycles_at_length: [f64; 2] = [24.0, 1.0], in 0.0..=1e4;
+        /// The same near its end.
+        cycles_near_end: [f64; 2] = [60.0, 4.0], in 0.0..=1e4;
+        /// The time without a stop after which a slip is one that goes on, as a share of the time
+        /// that was waited.
+        recent: f64 = 0.25, in 0.01..=0.9;
+        /// A minimum of ẋ lower than those before by more than this share falls.
+        falls: f64 = 1e-3, in 1e-9..=0.5;
+        /// What grows beyond bounds is so many times as large as the forces of stick-slip and the
+        /// speed of the pull.
+        far: f64 = 100.0, in 2.0..=1e6;
+        /// Windows without a fall after which a slip goes on, where it is looked for shortly: a
+        /// window is a delay and two periods of free oscillation.
+        windows: u32 = 3, in 1..=1_000;
+        /// The same where it is looked at for long.
+        windows_at_length: u32 = 10, in 1..=1_000;
+        /// Windows without a fall at the end of a motion after which a slip goes on.
+        windows_at_last: u32 = 6, in 1..=1_000;
+
+        /// Error allowed in a step of the integrator where stick-slip is followed.
+        tolerance: f64 = 1e-8, in 1e-14..=1e-3;
+        /// The first step of a search that confirms another one.
+        confirm_first: f64 = 0.2, in 1e-6..=10.0;
+        /// Error allowed in a step of the integrator there.
+        confirm_tolerance: f64 = 1e-10, in 1e-14..=1e-3;
+        /// Steps of v0 that glides.
+        glide_step: f64 = 0.01, in 1e-6..=1.0;
+        /// How far below the end v0 glides no longer.
+        glide_end: f64 = 0.02, in 1e-6..=0.9;
+        /// The most v0 on the way: more than lead from the lowest to the largest.
+        glide_trials: u32 = 3_000, in 10..=10_000_000;
+        /// Sticks shorter than this are lost to rounding as v0 grows: what they end in is not told.
+        vanishing_stick: f64 = 1e-6, in 1e-15..=1e-2;
+        /// Depth of a stop, over v0, below which the last stop is a graze.
+        grazing: f64 = 1e-3, in 1e-9..=0.1;
+    }
+}

@@ -1,0 +1,150 @@
+//! How a table of options is written: a row for each, with its reason, default and range.
+
+use std::ops::RangeInclusive;
+
+/// The value of an option: a number, some numbers or a switch.
+pub(in crate::critical) trait Value: Copy {
+    /// What its range is made of.
+    type Bound: PartialOrd;
+
+    /// It, or each of its numbers, times `factor`; a switch stays what it is.
+    fn scaled(self, factor: f64) -> Self;
+
+    /// Whether it, or each of its numbers, lies in `range`.
+    fn within(self, range: &RangeInclusive<Self::Bound>) -> bool;
+}
+
+impl Value for f64 {
+    type Bound = Self;
+
+    fn scaled(self, factor: f64) -> Self {
+        self * factor
+    }
+
+    fn within(self, range: &RangeInclusive<Self>) -> bool {
+        range.contains(&self)
+    }
+}
+
+/// Counts are rounded up.
+macro_rules! count {
+    ($kind:ty) => {
+        impl Value for $kind {
+            type Bound = Self;
+
+            fn scaled(self, factor: f64) -> Self {
+                (self as f64 * factor).ceil() as $kind
+            }
+
+            fn within(self, range: &RangeInclusive<Self>) -> bool {
+                range.contains(&self)
+            }
+        }
+    };
+}
+
+count!(u64);
+count!(usize);
+
+impl Value for u32 {
+    type Bound = Self;
+
+    fn scaled(self, factor: f64) -> Self {
+        (f64::from(self) * factor).ceil() as Self
+    }
+
+    fn within(self, range: &RangeInclusive<Self>) -> bool {
+        range.contains(&self)
+    }
+}
+
+impl<const N: usize> Value for [f64; N] {
+    type Bound = f64;
+
+    fn scaled(self, factor: f64) -> Self {
+        self.map(|number| number * factor)
+    }
+
+    fn within(self, range: &RangeInclusive<f64>) -> bool {
+        self.iter().all(|number| range.contains(number))
+    }
+}
+
+impl Value for bool {
+    type Bound = Self;
+
+    fn scaled(self, _: f64) -> Self {
+        self
+    }
+
+    fn within(self, range: &RangeInclusive<Self>) -> bool {
+        range.contains(&self)
+    }
+}
+
+/// A struct of options from a table of their names, defaults and ranges. It is `Copy`, its default
+/// has all defaults, and options can be named in tests and benches.
+macro_rules! options {
+    (
+        $(#[$about:meta])*
+        $name:ident {
+            $($(#[$doc:meta])* $field:ident: $kind:ty = $default:expr, in $range:expr;)+
+        }
+    ) => {
+        $(#[$about])*
+        #[derive(Clone, Copy, PartialEq)]
+        pub struct $name {
+            $(
+                $(#[$doc])*
+                #[doc = concat!(
+                    "\n\nDefault ", stringify!($default), ", in ", stringify!($range), "."
+                )]
+                pub $field: $kind,
+            )+
+        }
+
+        /// Those that are not what they are by default.
+        impl std::fmt::Debug for $name {
+            fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+                let usual = Self::default();
+                let mut told = f.debug_struct(stringify!($name));
+                $(if self.$field != usual.$field {
+                    told.field(stringify!($field), &self.$field);
+                })+
+                told.finish_non_exhaustive()
+            }
+        }
+
+        impl Default for $name {
+            fn default() -> Self {
+                Self { $($field: $default,)+ }
+            }
+        }
+
+        impl $name {
+            /// The names of the options, in the order of the table.
+            pub const NAMES: &'static [&'static str] = &[$(stringify!($field)),+];
+
+            /// Multiplies the option of this name, or each of its numbers, by `factor`; counts are
+            /// rounded up. False where that changes nothing or leaves the range of the option.
+            pub fn scale(&mut self, name: &str, factor: f64) -> bool {
+                use $crate::critical::options::table::Value;
+                match name {
+                    $(stringify!($field) => {
+                        let before = self.$field;
+                        self.$field = before.scaled(factor);
+                        self.$field != before && self.$field.within(&($range))
+                    })+
+                    _ => false,
+                }
+            }
+
+            /// Whether every option lies in its range.
+            #[must_use]
+            pub fn within_ranges(&self) -> bool {
+                use $crate::critical::options::table::Value;
+                true $(&& self.$field.within(&($range)))+
+            }
+        }
+    };
+}

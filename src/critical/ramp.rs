@@ -1,0 +1,455 @@
+//! Simulation while v0 is raised: stick-slip is followed to its regime at every v0, the state
+//! carried from one to the next, by steps that grow and are halved.
+//!
+//! A v0 at which stick-slip was lost is no bound: near its end it attracts from less and less far,
+//! so it may have been the size of the step that lost it. It is come nearer to and tried once more
+//! from close by, until the two v0 are as near as asked for.
+
+use super::continuation::times_jump;
+use super::options::{ContinuationOptions, RampOptions};
+use super::problem::Problem;
+use super::regime::{Followed, Holding, Regime, Response, Simulated};
+use crate::slip::motion::{Accuracy, Motion};
+
+/// How a search by simulation ended.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Ramped {
+    /// The largest v0 at which stick-slip persists; none where it was not found anywhere.
+    pub last: Option<Response>,
+    /// The smallest v0, above it, at which it does not; none where it persists to the end of the
+    /// range.
+    pub lost: Option<Response>,
+    /// Whether the search came to its end: to the end of the range, or to two v0 as near as asked
+    /// for.
+    pub complete: bool,
+    /// Whether stick-slip survived again and again where it had been lost: it is thrown off by
+    /// chance.
+    pub by_chance: bool,
+    /// Whether sticks become shorter such that none is left just beyond the last v0.
+    pub vanish: bool,
+    /// The relative step beyond the last v0 at which the depth of the stops is predicted to vanish;
+    /// infinite where it is not.
+    pub graze_step: f64,
+}
+
+impl Ramped {
+    /// No v0 at which stick-slip persists.
+    fn none(lost: Option<Response>) -> Self {
+        Self {
+            last: None,
+            lost,
+            complete: true,
+            by_chance: false,
+            vanish: false,
+            graze_step: f64::INFINITY,
+        }
+    }
+}
+
+/// Follows stick-slip of `problem` from low v0 on.
+pub(super) fn from_low_velocity(
+    problem: &Problem,
+    options: &RampOptions,
+    accuracy: Accuracy,
+) -> Ramped {
+    let scale = problem.law.mu_s();
+    let mut lost: Option<Response> = None;
+    for start in options.starts {
+        let v0 = start * scale;
+        let lifted = |lost: &Response| lost.regime == Regime::LiftOff && lost.v0 < v0;
+        if lost.as_ref().is_some_and(lifted) {
+            // What is asked for is the smallest v0 of lift-off.
+            continue;
+        }
+        let (ramped, _) = from(problem, problem.released(v0, accuracy), options);
+        if ramped.last.is_some() {
+            return ramped;
+        }
+        // Where stick-slip was lost otherwise before, a lift-off at a larger start is that of the
+        // start alone.
+        let lower = ramped.lost.as_ref().is_some_and(|now| {
+            let lowest = lost.as_ref().map_or(f64::INFINITY, |lost| lost.v0);
+            now.regime == Regime::LiftOff && now.v0 < lowest
+        });
+        if lost.is_none() || lower {
+            lost = ramped.lost;
+        }
+    }
+    Ramped::none(lost)
+}
+
+/// Follows a motion in stick-slip of `problem` from the v0 it has; with it where it came to.
+pub(super) fn from(problem: &Problem, motion: Motion, options: &RampOptions) -> (Ramped, Motion) {
+    let mut block = Simulated { problem, motion };
+    let ramped = raise(&mut block, options, &problem.options.continuation);
+    (ramped, block.motion)
+}
+
+/// Follows stick-slip from the v0 it has, while v0 is raised, and leaves it where it comes to.
+pub(super) fn raise<F: Followed>(
+    block: &mut F,
+    options: &RampOptions,
+    continuation: &ContinuationOptions,
+) -> Ramped {
+    let first = block.hold(block.v0(), &Holding::new(options, f64::INFINITY));
+    if !first.persists() {
+        return Ramped::none(Some(first));
+    }
+    let mut ramp = Ramp {
+        options,
+        continuation,
+        trial: block.clone(),
+        block: block.clone(),
+        before: None,
+        last: first,
+        lost: None,
+        jump: None,
+        largest: options.first,
+        share: options.share,
+        passed: (0.0, 0),
+        vanish: false,
+        chance: first.regime == Regime::Irregular,
+        spent: first.summary.steps,
+    };
+    let complete = ramp.run();
+    ramp.classify();
+    std::mem::swap(block, &mut ramp.block);
+    Ramped {
+        last: Some(ramp.last),
+        lost: ramp.lost.map(|(lost, _)| lost),
+        complete,
+        by_chance: ramp.by_chance(),
+        vanish: ramp.vanish,
+        graze_step: predicted_steps(ramp.before, &ramp.last)[0],
+    }
+}
+
+/// A search while v0 is raised.
+struct Ramp<'o, F> {
+    options: &'o RampOptions,
+    continuation: &'o ContinuationOptions,
+    /// The block at `last`.
+    block: F,
+    trial: F,
+    before: Option<Response>,
+    last: Response,
+    /// The smallest v0 above `last` at which stick-slip was lost, and the relative step that lost
+    /// it.
+    lost: Option<(Response, f64)>,
+    /// The smallest v0 above `last` to which the step was too large for what it led to.
+    jump: Option<f64>,
+    /// The largest relative step for now.
+    largest: f64,
+    /// The share of the way to where stick-slip is predicted to end that is taken at once.
+    share: f64,
+    /// From where on, and how often since, stick-slip survived where it had been lost.
+    passed: (f64, u32),
+    /// Whether the last steps shortened the sticks as if none were left soon.
+    vanish: bool,
+    /// Whether irregular stick-slip or a jump was on the way.
+    chance: bool,
+    spent: u64,
+}
+
+impl<F: Followed> Ramp<'_, F> {
+    /// Raises v0 until two v0 as near as asked for differ in their regime; false where that takes
+    /// too long.
+    fn run(&mut self) -> bool {
+        let end = self.options.v_max * self.block.unit();
+        for _ in 0..self.options.trials {
+            let repeats = self.options.until_periodic && self.last.regime == Regime::Periodic;
+            if self.last.v0 >= end || repeats {
+                return true;
+            }
+            let step = self.next_step();
+            if self.lost.is_some() && step < self.options.near_enough * self.precision() {
+                if self.is_lost() {
+                    return true;
+                }
+                continue;
+            }
+            let v0 = (self.last.v0 * (1.0 + step)).min(end);
+            // To the last bit, where it is tried once more.
+            let again = self.lost.map(|(lost, _)| lost.v0);
+            let again = again.filter(|lost| (v0 / lost - 1.0).abs() < 1e-12);
+            self.attempt(again.unwrap_or(v0), step);
+            if self.spent > self.options.total_steps {
+                return false;
+            }
+        }
+        false
+    }
+
+    /// Looks longer whether irregular stick-slip repeats where it was last.
+    fn classify(&mut self) {
+        if self.last.regime == Regime::Irregular && !self.options.patient {
+            let how = Holding::at_length(self.options, 0.0);
+            let again = self.block.hold(self.last.v0, &how);
+            if again.persists() {
+                self.last = again;
+            }
+        }
+    }
+
+    /// The last step: from irregular stick-slip a longer one.
+    fn precision(&self) -> f64 {
+        match self.last.regime {
+            Regime::Irregular => self.options.last.max(self.options.last_irregular),
+            _ => self.options.last,
+        }
+    }
+
+    /// Whether stick-slip was lost again and again on a short way: steps however short throw it off
+    /// by chance.
+    fn by_chance(&self) -> bool {
+        self.passed.1 >= self.options.most_passed
+    }
+
+    /// Where it had been lost at `v0`, it was not from nearby.
+    fn pass(&mut self, v0: f64) {
+        let (from, times) = self.passed;
+        self.passed = match v0 > from * (1.0 + self.options.short_way) {
+            true => (v0, 1),
+            false => (from, times + 1),
+        };
+        self.lost = None;
+    }
+
+    /// How far the next v0 is from the last, relative.
+    fn next_step(&self) -> f64 {
+        let options = self.options;
+        let mut step = self.share * predicted_step(self.before, &self.last);
+        if self.last.regime == Regime::Irregular {
+            step = step.min(options.unseen);
+        }
+        let mut step = step.clamp(options.last, self.largest.max(options.last));
+        if let Some(jump) = self.jump {
+            let room = jump / self.last.v0 - 1.0;
+            let far = room > 2.0 * self.continuation.jump;
+            step = step.min(if far { 0.5 * room } else { room });
+        }
+        let Some((lost, by)) = &self.lost else {
+            return step;
+        };
+        let room = lost.v0 / self.last.v0 - 1.0;
+        if room <= options.nearby * *by && !self.by_chance() {
+            // Once more from nearby: it may have been the size of the step that lost it.
+            return step.min(room);
+        }
+        step.min(0.5 * room)
+    }
+
+    /// The largest relative step of v0 that may lead from the last response to this one, to which
+    /// it took `step`.
+    fn largest_step(&self, there: &Response, step: f64) -> f64 {
+        let last = &self.last;
+        let jumps = self.jumps(there, step);
+        match (last.regime, there.regime) {
+            (Regime::Periodic, Regime::Periodic) if last.is_like(there) && !jumps => f64::INFINITY,
+            // Once chance has a part in it nothing is gained by that.
+            _ if self.chance => self.options.unseen,
+            (Regime::Periodic, Regime::Periodic) if jumps => self.continuation.jump,
+            (Regime::Periodic, Regime::Irregular) => self.options.careful,
+            _ => self.options.unseen,
+        }
+    }
+
+    /// Whether a relative `step` of v0 threw the block from one kind of stick-slip to another.
+    fn jumps(&self, there: &Response, step: f64) -> bool {
+        let (before, after) = (self.last.mean_times(), there.mean_times());
+        times_jump(before, after, step, self.continuation)
+    }
+
+    /// Tries `v0`, a relative `step` away.
+    fn attempt(&mut self, v0: f64, step: f64) {
+        let options = self.options;
+        self.trial.copy_from(&self.block);
+        let there = self.trial.hold(v0, &Holding::after(options, v0, step));
+        self.spent += there.summary.steps;
+        if !there.persists() {
+            if self.lost.is_none_or(|(lost, _)| v0 <= lost.v0) {
+                self.lost = Some((there, step));
+            }
+            // Near its end stick-slip attracts from less and less far: steps have to shrink with
+            // the way that is left.
+            let taken = step / predicted_step(self.before, &self.last);
+            if taken > options.least_share {
+                let share = options.reduction * taken;
+                self.share = share.clamp(options.least_share, self.share);
+            }
+            self.largest = options.reduction * step;
+        } else if step > self.largest_step(&there, step) {
+            self.largest = options.reduction * step;
+            self.jump = Some(v0);
+        } else {
+            let jumped = there.regime == Regime::Irregular || self.jumps(&there, step);
+            self.chance |= jumped;
+            std::mem::swap(&mut self.block, &mut self.trial);
+            self.jump = self.jump.filter(|jump| *jump > v0 && !jumped);
+            let passed = self.lost.is_some_and(|(lost, _)| lost.v0 <= v0);
+            if passed {
+                self.pass(v0);
+            }
+            self.vanish |= self.last.is_like(&there) && stick_vanishes(&self.last, &there, options);
+            (self.before, self.last) = (Some(self.last), there);
+            // What failed there was the size of the step: the steps from here on grow slowly.
+            let grown = options.growth * if passed { step } else { self.largest };
+            self.largest = grown.min(options.largest);
+        }
+    }
+
+    /// Whether stick-slip really is lost where it was last: waits longer. If not, goes on from
+    /// there.
+    fn is_lost(&mut self) -> bool {
+        let slips = |(lost, _): &(Response, f64)| lost.regime == Regime::Slips;
+        let Some((lost, by)) = self.lost.filter(slips).filter(|_| !self.by_chance()) else {
+            return true;
+        };
+        self.trial.copy_from(&self.block);
+        let how = Holding::at_length(self.options, by);
+        let there = self.trial.hold(lost.v0, &how);
+        self.spent += there.summary.steps;
+        if !there.persists() {
+            self.lost = Some((there, by));
+            return true;
+        }
+        std::mem::swap(&mut self.block, &mut self.trial);
+        self.largest = self.options.growth * (there.v0 / self.last.v0 - 1.0);
+        (self.before, self.last) = (None, there);
+        self.pass(there.v0);
+        false
+    }
+}
+
+/// Whether sticks, from one v0 to the next, become shorter such that none is left soon.
+fn stick_vanishes(before: &Response, last: &Response, options: &RampOptions) -> bool {
+    let loss = (before.summary.stick_time - last.summary.stick_time) / (last.v0 - before.v0);
+    loss > 0.0 && last.summary.stick_time / loss < options.soon * last.v0
+}
+
+/// The relative step to where the first of the depth of the stops, the smallest load and the sticks
+/// is predicted to vanish.
+fn predicted_step(before: Option<Response>, last: &Response) -> f64 {
+    let steps = predicted_steps(before, last);
+    steps.into_iter().fold(f64::INFINITY, f64::min)
+}
+
+/// The relative steps to where the depth of the stops, the smallest load and the sticks are
+/// predicted to vanish, as the secants from the response before tell.
+fn predicted_steps(before: Option<Response>, last: &Response) -> [f64; 3] {
+    let Some(before) = before.filter(|before| before.is_like(last)) else {
+        return [f64::INFINITY; 3];
+    };
+    let change = last.v0 - before.v0;
+    let functions = [
+        (before.depth, last.depth),
+        (before.summary.n_min, last.summary.n_min),
+        (before.summary.stick_time, last.summary.stick_time),
+    ];
+    functions.map(|(before, value)| {
+        let slope = (value - before) / change;
+        match slope < 0.0 {
+            true => -value / slope / last.v0,
+            false => f64::INFINITY,
+        }
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::synthetic::{Family, LOGISTIC, Synthetic};
+    use super::*;
+
+    fn raised(family: Family, v0: f64, x: f64, options: &RampOptions) -> Ramped {
+        let mut map = Synthetic::new(family, v0, x);
+        raise(&mut map, options, &ContinuationOptions::default())
+    }
+
+    #[test]
+    fn a_saddle_node_is_found_where_the_orbit_vanishes() {
+        let found = raised(Family::SaddleNode, 0.1, 0.9, &RampOptions::default());
+        let [last, lost] = [found.last, found.lost].map(|response| response.unwrap());
+        assert!(found.complete && !found.by_chance);
+        assert_eq!(
+            (last.regime, lost.regime),
+            (Regime::Periodic, Regime::Slips)
+        );
+        assert!(last.v0 <= 1.0 + 1e-6 && last.v0 > 1.0 - 2e-6, "{found:?}");
+        assert!(lost.v0 / last.v0 - 1.0 < 1.5e-6);
+        assert!(found.graze_step > 1e-4);
+    }
+
+    /// Period after period doubles on the way, and chaos is lost in a crisis at v0 = 4.
+    #[test]
+    fn a_crisis_ends_irregular_stick_slip() {
+        let options = RampOptions {
+            largest: 0.05,
+            ..RampOptions::default()
+        };
+        let found = raised(LOGISTIC, 2.5, 0.5, &options);
+        let [last, lost] = [found.last, found.lost].map(|response| response.unwrap());
+        assert_eq!(
+            (last.regime, lost.regime),
+            (Regime::Irregular, Regime::Slips)
+        );
+        assert!((last.v0 - 4.0).abs() < 1e-4, "{found:?}");
+    }
+
+    #[test]
+    fn a_graze_is_predicted_by_the_depth() {
+        let found = raised(Family::Nordmark(0.0), 0.2, 0.0, &RampOptions::default());
+        let last = found.last.unwrap();
+        assert!((last.v0 - 1.0).abs() < 2e-6, "{found:?}");
+        assert!(found.graze_step < 1e-4 && last.depth < 1e-5, "{found:?}");
+    }
+
+    #[test]
+    fn sticks_that_vanish_are_seen() {
+        let family = Family::Vanishing(super::super::event_functions::Event::StickVanishes);
+        let found = raised(family, 0.2, 0.1, &RampOptions::default());
+        assert!(
+            found.vanish && (found.last.unwrap().v0 - 1.0).abs() < 2e-6,
+            "{found:?}"
+        );
+    }
+
+    #[test]
+    fn a_search_ends_where_it_is_told_to() {
+        let options = RampOptions {
+            v_max: 0.5,
+            ..RampOptions::default()
+        };
+        let found = raised(Family::SaddleNode, 0.1, 0.9, &options);
+        assert!(found.complete && found.lost.is_none());
+        assert_eq!(found.last.unwrap().v0, 0.5);
+        let short = RampOptions {
+            total_steps: 100,
+            ..RampOptions::default()
+        };
+        assert!(!raised(Family::SaddleNode, 0.1, 0.9, &short).complete);
+        let few = RampOptions {
+            trials: 2,
+            ..RampOptions::default()
+        };
+        assert!(!raised(Family::SaddleNode, 0.1, 0.9, &few).complete);
+        // Nothing is sustained beyond the saddle-node.
+        let none = raised(Family::SaddleNode, 1.5, 0.0, &RampOptions::default());
+        assert!(none.last.is_none() && none.lost.is_some() && none.complete);
+    }
+
+    /// Through chaos to a window of the logistic map in which three slips repeat: from v0 = 1 + √8.
+    #[test]
+    fn irregular_stick_slip_is_crossed_to_where_it_repeats() {
+        let options = RampOptions {
+            first: 2e-3,
+            largest: 2e-3,
+            unseen: 2e-3,
+            until_periodic: true,
+            ..RampOptions::default()
+        };
+        let found = raised(LOGISTIC, 3.8, 0.5, &options);
+        let last = found.last.unwrap();
+        assert_eq!((last.regime, last.summary.slips), (Regime::Periodic, 3));
+        assert!(last.v0 > 1.0 + 8.0_f64.sqrt() && last.v0 < 3.85, "{last:?}");
+    }
+}
