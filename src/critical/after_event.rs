@@ -172,7 +172,7 @@ mod tests {
     fn a_block_slips_on_beyond_its_graze() {
         let problem = letters(-0.33, 0.0, 4.15);
         let accuracy = Accuracy::of(1e-8);
-        let (mut branch, first) = WithHistory::from_low_velocity(&problem, accuracy).unwrap();
+        let (mut branch, first) = WithHistory::released(&problem, 0.01, accuracy).unwrap();
         let mut period = first.orbit.period;
         for v0 in [0.02, 0.05, 0.1, 0.2, 0.3, 0.34, 0.344] {
             let orbit = branch.orbit_at(v0, Some(&period), 1e-3).unwrap();

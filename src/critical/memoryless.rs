@@ -35,15 +35,30 @@ impl<'p> Memoryless<'p> {
         cycle.map(Period::of)
     }
 
-    /// The point to begin with; none where there is no stick-slip without memory.
-    fn first_point(&mut self) -> Option<Point> {
+    /// The end of stick-slip from a point on; none where it is not come to without memory.
+    fn end(&mut self, mut from: Point) -> Option<Ending> {
         let problem = self.problem;
-        let starts = problem.options.continuation.memoryless_starts;
-        starts.iter().find_map(|start| {
-            let v0 = start * problem.law.mu_s();
-            let orbit = self.orbit_at(v0, None, f64::INFINITY).ok()?;
-            Some(Point::first(v0, orbit, f64::INFINITY))
-        })
+        let (options, checks) = (&problem.options.continuation, &problem.options.transition);
+        let mut step = options.largest_step;
+        for _ in 0..options.most_kinds {
+            let (located, at) = continue_to_checked_event(self, from, step, options);
+            let located = located.ok()?;
+            match located.event {
+                Event::Graze(_) => return self.graze(located.v0, &at),
+                Event::LiftOff => {
+                    let period = self.outlasts(located.v0, checks.precision)?;
+                    return Some(Ending::new(located, period));
+                }
+                Event::Reversal | Event::NewStop => {
+                    let beyond = located.v0 * (1.0 + checks.past_change);
+                    let orbit = self.orbit_at(beyond, None, f64::INFINITY).ok()?;
+                    from = Point::first(beyond, orbit, f64::INFINITY);
+                    step = options.first_step;
+                }
+                Event::StickVanishes => return None,
+            }
+        }
+        None
     }
 
     /// The graze at `v0` next to the last point, if stick-slip ends there. Where it does not, the
@@ -101,35 +116,22 @@ impl Branch for Memoryless<'_> {
     }
 }
 
-/// The end of stick-slip of slips without memory, under pure load control; none where they do not
-/// lead to it.
-pub(super) fn end_without_memory(problem: &Problem, accuracy: Accuracy) -> Option<Ending> {
+/// The end of stick-slip of slips without memory from `v0` on, under pure load control; none where
+/// they do not lead to it.
+///
+/// # Errors
+/// When there is no slip and stick without memory at `v0`.
+pub(super) fn end_without_memory(
+    problem: &Problem,
+    v0: f64,
+    accuracy: Accuracy,
+) -> Result<Option<Ending>, NoReturn> {
     if problem.alpha_v != 0.0 {
-        return None;
+        return Err(NoReturn::OutsideDomain);
     }
-    let (options, checks) = (&problem.options.continuation, &problem.options.transition);
     let mut branch = Memoryless::new(problem, accuracy);
-    let mut from = branch.first_point()?;
-    let mut step = options.largest_step;
-    for _ in 0..options.most_kinds {
-        let (located, at) = continue_to_checked_event(&mut branch, from, step, options);
-        let located = located.ok()?;
-        match located.event {
-            Event::Graze(_) => return branch.graze(located.v0, &at),
-            Event::LiftOff => {
-                let period = branch.outlasts(located.v0, checks.precision)?;
-                return Some(Ending::new(located, period));
-            }
-            Event::Reversal | Event::NewStop => {
-                let beyond = located.v0 * (1.0 + checks.past_change);
-                let orbit = branch.orbit_at(beyond, None, f64::INFINITY).ok()?;
-                from = Point::first(beyond, orbit, f64::INFINITY);
-                step = options.first_step;
-            }
-            Event::StickVanishes => return None,
-        }
-    }
-    None
+    let orbit = branch.orbit_at(v0, None, f64::INFINITY)?;
+    Ok(branch.end(Point::first(v0, orbit, f64::INFINITY)))
 }
 
 #[cfg(test)]
@@ -147,7 +149,8 @@ mod tests {
             let off = [0.01, 0.005].map(|tau| {
                 let law = FrictionLaw::coulomb(0.5, 1.0).unwrap();
                 let problem = problem(law, 0.0, -4.0 * gamma / tau, tau);
-                let found = end_without_memory(&problem, Accuracy::of(1e-8)).unwrap();
+                let found = end_without_memory(&problem, 0.01, Accuracy::of(1e-8));
+                let found = found.unwrap().unwrap();
                 assert_eq!(found.event, Event::Graze(0));
                 assert!(found.period.stick_time() > tau);
                 (found.v0 / 0.5 - limit).abs()
@@ -159,9 +162,11 @@ mod tests {
     #[test]
     fn velocity_control_has_a_memory() {
         let accuracy = Accuracy::of(1e-6);
-        assert!(end_without_memory(&letters(-0.33, 0.0, 4.15), accuracy).is_none());
+        let velocity = end_without_memory(&letters(-0.33, 0.0, 4.15), 0.01, accuracy);
+        assert_eq!(velocity.unwrap_err(), NoReturn::OutsideDomain);
         // The letter's Fig. 3(b).
-        let found = end_without_memory(&letters(0.0, -10.0, 0.5), accuracy).unwrap();
+        let load = letters(0.0, -10.0, 0.5);
+        let found = end_without_memory(&load, 0.01, accuracy).unwrap().unwrap();
         assert!((found.v0 - 0.021540).abs() < 2e-6, "{found:?}");
     }
 

@@ -58,8 +58,8 @@
 //! At a graze the stop touches ẋ = ẍ = 0. The time of the stop is a square root of v_c − v0 there.
 //! The delay brings it back into the next slip, so the derivative of P grows without bounds, as at
 //! the grazing of Nordmark (J. Sound Vib. 145, 279, 1991). See di Bernardo, Budd, Champneys and
-//! Kowalczyk, *Piecewise-smooth Dynamical Systems* (Springer 2008), chapters 7 and 8. The depth (E1)
-//! is smooth all the same.
+//! Kowalczyk, *Piecewise-smooth Dynamical Systems* (Springer 2008), chapters 7 and 8. The depth
+//! (E1) is smooth all the same.
 //!
 //! Events that no g announces: the fixed point of (2) loses its stability (period doubling, where
 //! stick-slip goes on with twice the slips), meets an unstable one (saddle-node), or irregular

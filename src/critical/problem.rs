@@ -58,6 +58,28 @@ impl Problem {
         motion
     }
 
+    /// What `begin` comes to at the first of the protocol's start velocities at which it comes to
+    /// something. After lift-off only smaller ones are tried: what is asked for is the smallest v0
+    /// of it.
+    pub(super) fn at_first_start<T>(
+        &self,
+        mut begin: impl FnMut(f64) -> Result<T, NoStart>,
+    ) -> Option<T> {
+        let mut lift_off = f64::INFINITY;
+        for start in self.options.ramp.starts {
+            let v0 = start * self.law.mu_s();
+            if v0 > lift_off {
+                continue;
+            }
+            match begin(v0) {
+                Ok(found) => return Some(found),
+                Err(NoStart::LiftOff) => lift_off = v0,
+                Err(NoStart::NotSustained) => {}
+            }
+        }
+        None
+    }
+
     /// How long to wait for a motion's outcome at `v0`: transients, many delays, and many of
     /// the longest cycles.
     pub(super) fn patience(&self, v0: f64) -> f64 {
@@ -104,6 +126,15 @@ impl Problem {
         let mu_s = self.law.mu_s();
         uncontrolled && matches!(self.law.kind(), Kind::Coulomb { mu0 } if *mu0 < mu_s)
     }
+}
+
+/// Why nothing begins at a start velocity.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum NoStart {
+    /// N ≤ 0.
+    LiftOff,
+    /// Stick-slip is not sustained there.
+    NotSustained,
 }
 
 /// What gave a critical velocity.

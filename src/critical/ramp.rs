@@ -7,7 +7,7 @@
 
 use super::continuation::times_jump;
 use super::options::{ContinuationOptions, RampOptions};
-use super::problem::Problem;
+use super::problem::{NoStart, Problem};
 use super::regime::{Followed, Holding, Regime, Response, Simulated};
 use crate::slip::motion::{Accuracy, Motion};
 
@@ -52,30 +52,26 @@ pub(super) fn from_low_velocity(
     options: &RampOptions,
     accuracy: Accuracy,
 ) -> Ramped {
-    let scale = problem.law.mu_s();
     let mut lost: Option<Response> = None;
-    for start in options.starts {
-        let v0 = start * scale;
-        let lifted = |lost: &Response| lost.regime == Regime::LiftOff && lost.v0 < v0;
-        if lost.as_ref().is_some_and(lifted) {
-            // What is asked for is the smallest v0 of lift-off.
-            continue;
-        }
+    let found = problem.at_first_start(|v0| {
         let (ramped, _) = from(problem, problem.released(v0, accuracy), options);
         if ramped.last.is_some() {
-            return ramped;
+            return Ok(ramped);
         }
         // Where stick-slip was lost otherwise before, a lift-off at a larger start is that of the
         // start alone.
-        let lower = ramped.lost.as_ref().is_some_and(|now| {
-            let lowest = lost.as_ref().map_or(f64::INFINITY, |lost| lost.v0);
-            now.regime == Regime::LiftOff && now.v0 < lowest
-        });
-        if lost.is_none() || lower {
+        let lowest = lost.as_ref().map_or(f64::INFINITY, |lost| lost.v0);
+        let lifts_off = |now: &Response| now.regime == Regime::LiftOff;
+        let lower = |now: &Response| lifts_off(now) && now.v0 < lowest;
+        if lost.is_none() || ramped.lost.as_ref().is_some_and(lower) {
             lost = ramped.lost;
         }
-    }
-    Ramped::none(lost)
+        match ramped.lost.as_ref().is_some_and(lifts_off) {
+            true => Err(NoStart::LiftOff),
+            false => Err(NoStart::NotSustained),
+        }
+    });
+    found.unwrap_or_else(|| Ramped::none(lost))
 }
 
 /// Follows a motion in stick-slip of `problem` from the v0 it has; with it where it came to.

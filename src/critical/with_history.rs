@@ -134,28 +134,21 @@ impl<'o> WithHistory<'o, Motion> {
         Self::new(motion, slips, v_end, &options.continuation)
     }
 
-    /// The branch from the first start at which the block does not lift off, with its first point:
-    /// the block is released from a memoryless stick, and has one slip in a period. None where it
-    /// does not stick again there, or lifts off at all of them.
-    pub(super) fn from_low_velocity(
+    /// The branch of a block that is released from a stick without memory at `v0`, which has one
+    /// slip in a period, with its first point.
+    ///
+    /// # Errors
+    /// When the block does not stick again.
+    pub(super) fn released(
         problem: &'o Problem,
+        v0: f64,
         accuracy: Accuracy,
-    ) -> Option<(Self, Point)> {
-        for start in problem.options.continuation.history_starts {
-            let v0 = start * problem.law.mu_s();
-            let motion = problem.released(v0, accuracy);
-            let mut branch = Self::in_stick_slip(problem, motion, 1);
-            match branch.orbit_at(v0, None, f64::INFINITY) {
-                Ok(orbit) => {
-                    branch.accept();
-                    return Some((branch, Point::first(v0, orbit, f64::INFINITY)));
-                }
-                Err(NoReturn::LiftOff) => {}
-                // A larger start comes next, which may be another stick-slip: simulation tells.
-                Err(_) => return None,
-            }
-        }
-        None
+    ) -> Result<(Self, Point), NoReturn> {
+        let motion = problem.released(v0, accuracy);
+        let mut branch = Self::in_stick_slip(problem, motion, 1);
+        let orbit = branch.orbit_at(v0, None, f64::INFINITY)?;
+        branch.accept();
+        Ok((branch, Point::first(v0, orbit, f64::INFINITY)))
     }
 }
 

@@ -22,13 +22,6 @@ options! {
         /// A slip that takes so many times as long as the one before has missed its stop.
         missed_stop: f64 = 1.6, in 1.05..=10.0;
 
-        /// Start velocities of slips without memory, over μ_S, in order. What has no memory ends
-        /// in the same way from anywhere, so the first is high: few steps lead on from there.
-        memoryless_starts: [f64; 4] = [6e-2, 6e-3, 1e-4, 1e-6], in 1e-9..=1.0;
-        /// Start velocities of orbits with history, over μ_S, in order. The next one is tried
-        /// after lift-off alone, whose smallest v0 is asked for.
-        history_starts: [f64; 4] = [1e-2, 1e-3, 1e-4, 1e-6], in 1e-9..=1.0;
-
         /// The most periods at one v0. Orbits that attract well come to rest in three; where more
         /// than this are needed a smaller step of v0 is cheaper.
         most_periods: usize = 12, in 3..=1_000;

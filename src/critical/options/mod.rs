@@ -48,8 +48,8 @@ impl Options {
         tables.into_iter().flat_map(names)
     }
 
-    /// Multiplies the option of this name, or each of its numbers, by `factor`. False where that
-    /// changes nothing or leaves the range of the option.
+    /// Multiplies the option of this name, or each of its numbers, by `factor`, within its range.
+    /// False where that changes nothing.
     pub fn scale(&mut self, name: &str, factor: f64) -> bool {
         let Some((table, name)) = name.split_once('.') else {
             return false;
@@ -103,8 +103,9 @@ mod tests {
         let names: Vec<String> = Options::names().collect();
         assert!(names.len() > 60, "{}", names.len());
         for name in &names {
-            let changes = |factor| Options::default().scale(name, factor);
-            let changed = changes(0.9) || changes(1.1);
+            let mut options = Options::default();
+            let changed = options.scale(name, 0.5) || options.scale(name, 2.0);
+            assert!(options.within_ranges(), "{name}");
             // Switches and what is 0 by default stay.
             let fixed = ["ramp.until_periodic", "ramp.patient", "ramp.glide"];
             assert_eq!(changed, !fixed.contains(&name.as_str()), "{name}");

@@ -33,7 +33,8 @@ options! {
         /// longer.
         patient: bool = false, in false..=true;
 
-        /// Start velocities, over μ_S, in order, until stick-slip is sustained at one.
+        /// Start velocities, over μ_S, in order, until stick-slip is sustained at one: by
+        /// continuation as well.
         starts: [f64; 6] = [1e-2, 1e-1, 1e-3, 1e-4, 1e-5, 1e-6], in 1e-9..=1.0;
         /// The share of the way to the predicted end that is taken at first.
         share: f64 = 0.9, in 0.5..=0.999;

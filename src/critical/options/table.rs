@@ -7,8 +7,8 @@ pub(in crate::critical) trait Value: Copy {
     /// What its range is made of.
     type Bound: PartialOrd;
 
-    /// It, or each of its numbers, times `factor`; a switch stays what it is.
-    fn scaled(self, factor: f64) -> Self;
+    /// It, or each of its numbers, times `factor`, within `range`; a switch stays what it is.
+    fn scaled(self, factor: f64, range: &RangeInclusive<Self::Bound>) -> Self;
 
     /// Whether it, or each of its numbers, lies in `range`.
     fn within(self, range: &RangeInclusive<Self::Bound>) -> bool;
@@ -17,8 +17,8 @@ pub(in crate::critical) trait Value: Copy {
 impl Value for f64 {
     type Bound = Self;
 
-    fn scaled(self, factor: f64) -> Self {
-        self * factor
+    fn scaled(self, factor: f64, range: &RangeInclusive<Self>) -> Self {
+        (self * factor).clamp(*range.start(), *range.end())
     }
 
     fn within(self, range: &RangeInclusive<Self>) -> bool {
@@ -28,12 +28,13 @@ impl Value for f64 {
 
 /// Counts are rounded up.
 macro_rules! count {
-    ($kind:ty) => {
+    ($kind:ty, $number:expr) => {
         impl Value for $kind {
             type Bound = Self;
 
-            fn scaled(self, factor: f64) -> Self {
-                (self as f64 * factor).ceil() as $kind
+            fn scaled(self, factor: f64, range: &RangeInclusive<Self>) -> Self {
+                let scaled = ($number(self) * factor).ceil() as $kind;
+                scaled.clamp(*range.start(), *range.end())
             }
 
             fn within(self, range: &RangeInclusive<Self>) -> bool {
@@ -43,26 +44,15 @@ macro_rules! count {
     };
 }
 
-count!(u64);
-count!(usize);
-
-impl Value for u32 {
-    type Bound = Self;
-
-    fn scaled(self, factor: f64) -> Self {
-        (f64::from(self) * factor).ceil() as Self
-    }
-
-    fn within(self, range: &RangeInclusive<Self>) -> bool {
-        range.contains(&self)
-    }
-}
+count!(u32, f64::from);
+count!(u64, |count: u64| count as f64);
+count!(usize, |count: usize| count as f64);
 
 impl<const N: usize> Value for [f64; N] {
     type Bound = f64;
 
-    fn scaled(self, factor: f64) -> Self {
-        self.map(|number| number * factor)
+    fn scaled(self, factor: f64, range: &RangeInclusive<f64>) -> Self {
+        self.map(|number| number.scaled(factor, range))
     }
 
     fn within(self, range: &RangeInclusive<f64>) -> bool {
@@ -73,7 +63,7 @@ impl<const N: usize> Value for [f64; N] {
 impl Value for bool {
     type Bound = Self;
 
-    fn scaled(self, _: f64) -> Self {
+    fn scaled(self, _: f64, _: &RangeInclusive<Self>) -> Self {
         self
     }
 
@@ -125,15 +115,15 @@ macro_rules! options {
             /// The names of the options, in the order of the table.
             pub const NAMES: &'static [&'static str] = &[$(stringify!($field)),+];
 
-            /// Multiplies the option of this name, or each of its numbers, by `factor`; counts are
-            /// rounded up. False where that changes nothing or leaves the range of the option.
+            /// Multiplies the option of this name, or each of its numbers, by `factor`, within its
+            /// range; counts are rounded up. False where that changes nothing.
             pub fn scale(&mut self, name: &str, factor: f64) -> bool {
                 use $crate::critical::options::table::Value;
                 match name {
                     $(stringify!($field) => {
                         let before = self.$field;
-                        self.$field = before.scaled(factor);
-                        self.$field != before && self.$field.within(&($range))
+                        self.$field = before.scaled(factor, &($range));
+                        self.$field != before
                     })+
                     _ => false,
                 }
