@@ -103,17 +103,12 @@ impl<'p> Kinds<'p> {
 
     /// The end of stick-slip that a block comes to which may not stick again and again.
     fn start(&mut self, mut motion: Motion) -> Result<Found<'p>, NoStart> {
-        let problem = self.problem;
-        let periodic = match sequel(problem, &mut motion) {
-            Sequel::Ends(_) => return Err(NoStart::NotSustained),
-            Sequel::Undetermined(_) => return Ok((simulated(problem), None)),
-            Sequel::Irregular => self.cross(motion),
-            Sequel::Periodic(slips) => Ok((motion, slips)),
-        };
-        Ok(match periodic {
-            Ok((motion, slips)) => self.end_of(motion, slips),
-            Err(critical) => (critical, None),
-        })
+        match sequel(self.problem, &mut motion) {
+            Sequel::Ends(_) => Err(NoStart::NotSustained),
+            Sequel::Periodic(slips) => Ok(self.end_of(motion, slips)),
+            // No branch begins there.
+            Sequel::Irregular | Sequel::Undetermined(_) => Ok((simulated(self.problem), None)),
+        }
     }
 
     /// The end of stick-slip that a motion is in, with so many slips in a period.
