@@ -1,7 +1,6 @@
 //! Continuation of a branch of periodic orbits in v0, to where an event function vanishes.
 //!
-//! The event functions g(v0) of the last two orbits predict the event: the secant of each meets
-//! zero somewhere, and the first of these places is where the branch is expected to end. A step
+//! The event functions g(v0) of the last two orbits predict the event ([`Prediction`]). A step
 //! takes a share of the way there. The corrector is the return map itself, iterated until periods
 //! repeat ([`Branch::orbit_at`]); a step from which it does not lead back to an orbit of the same
 //! kind is undone and made smaller. Step size rules stand in [`StepControl`], all numbers in
@@ -13,6 +12,7 @@ use crate::slip::motion::Accuracy;
 use super::event_functions::{Event, EventFunctions};
 use super::options::ContinuationOptions;
 use super::return_map::{NoReturn, Period};
+use super::step_control::{Prediction, Retry, StepControl};
 use super::transition::{Located, Undetermined};
 
 /// A periodic orbit of stick-slip at one v0.
@@ -78,15 +78,6 @@ pub(super) struct Point {
     pub predicted: f64,
 }
 
-/// Where the first event function vanishes, as the slopes at a point tell.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Prediction {
-    /// The relative step of v0 that leads there; +∞ where none vanishes.
-    pub step: f64,
-    /// The event.
-    pub event: Event,
-}
-
 impl Point {
     /// Before anything is known of how it changes.
     pub(super) fn first(v0: f64, orbit: Orbit, settled: f64) -> Self {
@@ -100,20 +91,9 @@ impl Point {
         }
     }
 
-    /// The predictor: the first zero of an event function on the secant of the last two points.
+    /// Where the branch is predicted to end.
     pub(super) fn predict(&self) -> Prediction {
-        let mut first = Prediction {
-            step: f64::INFINITY,
-            event: Event::LiftOff,
-        };
-        let slopes = self.slopes.each();
-        for ((event, value), (_, slope)) in self.orbit.events.each().into_iter().zip(slopes) {
-            let step = -value / slope / self.v0;
-            if step >= 0.0 && step < first.step {
-                first = Prediction { step, event };
-            }
-        }
-        first
+        Prediction::first(&self.orbit.events, &self.slopes, self.v0)
     }
 
     /// The v0 at which the event is predicted; +∞ where none is.
@@ -170,54 +150,6 @@ fn settled_after(step: f64, options: &ContinuationOptions) -> f64 {
     }
 }
 
-/// How far the next step may go.
-///
-/// A step that failed halves the next one, one that succeeded doubles it, up to a largest one. A v0
-/// that failed is no bound: it may have been the size of the step. So it is come nearer to by half
-/// of the way, until a step much smaller than the one that failed there leads beyond it.
-#[derive(Debug, Clone, Copy)]
-struct StepControl<'o> {
-    options: &'o ContinuationOptions,
-    /// The largest relative step for now.
-    largest: f64,
-    /// The v0 of the last step that failed, unless one beyond it has not, and the step that led
-    /// there.
-    failed: Option<(f64, f64)>,
-}
-
-impl StepControl<'_> {
-    /// The relative step from `v0` where `wanted` is asked for.
-    fn step(&self, v0: f64, wanted: f64) -> f64 {
-        let step = wanted.min(self.largest);
-        let Some((failed, by)) = self.failed else {
-            return step;
-        };
-        let room = failed / v0 - 1.0;
-        let retry = self.options.retry_share * by;
-        if step < room || step <= retry {
-            step
-        } else if room <= retry {
-            // It may have been the size of the step that failed there.
-            retry
-        } else {
-            0.5 * room
-        }
-    }
-
-    fn failed(&mut self, v0: f64, step: f64) {
-        self.failed = Some((v0, step));
-        self.largest = self.options.reduction * step;
-    }
-
-    fn succeeded(&mut self, v0: f64, step: f64) {
-        let growth = self.options.growth;
-        self.largest = (growth * self.largest).min(self.options.largest_step);
-        if self.failed.is_some_and(|(failed, _)| failed <= v0) {
-            (self.failed, self.largest) = (None, growth * step);
-        }
-    }
-}
-
 /// Follows `branch` from a point to the first zero of an event function, by `first_step` at first,
 /// relative; with the last point.
 pub(super) fn continue_to_event(
@@ -226,11 +158,8 @@ pub(super) fn continue_to_event(
     first_step: f64,
     options: &ContinuationOptions,
 ) -> (Result<Located, Undetermined>, Point) {
-    let mut control = StepControl {
-        options,
-        largest: first_step,
-        failed: None,
-    };
+    let retry = Retry::Beyond(options.retry_share);
+    let mut control = StepControl::new(first_step, options.largest_step, retry, options);
     let mut last = false;
     for _ in 0..options.most_trials {
         let gap = at.predict().step;
@@ -238,7 +167,7 @@ pub(super) fn continue_to_event(
             true => options.share,
             false => options.first_share,
         };
-        let mut step = control.step(at.v0, share * gap);
+        let mut step = control.step(at.v0, share * gap, 0.0);
         if (step < options.share * options.near || at.agrees(options)) && at.tells(options) {
             if at.settled > options.settled {
                 step = 0.0;
@@ -496,60 +425,6 @@ mod tests {
             assert_eq!(found.event, Event::Graze(slip));
             assert!((found.v0 - low).abs() < 1e-5, "{found:?} {low}");
         }
-    }
-
-    #[test]
-    fn the_first_zero_is_predicted() {
-        let orbit = |events| Orbit {
-            events,
-            ..Orbit::of(Period::of(super::super::return_map::Cycle::NONE))
-        };
-        let before = EventFunctions {
-            load: 1.0,
-            dip: 2.0,
-            missing_force: 0.5,
-            ..EventFunctions::UNKNOWN
-        };
-        let now = EventFunctions {
-            load: 0.8,
-            dip: 1.2,
-            missing_force: 0.6,
-            ..EventFunctions::UNKNOWN
-        };
-        let first = Point::first(1.0, orbit(before), 0.05);
-        assert_eq!(first.predict().step, f64::INFINITY);
-        let next = first.moved_to(1.1, orbit(now), 0.05);
-        // The load vanishes at 1.5, the dip at 1.25, the missing force grows.
-        let found = next.predict();
-        assert_eq!(found.event, Event::NewStop);
-        assert!((1.1 * (1.0 + found.step) - 1.25).abs() < 1e-12, "{found:?}");
-    }
-
-    #[test]
-    fn steps_grow_shrink_and_pass_what_failed_by_its_size() {
-        let options = ContinuationOptions::default();
-        let mut control = StepControl {
-            options: &options,
-            largest: 0.1,
-            failed: None,
-        };
-        assert_eq!(control.step(1.0, 5.0), 0.1);
-        control.succeeded(1.1, 0.1);
-        assert_eq!(control.step(1.1, 5.0), 0.2);
-        control.failed(1.32, 0.2);
-        assert_eq!(control.largest, 0.1);
-        // From 1.1 by no more than 0.1, and from nearer by half of the way.
-        assert_eq!(control.step(1.1, 5.0), 0.1);
-        let room = 1.32 / 1.25 - 1.0;
-        assert_eq!(control.step(1.25, 5.0), 0.3 * 0.2);
-        assert!(room < 0.3 * 0.2);
-        // A step beyond it that succeeds forgets it.
-        control.succeeded(1.325, 0.06);
-        assert_eq!((control.failed, control.largest), (None, 0.12));
-        for _ in 0..10 {
-            control.succeeded(2.0, 0.1);
-        }
-        assert_eq!(control.largest, options.largest_step);
     }
 
     #[test]

@@ -75,6 +75,19 @@ impl EventFunctions {
         dip: f64::NAN,
     };
 
+    /// This one alone.
+    pub(super) fn alone(event: Event, value: f64) -> Self {
+        let mut one = Self::UNKNOWN;
+        match event {
+            Event::Graze(slip) => one.depth[slip] = value,
+            Event::LiftOff => one.load = value,
+            Event::StickVanishes => one.stick_time = value,
+            Event::Reversal => one.missing_force = value,
+            Event::NewStop => one.dip = value,
+        }
+        one
+    }
+
     /// Each with its event: (E1) to (E5) in order.
     pub(super) fn each(&self) -> [(Event, f64); EVENTS] {
         let mut all = [(Event::LiftOff, self.load); EVENTS];
@@ -140,6 +153,9 @@ mod tests {
         assert_eq!(found[MOST_SLIPS..], [0.3, 0.4, 0.5, 0.6]);
         for (event, value) in all.each() {
             assert_eq!(all.of(event).to_bits(), value.to_bits(), "{event:?}");
+            let alone = EventFunctions::alone(event, 0.7).each();
+            let known = alone.into_iter().filter(|one| !one.1.is_nan());
+            assert_eq!(known.collect::<Vec<_>>(), [(event, 0.7)]);
         }
     }
 

@@ -95,8 +95,8 @@
 //! Continuation Methods* (Springer 1990); Keller, *Lectures on Numerical Methods in Bifurcation
 //! Problems* (Tata Institute 1987); Doedel, *Lecture notes on numerical analysis of nonlinear
 //! equations* (in Krauskopf, Osinga and Galán-Vioque, Springer 2007). All numbers that tune it
-//! stand in [`options`], with their reasons; the rule for step sizes is `StepControl` in
-//! `continuation`.
+//! stand in [`options`], with their reasons; the predictor and the rule for step sizes in
+//! `step_control`.
 
 mod after_event;
 pub mod along_delay;
@@ -115,6 +115,7 @@ mod problem;
 mod ramp;
 mod regime;
 mod return_map;
+mod step_control;
 pub mod switch_on;
 #[cfg(test)]
 mod synthetic;

@@ -3,12 +3,14 @@
 //!
 //! A v0 at which stick-slip was lost is no bound: near its end it attracts from less and less far,
 //! so it may have been the size of the step that lost it. It is come nearer to and tried once more
-//! from close by, until the two v0 are as near as asked for.
+//! from close by ([`StepControl`]), until the two v0 are as near as asked for.
 
 use super::continuation::times_jump;
+use super::event_functions::{Event, EventFunctions};
 use super::options::{ContinuationOptions, RampOptions};
 use super::problem::{NoStart, Problem};
 use super::regime::{Followed, Holding, Regime, Response, Simulated};
+use super::step_control::{Prediction, Retry, StepControl};
 use crate::slip::motion::{Accuracy, Motion};
 
 /// How a search by simulation ended.
@@ -100,7 +102,12 @@ pub(super) fn raise<F: Followed>(
         last: first,
         lost: None,
         jump: None,
-        largest: options.first,
+        control: StepControl::new(
+            options.first,
+            options.largest,
+            Retry::Same(options.nearby),
+            continuation,
+        ),
         share: options.share,
         passed: (0.0, 0),
         vanish: false,
@@ -116,7 +123,7 @@ pub(super) fn raise<F: Followed>(
         complete,
         by_chance: ramp.by_chance(),
         vanish: ramp.vanish,
-        graze_step: predicted_steps(ramp.before, &ramp.last)[0],
+        graze_step: graze_step(ramp.before, &ramp.last),
     }
 }
 
@@ -134,8 +141,7 @@ struct Ramp<'o, F> {
     lost: Option<(Response, f64)>,
     /// The smallest v0 above `last` to which the step was too large for what it led to.
     jump: Option<f64>,
-    /// The largest relative step for now.
-    largest: f64,
+    control: StepControl<'o>,
     /// The share of the way to where stick-slip is predicted to end that is taken at once.
     share: f64,
     /// From where on, and how often since, stick-slip survived where it had been lost.
@@ -209,30 +215,25 @@ impl<F: Followed> Ramp<'_, F> {
             false => (from, times + 1),
         };
         self.lost = None;
+        // Else it would creep on.
+        let retry = Retry::Same(self.options.nearby);
+        self.control.retry = Some(retry).filter(|_| !self.by_chance());
     }
 
     /// How far the next v0 is from the last, relative.
     fn next_step(&self) -> f64 {
         let options = self.options;
-        let mut step = self.share * predicted_step(self.before, &self.last);
+        let mut wanted = self.share * predict(self.before, &self.last).step;
         if self.last.regime == Regime::Irregular {
-            step = step.min(options.unseen);
+            wanted = wanted.min(options.unseen);
         }
-        let mut step = step.clamp(options.last, self.largest.max(options.last));
-        if let Some(jump) = self.jump {
-            let room = jump / self.last.v0 - 1.0;
-            let far = room > 2.0 * self.continuation.jump;
-            step = step.min(if far { 0.5 * room } else { room });
-        }
-        let Some((lost, by)) = &self.lost else {
+        let step = self.control.step(self.last.v0, wanted, options.last);
+        let Some(jump) = self.jump else {
             return step;
         };
-        let room = lost.v0 / self.last.v0 - 1.0;
-        if room <= options.nearby * *by && !self.by_chance() {
-            // Once more from nearby: it may have been the size of the step that lost it.
-            return step.min(room);
-        }
-        step.min(0.5 * room)
+        let room = jump / self.last.v0 - 1.0;
+        let far = room > 2.0 * self.continuation.jump;
+        step.min(if far { 0.5 * room } else { room })
     }
 
     /// The largest relative step of v0 that may lead from the last response to this one, to which
@@ -268,29 +269,25 @@ impl<F: Followed> Ramp<'_, F> {
             }
             // Near its end stick-slip attracts from less and less far: steps have to shrink with
             // the way that is left.
-            let taken = step / predicted_step(self.before, &self.last);
+            let taken = step / predict(self.before, &self.last).step;
             if taken > options.least_share {
-                let share = options.reduction * taken;
+                let share = self.continuation.reduction * taken;
                 self.share = share.clamp(options.least_share, self.share);
             }
-            self.largest = options.reduction * step;
+            self.control.failed(v0, step);
         } else if step > self.largest_step(&there, step) {
-            self.largest = options.reduction * step;
+            self.control.shrink(step);
             self.jump = Some(v0);
         } else {
             let jumped = there.regime == Regime::Irregular || self.jumps(&there, step);
             self.chance |= jumped;
             std::mem::swap(&mut self.block, &mut self.trial);
             self.jump = self.jump.filter(|jump| *jump > v0 && !jumped);
-            let passed = self.lost.is_some_and(|(lost, _)| lost.v0 <= v0);
-            if passed {
+            if self.control.succeeded(v0, step) {
                 self.pass(v0);
             }
-            self.vanish |= self.last.is_like(&there) && stick_vanishes(&self.last, &there, options);
+            self.vanish |= stick_step(&self.last, &there) < options.soon;
             (self.before, self.last) = (Some(self.last), there);
-            // What failed there was the size of the step: the steps from here on grow slowly.
-            let grown = options.growth * if passed { step } else { self.largest };
-            self.largest = grown.min(options.largest);
         }
     }
 
@@ -310,45 +307,48 @@ impl<F: Followed> Ramp<'_, F> {
             return true;
         }
         std::mem::swap(&mut self.block, &mut self.trial);
-        self.largest = self.options.growth * (there.v0 / self.last.v0 - 1.0);
+        self.control
+            .succeeded(there.v0, there.v0 / self.last.v0 - 1.0);
         (self.before, self.last) = (None, there);
         self.pass(there.v0);
         false
     }
 }
 
-/// Whether sticks, from one v0 to the next, become shorter such that none is left soon.
-fn stick_vanishes(before: &Response, last: &Response, options: &RampOptions) -> bool {
-    let loss = (before.summary.stick_time - last.summary.stick_time) / (last.v0 - before.v0);
-    loss > 0.0 && last.summary.stick_time / loss < options.soon * last.v0
+/// The event functions of a response and their slopes, as the secants from the response before
+/// tell; unknown where the two are not of one kind.
+fn secants(before: Option<Response>, last: &Response) -> (EventFunctions, EventFunctions) {
+    let now = last.event_functions();
+    let slopes = before.filter(|before| before.is_like(last)).map(|before| {
+        let change = last.v0 - before.v0;
+        now.with(&before.event_functions(), |now, before| {
+            (now - before) / change
+        })
+    });
+    (now, slopes.unwrap_or(EventFunctions::UNKNOWN))
 }
 
-/// The relative step to where the first of the depth of the stops, the smallest load and the sticks
-/// is predicted to vanish.
-fn predicted_step(before: Option<Response>, last: &Response) -> f64 {
-    let steps = predicted_steps(before, last);
-    steps.into_iter().fold(f64::INFINITY, f64::min)
+/// Where stick-slip is predicted to end.
+fn predict(before: Option<Response>, last: &Response) -> Prediction {
+    let (now, slopes) = secants(before, last);
+    Prediction::first(&now, &slopes, last.v0)
 }
 
-/// The relative steps to where the depth of the stops, the smallest load and the sticks are
-/// predicted to vanish, as the secants from the response before tell.
-fn predicted_steps(before: Option<Response>, last: &Response) -> [f64; 3] {
-    let Some(before) = before.filter(|before| before.is_like(last)) else {
-        return [f64::INFINITY; 3];
-    };
-    let change = last.v0 - before.v0;
-    let functions = [
-        (before.depth, last.depth),
-        (before.summary.n_min, last.summary.n_min),
-        (before.summary.stick_time, last.summary.stick_time),
-    ];
-    functions.map(|(before, value)| {
-        let slope = (value - before) / change;
-        match slope < 0.0 {
-            true => -value / slope / last.v0,
-            false => f64::INFINITY,
-        }
-    })
+/// The relative step to where this event alone is predicted.
+fn step_to(event: Event, before: Option<Response>, last: &Response) -> f64 {
+    let (now, slopes) = secants(before, last);
+    let alone = EventFunctions::alone(event, now.of(event));
+    Prediction::first(&alone, &slopes, last.v0).step
+}
+
+/// The relative step to where the depth of the stops is predicted to vanish.
+fn graze_step(before: Option<Response>, last: &Response) -> f64 {
+    step_to(Event::Graze(0), before, last)
+}
+
+/// The relative step to where the sticks are predicted to vanish.
+fn stick_step(before: &Response, last: &Response) -> f64 {
+    step_to(Event::StickVanishes, Some(*before), last)
 }
 
 #[cfg(test)]

@@ -1,5 +1,6 @@
 //! What stick-slip comes to at one v0, seen by simulation.
 
+use super::event_functions::{EventFunctions, MOST_SLIPS};
 use super::observers::{Stops, Waiting};
 use super::options::RampOptions;
 use super::problem::Problem;
@@ -72,6 +73,19 @@ impl Response {
     /// Whether stick-slip persists.
     pub(super) fn persists(&self) -> bool {
         self.regime.persists()
+    }
+
+    /// Its event functions, as far as they are seen: of the shallowest stop, the load and all
+    /// sticks of a period together.
+    pub(super) fn event_functions(&self) -> EventFunctions {
+        let mut depth = [f64::NAN; MOST_SLIPS];
+        depth[0] = self.depth;
+        EventFunctions {
+            depth,
+            load: self.summary.n_min,
+            stick_time: self.summary.stick_time,
+            ..EventFunctions::UNKNOWN
+        }
     }
 
     /// The durations of its mean cycle and slip.

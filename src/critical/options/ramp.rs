@@ -36,18 +36,15 @@ options! {
         /// Start velocities, over μ_S, in order, until stick-slip is sustained at one: by
         /// continuation as well.
         starts: [f64; 6] = [1e-2, 1e-1, 1e-3, 1e-4, 1e-5, 1e-6], in 1e-9..=1.0;
-        /// The share of the way to the predicted end that is taken at first.
-        share: f64 = 0.9, in 0.5..=0.999;
-        /// And at least: near its end stick-slip attracts from less and less far, and the share
-        /// falls with each loss.
-        least_share: f64 = 0.2, in 0.01..=0.9;
-        /// After a step that failed the next is smaller by this factor.
-        reduction: f64 = 0.5, in 0.1..=0.9;
-        /// After a step that succeeded the next may be larger by this factor.
-        growth: f64 = 2.0, in 1.1..=10.0;
+        /// The share of the way to the predicted end that is taken at first. By a larger one, such
+        /// as that of continuation, more ends are come to by a transient and left undecided.
+        share: f64 = 0.9, in 0.1..=0.999;
         /// Where stick-slip was lost is tried once more from this much nearer: it may have been the
         /// size of the step that lost it.
         nearby: f64 = 0.15, in 0.01..=0.9;
+        /// The least share of the way to the predicted end that is taken at once: near its end
+        /// stick-slip attracts from less and less far, and the share falls with each loss.
+        least_share: f64 = 0.2, in 0.01..=0.9;
         /// The share of the last step below which two v0 are as near as asked for.
         near_enough: f64 = 0.75, in 0.5..=1.0;
         /// Surviving so often where it had been lost, on a short way, stick-slip is thrown off by

@@ -1,0 +1,197 @@
+//! The predictor of events and the control of steps in v0, of continuation and of simulation alike.
+
+use super::event_functions::{Event, EventFunctions};
+use super::options::ContinuationOptions;
+
+/// Where the first event function vanishes.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Prediction {
+    /// The relative step of v0 that leads there; +∞ where none vanishes.
+    pub step: f64,
+    /// The event.
+    pub event: Event,
+}
+
+impl Prediction {
+    /// The first zero of an event function beyond `v0`, on lines with these slopes: on the secants
+    /// of the last two orbits.
+    pub(super) fn first(events: &EventFunctions, slopes: &EventFunctions, v0: f64) -> Self {
+        let mut first = Self {
+            step: f64::INFINITY,
+            event: Event::LiftOff,
+        };
+        for ((event, value), (_, slope)) in events.each().into_iter().zip(slopes.each()) {
+            let step = -value / slope / v0;
+            if step >= 0.0 && step < first.step {
+                first = Self { step, event };
+            }
+        }
+        first
+    }
+}
+
+/// How far the next step in v0 may go. All steps are relative.
+///
+/// A step that failed halves the next one, one that succeeded doubles it, up to a largest one. A v0
+/// that failed is no bound: it may have been the size of the step. So it is come nearer to by half
+/// of the way, and [`Retry`] says what is tried from much nearer than the step that failed there.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct StepControl<'o> {
+    options: &'o ContinuationOptions,
+    /// What is tried from near a v0 that failed; none where it is not passed any more.
+    pub retry: Option<Retry>,
+    /// The largest step for now, and at all.
+    largest: f64,
+    limit: f64,
+    /// A v0 that failed, unless one beyond it has not, and the step that led there: the lowest
+    /// one where that is tried once more, else the last one.
+    failed: Option<(f64, f64)>,
+}
+
+/// What is tried from near a v0 that failed: from so near, as a share of the step that failed.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) enum Retry {
+    /// A step of that size, beyond it: continuation, which is not asked for a bracket.
+    Beyond(f64),
+    /// That v0 once more: simulation, which ends between one v0 that failed and one that did not.
+    Same(f64),
+}
+
+impl<'o> StepControl<'o> {
+    /// Before the first step, which is no larger than `first`, as none is larger than `limit`.
+    pub(super) fn new(
+        first: f64,
+        limit: f64,
+        retry: Retry,
+        options: &'o ContinuationOptions,
+    ) -> Self {
+        Self {
+            options,
+            retry: Some(retry),
+            largest: first,
+            limit,
+            failed: None,
+        }
+    }
+
+    /// The step from `v0` where `wanted` is asked for, but no smaller one than `least`.
+    pub(super) fn step(&self, v0: f64, wanted: f64, least: f64) -> f64 {
+        let step = wanted.clamp(least, self.largest.max(least));
+        let Some((failed, by)) = self.failed else {
+            return step;
+        };
+        let room = failed / v0 - 1.0;
+        match self.retry {
+            Some(Retry::Beyond(share)) if step < room || step <= share * by => step,
+            Some(Retry::Beyond(share)) if room <= share * by => share * by,
+            Some(Retry::Beyond(_)) => 0.5 * room,
+            Some(Retry::Same(share)) if room <= share * by => step.min(room),
+            Some(Retry::Same(_)) | None => step.min(0.5 * room),
+        }
+    }
+
+    /// A step to `v0` failed.
+    pub(super) fn failed(&mut self, v0: f64, step: f64) {
+        let lowest = self.failed.is_none_or(|(failed, _)| v0 <= failed);
+        if lowest || matches!(self.retry, Some(Retry::Beyond(_))) {
+            self.failed = Some((v0, step));
+        }
+        self.shrink(step);
+    }
+
+    /// The next step is smaller than this one.
+    pub(super) fn shrink(&mut self, step: f64) {
+        self.largest = self.options.reduction * step;
+    }
+
+    /// A step to `v0` succeeded; true where one had failed there before.
+    pub(super) fn succeeded(&mut self, v0: f64, step: f64) -> bool {
+        let passed = self.failed.is_some_and(|(failed, _)| failed <= v0);
+        let mut largest = self.largest;
+        if passed {
+            // What failed there was the size of the step: the steps from here on grow slowly.
+            (self.failed, largest) = (None, step);
+        }
+        self.largest = (self.options.growth * largest).min(self.limit);
+        passed
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_first_zero_is_predicted() {
+        let events = EventFunctions {
+            load: 0.8,
+            dip: 1.2,
+            missing_force: 0.6,
+            ..EventFunctions::UNKNOWN
+        };
+        let unknown = Prediction::first(&events, &EventFunctions::UNKNOWN, 1.1);
+        assert_eq!(unknown.step, f64::INFINITY);
+        let slopes = EventFunctions {
+            load: -2.0,
+            dip: -8.0,
+            missing_force: 1.0,
+            ..EventFunctions::UNKNOWN
+        };
+        // The load vanishes at 1.5, the dip at 1.25, the missing force grows.
+        let found = Prediction::first(&events, &slopes, 1.1);
+        assert_eq!(found.event, Event::NewStop);
+        assert!((1.1 * (1.0 + found.step) - 1.25).abs() < 1e-12, "{found:?}");
+    }
+
+    #[test]
+    fn steps_grow_and_shrink_within_their_limits() {
+        let options = ContinuationOptions::default();
+        let mut control = StepControl::new(0.1, 0.6, Retry::Beyond(0.3), &options);
+        assert_eq!(control.step(1.0, 5.0, 0.0), 0.1);
+        assert_eq!(control.step(1.0, 0.02, 0.0), 0.02);
+        assert_eq!(control.step(1.0, 1e-9, 1e-6), 1e-6);
+        assert!(!control.succeeded(1.1, 0.1));
+        assert_eq!(control.step(1.1, 5.0, 0.0), 0.2);
+        control.shrink(0.2);
+        assert_eq!(control.step(1.1, 5.0, 0.0), 0.1);
+        for _ in 0..10 {
+            control.succeeded(1.1, 0.1);
+        }
+        assert_eq!(control.step(1.1, 5.0, 0.0), 0.6);
+    }
+
+    /// A v0 that failed may have done so by the size of the step.
+    #[test]
+    fn what_failed_is_come_nearer_to_and_passed_by_a_smaller_step() {
+        let options = ContinuationOptions::default();
+        let mut control = StepControl::new(0.4, 1.0, Retry::Beyond(0.3), &options);
+        control.failed(1.4, 0.4);
+        // A smaller step than the way to it is free; from there by half of the way.
+        assert_eq!(control.step(1.0, 5.0, 0.0), 0.2);
+        control.succeeded(1.2, 0.2);
+        let room = 1.4 / 1.2 - 1.0;
+        assert!((control.step(1.2, 5.0, 0.0) - 0.5 * room).abs() < 1e-15);
+        // From nearby by 0.3 of the step that failed there, beyond it.
+        let from = 1.4 / 1.05;
+        assert!((control.step(from, 5.0, 0.0) - 0.12).abs() < 1e-15);
+        assert!((control.step(from, 0.1, 0.0) - 0.1).abs() < 1e-15);
+        // Where that succeeds it is forgotten, and steps grow from there on.
+        assert!(control.succeeded(1.45, 0.12));
+        assert_eq!(control.step(1.45, 5.0, 0.0), 0.24);
+    }
+
+    #[test]
+    fn the_lowest_one_that_failed_is_tried_once_more() {
+        let options = ContinuationOptions::default();
+        let mut control = StepControl::new(0.4, 1.0, Retry::Same(0.15), &options);
+        control.failed(1.4, 0.4);
+        control.failed(1.5, 0.4);
+        assert!((control.step(1.0, 5.0, 0.0) - 0.2).abs() < 1e-15);
+        let from = 1.4 / 1.05;
+        assert!((control.step(from, 5.0, 0.0) - 0.05).abs() < 1e-15);
+        control.retry = None;
+        assert!((control.step(from, 5.0, 0.0) - 0.025).abs() < 1e-15);
+        assert!(control.succeeded(1.4, 0.05));
+        assert_eq!(control.step(1.4, 5.0, 0.0), 0.1);
+    }
+}
