@@ -3,7 +3,7 @@
 use super::continuation::Releases;
 use super::observers::{Stops, Waiting};
 use super::problem::Problem;
-use super::regime::{Regime, hold_at_length};
+use super::regime::{Regime, response_at_length};
 use super::transition::{Sequel, Undetermined};
 use crate::slip::motion::{Event, Mode, Motion};
 use crate::slip::outcome::Observer;
@@ -17,7 +17,7 @@ struct Lowest {
 
 /// What becomes of a motion in the end.
 pub(super) fn sequel(problem: &Problem, motion: &mut Motion) -> Sequel {
-    let response = hold_at_length(problem, motion);
+    let response = response_at_length(problem, motion);
     match response.regime {
         Regime::Slips | Regime::Ended | Regime::NoStickSlip => Sequel::Ends(0.0),
         Regime::Undecided | Regime::LiftOff => Sequel::Undetermined(Undetermined::TooClose),

@@ -1,13 +1,13 @@
 //! Continuation along a line of delays: the search at each starts from its neighbour's orbit.
 //!
 //! Such a continuation may go on along a branch of ends that stick-slip raised from low velocities
-//! does not come to. So the cells at both ends of a stretch are looked for from scratch, and what
-//! is continued from the one has to meet the other; else the stretch is halved. Where a kind of
-//! stick-slip ends, so does a stretch, and where ends change fast more cells are looked for from
+//! does not come to. So the cells at both ends of a segment are looked for from scratch, and what
+//! is continued from the one has to meet the other; else the segment is halved. Where a kind of
+//! stick-slip ends, so does a segment, and where ends change fast more cells are looked for from
 //! scratch. A line is cut into blocks for that, so that the answer in a cell depends on its block
 //! alone.
 
-use super::delay_step::Track;
+use super::delay_step::Neighbour;
 use super::follow::from_scratch;
 use super::options::AlongDelayOptions;
 use super::problem::{CriticalVelocity, Method, Problem};
@@ -28,11 +28,11 @@ pub fn critical_velocities(
         stopped: &stopped,
     };
     if let Some(last) = problems.len().checked_sub(1) {
-        let track = block.start(0);
+        let neighbour = block.start(0);
         if last > 0 {
             block.start(last);
         }
-        block.fill(0, last, track);
+        block.fill(0, last, neighbour);
     }
     block.found
 }
@@ -50,11 +50,11 @@ impl<'p> Block<'p> {
     }
 
     /// Looks for a cell from scratch.
-    fn start(&mut self, cell: usize) -> Option<Track<'p>> {
+    fn start(&mut self, cell: usize) -> Option<Neighbour<'p>> {
         if (self.stopped)() {
             return None;
         }
-        let (critical, mut track) = from_scratch(&self.problems[cell]);
+        let (critical, mut neighbour) = from_scratch(&self.problems[cell]);
         let alike = |c: &&CriticalVelocity| {
             c.transition == critical.transition && c.method == critical.method
         };
@@ -62,34 +62,36 @@ impl<'p> Block<'p> {
             let Some(known) = self.found[before].as_ref().filter(alike) else {
                 break;
             };
-            if let Some(track) = &mut track {
-                track.recall(self.problems[before].tau, known.end_of_stick_slip());
+            if let Some(neighbour) = &mut neighbour {
+                neighbour.recall(self.problems[before].tau, known.end_of_stick_slip());
             }
         }
         self.found[cell] = Some(critical);
-        track
+        neighbour
     }
 
-    /// Fills the cells between two that were found from scratch, the first one with its track; the
-    /// track that led to the last one if one did.
+    /// Fills the cells between two that were found from scratch, the first one with its neighbour; the
+    /// neighbour that led to the last one if one did.
     fn fill(
         &mut self,
         mut first: usize,
         last: usize,
-        mut track: Option<Track<'p>>,
-    ) -> Option<Track<'p>> {
+        mut neighbour: Option<Neighbour<'p>>,
+    ) -> Option<Neighbour<'p>> {
         while first < last && !(self.stopped)() {
             let options = self.options();
-            let one_kind = track.as_ref().is_none_or(|track| track.one_kind);
+            let one_kind = neighbour
+                .as_ref()
+                .is_none_or(|neighbour| neighbour.one_kind);
             let next = first
                 + if one_kind {
-                    options.stretch
+                    options.segment
                 } else {
-                    options.short_stretch
+                    options.short_segment
                 };
             if next < last {
                 let there = self.start(next);
-                track = match (self.fill(first, next, track), there) {
+                neighbour = match (self.fill(first, next, neighbour), there) {
                     // It goes on where it is well on its way.
                     (Some(led), Some(there)) => Some(led.like(&there)),
                     (_, there) => there,
@@ -97,19 +99,19 @@ impl<'p> Block<'p> {
                 first = next;
                 continue;
             }
-            let (reached, known) = match &mut track {
-                Some(track) => self.advance(first, last, track),
+            let (reached, known) = match &mut neighbour {
+                Some(neighbour) => self.advance(first, last, neighbour),
                 None => (first, true),
             };
             if reached == last {
-                return track;
+                return neighbour;
             }
             if reached > first {
                 if !known {
                     let (met, there) = self.meet(reached);
                     if !met {
                         self.halve(first, reached);
-                        (first, track) = (reached, there);
+                        (first, neighbour) = (reached, there);
                         continue;
                     }
                 }
@@ -118,7 +120,7 @@ impl<'p> Block<'p> {
             // Its kind of stick-slip ends there, or leads no further.
             first = reached + 1;
             if first < last {
-                track = self.start(first);
+                neighbour = self.start(first);
             }
         }
         None
@@ -147,31 +149,36 @@ impl<'p> Block<'p> {
         }
     }
 
-    /// Looks for a cell from scratch that was continued to: whether that meets, and its track.
-    fn meet(&mut self, cell: usize) -> (bool, Option<Track<'p>>) {
+    /// Looks for a cell from scratch that was continued to: whether that meets, and its neighbour.
+    fn meet(&mut self, cell: usize) -> (bool, Option<Neighbour<'p>>) {
         let continued = self.found[cell];
-        let track = self.start(cell);
+        let neighbour = self.start(cell);
         let both = continued.zip(self.found[cell]);
         (
             both.is_some_and(|(a, b)| meets(&a, &b, self.options())),
-            track,
+            neighbour,
         )
     }
 
     /// Continues from `first` on; how far it is known to lead, to `last` if it meets what is known
     /// there, and whether that cell was found from scratch.
-    fn advance(&mut self, first: usize, last: usize, track: &mut Track<'p>) -> (usize, bool) {
+    fn advance(
+        &mut self,
+        first: usize,
+        last: usize,
+        neighbour: &mut Neighbour<'p>,
+    ) -> (usize, bool) {
         let (mut seen, mut checked) = (first, first);
         for cell in first + 1..=last {
             if (self.stopped)() {
                 return (seen, seen == checked);
             }
-            let next = track.next(&self.problems[cell]);
+            let next = neighbour.next(&self.problems[cell]);
             let found = next.map(|ending| ending.critical_velocity(Method::GrazeOrbit));
             let Some(mut critical) = found else {
                 return (seen, seen == checked);
             };
-            critical.decided = track.decided;
+            critical.decided = neighbour.decided;
             if cell == last {
                 if self.found[last].is_none_or(|there| !meets(&there, &critical, self.options())) {
                     return (seen, seen == checked);
@@ -180,14 +187,14 @@ impl<'p> Block<'p> {
                 return (last, true);
             }
             self.found[cell] = Some(critical);
-            if track.surprised() && cell >= checked + self.options().surprises {
+            if neighbour.surprised() && cell >= checked + self.options().surprises {
                 // Where ends change as fast as that along the line, stick-slip may have another one
                 // below.
                 if !self.meet(cell).0 {
                     return (seen, seen == checked);
                 }
                 (checked, seen) = (cell, cell);
-            } else if track.seen() {
+            } else if neighbour.seen() {
                 seen = cell;
             }
         }

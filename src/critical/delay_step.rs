@@ -17,7 +17,7 @@ use crate::slip::motion::Motion;
 
 /// The end of a branch, from which the next cell of a line starts.
 #[derive(Debug, Clone)]
-pub(super) struct Track<'o> {
+pub(super) struct Neighbour<'o> {
     options: &'o AlongDelayOptions,
     branch: WithHistory<'o, Motion>,
     at: Point,
@@ -69,7 +69,7 @@ struct Start {
     next_within: [f64; 2],
 }
 
-impl<'o> Track<'o> {
+impl<'o> Neighbour<'o> {
     /// From an `ending` of `problem` that follows the last point of `branch`.
     pub(super) fn new(
         problem: &'o Problem,
@@ -105,7 +105,7 @@ impl<'o> Track<'o> {
     }
 
     /// The end of stick-slip of `problem`, which differs by its delay alone from the one before;
-    /// none where the branch before does not lead to it. After that the track is of no more use.
+    /// none where the branch before does not lead to it. After that this is of no more use.
     pub(super) fn next(&mut self, problem: &Problem) -> Option<Ending> {
         let mut trials = self.options.most_trials;
         self.approach(problem, &mut trials)
@@ -317,7 +317,7 @@ mod tests {
     use super::super::synthetic::letters;
     use super::*;
 
-    fn track(problem: &Problem) -> Track<'_> {
+    fn neighbour(problem: &Problem) -> Neighbour<'_> {
         from_scratch(problem).1.unwrap()
     }
 
@@ -325,9 +325,9 @@ mod tests {
     #[test]
     fn each_delay_starts_from_the_one_before() {
         let problems = [4.15, 4.16, 4.17, 4.18, 4.2].map(|tau| letters(-0.33, 0.0, tau));
-        let mut track = track(&problems[0]);
+        let mut neighbour = neighbour(&problems[0]);
         for problem in &problems[1..] {
-            let found = track.next(problem).unwrap();
+            let found = neighbour.next(problem).unwrap();
             let scratch = from_scratch(problem).0.vc;
             assert!(
                 (found.v0 / scratch - 1.0).abs() < 3e-5,
@@ -335,62 +335,65 @@ mod tests {
             );
             assert_eq!(found.event, Event::Graze(0));
         }
-        assert_eq!(track.ends.len(), KNOWN_ENDS);
+        assert_eq!(neighbour.ends.len(), KNOWN_ENDS);
     }
 
     /// A power of the delay is a line in logarithms, a cubic of it one through four ends.
     #[test]
     fn ends_are_predicted_by_a_polynomial_of_logarithms() {
         let problem = letters(-0.33, 0.0, 4.15);
-        let mut track = track(&problem);
-        track.ends = vec![(1.0, 0.5), (1.1, 0.5 * 1.1 * 1.1), (1.2, 0.5 * 1.2 * 1.2)];
-        assert!((track.predicted(1.3) - 0.5 * 1.3 * 1.3).abs() < 1e-12);
+        let mut neighbour = neighbour(&problem);
+        neighbour.ends = vec![(1.0, 0.5), (1.1, 0.5 * 1.1 * 1.1), (1.2, 0.5 * 1.2 * 1.2)];
+        assert!((neighbour.predicted(1.3) - 0.5 * 1.3 * 1.3).abs() < 1e-12);
         let cubic = |tau: f64| 0.3 * (0.2 * tau.ln().powi(3) - tau.ln()).exp();
-        track.ends = [1.0, 1.2, 1.5, 1.6].map(|tau| (tau, cubic(tau))).to_vec();
-        assert!((track.predicted(1.7) / cubic(1.7) - 1.0).abs() < 1e-12);
+        neighbour.ends = [1.0, 1.2, 1.5, 1.6].map(|tau| (tau, cubic(tau))).to_vec();
+        assert!((neighbour.predicted(1.7) / cubic(1.7) - 1.0).abs() < 1e-12);
         // Not far from the last one.
-        track.ends = vec![(1.0, 0.1), (1.01, 0.5)];
-        assert!((track.predicted(2.0) - 0.5 * 0.5_f64.exp()).abs() < 1e-12);
+        neighbour.ends = vec![(1.0, 0.1), (1.01, 0.5)];
+        assert!((neighbour.predicted(2.0) - 0.5 * 0.5_f64.exp()).abs() < 1e-12);
     }
 
     #[test]
     fn what_follows_is_looked_at_unless_it_was_clear() {
         let problem = letters(-0.33, 0.0, 4.15);
-        let mut track = track(&problem);
-        assert!(!track.may_be_unseen(4.16));
-        track.see(4.0, 0.3);
-        assert!(!track.may_be_unseen(4.01), "how it changes is not known");
-        track.see(4.05, 0.31);
-        assert!(track.may_be_unseen(4.1) && track.seen());
+        let mut neighbour = neighbour(&problem);
+        assert!(!neighbour.may_be_unseen(4.16));
+        neighbour.see(4.0, 0.3);
+        assert!(
+            !neighbour.may_be_unseen(4.01),
+            "how it changes is not known"
+        );
+        neighbour.see(4.05, 0.31);
+        assert!(neighbour.may_be_unseen(4.1) && neighbour.seen());
         // It may have changed by a sixth of itself.
-        assert!(!track.may_be_unseen(5.5));
-        track.unseen = track.options.most_unseen;
-        assert!(!track.may_be_unseen(4.1) && !track.seen());
-        track.unseen = 0;
-        track.clear = 1e-3;
-        assert!(!track.may_be_unseen(4.1));
+        assert!(!neighbour.may_be_unseen(5.5));
+        neighbour.unseen = neighbour.options.most_unseen;
+        assert!(!neighbour.may_be_unseen(4.1) && !neighbour.seen());
+        neighbour.unseen = 0;
+        neighbour.clear = 1e-3;
+        assert!(!neighbour.may_be_unseen(4.1));
         // Where a stick vanishes only a small change of the delay says so.
-        track.event = Event::StickVanishes;
-        assert!(track.may_be_unseen(4.2) && !track.may_be_unseen(4.4));
+        neighbour.event = Event::StickVanishes;
+        assert!(neighbour.may_be_unseen(4.2) && !neighbour.may_be_unseen(4.4));
     }
 
     #[test]
     fn no_start_is_far_away() {
         let problem = letters(-0.33, 0.0, 4.15);
-        let mut track = track(&problem);
-        assert!(track.set_out(7.0, 0.3).is_err());
-        assert!(track.next(&letters(-0.33, 0.0, 9.0)).is_none());
+        let mut neighbour = neighbour(&problem);
+        assert!(neighbour.set_out(7.0, 0.3).is_err());
+        assert!(neighbour.next(&letters(-0.33, 0.0, 9.0)).is_none());
     }
 
     #[test]
     fn an_end_before_the_first_one_is_recalled() {
         let problem = letters(-0.33, 0.0, 4.15);
-        let mut track = track(&problem);
-        track.recall(4.2, 0.4);
-        assert_eq!(track.ends.len(), 1);
-        track.recall(4.1, 0.34);
-        assert_eq!(track.ends[0], (4.1, 0.34));
-        assert!((track.off - 0.25 * 0.02).abs() < 1e-15);
-        assert!(!track.surprised());
+        let mut neighbour = neighbour(&problem);
+        neighbour.recall(4.2, 0.4);
+        assert_eq!(neighbour.ends.len(), 1);
+        neighbour.recall(4.1, 0.34);
+        assert_eq!(neighbour.ends[0], (4.1, 0.34));
+        assert!((neighbour.off - 0.25 * 0.02).abs() < 1e-15);
+        assert!(!neighbour.surprised());
     }
 }

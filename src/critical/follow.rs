@@ -7,7 +7,7 @@
 use super::after_event::sequel;
 use super::confirmation::{confirmed, gliding, told};
 use super::continuation::{Point, continue_to_checked_event, is_jump};
-use super::delay_step::Track;
+use super::delay_step::Neighbour;
 use super::end_of_branch::{approach, verify};
 use super::memoryless::end_without_memory;
 use super::options::RampOptions;
@@ -54,7 +54,7 @@ fn from_start(problem: &Problem, v0: f64) -> Result<Found<'_>, NoStart> {
     };
     // At a larger velocity than the first one the block may stick once, and not again.
     let larger = v0 > problem.options.ramp.starts[0] * problem.law.mu_s();
-    let (mut critical, mut track) = match WithHistory::released(problem, v0, accuracy) {
+    let (mut critical, mut neighbour) = match WithHistory::released(problem, v0, accuracy) {
         Ok((branch, first)) if !larger => kinds.end(branch, first, options.largest_step),
         Err(NoReturn::LiftOff) => return Err(NoStart::LiftOff),
         Ok(_) | Err(_) => kinds.start(problem.released(v0, accuracy))?,
@@ -67,10 +67,10 @@ fn from_start(problem: &Problem, v0: f64) -> Result<Found<'_>, NoStart> {
         let glided = kinds.glide(*entry, &critical);
         critical.decided = critical.ends_like(&again) && critical.ends_like(&glided);
     }
-    if let Some(track) = &mut track {
-        track.decided = critical.decided;
+    if let Some(neighbour) = &mut neighbour {
+        neighbour.decided = critical.decided;
     }
-    Ok((critical, track))
+    Ok((critical, neighbour))
 }
 
 /// Stick-slip from which simulation has to go on, by this relative step of v0 at first. Motions at
@@ -81,7 +81,7 @@ struct Handover {
 }
 
 /// What is found, and what a neighbour may start from.
-type Found<'p> = (CriticalVelocity, Option<Track<'p>>);
+type Found<'p> = (CriticalVelocity, Option<Neighbour<'p>>);
 
 /// One kind of stick-slip after the other.
 struct Kinds<'p> {
@@ -187,9 +187,9 @@ impl<'p> Kinds<'p> {
     ) -> Found<'p> {
         let ending = ending.of_stick_slip();
         let critical = ending.critical_velocity(Method::GrazeOrbit);
-        let mut track = Track::new(self.problem, branch, at, &ending);
-        track.one_kind = others == 0 && self.entry.is_none();
-        (critical, Some(track))
+        let mut neighbour = Neighbour::new(self.problem, branch, at, &ending);
+        neighbour.one_kind = others == 0 && self.entry.is_none();
+        (critical, Some(neighbour))
     }
 
     /// Through irregular stick-slip, to where it repeats again; else to its end.

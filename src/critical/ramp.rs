@@ -9,7 +9,7 @@ use super::continuation::times_jump;
 use super::event_functions::{Event, EventFunctions};
 use super::options::{ContinuationOptions, RampOptions};
 use super::problem::{NoStart, Problem};
-use super::regime::{Followed, Holding, Regime, Response, Simulated};
+use super::regime::{Followed, Observation, Regime, Response, Simulated};
 use super::step_control::{Prediction, Retry, StepControl};
 use crate::slip::motion::{Accuracy, Motion};
 
@@ -89,7 +89,7 @@ pub(super) fn raise<F: Followed>(
     options: &RampOptions,
     continuation: &ContinuationOptions,
 ) -> Ramped {
-    let first = block.hold(block.v0(), &Holding::new(options, f64::INFINITY));
+    let first = block.response_at(block.v0(), &Observation::new(options, f64::INFINITY));
     if !first.persists() {
         return Ramped::none(Some(first));
     }
@@ -185,8 +185,8 @@ impl<F: Followed> Ramp<'_, F> {
     /// Looks longer whether irregular stick-slip repeats where it was last.
     fn classify(&mut self) {
         if self.last.regime == Regime::Irregular && !self.options.patient {
-            let how = Holding::at_length(self.options, 0.0);
-            let again = self.block.hold(self.last.v0, &how);
+            let how = Observation::at_length(self.options, 0.0);
+            let again = self.block.response_at(self.last.v0, &how);
             if again.persists() {
                 self.last = again;
             }
@@ -261,7 +261,9 @@ impl<F: Followed> Ramp<'_, F> {
     fn attempt(&mut self, v0: f64, step: f64) {
         let options = self.options;
         self.trial.copy_from(&self.block);
-        let there = self.trial.hold(v0, &Holding::after(options, v0, step));
+        let there = self
+            .trial
+            .response_at(v0, &Observation::after(options, v0, step));
         self.spent += there.summary.steps;
         if !there.persists() {
             if self.lost.is_none_or(|(lost, _)| v0 <= lost.v0) {
@@ -299,8 +301,8 @@ impl<F: Followed> Ramp<'_, F> {
             return true;
         };
         self.trial.copy_from(&self.block);
-        let how = Holding::at_length(self.options, by);
-        let there = self.trial.hold(lost.v0, &how);
+        let how = Observation::at_length(self.options, by);
+        let there = self.trial.response_at(lost.v0, &how);
         self.spent += there.summary.steps;
         if !there.persists() {
             self.lost = Some((there, by));

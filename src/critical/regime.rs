@@ -97,13 +97,13 @@ impl Response {
 
 /// How long a motion is followed at one v0.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Holding<'o> {
+pub(super) struct Observation<'o> {
     pub options: &'o RampOptions,
     pub repeated: f64,
     pub waiting: Waiting,
 }
 
-impl<'o> Holding<'o> {
+impl<'o> Observation<'o> {
     /// At `v0`, after a relative step to it.
     pub(super) fn after(options: &'o RampOptions, v0: f64, step: f64) -> Self {
         let how = Self::new(options, step);
@@ -155,7 +155,7 @@ pub(super) trait Followed: Clone {
     fn copy_from(&mut self, other: &Self);
 
     /// Follows stick-slip at `v0` until its regime is known.
-    fn hold(&mut self, v0: f64, how: &Holding) -> Response;
+    fn response_at(&mut self, v0: f64, how: &Observation) -> Response;
 }
 
 /// A motion of a problem.
@@ -178,20 +178,20 @@ impl Followed for Simulated<'_> {
         self.motion.copy_from(&other.motion);
     }
 
-    fn hold(&mut self, v0: f64, how: &Holding) -> Response {
-        hold(self.problem, &mut self.motion, v0, how)
+    fn response_at(&mut self, v0: f64, how: &Observation) -> Response {
+        response_at(self.problem, &mut self.motion, v0, how)
     }
 }
 
 /// Follows a motion at the v0 it has, waited for as long as at the end of a search.
-pub(super) fn hold_at_length(problem: &Problem, motion: &mut Motion) -> Response {
+pub(super) fn response_at_length(problem: &Problem, motion: &mut Motion) -> Response {
     let v0 = motion.parameters().v0;
-    let how = Holding::at_length(&problem.options.ramp, 0.0);
-    hold(problem, motion, v0, &how)
+    let how = Observation::at_length(&problem.options.ramp, 0.0);
+    response_at(problem, motion, v0, &how)
 }
 
 /// Follows the motion at `v0` until its regime is known.
-fn hold(problem: &Problem, motion: &mut Motion, v0: f64, how: &Holding) -> Response {
+fn response_at(problem: &Problem, motion: &mut Motion, v0: f64, how: &Observation) -> Response {
     let options = how.options;
     if v0 != motion.parameters().v0 {
         motion.set_v0(v0);
@@ -254,45 +254,48 @@ mod tests {
             problem: &problem,
             motion: problem.released(0.2, Accuracy::of(1e-8)),
         };
-        let how = Holding::new(&options, 0.0);
-        let below = block.hold(0.2, &how);
+        let how = Observation::new(&options, 0.0);
+        let below = block.response_at(0.2, &how);
         assert_eq!((below.regime, below.summary.slips), (Regime::Periodic, 1));
         assert!(below.depth > 0.0 && below.to_minimum > 0.0);
-        let again = block.hold(0.21, &how);
+        let again = block.response_at(0.21, &how);
         assert!(again.is_like(&below) && again.depth < below.depth);
         assert_eq!(block.v0(), 0.21);
-        let beyond = block.hold(0.4, &how);
+        let beyond = block.response_at(0.4, &how);
         assert_eq!(beyond.regime, Regime::Slips);
         let patient = RampOptions {
             patient: true,
             ..options
         };
-        let beyond = block.hold(0.4, &Holding::new(&patient, 0.0));
+        let beyond = block.response_at(0.4, &Observation::new(&patient, 0.0));
         assert_eq!(beyond.regime, Regime::Ended);
         assert!(!beyond.is_like(&below));
         let load = letters(0.0, -10.0, 0.5);
         let mut motion = load.released(0.3, Accuracy::of(1e-8));
-        assert_eq!(hold_at_length(&load, &mut motion).regime, Regime::LiftOff);
+        assert_eq!(
+            response_at_length(&load, &mut motion).regime,
+            Regime::LiftOff
+        );
     }
 
     #[test]
     fn how_long_is_waited_depends_on_the_step() {
         let options = RampOptions::default();
-        let waiting = |v0, step| Holding::after(&options, v0, step).waiting;
+        let waiting = |v0, step| Observation::after(&options, v0, step).waiting;
         assert_eq!(waiting(0.3, 0.1), Waiting::Short);
         assert_eq!(waiting(0.3, 1e-3), Waiting::Lasting);
         let gliding = RampOptions {
             glide: 0.5,
             ..options
         };
-        let after = |v0, step| Holding::after(&gliding, v0, step).waiting;
+        let after = |v0, step| Observation::after(&gliding, v0, step).waiting;
         assert_eq!(
             (after(0.3, 0.01), after(0.6, 0.01)),
             (Waiting::Brief, Waiting::Short)
         );
-        let repeated = |step| Holding::new(&options, step).repeated;
+        let repeated = |step| Observation::new(&options, step).repeated;
         assert!(repeated(0.5) > repeated(0.01));
         assert_eq!(repeated(f64::INFINITY), repeated(0.0));
-        assert_eq!(Holding::at_length(&options, 0.5).waiting, Waiting::Long);
+        assert_eq!(Observation::at_length(&options, 0.5).waiting, Waiting::Long);
     }
 }

@@ -5,7 +5,7 @@
 use super::event_functions::{Event, MOST_SLIPS};
 use super::options::{ContinuationOptions, Options};
 use super::problem::Problem;
-use super::regime::{Followed, Holding, Regime, Response};
+use super::regime::{Followed, Observation, Regime, Response};
 use super::return_map::{Cycle, NoReturn, Period, ReturnMap, Stop};
 use crate::model::FrictionLaw;
 use crate::slip::motion::{Accuracy, Stretch};
@@ -193,7 +193,7 @@ impl Followed for Synthetic {
         self.clone_from(other);
     }
 
-    fn hold(&mut self, v0: f64, how: &Holding) -> Response {
+    fn response_at(&mut self, v0: f64, how: &Observation) -> Response {
         self.v0 = v0;
         let step = |map: &mut Self| map.next().map(|x| map.x = x).is_some();
         let steps = (0..ITERATIONS).take_while(|_| step(self)).count();

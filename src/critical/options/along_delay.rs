@@ -5,9 +5,9 @@ options! {
     /// trusted. Distances in v0 and in the delay are relative.
     AlongDelayOptions {
         /// Cells from one that is found from scratch to the next.
-        stretch: usize = 64, in 2..=128;
+        segment: usize = 64, in 2..=128;
         /// The same where stick-slip of one kind followed another on the way: it may end earlier.
-        short_stretch: usize = 16, in 2..=128;
+        short_segment: usize = 16, in 2..=128;
         /// An end that surprises is looked for from scratch, unless one was so few cells before.
         surprises: usize = 2, in 1..=128;
         /// An end that far from where it was expected surprises: it changes fast along the line.
