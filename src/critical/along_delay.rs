@@ -70,8 +70,8 @@ impl<'p> Block<'p> {
         neighbour
     }
 
-    /// Fills the cells between two that were found from scratch, the first one with its neighbour; the
-    /// neighbour that led to the last one if one did.
+    /// Fills the cells between two that were found from scratch; with what leads on from the first
+    /// one, and then what led to the last one if something did.
     fn fill(
         &mut self,
         mut first: usize,
