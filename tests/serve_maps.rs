@@ -130,7 +130,8 @@ fn maps_are_listed_and_described() {
     assert_eq!(entry(&Serving::new(&folder), "small.h5")["id"], small["id"]);
 }
 
-/// Windows on maps of one to four axes, both ways round, even and logarithmic, near and far.
+/// Windows on maps of one to four axes, both ways round, even and logarithmic, near and far, and
+/// beyond their ends.
 #[test]
 fn windows_show_the_cells_of_the_file() {
     let folder = Folder::new();
@@ -180,7 +181,9 @@ fn windows_show_the_cells_of_the_file() {
                 } else {
                     "linear"
                 };
-                let ends = [0, 1].map(|_| first + (last - first) * chance.between(-0.01, 1.01));
+                let beyond = if scale == "log" { 0.01 } else { 0.4 };
+                let ends =
+                    [0, 1].map(|_| first + (last - first) * chance.between(-beyond, 1.0 + beyond));
                 let whole = chance.of(3) == 0;
                 (Some((ends[0], ends[1])).filter(|_| !whole), scale)
             };
@@ -197,6 +200,34 @@ fn windows_show_the_cells_of_the_file() {
                 scales: (x_scale, y_scale),
             };
             check(&serving, &id, map, &window);
+        }
+    }
+}
+
+/// Pixels that lie beside an axis show nothing, however far away they are.
+#[test]
+fn beyond_a_map_there_is_nothing() {
+    let folder = Folder::new();
+    make(&folder, "map", SMALL);
+    let serving = Serving::new(&folder);
+    let id = id(&serving, "map.h5");
+    let window = format!("/api/v1/maps/{id}/window?field=n_unstable&x=alpha_v&y=tau&w=4&h=4");
+    for (ends, there) in [
+        ("x0=-50&x1=-10", 0),
+        ("y0=9.5&y1=20", 0),
+        ("x0=-1.2&x1=0.1", 16),
+        ("x0=-2.5&x1=0.1", 8),
+        ("x0=-1e308&x1=1.2e308", 4),
+        ("x0=-1e308&x1=1.2e308&y0=1.2e308&y1=-1e308", 1),
+    ] {
+        let told = complete(&serving, &format!("{window}&{ends}"));
+        let [bits, values, status] =
+            ["bits", "values", "status"].map(|name| told.numbers(&told.head[name]));
+        let shows = |place: &usize| bits[*place] as u8 & 8 == 0;
+        assert_eq!((0..16).filter(shows).count(), there, "{ends}: {bits:?}");
+        for place in (0..16).filter(|place| !shows(place)) {
+            let found = (bits[place], values[place], status[place]);
+            assert_eq!(found, (8.0, 65535.0, 255.0), "{ends}");
         }
     }
 }
@@ -237,6 +268,20 @@ fn windows_show_the_closed_form() {
         }
     }
     let map = MapFile::open(&folder.path().join("large.h5")).unwrap();
+    // Pixels that hide cells of more chunks than one.
+    for (x, y, size) in [(1, 2, (13, 17)), (0, 1, (9, 21)), (2, 0, (5, 7))] {
+        let window = Window {
+            field: Field::NUnstable,
+            x,
+            y: Some(y),
+            at: vec![17, 150, 101],
+            x_ends: None,
+            y_ends: None,
+            size,
+            scales: ("linear", "linear"),
+        };
+        assert!(check(&serving, &id, &map, &window) > 10);
+    }
     let at = map.axes()[0].values[17];
     let curves = map.curves_where(|outer| outer == [at]).unwrap();
     for (x, y) in [("alpha_v", "tau"), ("tau", "alpha_v")] {

@@ -4,6 +4,7 @@
 export const SEVERAL = 1;
 export const UNREAD = 2;
 export const MISSING = 4;
+export const BEYOND = 8;
 /** Bits of a status that say that something is amiss with a cell. */
 const AMISS = 2 | 4 | 8 | 16;
 /** The status of a cell that is not computed. */
@@ -32,7 +33,8 @@ function mark(pixels, { nx, ny, status, bits }) {
     for (let j = 0; j < ny; j++, n++) {
       const bit = bits ? bits[n] : 0;
       const flags = status ? status[n] : 0;
-      if (bit & UNREAD) pixels[n] = (i + j) % 8 < 4 ? LIGHT : MIDDLE;
+      if (bit & BEYOND) pixels[n] = 0;
+      else if (bit & UNREAD) pixels[n] = (i + j) % 8 < 4 ? LIGHT : MIDDLE;
       else if (bit & MISSING || flags === NO_STATUS) pixels[n] = (i ^ j) & 4 ? MIDDLE : DARK;
       else if (flags & AMISS) pixels[n] = (i + j) % 5 === 0 ? INK : pixels[n];
       else if (bit & SEVERAL && (i + j) & 1) pixels[n] = INK;

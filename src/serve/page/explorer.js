@@ -1,5 +1,6 @@
 // The page: what is set, what is shown, and the point that is looked at.
 
+import { BEYOND } from "./cells.js";
 import { Controls } from "./controls.js";
 import { download, element, tellCopied } from "./dom.js";
 import { tellLegend } from "./legend.js";
@@ -137,6 +138,7 @@ class Explorer {
     const exact = plane.axes.map((axis, i) => (plane.exact ? axis.values[index[i]] : point[i]));
     const where = plane.axes.map(({ symbol, unit }, i) =>
       `${symbol} = ${told(exact[i], 7)}${unit === "1" ? "" : ` ${unit}`}`);
+    if (plane.bits?.[n] & BEYOND) return "beyond the map";
     const value = plane.cells[n];
     const { name, unit, short_name: words } = plane.field;
     const count = value === 0 ? "stable" : `${value} unstable roots`;

@@ -1,6 +1,6 @@
 // A plane of parameter space on a canvas: cells, curves over them, axes around, and a point.
 
-import { paint } from "./cells.js";
+import { BEYOND, paint } from "./cells.js";
 import { areaWithin, drawFrame, placed } from "./frame.js";
 import { CanvasPen, SvgPen } from "./pen.js";
 
@@ -140,6 +140,7 @@ export class PlaneView {
       const x = value(xs, i, nx, axes[0].values);
       for (let j = 0; j < ny; j++) {
         const n = i * ny + j;
+        if (bits?.[n] & BEYOND) continue;
         const more = [status?.[n], bits?.[n]].filter((flag) => flag !== undefined);
         lines.push([x, value(ys, j, ny, axes[1].values), cells[n], ...more].join(","));
       }
