@@ -704,6 +704,45 @@ fn processes_that_read_maps_come_and_go() {
     });
 }
 
+/// However many maps are asked at once, few processes read them, and all are answered.
+#[test]
+fn few_processes_read_many_maps() {
+    let folder = Folder::new();
+    make(&folder, "map", SMALL);
+    for number in 0..30 {
+        let copy = folder.path().join(format!("copy{number}.h5"));
+        fs::copy(folder.path().join("map.h5"), copy).unwrap();
+    }
+    let serving = Serving::new(&folder);
+    let known = || {
+        let list = serving.get("/api/v1/maps").json();
+        let maps = list["maps"].as_array().unwrap().clone();
+        let is_known = |map: &Value| map["state"] == "complete";
+        maps.iter().all(is_known).then_some(maps)
+    };
+    until(60, "all are known", || known().is_some());
+    let maps = known().unwrap();
+    let (mut most, answered) = (0, std::sync::atomic::AtomicUsize::new(0));
+    std::thread::scope(|scope| {
+        for map in maps.iter().chain(&maps).chain(&maps) {
+            let path = format!("/api/v1/maps/{}", map["id"].as_str().unwrap());
+            let (serving, answered) = (&serving, &answered);
+            scope.spawn(move || {
+                let answer = serving.get(&path);
+                let busy = answer.status == 503 && answer.head.contains("retry-after: ");
+                assert!(answer.status == 200 || busy, "{}", answer.head);
+                answered.fetch_add(1, std::sync::atomic::Ordering::Relaxed);
+            });
+        }
+        while answered.load(std::sync::atomic::Ordering::Relaxed) < 3 * maps.len() {
+            most = most.max(processes::children(serving.child.id()).len());
+            std::thread::sleep(Duration::from_millis(5));
+        }
+    });
+    // Two that are looked at; those for the list have ended.
+    assert!((1..=2).contains(&most), "{most} processes");
+}
+
 /// Who says nothing, or trickles, makes room for others.
 #[test]
 fn slow_clients_make_room() {
