@@ -280,8 +280,15 @@ fn mistakes_are_problems_with_their_place() {
         ("chart", "[axes]\ntau = []\n", 422),
         (
             "chart",
-            &PLANE.replace("points = 80", "points = 1000000"),
+            &PLANE
+                .replace("points = 60", "points = 70")
+                .replace("points = 80", "points = 65536"),
             413,
+        ),
+        (
+            "chart",
+            &PLANE.replace("points = 80", "points = 65537"),
+            422,
         ),
         (
             "chart",
