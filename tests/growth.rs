@@ -57,7 +57,7 @@ fn grown(folder: &Path) {
             "benches",
             &["critical", "motion", "roots", "throughput"][..],
         ),
-        ("tests", &["readers"]),
+        ("tests", &["readers", "static_page"]),
     ] {
         fs::create_dir(folder.join(place)).unwrap();
         for name in names {

@@ -1,6 +1,7 @@
 //! The page and its files, which are part of the program.
 
 use axum::extract::Path;
+use axum::extract::rejection::PathRejection;
 use axum::http::header::CONTENT_TYPE;
 use axum::response::{IntoResponse, Response};
 
@@ -49,8 +50,16 @@ pub(super) fn front() -> Response {
     ([(CONTENT_TYPE, "text/html; charset=utf-8")], FRONT).into_response()
 }
 
+/// What leads to the page.
+pub(super) fn onwards() -> Response {
+    let text = "<!doctype html><meta charset=\"utf-8\"><title>slipmap</title>\
+        <meta http-equiv=\"refresh\" content=\"0; url=/\"><p><a href=\"/\">slipmap</a>";
+    ([(CONTENT_TYPE, "text/html; charset=utf-8")], text).into_response()
+}
+
 /// One of its files.
-pub(super) async fn asset(Path(name): Path<String>) -> Result<Response, Problem> {
+pub(super) async fn asset(name: Result<Path<String>, PathRejection>) -> Result<Response, Problem> {
+    let Path(name) = name.map_err(|_| nothing_here())?;
     let file = FILES.iter().find(|(known, _)| *known == name);
     let (name, text) = *file.ok_or_else(nothing_here)?;
     let kind = match name.rsplit_once('.') {

@@ -71,8 +71,8 @@ mod tests {
         drop(others);
         let left = std::mem::ManuallyDrop::new(other);
         assert!(path.exists(), "left behind as by a server that was killed");
-        let (last, _listener) = Socket::listen(&left.path).unwrap();
-        drop(last);
+        let (last, listener) = Socket::listen(&left.path).unwrap();
+        drop((listener, last));
         assert!(!path.exists());
         fs::write(&path, "text").unwrap();
         assert_eq!(

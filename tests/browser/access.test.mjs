@@ -9,15 +9,26 @@ const { browser, server } = await opened();
 for (const width of [390, 1024, 1600]) {
   for (const colorScheme of ["light", "dark"]) {
     test(`${width} px, ${colorScheme}: no violations, nothing cut off`, async () => {
-      const page = await openPage(browser, server.link, { width, height: 900, colorScheme, reducedMotion: "reduce" });
+      const page = await openPage(browser, server.link, {
+        width,
+        height: 900,
+        colorScheme,
+        reducedMotion: "reduce",
+      });
       await page.locator("#law").selectOption("weakening");
-      await page.evaluate(() => document.querySelectorAll("details").forEach((part) => (part.open = true)));
+      await page.evaluate(() =>
+        document.querySelectorAll("details").forEach((part) => (part.open = true)),
+      );
       await atRest(page);
-      await page.waitForFunction(() => window.slipmap.panel.motion.motion && window.slipmap.panel.point);
+      await page.waitForFunction(
+        () => window.slipmap.panel.motion.motion && window.slipmap.panel.point,
+      );
       await page.waitForTimeout(400);
       await picture(page, `live-${width}-${colorScheme}`);
       assert.deepEqual(await violations(page), []);
-      const over = await page.evaluate(() => document.documentElement.scrollWidth - window.innerWidth);
+      const over = await page.evaluate(
+        () => document.documentElement.scrollWidth - window.innerWidth,
+      );
       assert.ok(over <= 0, `${over} px too wide`);
       assert.deepEqual(page.faults, []);
     });
@@ -55,20 +66,36 @@ test("a table tells what the chart shows", async () => {
 });
 
 test("two fingers zoom on a small screen, one scrolls the page", async () => {
-  const page = await openPage(browser, server.link, { width: 390, height: 844, hasTouch: true, isMobile: true });
-  assert.equal(await page.locator("#chart").evaluate((chart) => getComputedStyle(chart).touchAction), "pan-y");
+  const page = await openPage(browser, server.link, {
+    width: 390,
+    height: 844,
+    hasTouch: true,
+    isMobile: true,
+  });
+  assert.equal(
+    await page.locator("#chart").evaluate((chart) => getComputedStyle(chart).touchAction),
+    "pan-y",
+  );
   const box = await page.locator("#chart").boundingBox();
   const session = await page.context().newCDPSession(page);
   const [x, y] = [box.x + box.width / 2, box.y + box.height / 2];
-  const touch = (type, apart) => session.send("Input.dispatchTouchEvent", {
-    type,
-    touchPoints: type === "touchEnd" ? [] : [{ x: x - apart, y, id: 0 }, { x: x + apart, y, id: 1 }],
-  });
-  const width = () => page.evaluate(() => window.slipmap.plane.view[0].to - window.slipmap.plane.view[0].from);
+  const touch = (type, apart) =>
+    session.send("Input.dispatchTouchEvent", {
+      type,
+      touchPoints:
+        type === "touchEnd"
+          ? []
+          : [
+              { x: x - apart, y, id: 0 },
+              { x: x + apart, y, id: 1 },
+            ],
+    });
+  const width = () =>
+    page.evaluate(() => window.slipmap.plane.view[0].to - window.slipmap.plane.view[0].from);
   const before_ = await width();
   await touch("touchStart", 30);
   for (const apart of [40, 50, 60]) await touch("touchMove", apart);
   await touch("touchEnd", 0);
   await atRest(page);
-  assert.ok(await width() < 0.7 * before_, `${await width()} after ${before_}`);
+  assert.ok((await width()) < 0.7 * before_, `${await width()} after ${before_}`);
 });

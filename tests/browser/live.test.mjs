@@ -5,7 +5,15 @@ import { readFileSync, writeFileSync } from "node:fs";
 import { join } from "node:path";
 import { test } from "node:test";
 import {
-  atRest, chance, colourAt, newFolder, openPage, opened, placeOf, serve, slipmap,
+  atRest,
+  chance,
+  colourAt,
+  newFolder,
+  openPage,
+  opened,
+  placeOf,
+  serve,
+  slipmap,
 } from "./support.mjs";
 
 const { browser, server } = await opened();
@@ -15,25 +23,31 @@ const asked = (args) => JSON.parse(slipmap([...args, "--json"]));
 /** Pixels by chance, each with the values of the cell that it shows, none at the edge of its cell. */
 async function cellsByChance(page, count, seed) {
   const numbers = chance(seed);
-  const chosen = Array.from({ length: 3 * count }, () => [numbers.next().value, numbers.next().value]);
-  return page.evaluate(([parts, wanted]) => {
-    const { plane } = window.slipmap;
-    const { ends, nx, ny, axes } = plane.plane;
-    const area = plane.area();
-    const found = [];
-    for (const part of parts) {
-      // The centre of a pixel of the screen.
-      const sizes = [area.w, area.h];
-      const middle = part.map((p, i) => (Math.floor(p * sizes[i]) + 0.5) / sizes[i]);
-      const point = middle.map((p, i) => plane.view[i].value(p));
-      const places = [ends[0].part(point[0]) * nx, ends[1].part(point[1]) * ny];
-      if (places.some((place) => Math.abs(place - Math.round(place)) < 0.05)) continue;
-      const cell = places.map(Math.floor);
-      found.push({ point, values: cell.map((index, i) => axes[i].values[index]) });
-      if (found.length === wanted) break;
-    }
-    return found;
-  }, [chosen, count]);
+  const chosen = Array.from({ length: 3 * count }, () => [
+    numbers.next().value,
+    numbers.next().value,
+  ]);
+  return page.evaluate(
+    ([parts, wanted]) => {
+      const { plane } = window.slipmap;
+      const { ends, nx, ny, axes } = plane.plane;
+      const area = plane.area();
+      const found = [];
+      for (const part of parts) {
+        // The centre of a pixel of the screen.
+        const sizes = [area.w, area.h];
+        const middle = part.map((p, i) => (Math.floor(p * sizes[i]) + 0.5) / sizes[i]);
+        const point = middle.map((p, i) => plane.view[i].value(p));
+        const places = [ends[0].part(point[0]) * nx, ends[1].part(point[1]) * ny];
+        if (places.some((place) => Math.abs(place - Math.round(place)) < 0.05)) continue;
+        const cell = places.map(Math.floor);
+        found.push({ point, values: cell.map((index, i) => axes[i].values[index]) });
+        if (found.length === wanted) break;
+      }
+      return found;
+    },
+    [chosen, count],
+  );
 }
 
 /** The colours of counts, as the legend shows them. */
@@ -46,7 +60,10 @@ const legend = (page) =>
 /** Pixels against the command; `flags` of a cell's values. */
 async function compareWithCommand(page, count, seed, flags) {
   const [cells, colours] = [await cellsByChance(page, count, seed), await legend(page)];
-  const seen = await colourAt(page, cells.map(({ point }) => point));
+  const seen = await colourAt(
+    page,
+    cells.map(({ point }) => point),
+  );
   let compared = 0;
   const classes = new Set();
   cells.forEach(({ values }, i) => {
@@ -108,8 +125,11 @@ test("a slider that is dragged ends with the chart of where it ends", async () =
   await atRest(page);
   const slope = await page.locator("#p-mu_prime").inputValue();
   assert.ok(Number(slope) < -0.6, slope);
-  await compareWithCommand(page, 40, 5, ([gain, tau]) =>
-    [`--mu-prime=${slope}`, `--alpha-v=${gain}`, `--tau=${tau}`]);
+  await compareWithCommand(page, 40, 5, ([gain, tau]) => [
+    `--mu-prime=${slope}`,
+    `--alpha-v=${gain}`,
+    `--tau=${tau}`,
+  ]);
 });
 
 test("curves on the screen are where the count changes", async () => {
@@ -123,7 +143,9 @@ test("curves on the screen are where the count changes", async () => {
   });
   assert.ok(vertices.length >= 2);
   for (const [gain, tau] of vertices.filter(([, tau]) => tau > 0 && tau < 12)) {
-    const counts = [-1e-4, 1e-4].map((off) => asked(["point", ...velocity([gain, tau + off])]).n_unstable);
+    const counts = [-1e-4, 1e-4].map(
+      (off) => asked(["point", ...velocity([gain, tau + off])]).n_unstable,
+    );
     assert.notEqual(counts[0] === 0, counts[1] === 0, `${gain}, ${tau}: ${counts}`);
     const [[r, g, b]] = await colourAt(page, [[gain, tau]]);
     assert.ok(r + g + b < 450, `a dark line at ${gain}, ${tau}: ${[r, g, b]}`);
@@ -138,7 +160,8 @@ test("the view is dragged and zoomed, and stays true", async () => {
   await page.mouse.move(to.x, to.y, { steps: 5 });
   await page.mouse.up();
   await atRest(page);
-  const ends = () => page.evaluate(() => window.slipmap.plane.view.map(({ from: a, to: b }) => [a, b]));
+  const ends = () =>
+    page.evaluate(() => window.slipmap.plane.view.map(({ from: a, to: b }) => [a, b]));
   const moved = await ends();
   assert.ok(Math.abs(moved[0][0] + 1.8) < 0.01 && Math.abs(moved[1][0] - 1) < 0.03, `${moved}`);
   const at = await placeOf(page, [-0.4, 4]);
@@ -152,7 +175,10 @@ test("the view is dragged and zoomed, and stays true", async () => {
   await compareWithCommand(page, 40, 6, velocity);
   await page.getByRole("button", { name: "All" }).click();
   await atRest(page);
-  assert.deepEqual(await ends(), [[-1.6, 0.4], [0, 12]]);
+  assert.deepEqual(await ends(), [
+    [-1.6, 0.4],
+    [0, 12],
+  ]);
   assert.deepEqual(page.faults, []);
 });
 
@@ -160,7 +186,9 @@ test("a cell that is clicked is what the copied command says", async () => {
   const page = await openPage(browser, server.link);
   const at = await placeOf(page, [-0.5, 3.2]);
   await page.mouse.click(at.x, at.y);
-  await page.waitForFunction(() => /alpha-v=-0\.(49|5)/.test(document.getElementById("command").value));
+  await page.waitForFunction(() =>
+    /alpha-v=-0\.(49|5)/.test(document.getElementById("command").value),
+  );
   const command = (await page.locator("#command").inputValue()).split(" ");
   assert.equal(command.shift(), "slipmap");
   const told = asked(command);
@@ -184,7 +212,8 @@ test("everything can be done by keyboard", async () => {
   assert.equal(await page.evaluate(() => document.activeElement.id), "chart");
   const point = () => page.evaluate(() => window.slipmap.plane.point);
   const begun = await point();
-  for (const key of ["ArrowRight", "ArrowRight", "ArrowUp", "Shift+ArrowLeft"]) await page.keyboard.press(key);
+  for (const key of ["ArrowRight", "ArrowRight", "ArrowUp", "Shift+ArrowLeft"])
+    await page.keyboard.press(key);
   const moved = await point();
   assert.ok(Math.abs(moved[0] - (begun[0] - 0.08 * 2)) < 1e-6, `${begun} ${moved}`);
   assert.ok(Math.abs(moved[1] - (begun[1] + 0.01 * 12)) < 1e-6, `${begun} ${moved}`);
@@ -193,14 +222,18 @@ test("everything can be done by keyboard", async () => {
   assert.match(await page.locator("#readout").innerText(), new RegExp(words));
   await page.keyboard.press("Enter");
   const flag = `--alpha-v=${moved[0]}`;
-  await page.waitForFunction((text) => document.getElementById("command").value.includes(text), flag);
+  await page.waitForFunction(
+    (text) => document.getElementById("command").value.includes(text),
+    flag,
+  );
   await page.keyboard.press("+");
   await atRest(page);
-  const width = () => page.evaluate(() => window.slipmap.plane.view[0].to - window.slipmap.plane.view[0].from);
-  assert.ok(await width() < 1.4);
+  const width = () =>
+    page.evaluate(() => window.slipmap.plane.view[0].to - window.slipmap.plane.view[0].from);
+  assert.ok((await width()) < 1.4);
   await page.keyboard.press("0");
   await atRest(page);
-  assert.ok(Math.abs(await width() - 2) < 1e-9);
+  assert.ok(Math.abs((await width()) - 2) < 1e-9);
 });
 
 test("the address holds the whole view", async () => {
@@ -213,7 +246,10 @@ test("the address holds the whole view", async () => {
   await page.mouse.click(at.x, at.y);
   await page.waitForTimeout(600);
   const address = page.url();
-  assert.match(address, /#v=1&control=load&x=alpha_n,-3,1&y=tau,0,12&mu_prime=-0.55&show=abscissa&at=/);
+  assert.match(
+    address,
+    /#v=1&control=load&x=alpha_n,-3,1&y=tau,0,12&mu_prime=-0.55&show=abscissa&at=/,
+  );
   assert.ok(address.length < 200, address);
   const picture = () => page.evaluate(() => document.getElementById("chart").toDataURL());
   const [before_, words] = [await picture(), await page.locator("#point").innerText()];
@@ -226,13 +262,22 @@ test("the address holds the whole view", async () => {
 });
 
 test("an address that makes no sense shows what it can", async () => {
-  for (const fragment of ["#v=9&x=q", "#v=1&x=alpha_v,3,1&y=tau,,&mu_prime=x&at=1", "#&&==", "#v=1&law=<b>"]) {
+  for (const fragment of [
+    "#v=9&x=q",
+    "#v=1&x=alpha_v,3,1&y=tau,,&mu_prime=x&at=1",
+    "#&&==",
+    "#v=1&law=<b>",
+  ]) {
     const page = await openPage(browser, null);
     await page.goto(server.link);
     await page.goto(`http://127.0.0.1:${server.port}/${fragment}`);
     await page.waitForTimeout(300);
     assert.match(await page.locator("h1").innerText(), /slipmap/);
-    assert.deepEqual(page.faults.filter((fault) => !/422|400/.test(fault)), [], fragment);
+    assert.deepEqual(
+      page.faults.filter((fault) => !/422|400/.test(fault)),
+      [],
+      fragment,
+    );
     await page.context().close();
   }
 });
@@ -250,12 +295,17 @@ test("what is seen can be taken along", async () => {
   const page = await openPage(browser, server.link);
   const png = await downloaded(page, "PNG");
   assert.equal(png.name, "slipmap-chart.png");
-  assert.deepEqual([...png.bytes.subarray(1, 4)].map((c) => String.fromCharCode(c)).join(""), "PNG");
+  assert.deepEqual(
+    [...png.bytes.subarray(1, 4)].map((c) => String.fromCharCode(c)).join(""),
+    "PNG",
+  );
   const svg = (await downloaded(page, "SVG")).bytes.toString();
   assert.match(svg, /^<svg xmlns=/);
   const drawn = await page.evaluate((text) => {
     const parsed = new DOMParser().parseFromString(text, "image/svg+xml");
-    return ["parsererror", "polyline", "image", "text"].map((tag) => parsed.querySelectorAll(tag).length);
+    return ["parsererror", "polyline", "image", "text"].map(
+      (tag) => parsed.querySelectorAll(tag).length,
+    );
   }, svg);
   assert.ok(drawn[0] === 0 && drawn[1] > 10 && drawn[2] === 1 && drawn[3] > 10, `${drawn}`);
   const csv = (await downloaded(page, "CSV")).bytes.toString().trim().split("\n");
@@ -290,7 +340,15 @@ test("a friction law brings its curve, critical velocity and motions", async () 
   const motion = async () => {
     const file = join(folder, "case.toml");
     writeFileSync(file, await page.locator("#case").inputValue());
-    const told = asked(["simulate", file, "-o", join(folder, "t.h5"), "--picture", join(folder, "t.png"), "--fresh"]);
+    const told = asked([
+      "simulate",
+      file,
+      "-o",
+      join(folder, "t.h5"),
+      "--picture",
+      join(folder, "t.png"),
+      "--fresh",
+    ]);
     const shown = await page.evaluate(() => {
       const { outcome, decided } = window.slipmap.panel.motion.motion;
       return { outcome, decided };
@@ -321,7 +379,13 @@ test("a measured law is pasted as CSV, and a mistake in it is told", async () =>
   await page.waitForFunction(() => /slope/.test(document.getElementById("law-told").innerText));
   const folder = newFolder();
   writeFileSync(join(folder, "law.csv"), "0 0.52\n0.1 0.41\n0.3 0.33\n1.0 0.36\n");
-  const flags = ["--friction=table", `--table=${join(folder, "law.csv")}`, "--v0=0.35", "--alpha-v=-0.33", "--tau=4.15"];
+  const flags = [
+    "--friction=table",
+    `--table=${join(folder, "law.csv")}`,
+    "--v0=0.35",
+    "--alpha-v=-0.33",
+    "--tau=4.15",
+  ];
   const { mu_prime: slope } = asked(["point", ...flags]);
   const told = await page.locator("#law-told").innerText();
   assert.ok(told.includes(String(Number(Math.abs(slope).toPrecision(6)))), `${told} ${slope}`);
@@ -352,8 +416,11 @@ test("the page goes on when its server is back", async () => {
   await other.goto(anew.link);
   await page.locator("#gone").waitFor({ state: "hidden" });
   await atRest(page);
-  await compareWithCommand(page, 20, 8, ([gain, tau]) =>
-    ["--mu-prime=-0.5", `--alpha-v=${gain}`, `--tau=${tau}`]);
+  await compareWithCommand(page, 20, 8, ([gain, tau]) => [
+    "--mu-prime=-0.5",
+    `--alpha-v=${gain}`,
+    `--tau=${tau}`,
+  ]);
   await anew.end();
 });
 
@@ -361,24 +428,38 @@ test("another site's page can do nothing", async () => {
   const { createServer } = await import("node:http");
   const evil = createServer((_, response) => {
     response.setHeader("Content-Type", "text/html");
-    response.end(`<form id="f" method="post" enctype="text/plain" action="http://127.0.0.1:${server.port}/api/v1/point">` +
-      `<input name="[fixed]" value="1"></form>`);
+    response.end(
+      `<form id="f" method="post" enctype="text/plain" action="http://127.0.0.1:${server.port}/api/v1/point">` +
+        `<input name="[fixed]" value="1"></form>`,
+    );
   });
   await new Promise((done) => evil.listen(0, "127.0.0.1", done));
   const page = await openPage(browser, server.link);
   const seen = [];
   page.on("response", (answer) => seen.push([new URL(answer.url()).pathname, answer.status()]));
-  page.on("request", (request) => assert.ok(!(request.headers().referer ?? "").includes("token"), "no token in Referer"));
+  page.on("request", (request) =>
+    assert.ok(!(request.headers().referer ?? "").includes("token"), "no token in Referer"),
+  );
   await page.goto(`http://localhost:${evil.address().port}/`);
   const base = `http://127.0.0.1:${server.port}/api/v1/point`;
   const answers = await page.evaluate(async (address) => {
-    const ask = (options) => fetch(address, { method: "POST", body: "[fixed]", ...options }).then((r) => r.type, () => "refused");
-    return [await ask({ credentials: "include" }), await ask({ credentials: "include", mode: "no-cors" })];
+    const ask = (options) =>
+      fetch(address, { method: "POST", body: "[fixed]", ...options }).then(
+        (r) => r.type,
+        () => "refused",
+      );
+    return [
+      await ask({ credentials: "include" }),
+      await ask({ credentials: "include", mode: "no-cors" }),
+    ];
   }, base);
   assert.deepEqual(answers, ["refused", "refused"]);
   await page.evaluate(() => document.getElementById("f").submit());
   await page.waitForTimeout(300);
   const statuses = seen.filter(([path]) => path === "/api/v1/point").map(([, status]) => status);
-  assert.ok(statuses.length >= 1 && statuses.every((status) => status === 401 || status === 403), `${statuses}`);
+  assert.ok(
+    statuses.length >= 1 && statuses.every((status) => status === 401 || status === 403),
+    `${statuses}`,
+  );
   evil.close();
 });

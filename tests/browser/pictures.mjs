@@ -2,19 +2,31 @@
 
 import { writeFileSync } from "node:fs";
 import { join } from "node:path";
-import { ROOT, atRest, newFolder, openBrowser, openPage, placeOf, serve, slipmap } from "./support.mjs";
+import {
+  ROOT,
+  atRest,
+  newFolder,
+  openBrowser,
+  openPage,
+  placeOf,
+  serve,
+  slipmap,
+} from "./support.mjs";
 
 const SIZE = { width: 1280, height: 1180 };
 
 const folder = newFolder();
 const sweep = join(newFolder(), "planes.toml");
-writeFileSync(sweep, `title = "Load control, slope after slope"
+writeFileSync(
+  sweep,
+  `title = "Load control, slope after slope"
 boundaries = true
 [axes]
 mu_prime = { from = -0.5, to = -0.05, points = 10 }
 alpha_n = { from = -3.0, to = 1.0, points = 1000 }
 tau = { from = 0.0, to = 10.0, points = 1000 }
-`);
+`,
+);
 slipmap(["run", sweep, "-o", join(folder, "load_control.h5")]);
 
 const browser = await openBrowser();

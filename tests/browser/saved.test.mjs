@@ -6,7 +6,19 @@ import { readFileSync, writeFileSync } from "node:fs";
 import { join } from "node:path";
 import { test } from "node:test";
 import {
-  ROOT, PROGRAM, atRest, chance, colourAt, eventually, newFolder, openPage, opened, picture, placeOf, slipmap, violations,
+  ROOT,
+  PROGRAM,
+  atRest,
+  chance,
+  colourAt,
+  eventually,
+  newFolder,
+  openPage,
+  opened,
+  picture,
+  placeOf,
+  slipmap,
+  violations,
 } from "./support.mjs";
 
 const folder = newFolder();
@@ -101,7 +113,10 @@ async function pixelsByChance(page, count, seed) {
 /** What is seen is what the page says; returns the pixels that no curve or mark covers. */
 async function seenPixels(page, count, seed) {
   const pixels = await pixelsByChance(page, count, seed);
-  const seen = await colourAt(page, pixels.map(({ point }) => point));
+  const seen = await colourAt(
+    page,
+    pixels.map(({ point }) => point),
+  );
   const plain = pixels.filter(({ colour }, i) => colour.every((c, k) => c === seen[i][k]));
   assert.ok(plain.length > 0.85 * count, `${plain.length} of ${count}`);
   return plain;
@@ -112,7 +127,10 @@ test("the list says what there is, and what is damaged", async () => {
   await page.getByRole("button", { name: "Maps (6)" }).click();
   const rows = await page.locator("#maps-table tbody tr").allInnerTexts();
   const of = (name) => rows.find((row) => row.startsWith(name));
-  assert.match(of("counts.h5"), /complete.*μ′ \(4\) × α_v \(401\) × τ \(301\).*n_unstable.*482,804/s);
+  assert.match(
+    of("counts.h5"),
+    /complete.*μ′ \(4\) × α_v \(401\) × τ \(301\).*n_unstable.*482,804/s,
+  );
   assert.match(of("broken.h5"), /damaged/);
   assert.match(of("odd.h5"), /damaged|complete/);
   const broken = page.getByRole("button", { name: "broken.h5" });
@@ -127,7 +145,10 @@ test("pixels of a map of three axes are what the command says", async () => {
     await page.locator("#at-mu_prime").fill(String(index));
     await atRest(page);
     const slope = [-0.7, -0.5, -0.3, -0.1][index];
-    for (const { values: [gain, tau], value } of await seenPixels(page, 100, 20 + index)) {
+    for (const {
+      values: [gain, tau],
+      value,
+    } of await seenPixels(page, 100, 20 + index)) {
       const flags = [`--mu-prime=${slope}`, `--alpha-v=${gain}`, `--tau=${tau}`];
       const { n_unstable: n, marginal } = asked(["point", ...flags]);
       assert.ok(n === value || marginal, `${flags}: ${n} and ${value}`);
@@ -142,13 +163,22 @@ test("other axes, logarithmic ones, lines, and zooms of a fine map are true", as
   const page = await withMap("fine.h5");
   const check = async (seed) => {
     for (const { values, value } of await seenPixels(page, 40, seed)) {
-      const [gain, tau] = await page.evaluate(() => window.slipmap.state.map.x) === "tau" ? [values[1], values[0]] : values;
-      const { n_unstable: n, marginal } = asked(["point", "--mu-prime=-0.3", `--alpha-n=${gain}`, `--tau=${tau}`]);
+      const [gain, tau] =
+        (await page.evaluate(() => window.slipmap.state.map.x)) === "tau"
+          ? [values[1], values[0]]
+          : values;
+      const { n_unstable: n, marginal } = asked([
+        "point",
+        "--mu-prime=-0.3",
+        `--alpha-n=${gain}`,
+        `--tau=${tau}`,
+      ]);
       assert.ok(n === value || marginal, `${values}: ${n} and ${value}`);
     }
   };
   await check(30);
-  const several = () => page.evaluate(() => window.slipmap.plane.plane.bits.filter((bit) => bit & 1).length);
+  const several = () =>
+    page.evaluate(() => window.slipmap.plane.plane.bits.filter((bit) => bit & 1).length);
   const hidden = await several();
   assert.ok(hidden > 100, `${hidden} pixels hide several values`);
   assert.match(await page.locator("#legend").innerText(), /hides several values/);
@@ -183,7 +213,8 @@ test("curves lie where the counts change, whichever way the axes are", async () 
     const points = await page.evaluate(() => {
       const { plane, view } = window.slipmap.plane;
       const all = plane.curves.flatMap(({ values }) =>
-        Array.from({ length: values.length / 2 }, (_, k) => [values[2 * k], values[2 * k + 1]]));
+        Array.from({ length: values.length / 2 }, (_, k) => [values[2 * k], values[2 * k + 1]]),
+      );
       const within = (part) => part > 0.02 && part < 0.98;
       return all.filter((point) => point.every((at, i) => within(view[i].part(at))));
     });
@@ -259,12 +290,22 @@ test("critical velocities, their ends, and slices along an axis", async () => {
   await page.waitForFunction(() => !/…/.test(document.getElementById("vc").innerText));
   const vc = await page.locator("#vc").innerText();
   const cell = await page.evaluate(() => window.slipmap.plane.point);
-  const found = asked(["vc", "--friction=weakening", "--mu0=0.5", "--v-s=0.5", `--alpha-v=${cell[0]}`, `--tau=${cell[1]}`]);
+  const found = asked([
+    "vc",
+    "--friction=weakening",
+    "--mu0=0.5",
+    "--v-s=0.5",
+    `--alpha-v=${cell[0]}`,
+    `--tau=${cell[1]}`,
+  ]);
   assert.ok(vc.includes(found.vc === null ? "none" : String(Number(found.vc.toPrecision(6)))), vc);
   await page.locator("#slice-axis").selectOption("alpha_v");
   await page.waitForFunction(() => window.slipmap.saved.line?.data[0].length === 12);
   const line = await page.evaluate(() => window.slipmap.saved.line.data.map((list) => [...list]));
-  assert.ok(line[0].every((x, i) => i === 0 || x > line[0][i - 1]), "in order");
+  assert.ok(
+    line[0].every((x, i) => i === 0 || x > line[0][i - 1]),
+    "in order",
+  );
   assert.ok(line[1].some((x) => x > 0));
   assert.deepEqual(page.faults, []);
 });
@@ -317,7 +358,9 @@ test("the address of a map's view brings it back", async () => {
 
 test("a map grows on the screen while it is computed", async () => {
   const sweep = join(newFolder(), "long.toml");
-  writeFileSync(sweep, `fields = ["vc", "outcome"]
+  writeFileSync(
+    sweep,
+    `fields = ["vc", "outcome"]
 [axes]
 alpha_n = { from = -3.0, to = 1.0, points = 90 }
 tau = { from = 0.3, to = 5.0, points = 90 }
@@ -325,31 +368,53 @@ tau = { from = 0.3, to = 5.0, points = 90 }
 law = "weakening"
 mu0 = 0.5
 v_s = 0.5
-`);
-  const run = spawn(PROGRAM, ["run", sweep, "-o", join(folder, "long.h5"), "--threads", "1", "--save-every", "0.5"], { stdio: "ignore" });
+`,
+  );
+  const run = spawn(
+    PROGRAM,
+    ["run", sweep, "-o", join(folder, "long.h5"), "--threads", "1", "--save-every", "0.5"],
+    { stdio: "ignore" },
+  );
   const ended = new Promise((done) => run.once("exit", done));
   const page = await openPage(browser, server.link);
   await page.getByRole("button", { name: /^Maps/ }).click();
   await page.locator("#maps-table", { hasText: "long.h5" }).waitFor({ timeout: 20000 });
   const row = page.locator("tr", { hasText: "long.h5" });
-  await page.waitForFunction(() => {
-    const found = [...document.querySelectorAll("#maps-table tr")].find((r) => /long/.test(r.innerText));
-    return found && /running|complete/.test(found.innerText) && !found.querySelector("button").disabled;
-  }, undefined, { timeout: 20000 });
+  await page.waitForFunction(
+    () => {
+      const found = [...document.querySelectorAll("#maps-table tr")].find((r) =>
+        /long/.test(r.innerText),
+      );
+      return (
+        found && /running|complete/.test(found.innerText) && !found.querySelector("button").disabled
+      );
+    },
+    undefined,
+    { timeout: 20000 },
+  );
   const first = await row.innerText();
   if (/running/.test(first)) {
     await row.getByRole("button").click();
     await page.waitForFunction(() => window.slipmap.plane.plane?.field.name === "outcome");
-    const missing = () => page.evaluate(() => window.slipmap.plane.plane.bits.filter((bit) => bit & 4).length);
+    const missing = () =>
+      page.evaluate(() => window.slipmap.plane.plane.bits.filter((bit) => bit & 4).length);
     const begun = await missing();
     assert.ok(begun > 0, "some cells are not computed yet");
     run.kill("SIGTERM");
     await ended;
     await page.getByRole("button", { name: /^Maps/ }).click();
-    await page.waitForFunction(() => [...document.querySelectorAll("#maps-table tr")]
-      .some((r) => /long/.test(r.innerText) && /interrupted/.test(r.innerText)), undefined, { timeout: 15000 });
+    await page.waitForFunction(
+      () =>
+        [...document.querySelectorAll("#maps-table tr")].some(
+          (r) => /long/.test(r.innerText) && /interrupted/.test(r.innerText),
+        ),
+      undefined,
+      { timeout: 15000 },
+    );
     slipmap(["run", sweep, "-o", join(folder, "long.h5")]);
-    await page.waitForFunction(() => window.slipmap.saved.map.state === "complete", undefined, { timeout: 30000 });
+    await page.waitForFunction(() => window.slipmap.saved.map.state === "complete", undefined, {
+      timeout: 30000,
+    });
     await atRest(page);
     assert.equal(await missing(), 0);
   } else {
@@ -387,11 +452,18 @@ test("a map's sweep file and its cells can be taken along", async () => {
   assert.deepEqual(await take("Sweep file"), ["rates.toml", RATES]);
   const [name, csv] = await take("CSV");
   assert.equal(name, "rates.csv");
-  const rows = csv.trim().split("\n").filter((line) => !line.startsWith("#"));
+  const rows = csv
+    .trim()
+    .split("\n")
+    .filter((line) => !line.startsWith("#"));
   assert.equal(rows[0], "alpha_n,tau,n_unstable,status,marks");
   for (const k of [1, 5000, rows.length - 1]) {
     const [gain, tau, n] = rows[k].split(",").map(Number);
-    assert.equal(asked(["point", "--mu-prime=-0.3", `--alpha-n=${gain}`, `--tau=${tau}`]).n_unstable, n, rows[k]);
+    assert.equal(
+      asked(["point", "--mu-prime=-0.3", `--alpha-n=${gain}`, `--tau=${tau}`]).n_unstable,
+      n,
+      rows[k],
+    );
   }
 });
 

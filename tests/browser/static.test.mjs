@@ -8,7 +8,12 @@ import { after, test } from "node:test";
 import { atRest, openPage, opened, slipmap } from "./support.mjs";
 
 const FOLDER = process.env.SLIPMAP_STATIC_PAGE;
-const TYPES = { ".html": "text/html", ".js": "text/javascript", ".css": "text/css", ".wasm": "application/wasm" };
+const TYPES = {
+  ".html": "text/html",
+  ".js": "text/javascript",
+  ".css": "text/css",
+  ".wasm": "application/wasm",
+};
 
 const { browser, server } = await opened();
 const files = createServer((request, response) => {
@@ -44,7 +49,8 @@ const shown = (page) =>
     };
   });
 
-const VIEW = "#v=1&control=load&x=alpha_n,-6,1&y=tau,0,8&v0=0.3&mu0=0.5&v_s=0.5&law=weakening&at=-2,1.5";
+const VIEW =
+  "#v=1&control=load&x=alpha_n,-6,1&y=tau,0,8&v0=0.3&mu0=0.5&v_s=0.5&law=weakening&at=-2,1.5";
 
 test("it shows, bit by bit, what the server's page shows", async () => {
   const all = [];
@@ -69,7 +75,10 @@ test("it computes where one points, and has no maps", async () => {
   for (let k = 0; k < 20; k++) await page.keyboard.press("ArrowLeft");
   await atRest(page);
   const slope = await slider.inputValue();
-  await page.waitForFunction((text) => document.getElementById("command").value.includes(text), `--mu-prime=${slope}`);
+  await page.waitForFunction(
+    (text) => document.getElementById("command").value.includes(text),
+    `--mu-prime=${slope}`,
+  );
   const command = (await page.locator("#command").inputValue()).split(" ").slice(1);
   const told = JSON.parse(slipmap([...command, "--json"]));
   const words = await page.locator("#point").innerText();

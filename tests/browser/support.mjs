@@ -40,8 +40,8 @@ export async function serve(args = [], port = 0) {
   return { link, end, child, token: link.split("token=")[1], port: Number(new URL(link).port) };
 }
 
-/** A headless Chromium that talks to nobody else. */
-export const openBrowser = () =>
+/** A headless Chromium that talks to nobody else; `more` are flags besides. */
+export const openBrowser = (more = []) =>
   chromium.launch({
     executablePath: process.env.SLIPMAP_CHROMIUM,
     args: [
@@ -52,6 +52,7 @@ export const openBrowser = () =>
       "--disable-default-apps",
       "--disable-sync",
       "--no-first-run",
+      ...more,
     ],
   });
 

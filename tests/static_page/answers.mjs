@@ -12,8 +12,13 @@ if (needed.length > 0) throw new Error(`imports: ${JSON.stringify(needed)}`);
 
 let told = null;
 const worker = vm.createContext({
-  TextEncoder, Uint8Array, WebAssembly, performance,
-  postMessage: (message) => { told = message; },
+  TextEncoder,
+  Uint8Array,
+  WebAssembly,
+  performance,
+  postMessage: (message) => {
+    told = message;
+  },
 });
 vm.runInContext(readFileSync(join(page, "worker.js"), "utf8"), worker);
 worker.onmessage({ data: { compiled } });

@@ -11,17 +11,25 @@ const [page] = process.argv.slice(2);
 const log = { begun: 0, ended: 0, asked: [] };
 
 globalThis.Worker = class {
-  constructor() { log.begun += 1; }
+  constructor() {
+    log.begun += 1;
+  }
   postMessage({ compiled, name, text }) {
     if (compiled) return;
     log.asked.push(text);
-    this.timer = setTimeout(() => {
-      if (text === "fails 1") return this.onmessage({ data: { failed: "unreachable" } });
-      const status = text.startsWith("wrong") ? 422 : 200;
-      const told = status === 200 ? { name, text } : { status, detail: "wrong", help: "right", span: [0, 5] };
-      const bytes = new TextEncoder().encode(JSON.stringify(told)).buffer;
-      this.onmessage({ data: { status, bytes, milliseconds: 1 } });
-    }, Number(text.split(" ")[1]));
+    this.timer = setTimeout(
+      () => {
+        if (text === "fails 1") return this.onmessage({ data: { failed: "unreachable" } });
+        const status = text.startsWith("wrong") ? 422 : 200;
+        const told =
+          status === 200
+            ? { name, text }
+            : { status, detail: "wrong", help: "right", span: [0, 5] };
+        const bytes = new TextEncoder().encode(JSON.stringify(told)).buffer;
+        this.onmessage({ data: { status, bytes, milliseconds: 1 } });
+      },
+      Number(text.split(" ")[1]),
+    );
   }
   terminate() {
     clearTimeout(this.timer);
@@ -42,13 +50,19 @@ assert.equal(source.maps, undefined);
 
 // In the order of asking.
 const answers = await Promise.all(["a 30", "b 1", "c 1"].map((text) => source.point(text)));
-assert.deepEqual(answers.map((answer) => answer.text), ["a 30", "b 1", "c 1"]);
+assert.deepEqual(
+  answers.map((answer) => answer.text),
+  ["a 30", "b 1", "c 1"],
+);
 assert.deepEqual(log, { begun: 1, ended: 0, asked: ["a 30", "b 1", "c 1"] });
 
 // Problems say what is wrong, where, and what helps.
 const wrong = await source.vc("wrong 1").catch((error) => error);
 assert.ok(wrong instanceof Problem);
-assert.deepEqual([wrong.message, wrong.help, wrong.status, wrong.span], ["wrong", "right", 422, [0, 5]]);
+assert.deepEqual(
+  [wrong.message, wrong.help, wrong.status, wrong.span],
+  ["wrong", "right", 422, [0, 5]],
+);
 
 // What nobody waits for any more is not asked, or its answer dropped, or its worker ended where it takes long.
 const aborted = (promise) => assert.rejects(promise, { name: "AbortError" });

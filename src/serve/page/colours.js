@@ -28,10 +28,26 @@ const KINDS = {
 };
 const FEW = ["#c7eae5", "#35978f", "#dfc27d", "#7a4608"];
 const VIRIDIS = [
-  "#440154", "#472c7a", "#3b518b", "#2c718e", "#21908d", "#27ad81", "#5cc863", "#aadc32", "#fde725",
+  "#440154",
+  "#472c7a",
+  "#3b518b",
+  "#2c718e",
+  "#21908d",
+  "#27ad81",
+  "#5cc863",
+  "#aadc32",
+  "#fde725",
 ];
 const BROWN_TEAL = [
-  "#8c510a", "#bf812d", "#dfc27d", "#f6e8c3", "#f7f7f7", "#c7eae5", "#80cdc1", "#35978f", "#01665e",
+  "#8c510a",
+  "#bf812d",
+  "#dfc27d",
+  "#f6e8c3",
+  "#f7f7f7",
+  "#c7eae5",
+  "#80cdc1",
+  "#35978f",
+  "#01665e",
 ];
 /** Steps of a colour bar. */
 const STEPS = 255;
@@ -77,7 +93,9 @@ class Bar {
   constructor(table, part, value, words) {
     Object.assign(this, { part, value, words });
     this.table = table;
-    this.ints = Uint32Array.from({ length: STEPS + 1 }, (_, i) => packed(sampled(table, i / STEPS)));
+    this.ints = Uint32Array.from({ length: STEPS + 1 }, (_, i) =>
+      packed(sampled(table, i / STEPS)),
+    );
     this.none = int(NO_VALUE);
   }
 
@@ -114,7 +132,12 @@ function linear(values) {
   if (low === high) [low, high] = [low - 0.5, high + 0.5];
   if (low > 0 && low < 0.5 * high) low = 0;
   const words = ["low", "high"];
-  return new Bar(VIRIDIS, (v) => (v - low) / (high - low), (p) => low + p * (high - low), words);
+  return new Bar(
+    VIRIDIS,
+    (v) => (v - low) / (high - low),
+    (p) => low + p * (high - low),
+    words,
+  );
 }
 
 /** Over orders of magnitude; what is not above 0 has the lowest colour. */
@@ -151,7 +174,8 @@ export function coloursOf(field, values) {
   }
   const spread = field.spread ?? "";
   if (spread === "about-zero") {
-    const words = field.unit && /^abscissa/.test(field.name) ? ["grows", "decays"] : ["unstable", "stable"];
+    const words =
+      field.unit && /^abscissa/.test(field.name) ? ["grows", "decays"] : ["unstable", "stable"];
     return aboutZero(values, field.stable_sign ?? 1, words);
   }
   if (/below|error/.test(spread)) return aboutZero(values, -1, ["above 0", "below 0"]);

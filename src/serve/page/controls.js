@@ -57,7 +57,9 @@ export class Controls {
     const { laws, fields } = this.catalogue;
     const option = (value, text) => make("option", { value }, text);
     const known = fields.filter(({ name }) => SHOWN.includes(name));
-    element("show").append(...known.map(({ name, short_name: text }) => option(name, text ?? name)));
+    element("show").append(
+      ...known.map(({ name, short_name: text }) => option(name, text ?? name)),
+    );
     const named = laws.map(({ name }) => option(name, name));
     element("law").append(option("none", "only its slope μ′"), ...named);
   }
@@ -108,7 +110,10 @@ export class Controls {
     state.law = law;
     const known = parametersOf(state, this.catalogue.laws);
     const left = (axis) => !known.includes(axis.name) && !axis.name.startsWith("alpha");
-    for (const [axis, other] of [[state.x, state.y], [state.y, state.x]]) {
+    for (const [axis, other] of [
+      [state.x, state.y],
+      [state.y, state.x],
+    ]) {
       if (!left(axis)) continue;
       const gain = state.control === "load" ? "alpha_n" : "alpha_v";
       this.#setAxis(axis, other.name === gain ? "tau" : gain);
@@ -134,7 +139,10 @@ export class Controls {
     const others = free.filter((name) => MODEL.includes(name) || name === "mu_k");
     element("model-sliders").replaceChildren(...sliders(others));
     const legend = element("axes").querySelector("legend");
-    const axes = [["Across", state.x, state.y], ["Upwards", state.y, state.x]];
+    const axes = [
+      ["Across", state.x, state.y],
+      ["Upwards", state.y, state.x],
+    ];
     element("axes").replaceChildren(legend, ...axes.map((axis) => this.#axis(names, ...axis)));
     this.#tellLaw();
   }
@@ -151,13 +159,19 @@ export class Controls {
     const at = state.values[name] ?? VALUES[name];
     const [low, high] = RANGES[name];
     const label = make("label", { htmlFor: `p-${name}` }, text);
-    const range = make("input", { type: "range", id: `p-${name}`, min: Math.min(low, at),
-      max: Math.max(high, at), step: (high - low) / STEPS });
+    const range = make("input", {
+      type: "range",
+      id: `p-${name}`,
+      min: Math.min(low, at),
+      max: Math.max(high, at),
+      step: (high - low) / STEPS,
+    });
     const number = make("input", { type: "number", step: "any", "aria-label": `${text}, typed` });
     [range.value, number.value] = [at, at];
     for (const input of [range, number]) {
       input.addEventListener("input", () => {
-        const value = input === range ? Number(input.valueAsNumber.toPrecision(6)) : input.valueAsNumber;
+        const value =
+          input === range ? Number(input.valueAsNumber.toPrecision(6)) : input.valueAsNumber;
         if (!Number.isFinite(value)) return;
         state.values[name] = value;
         for (const other of [range, number]) if (other !== input) other.value = value;
@@ -181,8 +195,12 @@ export class Controls {
       this.changed();
     });
     const end = (key, word) => {
-      const input = make("input", { type: "number", step: "any", value: axis[key],
-        "aria-label": `${title}, ${word}` });
+      const input = make("input", {
+        type: "number",
+        step: "any",
+        value: axis[key],
+        "aria-label": `${title}, ${word}`,
+      });
       input.dataset.end = key;
       input.addEventListener("change", () => {
         const ends = { ...axis, [key]: input.valueAsNumber };
@@ -206,8 +224,16 @@ export class Controls {
       this.build();
       this.changed();
     });
-    const part = make("div", { className: "axis" }, make("span", {}, title), choice,
-      make("label", {}, log, " logarithmic"), end("from", "from"), make("span", {}, "to"), end("to", "to"));
+    const part = make(
+      "div",
+      { className: "axis" },
+      make("span", {}, title),
+      choice,
+      make("label", {}, log, " logarithmic"),
+      end("from", "from"),
+      make("span", {}, "to"),
+      end("to", "to"),
+    );
     part.dataset.axis = axis === this.state.x ? "x" : "y";
     return part;
   }
@@ -234,11 +260,15 @@ export class Controls {
     this.laws = new AbortController();
     try {
       const point = [state.x, state.y].map(({ name }) => state.values[name] ?? VALUES[name]);
-      const law = await this.source.law(pointTexts(state, this.catalogue.laws, point).point,
-        this.laws.signal);
+      const law = await this.source.law(
+        pointTexts(state, this.catalogue.laws, point).point,
+        this.laws.signal,
+      );
       drawLaw(element("law-curve"), law);
-      const at = law.at && `at v0 = ${told(law.at.v0)}: μ_K = ${told(law.at.mu_k)}, slope μ′ = ` +
-        told(law.at.mu_prime);
+      const at =
+        law.at &&
+        `at v0 = ${told(law.at.v0)}: μ_K = ${told(law.at.mu_k)}, slope μ′ = ` +
+          told(law.at.mu_prime);
       element("law-told").textContent = at ?? "";
     } catch (error) {
       if (error.name !== "AbortError") element("law-told").textContent = error.message;

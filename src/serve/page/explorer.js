@@ -22,7 +22,8 @@ const RETRY = 1500;
 /** The status of an answer to who does not have the token. */
 const NO_TOKEN = 401;
 const GONE = "The server does not answer. This page goes on when it is back.";
-const ANEW = "The server was started anew: open the link that it has printed, and this page goes on.";
+const ANEW =
+  "The server was started anew: open the link that it has printed, and this page goes on.";
 
 class Explorer {
   constructor(source, catalogue) {
@@ -52,7 +53,11 @@ class Explorer {
   /** Shows the chart or the map that the state names. */
   #mode() {
     const map = this.state.map !== null;
-    for (const [id, shown] of [["live", !map], ["map", map], ["slice-part", map]]) {
+    for (const [id, shown] of [
+      ["live", !map],
+      ["map", map],
+      ["slice-part", map],
+    ]) {
       element(id).hidden = !shown;
     }
     element("to-live").setAttribute("aria-pressed", String(!map));
@@ -136,15 +141,16 @@ class Explorer {
     if (!index) return "";
     const n = index[0] * plane.ny + index[1];
     const exact = plane.axes.map((axis, i) => (plane.exact ? axis.values[index[i]] : point[i]));
-    const where = plane.axes.map(({ symbol, unit }, i) =>
-      `${symbol} = ${told(exact[i], 7)}${unit === "1" ? "" : ` ${unit}`}`);
     if (plane.bits?.[n] & BEYOND) return "beyond the map";
+    const where = plane.axes.map(
+      ({ symbol, unit }, i) => `${symbol} = ${told(exact[i], 7)}${unit === "1" ? "" : ` ${unit}`}`,
+    );
     const value = plane.cells[n];
     const { name, unit, short_name: words } = plane.field;
     const count = value === 0 ? "stable" : `${value} unstable roots`;
     const kinds = plane.field.kinds ? plane.colours.name(value) : null;
     const number = `${words ?? name} ${told(value)}${!unit || unit === "1" ? "" : ` ${unit}`}`;
-    const parts = [name === "n_unstable" ? count : kinds ?? number];
+    const parts = [name === "n_unstable" ? count : (kinds ?? number)];
     const { abscissa } = plane.others ?? {};
     if (abscissa && name !== "abscissa") parts.push(`spectral abscissa ${told(abscissa[n])}`);
     if (plane.flags) parts.push(...plane.flags(n));
@@ -163,7 +169,9 @@ class Explorer {
     try {
       const texts = pointTexts(state, this.catalogue.laws, plane.point);
       const symbol = (axis) => this.catalogue.parameters.find((p) => p.name === axis.name)?.symbol;
-      const where = [state.x, state.y].map((axis, i) => `${symbol(axis)} = ${told(plane.point[i], 9)}`);
+      const where = [state.x, state.y].map(
+        (axis, i) => `${symbol(axis)} = ${told(plane.point[i], 9)}`,
+      );
       const unit = state.units ? state.units.split(",")[2] : "1";
       this.panel.look(texts, { where: where.join(", "), start: state.start, unit });
     } catch (error) {
@@ -188,7 +196,11 @@ class Explorer {
     if (!view) {
       this.#allOfAxes();
     } else {
-      for (const [axis, scale] of [[state.x, view[0]], [state.y, view[1]]]) this.#setEnds(axis, scale);
+      for (const [axis, scale] of [
+        [state.x, view[0]],
+        [state.y, view[1]],
+      ])
+        this.#setEnds(axis, scale);
     }
     this.controls.tellEnds();
     this.changed();
@@ -209,7 +221,10 @@ class Explorer {
 
   #allOfAxes() {
     const { x, y } = this.begun ?? {};
-    for (const [axis, was] of [[this.state.x, x], [this.state.y, y]]) {
+    for (const [axis, was] of [
+      [this.state.x, x],
+      [this.state.y, y],
+    ]) {
       if (was && was.name === axis.name) Object.assign(axis, was);
     }
   }
@@ -265,7 +280,8 @@ class Explorer {
       hover: (point) => (element("hover").textContent = this.#words(point)),
       view: (view) => this.#view(view),
     });
-    const zoom = (factor) => this.plane.view && this.#view(zoomed(this.plane.view, [0.5, 0.5], factor));
+    const zoom = (factor) =>
+      this.plane.view && this.#view(zoomed(this.plane.view, [0.5, 0.5], factor));
     const click = (id, act) => element(id).addEventListener("click", act);
     click("zoom-in", () => zoom(ZOOM));
     click("zoom-out", () => zoom(1 / ZOOM));
@@ -289,9 +305,18 @@ class Explorer {
     const name = () => (this.state.map ? this.saved.name() : "slipmap-chart");
     const { plane } = this;
     const shown = (act) => () => plane.plane && act();
-    click("save-png", shown(async () => download(`${name()}.png`, await plane.png())));
-    click("save-svg", shown(() => download(`${name()}.svg`, plane.svg(), "image/svg+xml")));
-    click("save-csv", shown(() => download(`${name()}.csv`, plane.csv(), "text/csv")));
+    click(
+      "save-png",
+      shown(async () => download(`${name()}.png`, await plane.png())),
+    );
+    click(
+      "save-svg",
+      shown(() => download(`${name()}.svg`, plane.svg(), "image/svg+xml")),
+    );
+    click(
+      "save-csv",
+      shown(() => download(`${name()}.csv`, plane.csv(), "text/csv")),
+    );
     click("save-toml", async () => {
       try {
         const own = () => this.live.text(this.state);

@@ -6,17 +6,23 @@ import { tickText } from "./scale.js";
  * The area inside of a frame, in CSS pixels.
  * @param {{width: number, height: number}} size
  */
-export function areaWithin({ width, height }, { left = 64, right = 16, top = 10, bottom = 46 } = {}) {
+export function areaWithin(
+  { width, height },
+  { left = 64, right = 16, top = 10, bottom = 46 } = {},
+) {
   const [w, h] = [Math.max(1, width - left - right), Math.max(1, height - top - bottom)];
   return { x: left, y: top, w, h };
 }
 
 /** The title of an axis: its symbol, and its unit if it has one. */
-export const titleOf = ({ symbol, unit }) => (!unit || unit === "1" ? symbol : `${symbol} (${unit})`);
+export const titleOf = ({ symbol, unit }) =>
+  !unit || unit === "1" ? symbol : `${symbol} (${unit})`;
 
 /** Where values lie in an area: x to the right, y upwards. */
-export const placed = (area, [xs, ys], [x, y]) =>
-  [area.x + xs.part(x) * area.w, area.y + (1 - ys.part(y)) * area.h];
+export const placed = (area, [xs, ys], [x, y]) => [
+  area.x + xs.part(x) * area.w,
+  area.y + (1 - ys.part(y)) * area.h,
+];
 
 /**
  * Draws ticks, their numbers, and the titles of both axes.

@@ -43,7 +43,10 @@ export class MotionCard {
   }
 
   #ask() {
-    for (const [id, at] of [["start-u", 0], ["start-a", 1]]) {
+    for (const [id, at] of [
+      ["start-u", 0],
+      ["start-a", 1],
+    ]) {
       const input = element(id);
       if (document.activeElement !== input) input.value = this.start[at];
     }
@@ -80,19 +83,34 @@ export class MotionCard {
     const size = { width: Math.max(200, target.clientWidth), height: 260 };
     const style = getComputedStyle(target);
     const ink = style.color;
-    const line = (label, name, scale) =>
-      ({ label, scale, stroke: style.getPropertyValue(`--${name}`).trim(), width: 1.5 });
+    const line = (label, name, scale) => ({
+      label,
+      scale,
+      stroke: style.getPropertyValue(`--${name}`).trim(),
+      width: 1.5,
+    });
     const grid = { stroke: style.getPropertyValue("--grid").trim(), width: 1 };
     const axis = (more) => ({ stroke: ink, grid, ticks: grid, ...more });
     this.plot?.destroy();
-    this.plot = new window.uPlot({
-      ...size,
-      scales: { x: { time: false } },
-      axes: [axis({ label: "t" }), axis({ scale: "u", label: "ẋ" }),
-        axis({ scale: "a", side: 1, label: "a, N", grid: { show: false } })],
-      series: [{ label: "t" }, line("velocity ẋ", "calm", "u"), line("elongation a", "mark", "a"),
-        line("load N", "third", "a")],
-    }, data, target);
+    this.plot = new window.uPlot(
+      {
+        ...size,
+        scales: { x: { time: false } },
+        axes: [
+          axis({ label: "t" }),
+          axis({ scale: "u", label: "ẋ" }),
+          axis({ scale: "a", side: 1, label: "a, N", grid: { show: false } }),
+        ],
+        series: [
+          { label: "t" },
+          line("velocity ẋ", "calm", "u"),
+          line("elongation a", "mark", "a"),
+          line("load N", "third", "a"),
+        ],
+      },
+      data,
+      target,
+    );
   }
 
   #listen() {
@@ -106,7 +124,10 @@ export class MotionCard {
       const box = phase.getBoundingClientRect();
       const [x, y] = [event.clientX - box.left, event.clientY - box.top];
       const [a, u] = this.scales;
-      return [u.value(1 - (y - this.area.y) / this.area.h), a.value((x - this.area.x) / this.area.w)];
+      return [
+        u.value(1 - (y - this.area.y) / this.area.h),
+        a.value((x - this.area.x) / this.area.w),
+      ];
     };
     phase.addEventListener("pointerdown", (event) => {
       if (!this.motion) return;
@@ -132,7 +153,10 @@ export class MotionCard {
       to(this.start.map((x, i) => x + step[i] * size[i]));
       this.moved(this.start);
     });
-    for (const [id, at] of [["start-u", 0], ["start-a", 1]]) {
+    for (const [id, at] of [
+      ["start-u", 0],
+      ["start-a", 1],
+    ]) {
       element(id).addEventListener("input", (event) => {
         const typed = event.target.valueAsNumber;
         if (!Number.isFinite(typed)) return;

@@ -25,12 +25,19 @@ export class Panel {
   constructor(source, { moved, failed }) {
     const ask = (kind) => (text, signal) => source[kind](text, signal);
     this.points = new Newest(ask("point"), (answer) => this.#showPoint(answer), failed);
-    this.velocities = new Newest(ask("vc"), (found) => this.#showVc(found), (error) => {
-      terms(element("vc"), [["critical velocity", error.message]]);
-    });
+    this.velocities = new Newest(
+      ask("vc"),
+      (found) => this.#showVc(found),
+      (error) => {
+        terms(element("vc"), [["critical velocity", error.message]]);
+      },
+    );
     this.motion = new MotionCard(source, moved, failed);
-    for (const [button, field] of [["copy-command", "command"], ["copy-toml", "toml"],
-      ["copy-case", "case"]]) {
+    for (const [button, field] of [
+      ["copy-command", "command"],
+      ["copy-toml", "toml"],
+      ["copy-case", "case"],
+    ]) {
       element(button).addEventListener("click", (event) => copy(element(field), event.target));
     }
     const redraw = () => this.#draw();
@@ -86,7 +93,8 @@ export class Panel {
     terms(element("intervals"), [["stable delays", delays]]);
     const list = point.roots.slice(0, ROOTS).map((r) => make("li", {}, root(r)));
     element("root-list").replaceChildren(...list);
-    element("command").value = point.command ?? "there is no command line for a table; see the TOML";
+    element("command").value =
+      point.command ?? "there is no command line for a table; see the TOML";
   }
 
   #draw() {
@@ -102,7 +110,10 @@ export class Panel {
     const verdict = below ? (here < found.vc ? " (v0 lies below it)" : " (v0 lies above it)") : "";
     terms(element("vc"), [
       ["critical velocity", found.vc === null ? "none" : told(found.vc) + verdict],
-      ["stick-slip ends by", `${found.outcome}${ENDS[found.outcome] ? `: ${ENDS[found.outcome]}` : ""}`],
+      [
+        "stick-slip ends by",
+        `${found.outcome}${ENDS[found.outcome] ? `: ${ENDS[found.outcome]}` : ""}`,
+      ],
       ["in a period there", `stuck ${told(found.stick_time)}, slipping ${told(found.slip_time)}`],
       ["load reaches 0 from", found.v_liftoff === null ? "no velocity" : told(found.v_liftoff)],
       ["asked by the protocol", found.protocol],

@@ -119,43 +119,57 @@ export class SvgPen {
   }
 
   image(canvas, { x, y, w, h }) {
-    const turn = [0, -h / canvas.width, w / canvas.height, 0, x, y + h].map((n) => Number(n.toFixed(6)));
+    const turn = [0, -h / canvas.width, w / canvas.height, 0, x, y + h].map((n) =>
+      Number(n.toFixed(6)),
+    );
     const place = `width="${canvas.width}" height="${canvas.height}" transform="matrix(${turn.join(" ")})"`;
-    this.parts.push(`<image ${place} preserveAspectRatio="none" image-rendering="pixelated" ` +
-      `href="${canvas.toDataURL("image/png")}"/>`);
+    this.parts.push(
+      `<image ${place} preserveAspectRatio="none" image-rendering="pixelated" ` +
+        `href="${canvas.toDataURL("image/png")}"/>`,
+    );
   }
 
   line(points, { colour, width = 1, dash = [] }) {
     if (points.length < 4) return;
     const list = Array.from(points, short).join(" ");
     const dashes = dash.length ? ` stroke-dasharray="${dash.join(" ")}"` : "";
-    this.parts.push(`<polyline points="${list}" fill="none" stroke="${escaped(colour)}" ` +
-      `stroke-width="${width}"${dashes}/>`);
+    this.parts.push(
+      `<polyline points="${list}" fill="none" stroke="${escaped(colour)}" ` +
+        `stroke-width="${width}"${dashes}/>`,
+    );
   }
 
   box({ x, y, w, h }, { fill = "none", stroke = "none" }) {
-    this.parts.push(`<rect x="${short(x)}" y="${short(y)}" width="${short(w)}" ` +
-      `height="${short(h)}" fill="${escaped(fill)}" stroke="${escaped(stroke)}"/>`);
+    this.parts.push(
+      `<rect x="${short(x)}" y="${short(y)}" width="${short(w)}" ` +
+        `height="${short(h)}" fill="${escaped(fill)}" stroke="${escaped(stroke)}"/>`,
+    );
   }
 
   disc([x, y], radius, { fill = "none", stroke = "none", width = 1 }) {
-    this.parts.push(`<circle cx="${short(x)}" cy="${short(y)}" r="${radius}" ` +
-      `fill="${escaped(fill)}" stroke="${escaped(stroke)}" stroke-width="${width}"/>`);
+    this.parts.push(
+      `<circle cx="${short(x)}" cy="${short(y)}" r="${radius}" ` +
+        `fill="${escaped(fill)}" stroke="${escaped(stroke)}" stroke-width="${width}"/>`,
+    );
   }
 
   text(words, [x, y], { colour, align = "center", base = "middle", size = 13, turned = false }) {
     const turn = turned ? " rotate(-90)" : "";
-    this.parts.push(`<text transform="translate(${short(x)} ${short(y)})${turn}" ` +
-      `dy="${BASELINES[base]}" text-anchor="${ANCHORS[align]}" font-size="${size}" ` +
-      `fill="${escaped(colour)}">${escaped(words)}</text>`);
+    this.parts.push(
+      `<text transform="translate(${short(x)} ${short(y)})${turn}" ` +
+        `dy="${BASELINES[base]}" text-anchor="${ANCHORS[align]}" font-size="${size}" ` +
+        `fill="${escaped(colour)}">${escaped(words)}</text>`,
+    );
   }
 
   /** The file. */
   file() {
     const { width: w, height: h } = this;
-    return `<svg xmlns="http://www.w3.org/2000/svg" width="${w}" height="${h}" ` +
+    return (
+      `<svg xmlns="http://www.w3.org/2000/svg" width="${w}" height="${h}" ` +
       `viewBox="0 0 ${w} ${h}" font-family="system-ui, sans-serif">` +
       `<rect width="${w}" height="${h}" fill="${this.colour("paper")}"/>` +
-      `${this.parts.join("\n")}</svg>\n`;
+      `${this.parts.join("\n")}</svg>\n`
+    );
   }
 }

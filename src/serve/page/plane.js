@@ -107,9 +107,17 @@ export class PlaneView {
 
   #drawPoint(pen, area) {
     const [x, y] = placed(area, this.view, this.point);
-    for (const [colour, width] of [[pen.colour("halo"), 5], [pen.colour("mark"), 2]]) {
+    for (const [colour, width] of [
+      [pen.colour("halo"), 5],
+      [pen.colour("mark"), 2],
+    ]) {
       pen.disc([x, y], 6, { stroke: colour, width });
-      for (const [dx, dy] of [[1, 0], [-1, 0], [0, 1], [0, -1]]) {
+      for (const [dx, dy] of [
+        [1, 0],
+        [-1, 0],
+        [0, 1],
+        [0, -1],
+      ]) {
         pen.line([x + 6 * dx, y + 6 * dy, x + 12 * dx, y + 12 * dy], { colour, width });
       }
     }

@@ -26,7 +26,11 @@ export function drawRoots(canvas, { roots, certified_line: line, unit }) {
     pen.line([zero, area.y, zero, area.y + area.h], { colour: pen.colour("ink"), width: 1.5 });
     if (line !== null && line !== undefined) {
       const [x] = at([line, 0]);
-      pen.line([x, area.y, x, area.y + area.h], { colour: pen.colour("mark"), width: 2, dash: [6, 4] });
+      pen.line([x, area.y, x, area.y + area.h], {
+        colour: pen.colour("mark"),
+        width: 2,
+        dash: [6, 4],
+      });
     }
     for (const [re, im] of roots) {
       for (const sign of im === 0 ? [1] : [1, -1]) {
@@ -35,7 +39,10 @@ export function drawRoots(canvas, { roots, certified_line: line, unit }) {
       }
     }
   });
-  const axes = [{ symbol: "Re λ", unit }, { symbol: "Im λ", unit }];
+  const axes = [
+    { symbol: "Re λ", unit },
+    { symbol: "Im λ", unit },
+  ];
   drawFrame(pen, area, scales, axes);
 }
 
@@ -64,7 +71,11 @@ export function drawDelays(canvas, point, axis) {
   const here = x(point.tau);
   pen.line([here, area.y - 8, here, area.y + area.h], { colour: pen.colour("mark"), width: 3 });
   const side = here > area.x + area.w / 2 ? "right" : "left";
-  pen.text(`τ = ${told(point.tau, 5)}`, [here, area.y - 10], { colour, align: side, base: "bottom" });
+  pen.text(`τ = ${told(point.tau, 5)}`, [here, area.y - 10], {
+    colour,
+    align: side,
+    base: "bottom",
+  });
   for (const tick of xs.ticks(area.w / 70)) {
     pen.line([x(tick), area.y + area.h, x(tick), area.y + area.h + 5], { colour });
     pen.text(told(tick), [x(tick), area.y + area.h + 8], { colour, base: "top" });
@@ -88,7 +99,10 @@ export function drawLaw(canvas, law) {
     const here = placed(area, scales, [law.at.v0, law.at.mu_k]);
     pen.disc(here, 5, { stroke: pen.colour("ink"), width: 2 });
   });
-  const axes = [{ symbol: "v", unit: law.unit_v }, { symbol: "μ_K; dot: μ_S", unit: "1" }];
+  const axes = [
+    { symbol: "v", unit: law.unit_v },
+    { symbol: "μ_K; dot: μ_S", unit: "1" },
+  ];
   drawFrame(pen, area, scales, axes);
 }
 
@@ -117,7 +131,10 @@ export function drawPhase(canvas, { a, x_dot: u }, start, scales, units) {
     const place = at([start[1], start[0]]);
     pen.disc(place, 9, { fill: pen.colour("mark"), stroke: pen.colour("halo"), width: 2 });
   });
-  const axes = [{ symbol: "elongation a", unit: units.a }, { symbol: "velocity ẋ", unit: units.u }];
+  const axes = [
+    { symbol: "elongation a", unit: units.a },
+    { symbol: "velocity ẋ", unit: units.u },
+  ];
   drawFrame(pen, area, scales, axes);
   return area;
 }

@@ -81,12 +81,16 @@ export function follow(plane, told) {
     told.view(zoomed(plane.view, partsOf(at(event)), event.shiftKey ? 1 / ZOOM : ZOOM));
   });
   // The wheel scrolls the page until the chart is used.
-  canvas.addEventListener("wheel", (event) => {
-    if (!plane.view || !(event.ctrlKey || document.activeElement === canvas)) return;
-    event.preventDefault();
-    const lines = event.deltaMode === 1 ? 16 : 1;
-    told.view(zoomed(plane.view, partsOf(at(event)), Math.exp(-0.002 * lines * event.deltaY)));
-  }, { passive: false });
+  canvas.addEventListener(
+    "wheel",
+    (event) => {
+      if (!plane.view || !(event.ctrlKey || document.activeElement === canvas)) return;
+      event.preventDefault();
+      const lines = event.deltaMode === 1 ? 16 : 1;
+      told.view(zoomed(plane.view, partsOf(at(event)), Math.exp(-0.002 * lines * event.deltaY)));
+    },
+    { passive: false },
+  );
   canvas.addEventListener("keydown", (event) => {
     if (event.altKey || event.metaKey || event.ctrlKey || !plane.view) return;
     const done = key(plane, told, event);
@@ -119,9 +123,11 @@ function key(plane, told, event) {
   const step = ARROWS[event.key];
   if (!step || !point) return false;
   const share = event.shiftKey ? 0.1 : 0.01;
-  told.move(view.map((scale, axis) => {
-    const part = scale.part(point[axis]) + share * step[axis];
-    return scale.value(Math.min(1, Math.max(0, part)));
-  }));
+  told.move(
+    view.map((scale, axis) => {
+      const part = scale.part(point[axis]) + share * step[axis];
+      return scale.value(Math.min(1, Math.max(0, part)));
+    }),
+  );
   return true;
 }

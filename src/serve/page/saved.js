@@ -15,7 +15,12 @@ const MOST_PIXELS = 2048;
 const MOST_IN_ALL = 2 ** 21;
 const LINE_HEIGHT = 220;
 
-const ages = [[86400, "day"], [3600, "hour"], [60, "minute"], [1, "second"]];
+const ages = [
+  [86400, "day"],
+  [3600, "hour"],
+  [60, "minute"],
+  [1, "second"],
+];
 
 /** How long ago, in words. */
 function age(seconds) {
@@ -34,12 +39,21 @@ export class Saved {
    */
   constructor(source, state, plane, told_) {
     Object.assign(this, { source, state, plane, told: told_ });
-    this.windows = new Newest((query, signal) => source.window(this.map.id, query, signal),
-      (answer, query) => this.#show(answer, query), (error) => this.#failed(error));
-    this.lines = new Newest((query, signal) => source.window(this.map.id, query, signal),
-      (answer) => this.#showLine(answer), told_.failed);
-    this.cells = new Newest((at, signal) => source.cell(this.map.id, { at }, signal),
-      (cell) => this.#showCell(cell), told_.failed);
+    this.windows = new Newest(
+      (query, signal) => source.window(this.map.id, query, signal),
+      (answer, query) => this.#show(answer, query),
+      (error) => this.#failed(error),
+    );
+    this.lines = new Newest(
+      (query, signal) => source.window(this.map.id, query, signal),
+      (answer) => this.#showLine(answer),
+      told_.failed,
+    );
+    this.cells = new Newest(
+      (at, signal) => source.cell(this.map.id, { at }, signal),
+      (cell) => this.#showCell(cell),
+      told_.failed,
+    );
     this.#listen();
   }
 
@@ -60,7 +74,8 @@ export class Saved {
       element("maps-title").textContent = `Maps in ${folder}`;
       this.#tellList(maps);
       const own = maps.find(({ id }) => id === this.map?.id);
-      const grown = own && (own.cells_done !== this.seen.cells_done || own.state !== this.seen.state);
+      const grown =
+        own && (own.cells_done !== this.seen.cells_done || own.state !== this.seen.state);
       if (grown && this.state.map) await this.#describe();
     } catch (error) {
       // A folder that was not given is no mistake; a server that is gone is told elsewhere.
@@ -69,7 +84,9 @@ export class Saved {
   }
 
   #tellList(maps) {
-    const key = JSON.stringify(maps.map((map) => ({ ...map, age_seconds: Math.floor(map.age_seconds / 60) })));
+    const key = JSON.stringify(
+      maps.map((map) => ({ ...map, age_seconds: Math.floor(map.age_seconds / 60) })),
+    );
     if (key === this.listed) return;
     this.listed = key;
     const words = ["Map", "State", "Axes", "Fields", "Cells", "Changed"];
@@ -95,8 +112,13 @@ export class Saved {
       element("chart-title").focus();
     });
     const cells = map.cells ? map.cells.toLocaleString("en") : "";
-    const texts = [map.why ? `${state}: ${map.why}` : state, axes, (map.fields ?? []).join(", "), cells,
-      map.age_seconds === undefined ? "" : age(map.age_seconds)];
+    const texts = [
+      map.why ? `${state}: ${map.why}` : state,
+      axes,
+      (map.fields ?? []).join(", "),
+      cells,
+      map.age_seconds === undefined ? "" : age(map.age_seconds),
+    ];
     const row = make("tr", {}, make("th", { scope: "row" }, button));
     row.append(...texts.map((text) => make("td", {}, text)));
     row.className = map.state;
@@ -110,15 +132,16 @@ export class Saved {
       element("to-maps").setAttribute("aria-expanded", String(!list.hidden));
     });
     element("map").addEventListener("submit", (event) => event.preventDefault());
-    const set = (id, key, read) => element(id).addEventListener("change", (event) => {
-      const { map } = this.state;
-      const before = map[key];
-      map[key] = read(event.target);
-      if (key === "x" || key === "y") this.#axesChosen(key, before);
-      if (key === "xlog" || key === "ylog") this.#allInView();
-      this.#build();
-      this.#ask();
-    });
+    const set = (id, key, read) =>
+      element(id).addEventListener("change", (event) => {
+        const { map } = this.state;
+        const before = map[key];
+        map[key] = read(event.target);
+        if (key === "x" || key === "y") this.#axesChosen(key, before);
+        if (key === "xlog" || key === "ylog") this.#allInView();
+        this.#build();
+        this.#ask();
+      });
     set("field", "field", ({ value }) => value);
     set("map-x", "x", ({ value }) => value);
     set("map-y", "y", ({ value }) => value);
@@ -181,7 +204,10 @@ export class Saved {
     if (!names.includes(map.slice)) map.slice = map.y ?? map.x;
     for (const axis of this.map.axes) {
       const at = map.at[axis.name];
-      map.at[axis.name] = Math.min(axis.points - 1, Number.isInteger(at) ? at : Math.floor(axis.points / 2));
+      map.at[axis.name] = Math.min(
+        axis.points - 1,
+        Number.isInteger(at) ? at : Math.floor(axis.points / 2),
+      );
     }
     if (!this.plane.view || !this.range) this.#setView(map.xr, map.yr);
   }
@@ -229,12 +255,17 @@ export class Saved {
     const { map } = this.state;
     element("map-title").textContent = this.map.title || this.map.name;
     const scalars = (this.map.scalars ?? []).filter(({ value }) => value !== 1 && value !== 0);
-    const state = this.map.state === "complete" ? "complete"
-      : `${this.map.state}, ${this.map.cells_done.toLocaleString("en")} cells are there`;
+    const state =
+      this.map.state === "complete"
+        ? "complete"
+        : `${this.map.state}, ${this.map.cells_done.toLocaleString("en")} cells are there`;
     terms(element("map-told"), [
       ["file", this.map.name],
       ["state", `${state}; ${this.map.cells.toLocaleString("en")} cells`],
-      ...scalars.map(({ symbol, value, unit }) => [symbol, told(value) + (unit === "1" ? "" : ` ${unit}`)]),
+      ...scalars.map(({ symbol, value, unit }) => [
+        symbol,
+        told(value) + (unit === "1" ? "" : ` ${unit}`),
+      ]),
     ]);
     const options = (id, list, value) => {
       const select = element(id);
@@ -242,7 +273,11 @@ export class Saved {
       select.value = value;
     };
     const axes = this.map.axes.map(({ name, symbol }) => [name, symbol]);
-    options("field", this.map.fields.map((f) => [f.name, f.short_name ?? f.name]), map.field);
+    options(
+      "field",
+      this.map.fields.map((f) => [f.name, f.short_name ?? f.name]),
+      map.field,
+    );
     options("map-x", axes, map.x);
     options("map-y", axes, map.y);
     options("slice-axis", axes, map.slice);
@@ -253,7 +288,13 @@ export class Saved {
 
   #slider(axis) {
     const { map } = this.state;
-    const range = make("input", { type: "range", id: `at-${axis.name}`, min: 0, max: axis.points - 1, step: 1 });
+    const range = make("input", {
+      type: "range",
+      id: `at-${axis.name}`,
+      min: 0,
+      max: axis.points - 1,
+      step: 1,
+    });
     range.value = map.at[axis.name];
     const output = make("output", { htmlFor: range.id });
     const tell = (value) => (output.value = value === undefined ? "" : told(value, 7));
@@ -265,7 +306,13 @@ export class Saved {
       this.#ask();
     });
     const text = `${axis.symbol}, ${axis.long_name}`;
-    return make("div", { className: "slider" }, make("label", { htmlFor: range.id }, text), range, output);
+    return make(
+      "div",
+      { className: "slider" },
+      make("label", { htmlFor: range.id }, text),
+      range,
+      output,
+    );
   }
 
   #at(without) {
@@ -281,9 +328,18 @@ export class Saved {
     const [xs, ys] = this.plane.view;
     const part = Math.min(1, Math.sqrt(MOST_IN_ALL / (w * h)));
     const pixels = (length) => Math.min(MOST_PIXELS, Math.max(1, Math.floor(part * length)));
-    const query = { field: map.field, x: map.x, at: this.#at([map.x, map.y]), w: pixels(w), h: pixels(h),
-      x0: xs.from, x1: xs.to, xscale: xs.log ? "log" : "linear" };
-    if (map.y) Object.assign(query, { y: map.y, y0: ys.from, y1: ys.to, yscale: ys.log ? "log" : "linear" });
+    const query = {
+      field: map.field,
+      x: map.x,
+      at: this.#at([map.x, map.y]),
+      w: pixels(w),
+      h: pixels(h),
+      x0: xs.from,
+      x1: xs.to,
+      xscale: xs.log ? "log" : "linear",
+    };
+    if (map.y)
+      Object.assign(query, { y: map.y, y0: ys.from, y1: ys.to, yscale: ys.log ? "log" : "linear" });
     else query.h = 1;
     clearTimeout(this.again);
     this.windows.want(query);
@@ -320,14 +376,23 @@ export class Saved {
     const field = this.map.fields.find(({ name }) => name === answer.field);
     const axes = [map.x, map.y].map((name, i) => {
       const found = (i === 0 ? answer.x : answer.y) ?? { values: [0] };
-      return { ...(this.#axis(name) ?? { symbol: "", unit: "1" }), values: found.values, index: found.index };
+      return {
+        ...(this.#axis(name) ?? { symbol: "", unit: "1" }),
+        values: found.values,
+        index: found.index,
+      };
     });
-    const ends = [new Scale(query.x0, query.x1, query.xscale === "log"),
-      map.y ? new Scale(query.y0, query.y1, query.yscale === "log") : new Scale(0, 1)];
+    const ends = [
+      new Scale(query.x0, query.x1, query.xscale === "log"),
+      map.y ? new Scale(query.y0, query.y1, query.yscale === "log") : new Scale(0, 1),
+    ];
     const flags = (n) => this.#flags(answer, n);
     this.#placePoint(axes);
     this.told.shown({
-      axes, ends, field, flags,
+      axes,
+      ends,
+      field,
+      flags,
       nx: axes[0].values.length,
       ny: axes[1].values.length,
       cells: answer.values,
@@ -337,9 +402,11 @@ export class Saved {
       curves: this.curves.list,
       at: (answer.at ?? []).map(({ name, value }) => [name, value]),
       milliseconds: answer.milliseconds,
-      note: answer.damage ? `damaged: ${answer.damage}`
-        : answer.complete ? `read in ${answer.milliseconds.toFixed(0)} ms`
-        : `reading, ${Math.floor(100 * answer.progress)} %`,
+      note: answer.damage
+        ? `damaged: ${answer.damage}`
+        : answer.complete
+          ? `read in ${answer.milliseconds.toFixed(0)} ms`
+          : `reading, ${Math.floor(100 * answer.progress)} %`,
       exact: true,
       rests: answer.complete,
     });
@@ -350,7 +417,8 @@ export class Saved {
     element("reading").hidden = answer.complete;
     element("reading").value = answer.progress;
     clearTimeout(this.again);
-    if (!answer.complete) this.again = setTimeout(() => this.map && this.windows.want(query), AGAIN);
+    if (!answer.complete)
+      this.again = setTimeout(() => this.map && this.windows.want(query), AGAIN);
   }
 
   /** The cell of the state, as a point of the plane. */
@@ -407,11 +475,16 @@ export class Saved {
 
   #showCell(cell) {
     const names = Object.keys(cell.axes);
-    const where = names.map((name) => `${this.#axis(name)?.symbol ?? name} = ${told(cell.axes[name], 9)}`);
+    const where = names.map(
+      (name) => `${this.#axis(name)?.symbol ?? name} = ${told(cell.axes[name], 9)}`,
+    );
     const { point = null, vc = null, motion = null } = cell;
     const unit = this.#axis("tau")?.unit ?? "1";
     this.told.look({ point, vc, motion }, { where: where.join(", "), unit, fixed: true });
-    const value = ([name, v]) => [name, cell.kinds?.[name] ?? (typeof v === "number" ? told(v, 9) : String(v ?? "no value"))];
+    const value = ([name, v]) => [
+      name,
+      cell.kinds?.[name] ?? (typeof v === "number" ? told(v, 9) : String(v ?? "no value")),
+    ];
     const status = cell.computed ? cell.status.join(", ") || "no flags" : "not computed yet";
     terms(element("cell"), [...Object.entries(cell.fields).map(value), ["status", status]]);
   }
@@ -420,7 +493,9 @@ export class Saved {
     const { map } = this.state;
     if (view) {
       this.plane.view = view;
-      [map.xr, map.yr] = view.map(({ from, to }) => [from, to].map((x) => Number(x.toPrecision(9))));
+      [map.xr, map.yr] = view.map(({ from, to }) =>
+        [from, to].map((x) => Number(x.toPrecision(9))),
+      );
     } else {
       this.#setView(null, null);
       Object.assign(map, { xr: null, yr: null });
@@ -442,7 +517,8 @@ export class Saved {
     if (!about) return;
     const axis = this.#axis(x.name);
     const kept = [];
-    for (let i = 0; i < values.length; i++) if (i === 0 || x.index[i] !== x.index[i - 1]) kept.push(i);
+    for (let i = 0; i < values.length; i++)
+      if (i === 0 || x.index[i] !== x.index[i - 1]) kept.push(i);
     const rows = kept.map((i) => {
       const there = !(bits?.[i] & 6) && Number.isFinite(values[i]);
       return [x.values[i], there ? values[i] : null];
@@ -454,16 +530,29 @@ export class Saved {
     const ends = (unit) => (unit === "1" ? "" : ` (${unit})`);
     const ink = { stroke: style.color, grid, ticks: grid };
     this.line?.destroy();
-    this.line = new window.uPlot({
-      width: Math.max(200, target.clientWidth),
-      height: LINE_HEIGHT,
-      scales: { x: { time: false } },
-      axes: [{ ...ink, label: axis.symbol + ends(axis.unit) },
-        { ...ink, label: (about.short_name ?? about.name) + ends(about.unit) }],
-      series: [{ label: axis.symbol }, { label: about.short_name ?? about.name, width: 1.5,
-        stroke: style.getPropertyValue("--calm").trim(), spanGaps: false,
-        paths: about.storage === "real" ? undefined : window.uPlot.paths.stepped({ align: 0 }) }],
-    }, [rows.map(([at]) => at), rows.map(([, value]) => value)], target);
+    this.line = new window.uPlot(
+      {
+        width: Math.max(200, target.clientWidth),
+        height: LINE_HEIGHT,
+        scales: { x: { time: false } },
+        axes: [
+          { ...ink, label: axis.symbol + ends(axis.unit) },
+          { ...ink, label: (about.short_name ?? about.name) + ends(about.unit) },
+        ],
+        series: [
+          { label: axis.symbol },
+          {
+            label: about.short_name ?? about.name,
+            width: 1.5,
+            stroke: style.getPropertyValue("--calm").trim(),
+            spanGaps: false,
+            paths: about.storage === "real" ? undefined : window.uPlot.paths.stepped({ align: 0 }),
+          },
+        ],
+      },
+      [rows.map(([at]) => at), rows.map(([, value]) => value)],
+      target,
+    );
     if (!complete) setTimeout(() => this.map && this.#askLine(), 4 * AGAIN);
   }
 

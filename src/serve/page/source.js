@@ -21,7 +21,8 @@ function numbers(bytes, begun, { type, offset, length, runs }) {
   const behind = Math.ceil((runs * kind.BYTES_PER_ELEMENT) / 8) * 8;
   const ends = new Uint32Array(bytes, begun + offset + behind, runs);
   const all = new kind(length);
-  for (let run = 0, from = 0; run < runs; from = ends[run++]) all.fill(values[run], from, ends[run]);
+  for (let run = 0, from = 0; run < runs; from = ends[run++])
+    all.fill(values[run], from, ends[run]);
   return all;
 }
 

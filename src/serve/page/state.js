@@ -37,7 +37,11 @@ export function addressOf(state, parameters) {
   if (map) {
     put("map", map.id);
     for (const key of ["field", "x", "y", "slice"]) if (map[key]) put(key, map[key]);
-    for (const [key, range] of [["xr", map.xr], ["yr", map.yr]]) if (range) put(key, range.join(","));
+    for (const [key, range] of [
+      ["xr", map.xr],
+      ["yr", map.yr],
+    ])
+      if (range) put(key, range.join(","));
     for (const key of ["xlog", "ylog"]) if (map[key]) put(key, 1);
     for (const [name, index] of Object.entries(map.at ?? {})) put(`at.${name}`, index);
     if (map.point) put("cell", map.point.join(","));
@@ -48,7 +52,13 @@ export function addressOf(state, parameters) {
     for (const name of parameters) if (name in state.values) put(name, state.values[name]);
     if (state.law !== "none") put("law", state.law);
     if (state.law === "table" && state.table.length <= LONGEST_TABLE) {
-      put("table", state.table.trim().replace(/[ \t]*\n[ \t]*/g, ";").replace(/[ \t]+/g, ""));
+      put(
+        "table",
+        state.table
+          .trim()
+          .replace(/[ \t]*\n[ \t]*/g, ";")
+          .replace(/[ \t]+/g, ""),
+      );
     }
     if (state.units) put("units", state.units);
     if (state.show !== START.show) put("show", state.show);
@@ -61,8 +71,24 @@ export function addressOf(state, parameters) {
 
 /** Keys of an address that are no parameters. */
 const WORDS = new Set([
-  "v", "control", "x", "y", "law", "table", "units", "show", "at", "start", "map", "field", "xr",
-  "yr", "xlog", "ylog", "slice", "cell",
+  "v",
+  "control",
+  "x",
+  "y",
+  "law",
+  "table",
+  "units",
+  "show",
+  "at",
+  "start",
+  "map",
+  "field",
+  "xr",
+  "yr",
+  "xlog",
+  "ylog",
+  "slice",
+  "cell",
 ]);
 
 function axisOf(text, otherwise) {
@@ -100,7 +126,9 @@ export function stateOf(fragment) {
       yr: pairOf(get("yr")),
       xlog: get("xlog") === "1",
       ylog: get("ylog") === "1",
-      at: Object.fromEntries(at.map(([key, index]) => [key.slice(3), Math.max(0, number(index) || 0)])),
+      at: Object.fromEntries(
+        at.map(([key, index]) => [key.slice(3), Math.max(0, number(index) || 0)]),
+      ),
       point: pairOf(get("cell")),
     };
     return state;
@@ -115,7 +143,8 @@ export function stateOf(fragment) {
   state.point = pairOf(get("at"));
   for (const [key, text] of said) {
     const value = number(text);
-    if (!WORDS.has(key) && /^[a-z_0-9]+$/.test(key) && Number.isFinite(value)) state.values[key] = value;
+    if (!WORDS.has(key) && /^[a-z_0-9]+$/.test(key) && Number.isFinite(value))
+      state.values[key] = value;
   }
   return state;
 }

@@ -34,9 +34,19 @@ const line = (name, value) => `${name} = ${value}\n`;
 
 /** The points of a friction law from two columns: v and μ_K. */
 export function tableOf(text) {
-  const rows = text.trim().split(/\r?\n/).filter((row) => row.trim() && !/^\s*[#%a-z]/i.test(row));
-  const pairs = rows.map((row) => row.trim().split(/[\s,;]+/).map(Number));
-  const wrong = pairs.findIndex((pair) => pair.length < 2 || !pair.slice(0, 2).every(Number.isFinite));
+  const rows = text
+    .trim()
+    .split(/\r?\n/)
+    .filter((row) => row.trim() && !/^\s*[#%a-z]/i.test(row));
+  const pairs = rows.map((row) =>
+    row
+      .trim()
+      .split(/[\s,;]+/)
+      .map(Number),
+  );
+  const wrong = pairs.findIndex(
+    (pair) => pair.length < 2 || !pair.slice(0, 2).every(Number.isFinite),
+  );
   if (wrong >= 0) throw new RangeError(`line ${wrong + 1} of the table is no pair of numbers`);
   if (pairs.length < 2) throw new RangeError("the table needs two points or more: v, μ_K");
   return { speeds: pairs.map(([v]) => v), mu_k: pairs.map(([, mu]) => mu) };
@@ -52,7 +62,10 @@ function tablesOf(state, names) {
       const { speeds, mu_k } = tableOf(state.table);
       text += `speeds = [${speeds.join(", ")}]\nmu_k = [${mu_k.join(", ")}]\n`;
     }
-    text += names.filter(ofLaw).map((name) => line(name, value(name))).join("");
+    text += names
+      .filter(ofLaw)
+      .map((name) => line(name, value(name)))
+      .join("");
   }
   if (state.units) {
     const [force, length, time] = state.units.split(",");
@@ -80,15 +93,20 @@ const withFixed = (text) => (text ? `[fixed]\n${text}` : "");
  */
 export function sweepOf(state, laws, points, fields) {
   const axes = [state.x, state.y];
-  const names = parametersOf(state, laws).filter((name) => axes.every((axis) => axis.name !== name));
+  const names = parametersOf(state, laws).filter((name) =>
+    axes.every((axis) => axis.name !== name),
+  );
   const described = axes.map(({ name, from, to, log }, i) => {
     const spacing = log ? ', spacing = "log"' : "";
     return `${name} = { from = ${from}, to = ${to}, points = ${points[i]}${spacing} }\n`;
   });
   const curves = axes.some(({ name }) => name === "tau") ? "boundaries = true\n" : "";
   const list = fields.map((field) => `"${field}"`).join(", ");
-  return `fields = [${list}]\n${curves}\n[axes]\n${described.join("")}\n` +
-    withFixed(fixedOf(state, names)) + tablesOf(state, names);
+  return (
+    `fields = [${list}]\n${curves}\n[axes]\n${described.join("")}\n` +
+    withFixed(fixedOf(state, names)) +
+    tablesOf(state, names)
+  );
 }
 
 /** What is asked at a point of the chart: `point`, `vc` or, with a start, `motion`. */

@@ -9,11 +9,12 @@ const [ROWS, COLUMNS] = [9, 7];
 /** Fills a table with cells of a plane, rows by y from the top. */
 export function tellTable(table, plane, view) {
   const { axes, nx, ny, ends, cells, colours, field } = plane;
-  const places = (axis, n, most) => Array.from({ length: most }, (_, k) => {
-    const value = view[axis].value(k / (most - 1));
-    const index = Math.min(n - 1, Math.max(0, Math.floor(ends[axis].part(value) * n)));
-    return { index, value: axes[axis].values?.[index] ?? value };
-  });
+  const places = (axis, n, most) =>
+    Array.from({ length: most }, (_, k) => {
+      const value = view[axis].value(k / (most - 1));
+      const index = Math.min(n - 1, Math.max(0, Math.floor(ends[axis].part(value) * n)));
+      return { index, value: axes[axis].values?.[index] ?? value };
+    });
   const [columns, rows] = [places(0, nx, COLUMNS), places(1, ny, ROWS).reverse()];
   const head = columns.map(({ value }) => make("th", { scope: "col" }, told(value, 4)));
   const corner = make("th", { scope: "col" }, `${axes[1].symbol} \\ ${axes[0].symbol}`);

@@ -30,6 +30,16 @@ impl std::str::FromStr for SweepSpec {
     /// # Errors
     /// Points at the first place that is not understood, out of range or contradictory.
     fn from_str(text: &str) -> Result<Self, SpecError> {
+        Self::read(text, MOST_POINTS)
+    }
+}
+
+impl SweepSpec {
+    /// Reads a sweep file whose axes have at most `most_points` points each, 10⁷ at the most.
+    ///
+    /// # Errors
+    /// Points at the first place that is not understood, out of range or contradictory.
+    pub fn read(text: &str, most_points: u64) -> Result<Self, SpecError> {
         let document = parse(text)?;
         let mut draft = Draft::default();
         for entry in entries(document.get_ref(), "") {
@@ -43,7 +53,7 @@ impl std::str::FromStr for SweepSpec {
                 "boundaries" => draft.boundaries = Some(entry.boolean()?),
                 "degree_of_stability" => draft.read_degrees(&entry)?,
                 "best" => draft.best = entry.boolean()?.then(|| entry.key_span.clone()),
-                "axes" => draft.read_axes(&entry)?,
+                "axes" => draft.read_axes(&entry, most_points.min(MOST_POINTS))?,
                 "fixed" => draft.given.read_fixed(&entry)?,
                 "friction" => draft.given.read_friction(&entry)?,
                 "start" => draft.given.read_start(&entry)?,
@@ -139,7 +149,7 @@ impl Draft {
         Ok(())
     }
 
-    fn read_axes(&mut self, axes: &Entry) -> Result<(), SpecError> {
+    fn read_axes(&mut self, axes: &Entry, most_points: u64) -> Result<(), SpecError> {
         self.axes_place = Some(axes.key_span.clone());
         for entry in axes.table()? {
             let parameter = Parameter::from_name(entry.key)
@@ -154,7 +164,7 @@ impl Draft {
                 return Err(entry.error(message));
             }
             let values = if entry.is_table() {
-                read_range(&entry)?
+                read_range(&entry, most_points)?
             } else {
                 read_list(&entry, parameter)?
             };

@@ -12,7 +12,8 @@ const MOST_DEGREES: usize = 16;
 /// The largest degree of stability, in 1/time.
 const LARGEST_DEGREE: f64 = 1e12;
 
-pub(super) fn read_range(axis: &Entry) -> Result<Vec<f64>, SpecError> {
+/// The values of an axis of at most `most` points.
+pub(super) fn read_range(axis: &Entry, most: u64) -> Result<Vec<f64>, SpecError> {
     let (mut from, mut to, mut points, mut spacing) = (None, None, None, Spacing::Linear);
     for entry in axis.table()? {
         match entry.key {
@@ -37,6 +38,10 @@ pub(super) fn read_range(axis: &Entry) -> Result<Vec<f64>, SpecError> {
     let from = from.ok_or_else(|| missing("from"))?;
     let to = to.ok_or_else(|| missing("to"))?;
     let points = points.ok_or_else(|| missing("points"))?;
+    if points > most {
+        let message = format!("points = {points} is more than the {most} that are allowed here");
+        return Err(axis.error(message));
+    }
     spaced(from, to, points, spacing).map_err(|e| axis.error(e.0))
 }
 
