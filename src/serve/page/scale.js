@@ -73,8 +73,31 @@ export function told(x, digits = 6) {
   if (x === null || x === undefined || Number.isNaN(x)) return "no value";
   if (!Number.isFinite(x)) return x > 0 ? "∞" : "−∞";
   if (x === 0) return "0";
-  return Number(x.toPrecision(digits)).toString().replace("-", "−");
+  return Number(x.toPrecision(digits)).toString().replaceAll("-", "−");
 }
 
-/** A tick's label: steps leave digits behind that mean nothing. */
-export const tickText = (x, step) => told(Math.abs(x) < 1e-9 * step ? 0 : x);
+/** An axis this much narrower than its numbers has ticks that tell how far they are from one. */
+const NARROW = 1e-3;
+
+/**
+ * Ticks of an axis that can be told apart, with their labels. Where these would be long, they tell
+ * the difference to `origin`, which is 0 otherwise.
+ * @param {Scale} scale
+ * @param {number} most
+ */
+export function ticksOf(scale, most) {
+  const [span, size] = [
+    Math.abs(scale.to - scale.from),
+    Math.max(Math.abs(scale.from), Math.abs(scale.to)),
+  ];
+  let origin = 0;
+  if (span < NARROW * size) {
+    const power = Math.ceil(Math.log10(span));
+    // Through text: a product of powers of ten would not be round.
+    origin = Number(`${Math.round(((scale.from + scale.to) / 2) * 10 ** -power)}e${power}`);
+  }
+  // Steps leave digits behind that mean nothing.
+  const label = (x) => told(Math.abs(x) < 1e-6 * span ? 0 : x);
+  const list = scale.ticks(Math.max(2, most));
+  return { origin, ticks: list.map((x) => ({ part: scale.part(x), text: label(x - origin) })) };
+}
