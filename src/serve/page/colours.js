@@ -5,6 +5,8 @@ import { told } from "./scale.js";
 const STABLE = "#5fb9ae";
 const NO_VALUE = "#b9b9b9";
 const COUNTS = [STABLE, "#f6e8c3", "#dfc27d", "#bf812d", "#7a4608"];
+/** What stands for no count, and for no small one. */
+const [NO_COUNT, NO_FEW] = [65535, 255];
 const COUNT_NAMES = ["stable", "1 or 2 unstable roots", "3 or 4", "5 or 6", "7 or more"];
 /** Fates of motions, ends of stick-slip, working velocities, methods, by name. */
 const KINDS = {
@@ -66,7 +68,7 @@ function sampled(table, part) {
 
 const css = ([r, g, b]) => `rgb(${r}, ${g}, ${b})`;
 
-/** Colours of numbers that stand for a few things. */
+/** Colours of numbers that stand for a few things; all others are no values. */
 class Classes {
   constructor(names, colours, classOf) {
     [this.names, this.colours, this.classOf] = [names, colours, classOf];
@@ -75,11 +77,11 @@ class Classes {
   }
 
   pixel(value) {
-    return Number.isNaN(value) ? this.none : this.ints[this.classOf(value)];
+    return this.ints[this.classOf(value)] ?? this.none;
   }
 
   name(value) {
-    return Number.isNaN(value) ? "no value" : this.names[this.classOf(value)];
+    return this.names[this.classOf(value)] ?? "no value";
   }
 
   /** What the colours mean: {colour, text} each. */
@@ -166,11 +168,12 @@ function aboutZero(values, stable, words) {
  */
 export function coloursOf(field, values) {
   if (field.name === "n_unstable") {
-    return new Classes(COUNT_NAMES, COUNTS, (n) => Math.min(4, Math.ceil(n / 2)));
+    const classOf = (n) => (n === NO_COUNT ? NaN : Math.min(4, Math.ceil(n / 2)));
+    return new Classes(COUNT_NAMES, COUNTS, classOf);
   }
   if (field.kinds) {
     const colours = field.kinds.map((kind, i) => KINDS[kind] ?? FEW[i % FEW.length]);
-    return new Classes(field.kinds, colours, (n) => Math.min(n, field.kinds.length - 1));
+    return new Classes(field.kinds, colours, (n) => n);
   }
   const spread = field.spread ?? "";
   if (spread === "about-zero") {
@@ -180,5 +183,8 @@ export function coloursOf(field, values) {
   }
   if (/below|error/.test(spread)) return aboutZero(values, -1, ["above 0", "below 0"]);
   if (/tail|magnitude|decade|relax/.test(spread)) return logarithmic(values);
-  return linear(values);
+  const bar = linear(values);
+  const { part } = bar;
+  if (field.storage === "few") bar.part = (v) => (v === NO_FEW ? NaN : part(v));
+  return bar;
 }

@@ -1,5 +1,6 @@
 // The page: what is set, what is shown, and the point that is looked at.
 
+import { tellCell } from "./cells.js";
 import { Controls } from "./controls.js";
 import { download, element, tellCopied } from "./dom.js";
 import { tellLegend } from "./legend.js";
@@ -125,7 +126,8 @@ class Explorer {
 
   #title({ field, axes }) {
     const what = field.short_name ?? field.name;
-    return `${what[0].toUpperCase()}${what.slice(1)} over ${axes[0].symbol} and ${axes[1].symbol}`;
+    const over = axes.map(({ symbol }) => symbol).join(" and ");
+    return `${what[0].toUpperCase()}${what.slice(1)} over ${over}`;
   }
 
   #table() {
@@ -143,14 +145,10 @@ class Explorer {
     const where = plane.axes.map(
       ({ symbol, unit }, i) => `${symbol} = ${told(exact[i], 7)}${unit === "1" ? "" : ` ${unit}`}`,
     );
-    const value = plane.cells[n];
-    const { name, unit, short_name: words } = plane.field;
-    const count = value === 0 ? "stable" : `${value} unstable roots`;
-    const kinds = plane.field.kinds ? plane.colours.name(value) : null;
-    const number = `${words ?? name} ${told(value)}${!unit || unit === "1" ? "" : ` ${unit}`}`;
-    const parts = [name === "n_unstable" ? count : (kinds ?? number)];
+    const parts = [tellCell(plane, n)];
     const { abscissa } = plane.others ?? {};
-    if (abscissa && name !== "abscissa") parts.push(`spectral abscissa ${told(abscissa[n])}`);
+    if (abscissa && plane.field.name !== "abscissa")
+      parts.push(`spectral abscissa ${told(abscissa[n])}`);
     if (plane.flags) parts.push(...plane.flags(n));
     return `${where.join(", ")}: ${parts.join(", ")}`;
   }
@@ -181,9 +179,8 @@ class Explorer {
   /** Moves the point; by a key, in a map, at least to the next cell. */
   #move(point, byKey) {
     const { state, plane } = this;
-    const kept = point.map((x) => Number(x.toPrecision(9)));
-    plane.point = state.map ? this.saved.move(kept, byKey) : kept;
-    if (!state.map) state.point = plane.point;
+    if (state.map) this.saved.move(point, byKey);
+    else state.point = plane.point = point.map((x) => Number(x.toPrecision(9)));
     plane.draw();
     this.#say(plane.point);
   }
