@@ -2,7 +2,7 @@
 
 import { element, terms } from "./dom.js";
 import { Newest } from "./newest.js";
-import { drawPhase, phaseScales } from "./plots.js";
+import { drawPhase, linesIn, phaseScales } from "./plots.js";
 import { told } from "./scale.js";
 
 /** Points of a line that are drawn; more cannot be told apart. */
@@ -81,16 +81,13 @@ export class MotionCard {
     const thinned = (values) => values.filter((_, k) => k % every === 0 || k === values.length - 1);
     const data = [t, u, a, load].map(thinned);
     const size = { width: Math.max(200, target.clientWidth), height: 260 };
-    const style = getComputedStyle(target);
-    const ink = style.color;
+    const { colour, axis } = linesIn(target);
     const line = (label, name, scale) => ({
       label,
       scale,
-      stroke: style.getPropertyValue(`--${name}`).trim(),
+      stroke: colour(name),
       width: 1.5,
     });
-    const grid = { stroke: style.getPropertyValue("--grid").trim(), width: 1 };
-    const axis = (more) => ({ stroke: ink, grid, ticks: grid, ...more });
     this.plot?.destroy();
     this.plot = new window.uPlot(
       {

@@ -4,6 +4,15 @@ import { areaWithin, drawFrame, placed } from "./frame.js";
 import { CanvasPen } from "./pen.js";
 import { Scale, told } from "./scale.js";
 
+/** What uPlot's options need of an element's style: colours by name, and axes with a grid. */
+export function linesIn(target) {
+  const style = getComputedStyle(target);
+  const colour = (name) => style.getPropertyValue(`--${name}`).trim();
+  const grid = { stroke: colour("grid"), width: 1 };
+  const axis = (more) => ({ stroke: style.color, grid, ticks: grid, ...more });
+  return { colour, axis };
+}
+
 /** A range with some room around. */
 function roomy(values, part = 0.08) {
   const [low, high] = [Math.min(...values), Math.max(...values)];

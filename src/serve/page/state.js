@@ -44,7 +44,6 @@ export function addressOf(state, parameters) {
       if (range) put(key, range.join(","));
     for (const key of ["xlog", "ylog"]) if (map[key]) put(key, 1);
     for (const [name, index] of Object.entries(map.at ?? {})) put(`at.${name}`, index);
-    if (map.point) put("cell", map.point.join(","));
   } else {
     put("control", state.control);
     put("x", axis(state.x));
@@ -88,7 +87,6 @@ const WORDS = new Set([
   "xlog",
   "ylog",
   "slice",
-  "cell",
 ]);
 
 function axisOf(text, otherwise) {
@@ -129,7 +127,6 @@ export function stateOf(fragment) {
       at: Object.fromEntries(
         at.map(([key, index]) => [key.slice(3), Math.max(0, number(index) || 0)]),
       ),
-      point: pairOf(get("cell")),
     };
     return state;
   }
