@@ -7,7 +7,7 @@ export const MISSING = 4;
 /** Bits of a status that say that something is amiss with a cell. */
 const AMISS = 2 | 4 | 8 | 16;
 /** The status of a cell that is not computed. */
-const NO_STATUS = 255;
+export const NO_STATUS = 255;
 
 const INK = 0xff1b1b1b;
 const LIGHT = 0xfff2f2f2;

@@ -6,7 +6,10 @@ const STABLE = "#5fb9ae";
 const NO_VALUE = "#b9b9b9";
 const COUNTS = [STABLE, "#f6e8c3", "#dfc27d", "#bf812d", "#7a4608"];
 const COUNT_NAMES = ["stable", "1 or 2 unstable roots", "3 or 4", "5 or 6", "7 or more"];
-/** Fates of motions, ends of stick-slip, working velocities, methods, by name. */
+/**
+ * Fates of motions, ends of stick-slip, working velocities, by name. Those of one field are all told
+ * apart, by the colour-blind too.
+ */
 const KINDS = {
   sliding: STABLE,
   "stick-slip": "#dfc27d",
@@ -15,13 +18,13 @@ const KINDS = {
   diverged: "#222222",
   undecided: NO_VALUE,
   "no-cycle": "#e8e8e8",
-  grazing: "#35978f",
-  fold: "#dfc27d",
-  "period-doubling": "#bf812d",
-  irregular: "#7a4608",
-  persists: "#222222",
-  never: "#d5eeea",
-  lost: "#35978f",
+  grazing: "#009999",
+  fold: "#dd9900",
+  "period-doubling": "#bb7755",
+  irregular: "#990000",
+  persists: "#7733bb",
+  never: "#007799",
+  lost: "#bb77dd",
   stable: STABLE,
   bistable: "#c2e3f2",
   unstable: "#dfc27d",
@@ -49,6 +52,10 @@ const BROWN_TEAL = [
   "#35978f",
   "#01665e",
 ];
+/** How slipmap calls values that are the better the farther they lie below 0. */
+const BELOW = new Set(["better-below", "relative-error"]);
+/** And values over orders of magnitude. */
+const LONG = new Set(["long-tail", "magnitudes", "decades", "relaxation"]);
 /** Steps of a colour bar. */
 const STEPS = 255;
 
@@ -178,7 +185,6 @@ export function coloursOf(field, values) {
       field.unit && /^abscissa/.test(field.name) ? ["grows", "decays"] : ["unstable", "stable"];
     return aboutZero(values, field.stable_sign ?? 1, words);
   }
-  if (/below|error/.test(spread)) return aboutZero(values, -1, ["above 0", "below 0"]);
-  if (/tail|magnitude|decade|relax/.test(spread)) return logarithmic(values);
-  return linear(values);
+  if (BELOW.has(spread)) return aboutZero(values, -1, ["above 0", "below 0"]);
+  return LONG.has(spread) ? logarithmic(values) : linear(values);
 }
