@@ -16,6 +16,8 @@ macro_rules! files {
 }
 
 const FILES: &[(&str, &str)] = &files![
+    "asked.js",
+    "catalogue.js",
     "cells.js",
     "colours.js",
     "controls.js",

@@ -635,7 +635,7 @@ test("an answer that is not wanted any more neither stays nor is taken for anoth
     const body = altered(await response.body(), (head) => {
       if (number === 0) Object.assign(head, { complete: false, progress: 0.5 });
     });
-    return route.fulfill({ response, body });
+    return route.fulfill({ response, body }).catch(() => {});
   });
   await page.locator("#at-mu_prime").fill("0");
   await eventually(() => assert.equal(asked.length, 1));
@@ -701,7 +701,8 @@ test("where there is no cell, there is no value", async () => {
         head.status = run("u8", 255, length);
         head.complete = bits !== 2;
       });
-      return route.fulfill({ response, body });
+      // The next question may come while this is no longer listened to.
+      return route.fulfill({ response, body }).catch(() => {});
     });
     await page.getByRole("button", { name: bits === 2 ? "Zoom in" : "Zoom out" }).click();
     await page.locator("#legend", { hasText: words }).waitFor();
@@ -796,7 +797,7 @@ test("a map of one axis is a strip with a line, and says nothing of a second one
   assert.match(await page.locator("#hover").innerText(), /^α_v = −0\.\d+: [a-z-]+$/);
   await page.mouse.click(at.x, at.y);
   assert.equal(await index(), 5);
-  await page.waitForFunction(() => /alpha-v=/.test(document.getElementById("command").value));
+  await page.locator("#point-where", { hasText: /^α_v = −0\.5909/ }).waitFor();
   await page.waitForFunction(() => window.slipmap.saved.slice.line?.data[0].length === 12);
   await picture(page, "map-one-axis");
   assert.deepEqual(page.faults, []);
@@ -835,13 +836,15 @@ test("a map that grows leaves the slider, the focus and the critical velocity al
   await openMap(page, "critical.h5");
   await page.waitForFunction(() => /ends by/.test(document.getElementById("vc").innerText));
   await page.evaluate(() => {
-    window.changes = 0;
-    const watch = new MutationObserver(() => window.changes++);
-    watch.observe(document.getElementById("vc"), { childList: true, subtree: true });
+    const list = document.getElementById("vc");
+    window.texts = [list.innerText];
+    const watch = new MutationObserver(() => window.texts.push(list.innerText));
+    watch.observe(list, { childList: true, subtree: true });
   });
   await grow();
   await page.waitForTimeout(100);
-  assert.equal(await page.evaluate(() => window.changes), 0);
+  const texts = new Set(await page.evaluate(() => window.texts));
+  assert.equal(texts.size, 1, [...texts].join(" / "));
   assert.deepEqual(page.faults, []);
 });
 

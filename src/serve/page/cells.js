@@ -49,20 +49,6 @@ export function tellNumber({ kinds }, value) {
   return kinds ? (kinds[value] ?? "no value") : told(value);
 }
 
-/** What the pixel of a plane says of its cell, in words. */
-export function tellCell(plane, n) {
-  const lack = lacking(plane, n);
-  if (lack) return lack;
-  const { name, unit, short_name: words, kinds } = plane.field;
-  const value = valueOf(plane, n);
-  if (kinds) return tellNumber(plane.field, value);
-  if (Number.isNaN(value)) return `${words ?? name}: no value`;
-  if (name === "n_unstable") return value === 0 ? "stable" : tellRoots(value);
-  return `${words ?? name} ${told(value)}${!unit || unit === "1" ? "" : ` ${unit}`}`;
-}
-
-const tellRoots = (count) => `${count} unstable root${count === 1 ? "" : "s"}`;
-
 /** What else a pixel says besides its value, `flags` being those that a status can have. */
 export function flagsOf(plane, flags, n) {
   if (lacking(plane, n)) return [];

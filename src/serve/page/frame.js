@@ -15,7 +15,7 @@ export function areaWithin(
 }
 
 /** The title of an axis: its symbol, what its ticks are counted from, and its unit if it has one. */
-function titleOf({ symbol, unit }, origin) {
+export function titleOf({ symbol, unit }, origin = 0) {
   const sign = origin > 0 ? "−" : "+";
   const what = origin === 0 ? symbol : `${symbol} ${sign} ${told(Math.abs(origin), 17)}`;
   return !unit || unit === "1" ? what : `${what} (${unit})`;

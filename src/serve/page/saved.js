@@ -446,7 +446,6 @@ export class Saved {
         fixed: [...(answer.at ?? []).map(({ name, value }) => [name, value]), ...asked.fixed],
         milliseconds: answer.milliseconds,
         note: this.#note(answer),
-        exact: true,
       }),
     );
     if (asked.of === this.wanted.of) {
@@ -531,11 +530,10 @@ export class Saved {
       (name) => `${this.#axis(name)?.symbol ?? name} = ${told(cell.axes[name], 9)}`,
     );
     const { point = null, vc = null, motion = null } = cell;
-    const unit = this.#axis("tau")?.unit ?? "1";
     const key = JSON.stringify([where, point, vc, motion]);
     // While a map grows, what is computed at the point stays as it is.
     if (!again || key !== this.toldCell)
-      this.told.look({ point, vc, motion }, { where: where.join(", "), unit, fixed: true });
+      this.told.look({ point, vc, motion }, { where: where.join(", "), fixed: true });
     this.toldCell = key;
     const text = (value) => (typeof value === "number" ? told(value, 9) : (WORDS[value] ?? value));
     const value = ([name, found]) => [name, cell.kinds?.[name] ?? text(found)];

@@ -4,7 +4,7 @@ import { tellNumber, valueOf } from "./cells.js";
 import { element } from "./dom.js";
 import { Newest } from "./newest.js";
 import { linesIn } from "./plots.js";
-import { told } from "./scale.js";
+import { begun, told } from "./scale.js";
 
 const HEIGHT = 220;
 /** How soon an unfinished line is asked for again, in milliseconds. */
@@ -77,8 +77,7 @@ export class Slice {
     const name = field.short_name ?? field.name;
     const unit = field.unit && field.unit !== "1" ? ` (${field.unit})` : "";
     const damage = answer.damage ? `; damaged: ${answer.damage}` : "";
-    const what = `${name[0].toUpperCase()}${name.slice(1)}${unit}`;
-    element("slice-title").textContent = `${what} along ${axis.symbol}${damage}`;
+    element("slice-title").textContent = `${begun(name)}${unit} along ${axis.symbol}${damage}`;
     const rows = rowsOf(answer, field);
     const data = [rows.map(([at]) => at), rows.map(([, value]) => value)];
     this.line?.destroy();
