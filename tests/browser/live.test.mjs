@@ -655,6 +655,7 @@ test("what an address asks for and there is not is told in words", async () => {
   for (const [fragment, told] of [
     ["#v=1&x=alpha_v,-Infinity,0.4", /axis across, alpha_v from -Infinity to 0.4: outside/],
     ["#v=1&x=tau,0,1&y=tau,0,2", /both axes are the same/],
+    ["#v=1&x=alpha_v,0,1e-320", /too narrow/],
     ["#v=1&x=foo,0,1", /axis across, "foo", is no parameter/],
     ["#v=1&x=constructor,0,1", /"constructor", is no parameter/],
     ["#v=1&y=mass,-1,1", /axis upwards, mass from -1 to 1: outside its range: greater than 0/],
@@ -679,7 +680,14 @@ test("what an address asks for and there is not is told in words", async () => {
   assert.ok(await page.locator("#cards").isVisible());
   await show(page, "#v=1");
   assert.equal(await words(page, "address-told"), "");
-  assert.deepEqual(page.faults, []);
+  // A map that is not there leaves nothing to be moved.
+  await page.evaluate(() => (location.hash = "#v=1&map=0000000000000000"));
+  await page.waitForFunction(() => /no map/.test(document.getElementById("problem").innerText));
+  assert.ok(await page.locator("#cards").isHidden());
+  await page.locator("#chart").focus();
+  for (const key of ["+", "0", "ArrowLeft", "Enter"]) await page.keyboard.press(key);
+  const missing = page.faults.filter((fault) => !/404/.test(fault));
+  assert.deepEqual(missing, []);
 });
 
 test("a start is dragged while something is looked at, and a key asks for no more than it must", async () => {

@@ -90,6 +90,8 @@ class Explorer {
     element("save-toml").title = map ? "The sweep file of this map" : "Run this overnight";
     this.plane.plane = null;
     if (map) {
+      // Nothing is moved or zoomed before the map is there.
+      this.plane.view = null;
       this.live.stop();
       this.panel.clear();
       this.saved.open();
