@@ -2,7 +2,7 @@
 
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { atRest, openPage, opened, picture, violations } from "./support.mjs";
+import { atRest, openPage, opened, picture, settled, violations } from "./support.mjs";
 
 const { browser, server } = await opened();
 
@@ -70,6 +70,7 @@ test("a key in the form leaves the focus where it is", async () => {
   await press("axis-y-log", "Space");
   await press("law", "ArrowDown");
   await press("law", "ArrowUp");
+  await settled(page);
   await page.locator("#take-law").focus();
   await page.keyboard.press("Enter");
   assert.equal(await focus(), "motion-title");

@@ -55,6 +55,8 @@ export const UNITS = {
 const FAR = 1000;
 /** An axis is not narrower than this part of its values: its cells would be the same numbers. */
 const NARROWEST = 1e-9;
+/** Values of less than this do not make an axis that is narrower still. */
+const SMALL = 1e-3;
 
 /** Ends of a logarithmic axis that are as near to the given ones as can be. */
 export function withoutZero([from, to]) {
@@ -99,7 +101,8 @@ export class Catalogue {
     } = this.about(name);
     if (!(from < to)) return "from must be less than to";
     if (from < low || to > high) return `outside its range: ${allowed}`;
-    if (to - from < NARROWEST * Math.max(Math.abs(from), Math.abs(to))) return "too narrow";
+    const size = Math.max(Math.abs(from), Math.abs(to), SMALL);
+    if (to - from < NARROWEST * size) return "too narrow";
     return log && !(from * to > 0) ? "a logarithmic axis does not reach 0" : null;
   }
 

@@ -86,7 +86,10 @@ class Explorer {
     element("save-toml").title = map ? "The sweep file of this map" : "Run this overnight";
     this.plane.plane = null;
     if (map) {
+      // Nothing is moved or zoomed before the map is there.
+      this.plane.view = null;
       this.live.stop();
+      this.panel.clear();
       this.saved.open();
     } else {
       this.saved.close();
@@ -102,7 +105,7 @@ class Explorer {
     const { state, catalogue } = this;
     const usual = [state.x, state.y].map(({ name }) => catalogue.value({ values: {} }, name));
     const inside = view.every((scale, i) => scale.part(usual[i]) >= 0 && scale.part(usual[i]) <= 1);
-    return inside ? usual : view.map((scale) => scale.value(0.5));
+    return inside ? usual : view.map((scale) => Number(scale.value(0.5).toPrecision(9)));
   }
 
   #ownView() {
@@ -319,7 +322,8 @@ class Explorer {
 
   /** An error in words; of a mistake in a pasted table with its line. */
   words(error) {
-    const line = this.state.law === "table" ? lineOfMistake(error, this.state.table) : null;
+    const { map, law, table } = this.state;
+    const line = !map && law === "table" ? lineOfMistake(error, table) : null;
     const where = line === null ? "" : `line ${line} of the table: `;
     return where + error.message + (error.help ? ` (${error.help})` : "");
   }

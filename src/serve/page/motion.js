@@ -92,6 +92,7 @@ export class MotionCard {
     const motion = (ours && last.motion) || null;
     // Of another case nothing is left to be seen; of another start only while it is moved.
     element("motion").classList.toggle("blank", !motion);
+    element("motion").classList.toggle("failed", Boolean(error));
     element("outcome").classList.toggle("asking", this.pending);
     if (motion === this.motion) return;
     this.motion = motion;

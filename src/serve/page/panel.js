@@ -85,6 +85,12 @@ export class Panel {
     this.#tell();
   }
 
+  /** Shows no point until the next one. */
+  clear() {
+    this.look({ point: null, vc: null, motion: null }, { where: "", start: null });
+    element("point-none").hidden = true;
+  }
+
   /** The answer about a text, if it is the one that is shown. */
   answerTo(text) {
     return this.point && this.text === text ? this.point : null;

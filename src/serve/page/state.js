@@ -156,7 +156,7 @@ export function stateOf(fragment, catalogue) {
   const state = { ...START, x: { ...START.x }, y: { ...START.y }, values: { ...START.values } };
   state.notes = notes;
   if (get("v") !== VERSION) {
-    if (said.size > 0) notes.push("it is none of this version of the page");
+    if ([...said].length > 0) notes.push("it is none of this version of the page");
     return state;
   }
   state.start = pairOf(get("start"));
