@@ -17,6 +17,8 @@ macro_rules! files {
 }
 
 const FILES: &[(&str, &str)] = &files![
+    "asked.js",
+    "catalogue.js",
     "cells.js",
     "colours.js",
     "controls.js",
@@ -25,6 +27,7 @@ const FILES: &[(&str, &str)] = &files![
     "explorer.js",
     "frame.js",
     "legend.js",
+    "list.js",
     "live.js",
     "motion.js",
     "newest.js",
@@ -35,6 +38,7 @@ const FILES: &[(&str, &str)] = &files![
     "pointing.js",
     "saved.js",
     "scale.js",
+    "slice.js",
     "source.js",
     "state.js",
     "sweep.js",

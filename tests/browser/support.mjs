@@ -118,6 +118,22 @@ export async function atRest(page) {
   }, undefined, { timeout: 30000 });
 }
 
+/** Waits until everything about the point is there, too. */
+export async function settled(page) {
+  await atRest(page);
+  await page.waitForFunction(() => {
+    const { settling, panel } = window.slipmap;
+    return !settling && panel.next && !panel.pending;
+  });
+}
+
+/** Shows the view of an address, and waits for it. */
+export async function show(page, fragment) {
+  await page.evaluate((hash) => (location.hash = hash), fragment);
+  await page.waitForTimeout(50);
+  await settled(page);
+}
+
 /** Tries until nothing is thrown, for ten seconds. */
 export async function eventually(check) {
   const until = Date.now() + 10000;

@@ -1,4 +1,4 @@
-//! A process for tests that answers as one that reads a map does, and is held while a file is there.
+//! A process for tests that answers as one that reads a map does, unless it is held by a file.
 
 use std::fs;
 use std::path::{Path, PathBuf};

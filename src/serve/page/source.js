@@ -2,12 +2,16 @@
 
 /** What is said instead of an answer. */
 export class Problem extends Error {
-  /** @param {{detail?: string, title?: string, help?: string, status?: number}} told */
-  constructor(told) {
+  /**
+   * @param {{detail?: string, title?: string, help?: string, status?: number, span?: number[]}} told
+   * @param {string} [text] what was asked, in which `span` is a place
+   */
+  constructor(told, text) {
     super(told.detail ?? told.title ?? "no answer");
     this.help = told.help;
     this.status = told.status;
     this.span = told.span;
+    this.text = text;
   }
 }
 
@@ -51,13 +55,15 @@ export function decode(bytes) {
 
 /** A server: kind "server". */
 function server() {
-  const answered = async (response) => {
+  const answered = async (response, text) => {
     if (response.ok) return response;
-    throw new Problem(await response.json().catch(() => ({ title: response.statusText })));
+    const told = await response.json().catch(() => ({ title: response.statusText }));
+    throw new Problem(told, text);
   };
   const post = async (path, body, signal) => {
     const headers = { "Content-Type": "application/toml" };
-    return answered(await fetch(`api/v1/${path}`, { method: "POST", headers, body, signal }));
+    const response = fetch(`api/v1/${path}`, { method: "POST", headers, body, signal });
+    return answered(await response, body);
   };
   const get = async (path, signal) => answered(await fetch(`api/v1/${path}`, { signal }));
   const decoded = async (response) => decode(await (await response).arrayBuffer());
@@ -189,7 +195,7 @@ function page() {
   const ask = async (of, name, toml, signal) => {
     const answer = await of.ask(name, toml, signal);
     if (answer.status === 200) return answer;
-    throw new Problem(JSON.parse(new TextDecoder().decode(answer.bytes)));
+    throw new Problem(JSON.parse(new TextDecoder().decode(answer.bytes)), toml);
   };
   const json = async (name, toml, signal) => {
     const { bytes } = await ask(others, name, toml, signal);
