@@ -1,5 +1,5 @@
-//! What is answered about maps: the same types are written, read where they come from a process, and
-//! described.
+//! What is answered about maps: the same types are written, read where they come from a process,
+//! and described.
 
 use std::collections::BTreeMap;
 
