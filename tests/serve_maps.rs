@@ -131,7 +131,8 @@ fn maps_are_listed_and_described() {
     assert_eq!(entry(&Serving::new(&folder), "small.h5")["id"], small["id"]);
 }
 
-/// Windows on maps of one to four axes, both ways round, even and logarithmic, near and far.
+/// Windows on maps of one to four axes, both ways round, even and logarithmic, near and far, and
+/// beyond their ends.
 #[test]
 fn windows_show_the_cells_of_the_file() {
     let folder = Folder::new();
@@ -181,7 +182,9 @@ fn windows_show_the_cells_of_the_file() {
                 } else {
                     "linear"
                 };
-                let ends = [0, 1].map(|_| first + (last - first) * chance.between(-0.01, 1.01));
+                let beyond = if scale == "log" { 0.01 } else { 0.4 };
+                let ends =
+                    [0, 1].map(|_| first + (last - first) * chance.between(-beyond, 1.0 + beyond));
                 let whole = chance.of(3) == 0;
                 (Some((ends[0], ends[1])).filter(|_| !whole), scale)
             };
@@ -198,6 +201,34 @@ fn windows_show_the_cells_of_the_file() {
                 scales: (x_scale, y_scale),
             };
             check(&serving, &id, map, &window);
+        }
+    }
+}
+
+/// Pixels that lie beside an axis show nothing, however far away they are.
+#[test]
+fn beyond_a_map_there_is_nothing() {
+    let folder = Folder::new();
+    make(&folder, "map", SMALL);
+    let serving = Serving::new(&folder);
+    let id = id(&serving, "map.h5");
+    let window = format!("/api/v1/maps/{id}/window?field=n_unstable&x=alpha_v&y=tau&w=4&h=4");
+    for (ends, there) in [
+        ("x0=-50&x1=-10", 0),
+        ("y0=9.5&y1=20", 0),
+        ("x0=-1.2&x1=0.1", 16),
+        ("x0=-2.5&x1=0.1", 8),
+        ("x0=-1e308&x1=1.2e308", 4),
+        ("x0=-1e308&x1=1.2e308&y0=1.2e308&y1=-1e308", 1),
+    ] {
+        let told = complete(&serving, &format!("{window}&{ends}"));
+        let [bits, values, status] =
+            ["bits", "values", "status"].map(|name| told.numbers(&told.head[name]));
+        let shows = |place: &usize| bits[*place] as u8 & 8 == 0;
+        assert_eq!((0..16).filter(shows).count(), there, "{ends}: {bits:?}");
+        for place in (0..16).filter(|place| !shows(place)) {
+            let found = (bits[place], values[place], status[place]);
+            assert_eq!(found, (8.0, 65535.0, 255.0), "{ends}");
         }
     }
 }
@@ -238,6 +269,20 @@ fn windows_show_the_closed_form() {
         }
     }
     let map = MapFile::open(&folder.path().join("large.h5")).unwrap();
+    // Pixels that hide cells of more chunks than one.
+    for (x, y, size) in [(1, 2, (13, 17)), (0, 1, (9, 21)), (2, 0, (5, 7))] {
+        let window = Window {
+            field: Field::NUnstable,
+            x,
+            y: Some(y),
+            at: vec![17, 150, 101],
+            x_ends: None,
+            y_ends: None,
+            size,
+            scales: ("linear", "linear"),
+        };
+        assert!(check(&serving, &id, &map, &window) > 10);
+    }
     let at = map.axes()[0].values[17];
     let curves = map.curves_where(|outer| outer == [at]).unwrap();
     for (x, y) in [("alpha_v", "tau"), ("tau", "alpha_v")] {
@@ -387,12 +432,14 @@ fn a_map_grows_while_it_is_looked_at() {
         let bits = window.numbers(&window.head["bits"]);
         bits.iter().filter(|bits| **bits as u8 & 4 == 0).count()
     };
-    let first = complete(&serving, &path);
-    assert!(
-        (1..lines * 140).contains(&there(&first)),
-        "{}",
-        there(&first)
-    );
+    // Curves come first, and may fill the first files alone.
+    let mut first = complete(&serving, &path);
+    while there(&first) == 0 {
+        go_on_until(tiles() + 1);
+        std::thread::sleep(Duration::from_millis(2500));
+        first = complete(&serving, &path);
+    }
+    assert!(there(&first) < lines * 140, "{}", there(&first));
     go_on_until(tiles() + 2);
     until(20, "more of it is there", || {
         let later = complete(&serving, &path);
@@ -664,6 +711,45 @@ fn processes_that_read_maps_come_and_go() {
     });
 }
 
+/// However many maps are asked at once, few processes read them, and all are answered.
+#[test]
+fn few_processes_read_many_maps() {
+    let folder = Folder::new();
+    make(&folder, "map", SMALL);
+    for number in 0..30 {
+        let copy = folder.path().join(format!("copy{number}.h5"));
+        fs::copy(folder.path().join("map.h5"), copy).unwrap();
+    }
+    let serving = Serving::new(&folder);
+    let known = || {
+        let list = serving.get("/api/v1/maps").json();
+        let maps = list["maps"].as_array().unwrap().clone();
+        let is_known = |map: &Value| map["state"] == "complete";
+        maps.iter().all(is_known).then_some(maps)
+    };
+    until(60, "all are known", || known().is_some());
+    let maps = known().unwrap();
+    let (mut most, answered) = (0, std::sync::atomic::AtomicUsize::new(0));
+    std::thread::scope(|scope| {
+        for map in maps.iter().chain(&maps).chain(&maps) {
+            let path = format!("/api/v1/maps/{}", map["id"].as_str().unwrap());
+            let (serving, answered) = (&serving, &answered);
+            scope.spawn(move || {
+                let answer = serving.get(&path);
+                let busy = answer.status == 503 && answer.head.contains("retry-after: ");
+                assert!(answer.status == 200 || busy, "{}", answer.head);
+                answered.fetch_add(1, std::sync::atomic::Ordering::Relaxed);
+            });
+        }
+        while answered.load(std::sync::atomic::Ordering::Relaxed) < 3 * maps.len() {
+            most = most.max(processes::children(serving.child.id()).len());
+            std::thread::sleep(Duration::from_millis(5));
+        }
+    });
+    // Two that are looked at; those for the list have ended.
+    assert!((1..=2).contains(&most), "{most} processes");
+}
+
 /// Who says nothing, or trickles, makes room for others.
 #[test]
 fn slow_clients_make_room() {
@@ -813,7 +899,7 @@ fn options_say_what_they_mean() {
         "nowhere is no folder",
     );
     // A browser that is there, and one that is not.
-    let opener = "#!/bin/sh\necho \"$1\" > opened\n";
+    let opener = "#!/bin/sh\ncat \"$1\" > opened\n";
     let path = folder.path().join("xdg-open");
     fs::write(&path, opener).unwrap();
     let mut mode = fs::metadata(&path).unwrap().permissions();
@@ -833,10 +919,8 @@ fn options_say_what_they_mean() {
     };
     let output = ends(&["--open"], folder.path());
     let link = String::from_utf8(output.stdout).unwrap();
-    assert_eq!(
-        fs::read_to_string(folder.path().join("opened")).unwrap(),
-        link
-    );
+    let opened = fs::read_to_string(folder.path().join("opened")).unwrap();
+    assert!(opened.contains(link.trim()), "{opened}");
     assert_eq!(link.lines().count(), 1);
     fs::write(&path, "#!/bin/sh\nexit 3\n").unwrap();
     let output = ends(&["--open"], folder.path());

@@ -1,29 +1,16 @@
 //! A window that is being read: its pixels, and the chunks that are still to be looked at.
 
-use std::collections::VecDeque;
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-use super::canvas::{Canvas, NOT_COMPUTED, SEVERAL, UNREAD};
+use super::canvas::{BEYOND, Canvas, NOT_COMPUTED, SEVERAL, UNREAD};
 use super::cells::Cell;
+use super::jobs::Jobs;
 use super::pixels::Pixels;
 use super::shelf::Plane;
 use super::source::Facts;
 use super::window::{Asked, Numbers, Shot, Shown};
-use crate::store::chunk_layout::ChunkLayout;
 use crate::sweep::engine::STATUS_FILL;
-use crate::sweep::plan::pieces::mixed;
-
-/// A chunk that is to be looked at.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) struct Job {
-    /// Of the status, else of the field.
-    pub status: bool,
-    /// Numbers of the chunk along the slower and the faster axis.
-    pub chunk: (usize, usize),
-    /// It holds cells that pixels show.
-    pub shown: bool,
-}
 
 /// The pixels of a field, of which there are three types.
 #[derive(Debug)]
@@ -66,7 +53,9 @@ pub struct View {
     pub(super) crowded: bool,
     pub(super) field: Mutex<AnyCanvas>,
     pub(super) status: Mutex<Canvas<u8>>,
-    pub(super) jobs: Mutex<VecDeque<Job>>,
+    /// What is amiss, where pixels may hide cells.
+    pub(super) amiss: Mutex<Canvas<u8>>,
+    pub(super) jobs: Mutex<Jobs>,
     total: usize,
     done: AtomicUsize,
     damage: Mutex<Option<String>>,
@@ -114,14 +103,12 @@ impl View {
         let crowded = slow.is_crowded() || fast.is_crowded();
         let field = &facts.layouts[column];
         let pixels = slow.len() * fast.len();
-        let jobs = jobs(
-            &plane,
-            (&slow, &fast),
-            (field, &facts.layouts[facts.status()]),
-        );
+        let layouts = (field, &facts.layouts[facts.status()]);
+        let jobs = Jobs::of(&plane, (&slow, &fast), layouts);
         Ok(Self {
             field: Mutex::new(AnyCanvas::new(field.element, pixels)),
             status: Mutex::new(Canvas::new(pixels)),
+            amiss: Mutex::new(Canvas::new(if crowded { pixels } else { 0 })),
             total: jobs.len(),
             jobs: Mutex::new(jobs),
             done: AtomicUsize::new(0),
@@ -139,8 +126,8 @@ impl View {
 
     /// Bytes of its pixels.
     pub(super) fn bytes(&self) -> usize {
-        // Value and bits, and the same of the status.
-        self.slow.len() * self.fast.len() * (self.asked.field.bytes() + 3)
+        // Value and bits, and the same of the status and of what is amiss.
+        self.slow.len() * self.fast.len() * (self.asked.field.bytes() + 5)
     }
 
     pub(super) fn is_complete(&self) -> bool {
@@ -153,6 +140,14 @@ impl View {
             locked(&self.damage).get_or_insert(why);
         }
         self.done.fetch_add(1, Ordering::Release);
+    }
+
+    /// Which pixels lie on the axes.
+    fn showing(&self) -> impl Fn(usize) -> bool {
+        let (rows, columns) = (&self.slow.on_axis, &self.fast.on_axis);
+        let (height, width) = (self.slow.len(), self.fast.len());
+        let all = *rows == (0..height) && *columns == (0..width);
+        move |place| all || rows.contains(&(place / width)) && columns.contains(&(place % width))
     }
 
     /// What it shows so far, of a map of these facts.
@@ -184,8 +179,9 @@ impl View {
             })
         };
         let field = locked(&self.field);
-        let status = locked(&self.status);
+        let (status, amiss) = (locked(&self.status), locked(&self.amiss));
         let fill = facts.fill(self.column);
+        let shows = self.showing();
         let hidden = |place: usize| field.bits()[place] & UNREAD != 0;
         let values = match &*field {
             AnyCanvas::U8(canvas) => Numbers::U8(picked(canvas, places(), hidden, fill as u8)),
@@ -196,10 +192,14 @@ impl View {
             }
         };
         let bits = |place: usize| {
+            if !shows(place) {
+                return BEYOND;
+            }
             let (of_field, of_status) = (field.bits()[place], status.bits[place]);
             let missing = of_status & UNREAD == 0 && status.values[place] == STATUS_FILL;
             let unread = (of_field | of_status) & UNREAD;
-            (of_field & SEVERAL) | unread | if missing { NOT_COMPUTED } else { 0 }
+            let several = (of_field | amiss.bits.get(place).unwrap_or(&0)) & SEVERAL;
+            several | unread | if missing { NOT_COMPUTED } else { 0 }
         };
         let unread = |place: usize| status.bits[place] & UNREAD != 0;
         Shot {
@@ -228,46 +228,4 @@ fn picked<T: Cell>(
         false => canvas.values[place],
     };
     places.map(value).collect()
-}
-
-/// The chunks of a window: first those that pixels show, spread all over it, field and status in
-/// turn, then those whose cells are all hidden.
-fn jobs(
-    plane: &Plane,
-    (slow, fast): (&Pixels, &Pixels),
-    (field, status): (&ChunkLayout, &ChunkLayout),
-) -> VecDeque<Job> {
-    let of = |layout: &ChunkLayout, status: bool| {
-        let hidden = !status && (slow.is_crowded() || fast.is_crowded());
-        let down = match plane.slow {
-            Some(axis) => slow.chunks(layout.chunk[axis], hidden),
-            None => vec![(0, true)],
-        };
-        let across = fast.chunks(layout.chunk[plane.fast], hidden);
-        let mut jobs = Vec::with_capacity(down.len() * across.len());
-        for &(row, shown) in &down {
-            jobs.extend(across.iter().map(|&(column, too)| Job {
-                status,
-                chunk: (row, column),
-                shown: shown && too,
-            }));
-        }
-        jobs.sort_by_key(|job| {
-            let number = (job.chunk.0 as u64) << 32 | job.chunk.1 as u64;
-            (!job.shown, mixed(number))
-        });
-        jobs
-    };
-    let (field, status) = (of(field, false), of(status, true));
-    let mut jobs = VecDeque::with_capacity(field.len() + status.len());
-    let mut status = status.into_iter();
-    for job in field {
-        if !job.shown {
-            jobs.extend(status.by_ref());
-        }
-        jobs.push_back(job);
-        jobs.extend(status.next());
-    }
-    jobs.extend(status);
-    jobs
 }

@@ -7,7 +7,7 @@ use std::process::{Child, ChildStdin, ChildStdout, Command, Stdio};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
 
-use tokio::sync::oneshot;
+use tokio::sync::{Notify, OwnedSemaphorePermit, oneshot};
 
 use super::frames::{Ask, Frame, Request};
 
@@ -26,6 +26,31 @@ pub struct ReaderCommand {
     pub arguments: Vec<String>,
 }
 
+/// What a process takes until the system has done with it, also where that takes long after it was
+/// told to end.
+#[derive(Debug)]
+pub(super) struct Place {
+    permit: Option<OwnedSemaphorePermit>,
+    freed: Arc<Notify>,
+}
+
+impl Place {
+    /// Those who wait hear of it once it is free.
+    pub(super) fn of(permit: OwnedSemaphorePermit, freed: &Arc<Notify>) -> Self {
+        Self {
+            permit: Some(permit),
+            freed: Arc::clone(freed),
+        }
+    }
+}
+
+impl Drop for Place {
+    fn drop(&mut self) {
+        self.permit.take();
+        self.freed.notify_waiters();
+    }
+}
+
 /// Why there is no answer.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Trouble {
@@ -37,6 +62,8 @@ pub(super) enum Trouble {
     TooLong,
     /// Others wait already.
     Busy,
+    /// As many processes as may be are at work for other maps.
+    NoPlace,
     /// No map is asked for that much.
     LongRequest,
 }
@@ -48,10 +75,13 @@ struct Waiting {
     ended: bool,
 }
 
-/// A process that reads a map; it ends with this.
+/// A process, until somebody waits for its end.
+type Running = Arc<Mutex<Option<Child>>>;
+
+/// A process that reads a map; it is told to end with this.
 #[derive(Debug)]
 pub(super) struct Reader {
-    child: Mutex<Child>,
+    child: Running,
     requests: Mutex<ChildStdin>,
     waiting: Arc<Mutex<Waiting>>,
 }
@@ -61,8 +91,12 @@ fn locked<T>(of: &Mutex<T>) -> MutexGuard<'_, T> {
 }
 
 impl Reader {
-    /// Starts a process for the map at `path`.
-    pub(super) fn start(command: &ReaderCommand, path: &Path) -> Result<Self, Trouble> {
+    /// Starts a process for the map at `path`, which the system may take long for.
+    pub(super) fn start(
+        command: &ReaderCommand,
+        path: &Path,
+        place: Place,
+    ) -> Result<Self, Trouble> {
         let mut child = Command::new(&command.program)
             .args(&command.arguments)
             .arg(path)
@@ -79,15 +113,19 @@ impl Reader {
         let (Some(requests), Some(answers)) = (child.stdin.take(), child.stdout.take()) else {
             return Err(Trouble::NotStarted);
         };
+        let child = Arc::new(Mutex::new(Some(child)));
         let waiting = Arc::new(Mutex::new(Waiting::default()));
         let reader = Self {
-            child: Mutex::new(child),
+            child: Arc::clone(&child),
             requests: Mutex::new(requests),
             waiting: Arc::clone(&waiting),
         };
-        let listening = std::thread::Builder::new()
-            .stack_size(1 << 17)
-            .spawn(move || listen(answers, &waiting));
+        let listening = std::thread::Builder::new().stack_size(1 << 17);
+        let listening = listening.spawn(move || {
+            listen(answers, &waiting);
+            wait_for(&child);
+            drop(place);
+        });
         listening.map_err(|_| Trouble::NotStarted)?;
         Ok(reader)
     }
@@ -97,10 +135,11 @@ impl Reader {
         locked(&self.waiting).ended
     }
 
+    /// Tells it to end. Who listens to it waits until it has.
     fn end(&self) {
-        let mut child = locked(&self.child);
-        drop(child.kill());
-        drop(child.wait());
+        if let Some(child) = &mut *locked(&self.child) {
+            drop(child.kill());
+        }
     }
 
     /// Its answer. One that does not answer within `patience` is ended.
@@ -149,6 +188,15 @@ impl Reader {
 impl Drop for Reader {
     fn drop(&mut self) {
         self.end();
+    }
+}
+
+/// Waits until a process that says nothing more has ended, with no lock held.
+fn wait_for(child: &Running) {
+    let child = locked(child).take();
+    if let Some(mut child) = child {
+        drop(child.kill());
+        drop(child.wait());
     }
 }
 

@@ -14,10 +14,11 @@ use utoipa::OpenApi;
 use utoipa_axum::router::OpenApiRouter;
 use utoipa_axum::routes;
 
-use super::described::{CurvesHead, MapCell, MapDescription, MapList, WindowHead};
+use super::described::{CurvesHead, MapCell, MapDescription, MapList, MapTold, WindowHead};
 use super::frames::{Ask, CellQuery, CurvesQuery, Frame, Kind, ScaleName, WindowQuery};
 use super::readers::Maps;
 use super::scan::Found;
+use crate::maps::look::finite;
 use crate::serve::openapi::Encoded;
 use crate::serve::problem::{Denied, Problem};
 
@@ -54,6 +55,9 @@ enum NoMap {
     /// The map cannot be read
     #[response(status = 502, content_type = "application/problem+json")]
     Damaged(Problem),
+    /// Reading it took too long
+    #[response(status = 504, content_type = "application/problem+json")]
+    TooLong(Problem),
 }
 
 type Asked<T> = Result<Query<T>, QueryRejection>;
@@ -94,8 +98,8 @@ async fn asked(maps: &Maps, id: &str, ask: Ask) -> Result<Response, Problem> {
         Denied,
     ),
 )]
-async fn list(State(maps): State<Arc<Maps>>) -> axum::Json<Value> {
-    axum::Json(maps.list.json().await)
+async fn list(State(maps): State<Arc<Maps>>) -> axum::Json<MapList> {
+    axum::Json(maps.list.all().await)
 }
 
 /// What there is to know of a map besides its cells
@@ -105,7 +109,7 @@ async fn list(State(maps): State<Arc<Maps>>) -> axum::Json<Value> {
     tag = "maps",
     params(("id" = String, Path, description = "as the list has it")),
     responses(
-        (status = 200, description = "The map", body = MapDescription),
+        (status = 200, description = "The map", body = MapDescription<MapTold>),
         Denied,
         NoMap,
     ),
@@ -113,16 +117,20 @@ async fn list(State(maps): State<Arc<Maps>>) -> axum::Json<Value> {
 async fn description(
     State(maps): State<Arc<Maps>>,
     Path(id): Path<String>,
-) -> Result<axum::Json<Value>, Problem> {
+) -> Result<axum::Json<MapDescription<Value>>, Problem> {
     let found = found(&maps, &id).await?;
     let frame = maps.ask(&found, &Ask::Description).await?;
-    let mut told: Value = serde_json::from_slice(&frame.bytes)
+    let told: Value = serde_json::from_slice(&frame.bytes)
         .map_err(|error| Problem::of(StatusCode::BAD_GATEWAY, error.to_string()))?;
     let complete = told["cells"] == told["cells_done"];
-    told["state"] = found.state(complete).into();
-    told["id"] = found.id.into();
-    told["name"] = found.name.into();
-    Ok(axum::Json(told))
+    let state = found.state(complete);
+    let Found { id, name, .. } = found;
+    Ok(axum::Json(MapDescription {
+        id,
+        name,
+        state,
+        told,
+    }))
 }
 
 /// Cells in a plane, as pixels
@@ -144,11 +152,9 @@ async fn window(
     query: Asked<WindowQuery>,
 ) -> Result<Response, Problem> {
     let query = said(query)?;
-    let ends = [query.x0, query.x1, query.y0, query.y1];
-    if ends.into_iter().flatten().any(|end| !end.is_finite()) {
-        let detail = "the ends of a window are finite numbers";
-        return Err(Problem::of(StatusCode::UNPROCESSABLE_ENTITY, detail));
-    }
+    // Here, since JSON would lose others on the way to the process.
+    finite([query.x0, query.x1, query.y0, query.y1])
+        .map_err(|detail| Problem::of(StatusCode::UNPROCESSABLE_ENTITY, detail))?;
     let found = found(&maps, &id).await?;
     let room = maps.room(&query).await?;
     let Frame { bytes, .. } = maps.ask(&found, &Ask::Window(query)).await?;

@@ -6,6 +6,7 @@ import { told } from "./scale.js";
 const SEVERAL = 1;
 const UNREAD = 2;
 const MISSING = 4;
+const BEYOND = 8;
 /** Bits of a status that say that something is amiss with a cell. */
 const AMISS = 2 | 4 | 8 | 16;
 /** The status of a cell that is not computed. */
@@ -18,8 +19,12 @@ const LIGHT = 0xfff2f2f2;
 const MIDDLE = 0xffd0d0d0;
 const DARK = 0xff9a9a9a;
 
+/** Whether a pixel lies beyond the map. */
+export const isBeyond = ({ bits }, n) => Boolean(bits?.[n] & BEYOND);
+
 /** Why nothing is known of the cell of a pixel, in words; none where something is. */
 export function lacking({ status, bits, damage, rests }, n) {
+  if (bits?.[n] & BEYOND) return "beyond the map";
   if (bits?.[n] & UNREAD) return damage && rests ? "could not be read" : "not read yet";
   if (bits?.[n] & MISSING || status?.[n] === NO_STATUS) return "not computed yet";
   return null;
@@ -34,7 +39,7 @@ export function valueOf(plane, n) {
 /** The values of a plane that are there: those that stand for none would stretch its colours. */
 export function valuesOf(plane) {
   const { cells, status, bits, field } = plane;
-  const lacks = (n) => (bits && bits[n] & (UNREAD | MISSING)) || status?.[n] === NO_STATUS;
+  const lacks = (n) => (bits && bits[n] & (UNREAD | MISSING | BEYOND)) || status?.[n] === NO_STATUS;
   const fill = FILLS[field.storage];
   let count = 0;
   const found = new Float64Array(cells.length);
@@ -75,7 +80,8 @@ function mark(pixels, { nx, ny, status, bits }) {
     for (let j = 0; j < ny; j++, n++) {
       const bit = bits ? bits[n] : 0;
       const flags = status ? status[n] : 0;
-      if (bit & UNREAD) pixels[n] = (i + j) % 8 < 4 ? LIGHT : MIDDLE;
+      if (bit & BEYOND) pixels[n] = 0;
+      else if (bit & UNREAD) pixels[n] = (i + j) % 8 < 4 ? LIGHT : MIDDLE;
       else if (bit & MISSING || flags === NO_STATUS) pixels[n] = (i ^ j) & 4 ? MIDDLE : DARK;
       else if (flags & AMISS) pixels[n] = (i + j) % 5 === 0 ? INK : pixels[n];
       else if (bit & SEVERAL && (i + j) & 1) pixels[n] = INK;

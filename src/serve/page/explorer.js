@@ -1,7 +1,7 @@
 // The page: what is set, what is shown, and the point that is looked at.
 
 import { Catalogue, withoutZero } from "./catalogue.js";
-import { lacking, valueOf } from "./cells.js";
+import { isBeyond, lacking, valueOf } from "./cells.js";
 import { Controls } from "./controls.js";
 import { copy, download, element } from "./dom.js";
 import { tellLegend } from "./legend.js";
@@ -198,10 +198,8 @@ class Explorer {
     const index = point && plane && this.plane.indexAt(point);
     if (!index) return "";
     const n = index[0] * plane.ny + index[1];
-    const where = this.#where(
-      plane.axes,
-      plane.axes.map((axis, i) => axis.values?.[index[i]] ?? point[i]),
-    );
+    const values = plane.axes.map((axis, i) => axis.values?.[index[i]] ?? point[i]);
+    const where = this.#where(plane.axes, isBeyond(plane, n) ? point : values);
     const lack = lacking(plane, n);
     if (lack) return `${where}: ${lack}`;
     const { abscissa } = plane.others ?? {};

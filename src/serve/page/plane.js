@@ -1,6 +1,6 @@
 // A plane of parameter space on a canvas: cells, curves over them, axes around, and a point.
 
-import { lacking, paint, tellNumber, valueOf } from "./cells.js";
+import { isBeyond, lacking, paint, tellNumber, valueOf } from "./cells.js";
 import { areaWithin, drawFrame, placed } from "./frame.js";
 import { CanvasPen, SvgPen } from "./pen.js";
 
@@ -175,8 +175,11 @@ export class PlaneView {
   #seen(axis) {
     const { axes, ends, nx, ny } = this.plane;
     const [shown, n] = [axes[axis], [nx, ny][axis]];
-    const all = Array.from({ length: n }, (_, i) => i);
-    const first = ({ index }) => all.filter((i) => i === 0 || index[i] !== index[i - 1]);
+    const across = Array.from({ length: (nx * ny) / n }, (_, j) => j);
+    const place = (i, j) => (axis === 0 ? i * ny + j : j * ny + i);
+    const there = (i) => across.some((j) => !isBeyond(this.plane, place(i, j)));
+    const all = Array.from({ length: n }, (_, i) => i).filter(there);
+    const first = ({ index }) => all.filter((i, k) => k === 0 || index[i] !== index[all[k - 1]]);
     return (shown?.index ? first(shown) : all).map((i) => ({
       i,
       value: shown?.values?.[i] ?? ends[axis].value((i + 0.5) / n),
