@@ -272,6 +272,7 @@ test("an address that makes no sense shows what it can", async () => {
   ]) {
     const page = await openPage(browser, null);
     await page.goto(server.link);
+    await page.waitForURL((url) => url.search === "");
     await page.goto(`http://127.0.0.1:${server.port}/${fragment}`);
     await page.waitForTimeout(300);
     assert.match(await page.locator("h1").innerText(), /slipmap/);
@@ -424,6 +425,27 @@ test("the page goes on when its server is back", async () => {
     `--tau=${tau}`,
   ]);
   await anew.end();
+});
+
+test("the link opens from a file and from another site's page", async () => {
+  const { createServer } = await import("node:http");
+  const file = join(newFolder(), "link.html");
+  writeFileSync(file, `<meta http-equiv="refresh" content="0; url=${server.link}">`);
+  const site = createServer((_, response) => {
+    response.setHeader("Content-Type", "text/html");
+    response.end(`<a href="${server.link}">slipmap</a>`);
+  });
+  await new Promise((done) => site.listen(0, "127.0.0.1", done));
+  for (const from of [`file://${file}`, `http://localhost:${site.address().port}/`]) {
+    const page = await openPage(browser, null);
+    await page.goto(from);
+    if (from.startsWith("http")) await page.getByRole("link").click();
+    await page.waitForURL((url) => url.port === String(server.port) && url.search === "");
+    await atRest(page);
+    assert.deepEqual(page.faults, []);
+  }
+  site.closeAllConnections();
+  site.close();
 });
 
 test("another site's page can do nothing", async () => {
