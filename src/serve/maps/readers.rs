@@ -5,7 +5,6 @@ use std::sync::Arc;
 use std::time::Duration;
 
 use axum::http::StatusCode;
-use tokio::sync::{OwnedSemaphorePermit, Semaphore};
 
 use super::frames::{Ask, Frame, Kind, MOST_PIXELS, Refused, WindowQuery};
 use super::list::List;
@@ -13,13 +12,14 @@ use super::places::Places;
 use super::process::{ReaderCommand, Trouble};
 use super::scan::Found;
 use crate::serve::problem::Problem;
+use crate::serve::room::{Room, Taken};
 
 /// A process that takes longer is ended.
 const PATIENCE: Duration = Duration::from_secs(20);
-/// Megabytes of windows that are asked for or sent at a time.
+/// Megabytes of windows and curves that are asked for or sent at a time.
 const ROOM: u32 = 32;
-/// Room is waited for so long.
-const FOR_ROOM: Duration = Duration::from_secs(10);
+/// What the curves of a plane take, unless there are very many of them.
+const BYTES_OF_CURVES: u64 = 8 << 20;
 /// Bytes of a pixel at most: a real, its status, and its bits.
 const BYTES_OF_PIXEL: usize = 10;
 /// How often a map is opened anew that is another one by now.
@@ -30,8 +30,7 @@ const MOST_OPENED: usize = 3;
 pub(in crate::serve) struct Maps {
     pub(super) list: Arc<List>,
     places: Arc<Places>,
-    /// Megabytes that answers may take.
-    room: Arc<Semaphore>,
+    room: Room,
 }
 
 impl Maps {
@@ -40,21 +39,21 @@ impl Maps {
         Self {
             list: Arc::new(List::of(folder, command.clone())),
             places: Places::of(command),
-            room: Arc::new(Semaphore::new(ROOM as usize)),
+            room: Room::of(ROOM),
         }
     }
 
     /// Room for the answer about a window; it is waited for while others are sent.
-    pub(super) async fn room(&self, query: &WindowQuery) -> Result<OwnedSemaphorePermit, Problem> {
+    pub(super) async fn room(&self, query: &WindowQuery) -> Result<Taken, Problem> {
         let pixels = |asked: Option<usize>| asked.unwrap_or(usize::MAX).min(MOST_PIXELS);
         let height = query.y.as_ref().map_or(1, |_| pixels(query.h));
         let bytes = pixels(query.w) * height * BYTES_OF_PIXEL;
-        let needed = (1 + (bytes >> 20) as u32).min(ROOM);
-        let room = Arc::clone(&self.room).acquire_many_owned(needed);
-        match tokio::time::timeout(FOR_ROOM, room).await {
-            Ok(Ok(room)) => Ok(room),
-            _ => Err(problem(Trouble::Busy)),
-        }
+        self.room.take(bytes as u64).await
+    }
+
+    /// Room for the curves of a plane.
+    pub(super) async fn room_for_curves(&self) -> Result<Taken, Problem> {
+        self.room.take(BYTES_OF_CURVES).await
     }
 
     /// What the process that reads a map answers.

@@ -2,14 +2,13 @@
 
 use std::sync::Arc;
 
-use axum::body::Bytes;
 use axum::extract::rejection::QueryRejection;
-use axum::extract::{Path, Query, State};
+use axum::extract::{FromRequestParts, Path, Query, State};
 use axum::http::StatusCode;
 use axum::http::header::CONTENT_TYPE;
+use axum::http::request::Parts;
 use axum::response::{IntoResponse, Response};
 use serde_json::Value;
-use tokio::sync::OwnedSemaphorePermit;
 use utoipa::OpenApi;
 use utoipa_axum::router::OpenApiRouter;
 use utoipa_axum::routes;
@@ -20,7 +19,7 @@ use super::readers::Maps;
 use super::scan::Found;
 use crate::maps::look::finite;
 use crate::serve::openapi::Encoded;
-use crate::serve::problem::{Denied, Problem};
+use crate::serve::problem::{Denied, Problem, nothing_here};
 
 /// The routes of all addresses below `/api/v1/maps`.
 pub(in crate::serve) fn routes<S>(maps: Arc<Maps>) -> OpenApiRouter<S>
@@ -60,6 +59,21 @@ enum NoMap {
     TooLong(Problem),
 }
 
+const ENCODED: &str = "application/octet-stream";
+
+/// The id of a map, as it stands in an address.
+struct Id(String);
+
+impl<S: Send + Sync> FromRequestParts<S> for Id {
+    type Rejection = Problem;
+
+    async fn from_request_parts(parts: &mut Parts, state: &S) -> Result<Self, Problem> {
+        let id = Path::from_request_parts(parts, state).await;
+        let Path(id) = id.map_err(|_| nothing_here())?;
+        Ok(Self(id))
+    }
+}
+
 type Asked<T> = Result<Query<T>, QueryRejection>;
 
 /// What a query says.
@@ -78,7 +92,7 @@ fn answered(frame: Frame) -> Response {
     let kind = match frame.kind {
         Kind::Text => "text/plain; charset=utf-8",
         Kind::Json => "application/json",
-        _ => "application/octet-stream",
+        _ => ENCODED,
     };
     ([(CONTENT_TYPE, kind)], frame.bytes).into_response()
 }
@@ -116,7 +130,7 @@ async fn list(State(maps): State<Arc<Maps>>) -> axum::Json<MapList> {
 )]
 async fn description(
     State(maps): State<Arc<Maps>>,
-    Path(id): Path<String>,
+    Id(id): Id,
 ) -> Result<axum::Json<MapDescription<Value>>, Problem> {
     let found = found(&maps, &id).await?;
     let frame = maps.ask(&found, &Ask::Description).await?;
@@ -148,7 +162,7 @@ async fn description(
 )]
 async fn window(
     State(maps): State<Arc<Maps>>,
-    Path(id): Path<String>,
+    Id(id): Id,
     query: Asked<WindowQuery>,
 ) -> Result<Response, Problem> {
     let query = said(query)?;
@@ -158,21 +172,7 @@ async fn window(
     let found = found(&maps, &id).await?;
     let room = maps.room(&query).await?;
     let Frame { bytes, .. } = maps.ask(&found, &Ask::Window(query)).await?;
-    // The room is given back when the last byte is sent.
-    let body = Bytes::from_owner(Sent { bytes, _room: room });
-    Ok(([(CONTENT_TYPE, "application/octet-stream")], body).into_response())
-}
-
-/// An answer that takes room until it is sent.
-struct Sent {
-    bytes: Vec<u8>,
-    _room: OwnedSemaphorePermit,
-}
-
-impl AsRef<[u8]> for Sent {
-    fn as_ref(&self) -> &[u8] {
-        &self.bytes
-    }
+    Ok(room.send(ENCODED, bytes))
 }
 
 /// The curves in a plane
@@ -190,10 +190,14 @@ impl AsRef<[u8]> for Sent {
 )]
 async fn curves(
     State(maps): State<Arc<Maps>>,
-    Path(id): Path<String>,
+    Id(id): Id,
     query: Asked<CurvesQuery>,
 ) -> Result<Response, Problem> {
-    asked(&maps, &id, Ask::Curves(said(query)?)).await
+    let query = said(query)?;
+    let found = found(&maps, &id).await?;
+    let room = maps.room_for_curves().await?;
+    let frame = maps.ask(&found, &Ask::Curves(query)).await?;
+    Ok(room.send(ENCODED, frame.bytes))
 }
 
 /// One cell
@@ -210,7 +214,7 @@ async fn curves(
 )]
 async fn cell(
     State(maps): State<Arc<Maps>>,
-    Path(id): Path<String>,
+    Id(id): Id,
     query: Asked<CellQuery>,
 ) -> Result<Response, Problem> {
     asked(&maps, &id, Ask::Cell(said(query)?)).await
@@ -229,6 +233,6 @@ async fn cell(
         NoMap,
     ),
 )]
-async fn sweep(State(maps): State<Arc<Maps>>, Path(id): Path<String>) -> Result<Response, Problem> {
+async fn sweep(State(maps): State<Arc<Maps>>, Id(id): Id) -> Result<Response, Problem> {
     asked(&maps, &id, Ask::Sweep).await
 }
