@@ -730,14 +730,16 @@ fn few_processes_read_many_maps() {
     until(60, "all are known", || known().is_some());
     let maps = known().unwrap();
     let (mut most, answered) = (0, std::sync::atomic::AtomicUsize::new(0));
+    let refused = std::sync::atomic::AtomicUsize::new(0);
     std::thread::scope(|scope| {
         for map in maps.iter().chain(&maps).chain(&maps) {
             let path = format!("/api/v1/maps/{}", map["id"].as_str().unwrap());
-            let (serving, answered) = (&serving, &answered);
+            let (serving, answered, refused) = (&serving, &answered, &refused);
             scope.spawn(move || {
                 let answer = serving.get(&path);
                 let busy = answer.status == 503 && answer.head.contains("retry-after: ");
                 assert!(answer.status == 200 || busy, "{}", answer.head);
+                refused.fetch_add(usize::from(busy), std::sync::atomic::Ordering::Relaxed);
                 answered.fetch_add(1, std::sync::atomic::Ordering::Relaxed);
             });
         }
@@ -748,6 +750,8 @@ fn few_processes_read_many_maps() {
     });
     // Two that are looked at; those for the list have ended.
     assert!((1..=2).contains(&most), "{most} processes");
+    let refused = refused.into_inner();
+    assert!(refused < maps.len(), "{refused} of {}", 3 * maps.len());
 }
 
 /// Who says nothing, or trickles, makes room for others.

@@ -125,7 +125,9 @@ fn open(file: &Path) {
         Ok(mut child) => {
             std::thread::spawn(move || match child.wait() {
                 Ok(ended) if ended.success() => {}
-                _ => say::remark(format_args!("{OPENER} did not open the link")),
+                _ => say::remark(format_args!(
+                    "{OPENER} did not open the link, open it by hand"
+                )),
             });
         }
         Err(error) => say::remark(format_args!(
@@ -152,9 +154,13 @@ pub(super) fn main(args: &Args) -> Result<(), Failure> {
     let server = Server::listen(&serving).map_err(|error| args.refused(&error))?;
     writeln!(std::io::stdout().lock(), "{}", server.link())?;
     args.tell();
-    let leading = args.open.then(|| leading_to(&server.link())).transpose()?;
-    if let Some(file) = &leading {
-        open(file);
+    let leading = args.open.then(|| leading_to(&server.link()));
+    match &leading {
+        Some(Ok(file)) => open(file),
+        Some(Err(error)) => say::remark(format_args!(
+            "no file can be made that leads a browser to the link, open it by hand: {error}"
+        )),
+        None => {}
     }
     let stop = std::sync::Arc::clone(&signals.stop);
     server.run(move || stop.load(std::sync::atomic::Ordering::Relaxed))?;

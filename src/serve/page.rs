@@ -31,6 +31,7 @@ const FILES: &[(&str, &str)] = &files![
     "live.js",
     "motion.js",
     "newest.js",
+    "onwards.js",
     "panel.js",
     "pen.js",
     "plane.js",
@@ -56,8 +57,10 @@ pub(super) fn front() -> Response {
 
 /// What leads to the page.
 pub(super) fn onwards() -> Response {
-    let text = "<!doctype html><meta charset=\"utf-8\"><link rel=\"icon\" href=\"data:,\"><title>slipmap</title>\
-        <meta http-equiv=\"refresh\" content=\"0; url=/\"><p><a href=\"/\">slipmap</a>";
+    let text = "<!doctype html><meta charset=\"utf-8\"><link rel=\"icon\" href=\"data:,\">\
+        <title>slipmap</title><script src=\"/onwards.js\"></script>\
+        <noscript><meta http-equiv=\"refresh\" content=\"0; url=/\"></noscript>\
+        <p><a href=\"/\">slipmap</a>";
     ([(CONTENT_TYPE, "text/html; charset=utf-8")], text).into_response()
 }
 

@@ -1,6 +1,6 @@
 //! The list of maps below a folder, each with what a process of its own told of it.
 
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant, SystemTime};
@@ -9,7 +9,7 @@ use tokio::sync::{Notify, Semaphore};
 
 use super::described::{MapEntry, MapList, MapSummary};
 use super::frames::{Ask, Kind};
-use super::process::{Place, Reader, ReaderCommand, Trouble};
+use super::process::{Held, Reader, ReaderCommand, Trouble};
 use super::readers::refused;
 use super::scan::{Found, Mark, Scanned, scan};
 
@@ -70,7 +70,7 @@ struct Known {
     /// By id, what was there when it was told.
     told: HashMap<String, (Mark, Told)>,
     /// Those that are being asked.
-    asked: HashMap<String, Mark>,
+    asked: HashSet<String>,
 }
 
 /// The maps below a folder.
@@ -81,6 +81,7 @@ pub(super) struct List {
     known: Mutex<Known>,
     scanning: tokio::sync::Mutex<()>,
     probes: Arc<Semaphore>,
+    held: Held,
     news: Arc<Notify>,
     times: Times,
 }
@@ -93,6 +94,7 @@ impl List {
             known: Mutex::default(),
             scanning: tokio::sync::Mutex::default(),
             probes: Arc::new(Semaphore::new(MOST_PROBES)),
+            held: Held::default(),
             news: Arc::default(),
             times: Times::default(),
         }
@@ -163,8 +165,7 @@ impl List {
                 continue;
             }
             unknown += usize::from(!told.contains_key(&found.id));
-            if !asked.contains_key(&found.id) {
-                asked.insert(found.id.clone(), found.mark.clone());
+            if asked.insert(found.id.clone()) {
                 tokio::spawn(Arc::clone(self).ask_one(found.clone()));
             }
         }
@@ -192,7 +193,9 @@ impl List {
         let Ok(permit) = Arc::clone(&self.probes).acquire_owned().await else {
             return unread("the server ends");
         };
-        let place = Place::of(permit, &self.news);
+        let Some(place) = self.held.place(&found.path, permit, &self.news) else {
+            return unread("the process that read it before has not ended yet");
+        };
         let (command, path) = (self.command.clone(), found.path.clone());
         let start = move || Reader::start(&command, &path, place);
         let Ok(Ok(reader)) = tokio::task::spawn_blocking(start).await else {

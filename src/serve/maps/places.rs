@@ -7,12 +7,15 @@ use std::time::Duration;
 
 use tokio::sync::{Notify, Semaphore};
 
-use super::process::{Place, Reader, ReaderCommand, Trouble};
+use super::process::{Held, Place, Reader, ReaderCommand, Trouble};
 
 /// Maps that are read at a time.
 const MOST_READERS: usize = 2;
 /// A place is waited for so long.
 const FOR_PLACE: Duration = Duration::from_secs(10);
+
+/// A process that is given up has mostly ended by then.
+const TO_END: Duration = Duration::from_secs(1);
 
 /// The processes that read maps.
 #[derive(Debug)]
@@ -20,6 +23,7 @@ pub(super) struct Places {
     command: ReaderCommand,
     readers: Mutex<Readers>,
     free: Arc<Semaphore>,
+    held: Held,
     /// A place may be free, or another map's process is there.
     news: Arc<Notify>,
 }
@@ -61,15 +65,16 @@ impl Readers {
         Some(reader)
     }
 
-    /// Gives up a process for another map: one that nobody asks now, or else the one that was asked
-    /// longest ago, which ends once it has answered.
-    fn make_room(&mut self) {
-        if self.there.len() + self.starting.len() < MOST_READERS || self.there.is_empty() {
-            return;
-        }
+    /// Gives up a process for another map: one that nobody asks now, or else, where there are as many
+    /// as may be, the one that was asked longest ago, which ends once it has answered.
+    fn make_room(&mut self, taken: bool) {
+        let full = self.there.len() + self.starting.len() >= MOST_READERS;
         let idle = |(_, reader): &(PathBuf, Arc<Reader>)| Arc::strong_count(reader) == 1;
-        let place = self.there.iter().position(idle).unwrap_or(0);
-        self.there.remove(place);
+        let idle = self.there.iter().position(idle);
+        match idle.or((full && !self.there.is_empty()).then_some(0)) {
+            Some(place) if full || taken => drop(self.there.remove(place)),
+            _ => {}
+        }
     }
 }
 
@@ -79,6 +84,7 @@ impl Places {
             command,
             readers: Mutex::default(),
             free: Arc::new(Semaphore::new(MOST_READERS)),
+            held: Held::default(),
             news: Arc::default(),
         })
     }
@@ -89,17 +95,20 @@ impl Places {
 
     /// The process that reads the map at `path`; a new one where there is a place for it.
     pub(super) async fn reader(self: &Arc<Self>, path: &Path) -> Result<InUse, Trouble> {
-        let until = tokio::time::Instant::now() + FOR_PLACE;
+        let begun = tokio::time::Instant::now();
         loop {
             let news = self.news.notified();
             if let Some(reader) = self.readers().known(path) {
                 return Ok(self.in_use(reader));
             }
-            if let Some(place) = self.begin(path) {
+            let late = begun.elapsed() >= TO_END;
+            if let Some(place) = self.begin(path, late) {
                 return Ok(self.in_use(self.start(path, place).await?));
             }
-            let waited = tokio::time::timeout_at(until, news).await;
-            waited.map_err(|_| Trouble::NoPlace)?;
+            let until = begun + if late { FOR_PLACE } else { TO_END };
+            if tokio::time::timeout_at(until, news).await.is_err() && late {
+                return Err(Trouble::NoPlace);
+            }
         }
     }
 
@@ -111,16 +120,18 @@ impl Places {
         }
     }
 
-    /// A place for a process of this map, unless there is none, or one is being started.
-    fn begin(&self, path: &Path) -> Option<Place> {
+    /// A place for a process of this map, unless there is none, or one is being started. `late`:
+    /// what was given up has not ended in time, so another one is.
+    fn begin(&self, path: &Path, late: bool) -> Option<Place> {
         let mut readers = self.readers();
         if readers.starting.contains(path) {
             return None;
         }
-        readers.make_room();
+        readers.make_room(late && self.free.available_permits() == 0);
         let permit = Arc::clone(&self.free).try_acquire_owned().ok()?;
+        let place = self.held.place(path, permit, &self.news)?;
         readers.starting.insert(path.to_owned());
-        Some(Place::of(permit, &self.news))
+        Some(place)
     }
 
     /// Starts a process, and has it among those that are there, also where nobody waits any more.

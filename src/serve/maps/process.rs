@@ -1,8 +1,8 @@
 //! The server's side of a process that reads a map.
 
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 use std::io::{BufReader, Write};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::process::{Child, ChildStdin, ChildStdout, Command, Stdio};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
@@ -31,21 +31,37 @@ pub struct ReaderCommand {
 #[derive(Debug)]
 pub(super) struct Place {
     permit: Option<OwnedSemaphorePermit>,
+    path: PathBuf,
+    held: Held,
     freed: Arc<Notify>,
 }
 
-impl Place {
-    /// Those who wait hear of it once it is free.
-    pub(super) fn of(permit: OwnedSemaphorePermit, freed: &Arc<Notify>) -> Self {
-        Self {
+/// The files whose processes the system has not done with.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Held(Arc<Mutex<HashSet<PathBuf>>>);
+
+impl Held {
+    /// A place for a process that reads `path`, unless there is one still: a file that processes
+    /// hang on is not to take the places of others. Those who wait hear of it once it is free.
+    pub(super) fn place(
+        &self,
+        path: &Path,
+        permit: OwnedSemaphorePermit,
+        freed: &Arc<Notify>,
+    ) -> Option<Place> {
+        let first = locked(&self.0).insert(path.to_owned());
+        first.then(|| Place {
             permit: Some(permit),
+            path: path.to_owned(),
+            held: self.clone(),
             freed: Arc::clone(freed),
-        }
+        })
     }
 }
 
 impl Drop for Place {
     fn drop(&mut self) {
+        locked(&self.held.0).remove(&self.path);
         self.permit.take();
         self.freed.notify_waiters();
     }
@@ -118,15 +134,22 @@ impl Reader {
         let reader = Self {
             child: Arc::clone(&child),
             requests: Mutex::new(requests),
-            waiting: Arc::clone(&waiting),
+            waiting,
         };
+        let (of_thread, waiting) = (Arc::clone(&child), Arc::clone(&reader.waiting));
+        // Where no thread can be started, the process is waited for here, and keeps its place so long.
+        let place = Arc::new(Mutex::new(Some(place)));
+        let kept = Arc::clone(&place);
         let listening = std::thread::Builder::new().stack_size(1 << 17);
         let listening = listening.spawn(move || {
             listen(answers, &waiting);
-            wait_for(&child);
-            drop(place);
+            wait_for(&of_thread);
+            drop(locked(&kept).take());
         });
-        listening.map_err(|_| Trouble::NotStarted)?;
+        if listening.is_err() {
+            wait_for(&child);
+            return Err(Trouble::NotStarted);
+        }
         Ok(reader)
     }
 
@@ -212,4 +235,27 @@ fn listen(answers: ChildStdout, waiting: &Mutex<Waiting>) {
     let mut waiting = locked(waiting);
     waiting.ended = true;
     waiting.answers.clear();
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_file_has_one_place_until_its_process_has_ended() {
+        let (places, freed) = (Arc::new(tokio::sync::Semaphore::new(2)), Arc::default());
+        let (held, path) = (Held::default(), Path::new("map.h5"));
+        let permit = || Arc::clone(&places).try_acquire_owned().unwrap();
+        let first = held.place(path, permit(), &freed);
+        assert!(first.is_some());
+        assert!(held.place(path, permit(), &freed).is_none());
+        assert_eq!(places.available_permits(), 1, "the other one is given back");
+        assert!(
+            held.place(Path::new("other.h5"), permit(), &freed)
+                .is_some()
+        );
+        drop(first);
+        assert!(held.place(path, permit(), &freed).is_some());
+        assert_eq!(places.available_permits(), 2);
+    }
 }

@@ -357,9 +357,13 @@ class Explorer {
   }
 
   #alive() {
+    element("gone").hidden = true;
+    if (!this.retrying) return;
     clearInterval(this.retrying);
     this.retrying = null;
-    element("gone").hidden = true;
+    // What was asked meanwhile is asked again.
+    if (this.state.map) this.saved.look();
+    else this.look();
   }
 
   #listen() {
@@ -395,6 +399,11 @@ class Explorer {
     });
     this.#downloads(click);
     element("table-part").addEventListener("toggle", () => this.#table());
+    document.querySelector(".skip").addEventListener("click", (event) => {
+      // Its hash would take the place of the view's.
+      event.preventDefault();
+      element("chart-title").focus();
+    });
     window.addEventListener("hashchange", () => {
       if (location.hash === this.#address()) return;
       Object.assign(this.state, stateOf(location.hash, this.catalogue));

@@ -66,7 +66,13 @@ export class MotionCard {
   #ask() {
     this.#tellStart();
     const asked = this.case();
-    if (!this.pending || this.wanted === asked) return;
+    if (this.wanted === asked) return;
+    if (!this.pending) {
+      // It is known; another one that is under way is not to take its place.
+      this.requests.stop();
+      this.wanted = null;
+      return;
+    }
     this.wanted = asked;
     this.requests.want({ text: this.text, asked });
   }

@@ -88,6 +88,8 @@ export class Panel {
   /** Shows no point until the next one. */
   clear() {
     this.look({ point: null, vc: null, motion: null }, { where: "", start: null });
+    clearTimeout(this.patience);
+    [this.patience, this.next] = [null, null];
     element("point-none").hidden = true;
   }
 

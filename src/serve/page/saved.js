@@ -112,10 +112,8 @@ export class Saved {
     this.#stop();
     [this.range, this.looked, this.toldCell] = [null, null, null];
     this.#blank("Map");
-    if (other) {
-      [this.map, this.place, this.plane.view] = [null, null, null];
-      element("map").hidden = element("slice-part").hidden = true;
-    }
+    [this.map, this.place, this.plane.view] = [null, null, null];
+    if (other) element("map").hidden = element("slice-part").hidden = true;
     if (this.source.map) await this.#describe();
     else this.#notOpened(new Problem(NO_SERVER));
   }

@@ -53,6 +53,16 @@ export function decode(bytes) {
   return filled(head, bytes, Math.ceil((4 + length) / 8) * 8);
 }
 
+/** How often a server that is busy is asked. */
+const TRIES = 4;
+
+/** @returns {Promise<void>} after so many milliseconds, unless nobody waits any more */
+const pause = (time, signal) =>
+  new Promise((resolve, reject) => {
+    setTimeout(resolve, time);
+    signal?.addEventListener("abort", () => reject(signal.reason), { once: true });
+  });
+
 /** A server: kind "server". */
 function server() {
   const answered = async (response, text) => {
@@ -65,7 +75,15 @@ function server() {
     const response = fetch(`api/v1/${path}`, { method: "POST", headers, body, signal });
     return answered(await response, body);
   };
-  const get = async (path, signal) => answered(await fetch(`api/v1/${path}`, { signal }));
+  // Where the server is busy for a moment, it is asked again; what it computes may be too much.
+  const get = async (path, signal) => {
+    for (let tries = 1; ; tries++) {
+      const response = await fetch(`api/v1/${path}`, { signal });
+      const soon = Number(response.headers.get("Retry-After"));
+      if (!soon || tries === TRIES) return answered(response);
+      await pause(1000 * soon, signal);
+    }
+  };
   const decoded = async (response) => decode(await (await response).arrayBuffer());
   const json = async (response) => (await response).json();
   const of = (id, what, query) => `maps/${id}/${what}?${new URLSearchParams(query)}`;
