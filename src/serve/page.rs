@@ -56,7 +56,8 @@ pub(super) fn front() -> Response {
 
 /// What leads to the page.
 pub(super) fn onwards() -> Response {
-    let text = "<!doctype html><meta charset=\"utf-8\"><link rel=\"icon\" href=\"data:,\"><title>slipmap</title>\
+    let text = "<!doctype html><meta charset=\"utf-8\"><link rel=\"icon\" href=\"data:,\">\
+        <title>slipmap</title>\
         <meta http-equiv=\"refresh\" content=\"0; url=/\"><p><a href=\"/\">slipmap</a>";
     ([(CONTENT_TYPE, "text/html; charset=utf-8")], text).into_response()
 }
