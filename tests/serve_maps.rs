@@ -36,6 +36,7 @@ use program::{Folder, err, expect};
 use serde_json::Value;
 use server::Serving;
 use slipmap::linear::Crossings;
+use slipmap::linear::status::{CERTIFIED, MARGINAL, SAMPLED};
 use slipmap::maps::maker::make_in_memory;
 use slipmap::model::Groups;
 use slipmap::store::MapFile;
@@ -156,8 +157,21 @@ fn windows_show_the_cells_of_the_file() {
          x_dot0 = { from = -1.0, to = 1.5, points = 8 }\n[friction]\nlaw = \"weakening\"\nmu0 = 0.5\n\
          v_s = 0.5\n[fixed]\nv0 = 0.118\nalpha_n = -7.0\ntau = 1.0\n",
     );
-    let serving = Serving::new(&folder);
     let mut chance = Chance(7);
+    for name in ["counts", "four"] {
+        map::edit(&folder.path().join(format!("{name}.h5")), |file| {
+            let dataset = file.dataset("status").unwrap();
+            let mut all = dataset.read_raw::<u8>().unwrap();
+            for status in &mut all {
+                *status = [0, CERTIFIED, SAMPLED][chance.of(3)];
+                if chance.of(20) == 0 {
+                    *status |= MARGINAL;
+                }
+            }
+            dataset.write_raw(&all).unwrap();
+        });
+    }
+    let serving = Serving::new(&folder);
     for name in ["counts", "line", "four", "motions"] {
         let id = id(&serving, &format!("{name}.h5"));
         let file = MapFile::open(&folder.path().join(format!("{name}.h5"))).unwrap();

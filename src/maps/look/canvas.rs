@@ -5,7 +5,8 @@ use std::ops::Range;
 use super::cells::{Cell, Reader, Slab};
 use super::pixels::Pixels;
 
-/// The pixel hides cells of several values, or some with which something else is amiss.
+/// The pixel hides cells of several values or, where nothing is amiss with the one that it shows,
+/// some with which something is.
 pub const SEVERAL: u8 = 1;
 /// The cell that it shows was not read yet.
 pub const UNREAD: u8 = 2;
@@ -36,6 +37,14 @@ impl<T: Cell> Canvas<T> {
         Self {
             values: vec![T::default(); pixels],
             bits: vec![UNREAD; pixels],
+        }
+    }
+
+    /// Pixels that have seen this already: what differs from it is marked.
+    pub(super) fn that_saw(value: T, pixels: usize) -> Self {
+        Self {
+            values: vec![value; pixels],
+            bits: vec![UNREAD | HIDDEN_SEEN; pixels],
         }
     }
 
@@ -80,7 +89,8 @@ impl<T: Cell> Canvas<T> {
         }
     }
 
-    fn compare(&mut self, slab: &Slab<T>, under: &Under) {
+    /// Marks pixels that hide cells of several values.
+    pub(super) fn compare(&mut self, slab: &Slab<T>, under: &Under) {
         let (rows, _) = &under.cells;
         let mut readers = [slab.cells.reader(), slab.cells.reader()];
         let constant = slab.cells.is_constant();

@@ -92,6 +92,12 @@ impl<T: Cell> Cells<T> {
         }
     }
 
+    /// Whether some cell is so.
+    pub(super) fn any(&self, is_so: impl Fn(T) -> bool) -> bool {
+        let (Self::Runs { values: all, .. } | Self::Each(all)) = self;
+        all.iter().any(|&cell| is_so(cell))
+    }
+
     /// What `of` makes of each.
     pub(super) fn map(&self, of: impl Fn(T) -> T) -> Self {
         let (ends, values) = match self {
@@ -258,6 +264,11 @@ mod tests {
         }
         assert_eq!(reader.only(97, 194), Some(1));
         assert_eq!(reader.only(96, 194), None);
+        assert!(
+            [&runs, &Cells::Each(cells.clone())]
+                .iter()
+                .all(|all| { all.any(|value| value == 10) && !all.any(|value| value == 11) })
+        );
         let coarse = runs.map(|value| value / 4);
         assert!(coarse.bytes() < runs.bytes() / 3);
         let each = Cells::Each(cells.clone()).map(|value| value / 4);

@@ -128,7 +128,7 @@ fn number_of(layout: &ChunkLayout, offset: &[usize]) -> u64 {
 }
 
 /// What of a status says that something is amiss, or that it is none.
-fn amiss(status: u8) -> u8 {
+pub(super) fn amiss(status: u8) -> u8 {
     match status {
         STATUS_FILL => STATUS_FILL,
         _ => status & AMISS,
@@ -188,12 +188,12 @@ impl Reading {
                 return Ok(false);
             };
             locked(&view.status).paint(&slab, &under, false);
-            if view.crowded {
+            if view.crowded && slab.cells.any(|status| amiss(status) != 0) {
                 let amiss = Slab {
                     cells: Arc::new(slab.cells.map(amiss)),
                     ..slab
                 };
-                locked(&view.amiss).paint(&amiss, &under, true);
+                view.mark_amiss(&amiss, &under);
             }
             return Ok(true);
         }

@@ -3,10 +3,11 @@
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-use super::canvas::{BEYOND, Canvas, NOT_COMPUTED, SEVERAL, UNREAD};
-use super::cells::Cell;
+use super::canvas::{BEYOND, Canvas, NOT_COMPUTED, SEVERAL, UNREAD, Under};
+use super::cells::{Cell, Slab};
 use super::jobs::Jobs;
 use super::pixels::Pixels;
+use super::reading::amiss;
 use super::shelf::Plane;
 use super::source::Facts;
 use super::window::{Asked, Numbers, Shot, Shown};
@@ -53,8 +54,8 @@ pub struct View {
     pub(super) crowded: bool,
     pub(super) field: Mutex<AnyCanvas>,
     pub(super) status: Mutex<Canvas<u8>>,
-    /// What is amiss, where pixels may hide cells.
-    pub(super) amiss: Mutex<Canvas<u8>>,
+    /// Which pixels hide cells with which something is amiss; none where no such were found.
+    amiss: Mutex<Option<Canvas<u8>>>,
     pub(super) jobs: Mutex<Jobs>,
     total: usize,
     done: AtomicUsize,
@@ -108,7 +109,7 @@ impl View {
         Ok(Self {
             field: Mutex::new(AnyCanvas::new(field.element, pixels)),
             status: Mutex::new(Canvas::new(pixels)),
-            amiss: Mutex::new(Canvas::new(if crowded { pixels } else { 0 })),
+            amiss: Mutex::default(),
             total: jobs.len(),
             jobs: Mutex::new(jobs),
             done: AtomicUsize::new(0),
@@ -142,12 +143,45 @@ impl View {
         self.done.fetch_add(1, Ordering::Release);
     }
 
-    /// Which pixels lie on the axes.
-    fn showing(&self) -> impl Fn(usize) -> bool {
+    /// Marks pixels that hide cells of a slab with which something is amiss; there are few such.
+    pub(super) fn mark_amiss(&self, slab: &Slab<u8>, under: &Under) {
+        let mut hiding = locked(&self.amiss);
+        let pixels = self.slow.len() * self.fast.len();
+        let hiding = hiding.get_or_insert_with(|| Canvas::that_saw(0, pixels));
+        hiding.compare(slab, under);
+    }
+
+    /// The bits of pixels, by those of the field and by what is known of their status.
+    fn marks(
+        &self,
+        of_field: &[u8],
+        status: &Canvas<u8>,
+        places: impl Iterator<Item = usize>,
+    ) -> Vec<u8> {
+        let marks = |place: usize| {
+            let (of_field, of_status) = (of_field[place], status.bits[place]);
+            let missing = of_status & UNREAD == 0 && status.values[place] == STATUS_FILL;
+            let unread = (of_field | of_status) & UNREAD;
+            (of_field & SEVERAL) | unread | if missing { NOT_COMPUTED } else { 0 }
+        };
         let (rows, columns) = (&self.slow.on_axis, &self.fast.on_axis);
         let (height, width) = (self.slow.len(), self.fast.len());
-        let all = *rows == (0..height) && *columns == (0..width);
-        move |place| all || rows.contains(&(place / width)) && columns.contains(&(place % width))
+        let hiding = locked(&self.amiss);
+        if hiding.is_none() && *rows == (0..height) && *columns == (0..width) {
+            return places.map(marks).collect();
+        }
+        let hides = |place: usize| match &*hiding {
+            Some(hiding) => hiding.bits[place] & SEVERAL != 0 && amiss(status.values[place]) == 0,
+            None => false,
+        };
+        let all = places.map(|place| {
+            match rows.contains(&(place / width)) && columns.contains(&(place % width)) {
+                true if hides(place) => marks(place) | SEVERAL,
+                true => marks(place),
+                false => BEYOND,
+            }
+        });
+        all.collect()
     }
 
     /// What it shows so far, of a map of these facts.
@@ -179,9 +213,8 @@ impl View {
             })
         };
         let field = locked(&self.field);
-        let (status, amiss) = (locked(&self.status), locked(&self.amiss));
+        let status = locked(&self.status);
         let fill = facts.fill(self.column);
-        let shows = self.showing();
         let hidden = |place: usize| field.bits()[place] & UNREAD != 0;
         let values = match &*field {
             AnyCanvas::U8(canvas) => Numbers::U8(picked(canvas, places(), hidden, fill as u8)),
@@ -190,16 +223,6 @@ impl View {
                 let bits = picked(canvas, places(), hidden, fill);
                 Numbers::F64(bits.into_iter().map(f64::from_bits).collect())
             }
-        };
-        let bits = |place: usize| {
-            if !shows(place) {
-                return BEYOND;
-            }
-            let (of_field, of_status) = (field.bits()[place], status.bits[place]);
-            let missing = of_status & UNREAD == 0 && status.values[place] == STATUS_FILL;
-            let unread = (of_field | of_status) & UNREAD;
-            let several = (of_field | amiss.bits.get(place).unwrap_or(&0)) & SEVERAL;
-            several | unread | if missing { NOT_COMPUTED } else { 0 }
         };
         let unread = |place: usize| status.bits[place] & UNREAD != 0;
         Shot {
@@ -210,7 +233,7 @@ impl View {
             y: self.asked.y.map(|y| shown(y, up)),
             values,
             status: picked(&status, places(), unread, STATUS_FILL),
-            bits: places().map(bits).collect(),
+            bits: self.marks(field.bits(), &status, places()),
             damage: locked(&self.damage).clone(),
         }
     }

@@ -31,8 +31,9 @@ pub(super) struct WindowHead {
     pub values: Array,
     /// Its status.
     pub status: Array,
-    /// 1: the pixel hides cells of several values, or some with which something else is amiss; 2:
-    /// it is not read yet; 4: not computed yet; 8: it lies beyond the axes.
+    /// 1: the pixel hides cells of several values or, where nothing is amiss with its own cell,
+    /// some with which something is; 2: it is not read yet; 4: not computed yet; 8: it lies beyond
+    /// the axes.
     pub bits: Array,
     /// Why some cells could not be read.
     #[schema(required)]
