@@ -9,7 +9,7 @@ use tokio::sync::{Notify, Semaphore};
 
 use super::described::{MapEntry, MapList, MapSummary};
 use super::frames::{Ask, Kind};
-use super::process::{Held, Reader, ReaderCommand, Trouble};
+use super::process::{Held, Place, Reader, ReaderCommand, Trouble};
 use super::readers::refused;
 use super::scan::{Found, Mark, Scanned, scan};
 
@@ -188,12 +188,22 @@ impl List {
         self.news.notify_waiters();
     }
 
+    /// A place for a process that reads `path`, unless one that was told to end is there for long.
+    async fn place(&self, path: &Path) -> Option<Place> {
+        let until = tokio::time::Instant::now() + self.times.probe;
+        loop {
+            let news = self.news.notified();
+            let permit = Arc::clone(&self.probes).acquire_owned().await.ok()?;
+            if let Some(place) = self.held.place(path, permit, &self.news) {
+                return Some(place);
+            }
+            tokio::time::timeout_at(until, news).await.ok()?;
+        }
+    }
+
     async fn probe(&self, found: &Found) -> Told {
         let unread = |why: &str| Told::Unread(why.into(), Instant::now(), 1);
-        let Ok(permit) = Arc::clone(&self.probes).acquire_owned().await else {
-            return unread("the server ends");
-        };
-        let Some(place) = self.held.place(&found.path, permit, &self.news) else {
+        let Some(place) = self.place(&found.path).await else {
             return unread("the process that read it before has not ended yet");
         };
         let (command, path) = (self.command.clone(), found.path.clone());
