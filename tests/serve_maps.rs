@@ -743,6 +743,10 @@ fn few_processes_read_many_maps() {
     };
     until(60, "all are known", || known().is_some());
     let maps = known().unwrap();
+    let children = || processes::children(serving.child.id());
+    until(10, "those for the list have ended", || {
+        children().is_empty()
+    });
     let (mut most, answered) = (0, std::sync::atomic::AtomicUsize::new(0));
     let refused = std::sync::atomic::AtomicUsize::new(0);
     std::thread::scope(|scope| {
@@ -758,11 +762,11 @@ fn few_processes_read_many_maps() {
             });
         }
         while answered.load(std::sync::atomic::Ordering::Relaxed) < 3 * maps.len() {
-            most = most.max(processes::children(serving.child.id()).len());
+            most = most.max(children().len());
             std::thread::sleep(Duration::from_millis(5));
         }
     });
-    // Two that are looked at; those for the list have ended.
+    // Two that are looked at.
     assert!((1..=2).contains(&most), "{most} processes");
     let refused = refused.into_inner();
     assert!(refused < maps.len(), "{refused} of {}", 3 * maps.len());
