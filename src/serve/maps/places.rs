@@ -65,8 +65,8 @@ impl Readers {
         Some(reader)
     }
 
-    /// Gives up a process for another map: one that nobody asks now, or else, where there are as many
-    /// as may be, the one that was asked longest ago, which ends once it has answered.
+    /// Gives up a process for another map: one that nobody asks now, or else, where there are as
+    /// many as may be, the one that was asked longest ago, which ends once it has answered.
     fn make_room(&mut self, taken: bool) {
         let full = self.there.len() + self.starting.len() >= MOST_READERS;
         let idle = |(_, reader): &(PathBuf, Arc<Reader>)| Arc::strong_count(reader) == 1;

@@ -137,7 +137,8 @@ impl Reader {
             waiting,
         };
         let (of_thread, waiting) = (Arc::clone(&child), Arc::clone(&reader.waiting));
-        // Where no thread can be started, the process is waited for here, and keeps its place so long.
+        // Where no thread can be started, the process is waited for here; it keeps its place so
+        // long.
         let place = Arc::new(Mutex::new(Some(place)));
         let kept = Arc::clone(&place);
         let listening = std::thread::Builder::new().stack_size(1 << 17);
