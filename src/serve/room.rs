@@ -50,10 +50,15 @@ impl Room {
     }
 
     fn needed(&self, bytes: u64) -> u32 {
-        match bytes {
-            0..=SMALL => 0,
-            _ => u32::try_from(bytes.div_ceil(UNIT)).map_or(self.units, |n| n.min(self.units)),
-        }
+        u32::try_from(units(bytes)).map_or(self.units, |n| n.min(self.units))
+    }
+}
+
+/// The room that so many bytes count for.
+fn units(bytes: u64) -> u64 {
+    match bytes {
+        0..=SMALL => 0,
+        _ => bytes.div_ceil(UNIT),
     }
 }
 
@@ -64,10 +69,7 @@ pub(super) struct Taken(OwnedSemaphorePermit);
 impl Taken {
     /// The answer that this room is for, until it is sent; what it does not need is given back.
     pub(super) fn send(mut self, kind: &'static str, bytes: Vec<u8>) -> Response {
-        let kept = match bytes.len() as u64 {
-            0..=SMALL => 0,
-            length => length.div_ceil(UNIT) as usize,
-        };
+        let kept = units(bytes.len() as u64) as usize;
         let besides = self.0.num_permits().saturating_sub(kept);
         drop(self.0.split(besides));
         let body = Bytes::from_owner(Sent { bytes, _room: self });

@@ -4,7 +4,7 @@ use std::fs::Metadata;
 use std::path::Path;
 use std::time::SystemTime;
 
-/// As long as a file stays as it is, so does this.
+/// What is told of a file as it is now: equal as long as the file is not replaced or written.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Stamp {
     /// Its length in bytes.

@@ -130,7 +130,7 @@ impl<T: Cell> Cells<T> {
         matches!(self, Self::Runs { .. })
     }
 
-    /// The same, where they are stored as runs.
+    /// A copy of cells that are stored as runs; none of others, which take more room.
     pub(super) fn copied_runs(&self) -> Option<Self> {
         match self {
             Self::Runs { ends, values } => Some(Self::Runs {

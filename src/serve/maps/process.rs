@@ -78,7 +78,7 @@ pub(super) enum Trouble {
     TooLong,
     /// Others wait already.
     Busy,
-    /// As many processes as may be are at work for other maps.
+    /// Every place for a process is taken by other maps.
     NoPlace,
     /// No map is asked for that much.
     LongRequest,

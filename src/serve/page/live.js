@@ -6,7 +6,7 @@ import { Scale } from "./scale.js";
 import { sweepOf } from "./sweep.js";
 
 /** Cells of a chart along x and y. */
-export const CELLS = [800, 600];
+const CELLS = [800, 600];
 /** How long nothing moves before it rests, in milliseconds. */
 const REST = 150;
 /** Fields whose cells cost no more than counts. */

@@ -4,7 +4,7 @@ import { GAINS, SHOWN, UNITS } from "./catalogue.js";
 import { highestOf, parametersOf, tableOf } from "./sweep.js";
 
 /** What the page shows when the address says nothing: the letter's Fig. 2(a). */
-export const START = {
+const START = {
   control: "velocity",
   x: { name: "alpha_v", from: -1.6, to: 0.4, log: false },
   y: { name: "tau", from: 0, to: 12, log: false },
