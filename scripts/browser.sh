@@ -2,7 +2,9 @@
 # Gets what the tests of the page need (Node, a Chromium, and the packages of tests/browser), and runs them in that browser.
 #
 #   scripts/browser.sh              # the tests
-#   scripts/browser.sh bench …      # benches/explorer.mjs
+#   scripts/browser.sh bench [--seconds N] [--map FOLDER] [--peers]
+#                                   # benches/explorer.mjs; with --peers it also gets the heat maps of
+#                                   # others that are timed beside slipmap's
 #   scripts/browser.sh pictures     # those of the page in README.md
 #
 # Sourced by test.sh for `have_browser` and `test_browser`.
@@ -55,8 +57,25 @@ have_browser() {
 # Node looks for packages in the folders above a file.
 copied() {
     rm -rf "$BROWSER_TESTS/run"
-    mkdir -p "$BROWSER_TESTS/run"
+    mkdir -p "$BROWSER_TESTS/run/explorer"
     cp "$SLIPMAP_ROOT"/tests/browser/*.mjs "$SLIPMAP_ROOT/benches/explorer.mjs" "$BROWSER_TESTS/run"
+    cp "$SLIPMAP_ROOT"/benches/explorer/*.mjs "$BROWSER_TESTS/run/explorer"
+}
+
+# The packages of benches/explorer/peers, and the page of one of them, bundled; false where they
+# cannot be had. What an earlier run bundled goes away first: nothing is measured that is half new.
+get_peers() {
+    local from=$SLIPMAP_ROOT/benches/explorer/peers to=$BROWSER_TESTS/peers
+    mkdir -p "$to"
+    rm -rf "$to/bundled"
+    cp "$from"/* "$from/.npmrc" "$to"
+    if ! cmp -s "$from/package-lock.json" "$to/installed.json"; then
+        say "installing the peers of the benchmark into target/browser/peers"
+        (cd "$to" && npm ci --silent --no-audit --no-fund --ignore-scripts >&2) || return 1
+        cp "$from/package-lock.json" "$to/installed.json"
+    fi
+    (cd "$to" && node_modules/.bin/esbuild h5web.jsx --bundle --minify --format=iife --jsx=automatic \
+        --define:process.env.NODE_ENV='"production"' --outfile=bundled/h5web.js --log-level=error)
 }
 
 # The page without a server is tested where it was made.
@@ -84,13 +103,26 @@ pages() {
     node "$BROWSER_TESTS/run/$1" "${@:2}"
 }
 
+bench_browser() {
+    case " $* " in
+    *" --peers "*) get_peers || say "not all peers of the benchmark could be had" ;;
+    esac
+    export SLIPMAP_PEERS=$BROWSER_TESTS/peers
+    pages explorer.mjs "$@"
+}
+
 if [ "${BASH_SOURCE[0]}" = "$0" ]; then
     have_browser || die "Node $NODE_NEEDED or newer, npm or Chromium is missing and cannot be installed"
+    from=$PWD
     cd "$SLIPMAP_ROOT"
     # shellcheck disable=SC2086
     cargo build --release --locked $SLIPMAP_CARGO_FEATURES
     case ${1:-} in
-    bench) pages explorer.mjs "${@:2}" ;;
+    bench)
+        # FOLDER is meant from there.
+        cd "$from"
+        bench_browser "${@:2}"
+        ;;
     pictures) pages pictures.mjs ;;
     *)
         make_static_page

@@ -1,13 +1,19 @@
 //! `slipmap serve` over real connections: who is answered, what, and what it survives.
 
+#[cfg(target_os = "linux")]
+#[path = "common/processes.rs"]
+mod processes;
 #[path = "common/program.rs"]
 mod program;
 #[path = "common/server.rs"]
 mod server;
 
+use std::io::{Read, Write};
 use std::net::TcpStream;
 use std::time::{Duration, Instant};
 
+#[cfg(target_os = "linux")]
+use processes::peak;
 use program::{Folder, out};
 use server::{Answer, Serving, decoded};
 use slipmap::linear::Crossings;
@@ -49,6 +55,9 @@ fn a_point_is_what_the_command_says() {
         let [found, told] = with_command(&folder, &serving.ask("vc", &law));
         assert_eq!(found, told);
         assert!((found["vc"].as_f64().unwrap() - 0.3).abs() < 0.1, "{found}");
+        let phase = format!("protocol = \"switch-on\"\nstart.switch_on_phase = 0.25\n{law}");
+        let [found, told] = with_command(&folder, &serving.ask("vc", &phase));
+        assert_eq!((&found, &found["protocol"]), (&told, &"switch-on".into()));
     }
     let flags = [
         "--mu-prime=-0.3",
@@ -141,10 +150,11 @@ fn a_chart_is_that_of_the_closed_form() {
         (&"n_unstable".into(), &"u16".into())
     );
     let values = |axis: usize| {
-        let values = head["axes"][axis]["values"].as_array().unwrap();
-        values
-            .iter()
-            .map(|v| v.as_f64().unwrap())
+        let of = &head["axes"][axis]["values"];
+        let [at, length] = ["offset", "length"].map(|key| of[key].as_u64().unwrap() as usize);
+        let bytes = arrays[at..at + 8 * length].chunks(8);
+        bytes
+            .map(|n| f64::from_le_bytes(n.try_into().unwrap()))
             .collect::<Vec<_>>()
     };
     let (gains, delays) = (values(0), values(1));
@@ -203,6 +213,9 @@ fn only_the_own_page_is_answered() {
         ("GET /%2e%2e/%2e%2e/etc/passwd", &[known], 404),
         ("GET /..%2f..%2fetc%2fpasswd", &[known], 404),
         ("GET /api/v1/nothing", &[known], 404),
+        ("GET /%ff", &[known], 404),
+        ("GET /api/v1/maps/%ff", &[known], 404),
+        ("GET /?token=a&token=b", &[], 401),
     ] {
         let body = if line == post { POINT } else { "" };
         let answer = serving.request(line, headers, body);
@@ -212,11 +225,21 @@ fn only_the_own_page_is_answered() {
             "{}",
             answer.head
         );
+        let problem = answer.head.contains("application/problem+json");
+        assert!(problem || answer.status == 200, "{line}: {}", answer.head);
         assert!(answer.head.contains("referrer-policy: no-referrer"));
     }
-    // The link becomes a cookie, which the page then brings.
+}
+
+#[test]
+fn the_link_becomes_a_cookie() {
+    let folder = Folder::new();
+    let serving = Serving::new(&folder);
+    // Not by a redirect: the page brings the cookie also if another page has led to the link.
     let answer = serving.request(&format!("GET /?token={}", serving.token), &[], "");
-    assert_eq!(answer.status, 303, "{}", answer.head);
+    assert_eq!(answer.status, 200, "{}", answer.head);
+    let onwards = String::from_utf8(answer.body).unwrap();
+    assert!(onwards.contains("url=/") && !onwards.contains(&serving.token));
     let cookie = answer
         .head
         .lines()
@@ -262,8 +285,15 @@ fn mistakes_are_problems_with_their_place() {
         ("chart", "[axes]\ntau = []\n", 422),
         (
             "chart",
-            &PLANE.replace("points = 80", "points = 1000000"),
+            &PLANE
+                .replace("points = 60", "points = 70")
+                .replace("points = 80", "points = 65536"),
             413,
+        ),
+        (
+            "chart",
+            &PLANE.replace("points = 80", "points = 65537"),
+            422,
         ),
         (
             "chart",
@@ -300,11 +330,138 @@ fn others_are_answered_while_some_do_harm() {
     drop(silent);
 }
 
+/// A connection on which somebody waits for a chart.
+fn asking(serving: &Serving, text: &str) -> TcpStream {
+    let mut stream = TcpStream::connect(&serving.address).unwrap();
+    let head = format!(
+        "POST /api/v1/chart HTTP/1.1\r\nHost: {}\r\nAuthorization: {}\r\n\
+         Content-Type: application/toml; charset=utf-8\r\nContent-Length: {}\r\n\r\n{text}",
+        serving.address,
+        serving.bearer(),
+        text.len()
+    );
+    stream.write_all(head.as_bytes()).unwrap();
+    stream
+}
+
+/// Who has no token cannot take connections from who has one, nor memory, by bodies that do not come.
+#[test]
+fn bodies_without_a_token_are_not_waited_for() {
+    let folder = Folder::new();
+    let serving = Serving::new(&folder);
+    let head = format!(
+        "GET / HTTP/1.1\r\nHost: {}\r\nContent-Length: 262144\r\n\r\n",
+        serving.address
+    );
+    let waiting: Vec<_> = (0..600)
+        .filter_map(|_| {
+            let mut stream = TcpStream::connect(&serving.address).ok()?;
+            stream.write_all(head.as_bytes()).ok()?;
+            Some(stream)
+        })
+        .collect();
+    let begun = Instant::now();
+    assert_eq!(serving.ask("point", POINT).status, 200);
+    assert!(
+        begun.elapsed() < Duration::from_secs(4),
+        "{:?}",
+        begun.elapsed()
+    );
+    drop(waiting);
+}
+
+/// As many of the largest charts as are asked for, which nobody reads, take no more memory than some.
+#[cfg(target_os = "linux")]
+#[test]
+fn answers_that_are_not_read_take_limited_memory() {
+    let folder = Folder::new();
+    let serving = Serving::new(&folder);
+    let many = PLANE
+        .replace("points = 60", "points = 2000")
+        .replace("points = 80", "points = 2000");
+    let axes = PLANE
+        .replace("points = 60", "points = 61")
+        .replace("points = 80", "points = 65536");
+    // Margins differ from cell to cell, so nothing of them is stored as runs.
+    let margins = format!("fields = [\"delay_margin\"]\n{PLANE}")
+        .replace("points = 60", "points = 1000")
+        .replace("points = 80", "points = 900");
+    let mut unread: Vec<_> = [
+        &many, &axes, &margins, &margins, &margins, &margins, &margins,
+    ]
+    .map(|text| asking(&serving, text))
+    .into();
+    std::thread::sleep(Duration::from_secs(4));
+    assert_eq!(serving.ask("point", POINT).status, 200);
+    let most = peak(serving.child.id());
+    assert!((40..250).contains(&most), "{most} MB");
+    let mut first = [0; 12];
+    unread[0].read_exact(&mut first).unwrap();
+    assert_eq!(&first, b"HTTP/1.1 200");
+}
+
+/// What is on a command line is seen by all users of a machine, so the token is not.
+#[cfg(all(unix, not(target_os = "macos")))]
+#[test]
+fn a_browser_is_led_to_the_link_by_a_file_of_the_users_own() {
+    use std::os::unix::fs::PermissionsExt;
+    let folder = Folder::new();
+    let opener = folder.path().join("xdg-open");
+    let told = folder.path().join("told");
+    let script = format!(
+        "#!/bin/sh\necho \"$@\" > {0}.part; mv {0}.part {0}\n",
+        told.display()
+    );
+    std::fs::write(&opener, script).unwrap();
+    std::fs::set_permissions(&opener, std::fs::Permissions::from_mode(0o755)).unwrap();
+    let path = std::env::var("PATH").unwrap();
+    let path = format!("{}:{path}", folder.path().display());
+    let mut serving = Serving::of(
+        folder
+            .command(&["serve", "--port=0", "--open"])
+            .env("PATH", path),
+    );
+    let until = Instant::now() + Duration::from_secs(20);
+    while !told.exists() && Instant::now() < until {
+        std::thread::sleep(Duration::from_millis(20));
+    }
+    let arguments = std::fs::read_to_string(&told).unwrap();
+    assert!(!arguments.contains(&serving.token), "{arguments}");
+    let page = std::path::PathBuf::from(arguments.trim());
+    let mode = page.metadata().unwrap().permissions().mode();
+    assert_eq!(mode & 0o777, 0o600);
+    let text = std::fs::read_to_string(&page).unwrap();
+    let link = format!("http://{}/?token={}", serving.address, serving.token);
+    assert!(text.contains(&link), "{text}");
+    let id = serving.child.id().to_string();
+    let sent = std::process::Command::new("kill")
+        .args(["-INT", &id])
+        .status();
+    assert!(sent.unwrap().success() && serving.child.wait().unwrap().success());
+    assert!(!page.exists(), "it goes with the server");
+}
+
+/// The link is one that the server answers, whichever address it listens on.
+#[cfg(target_os = "linux")]
+#[test]
+fn another_address_of_this_machine_is_answered() {
+    let folder = Folder::new();
+    for address in ["127.0.0.2", "127.0.0.1", "0.0.0.0"] {
+        let serving = Serving::with(&folder, &["--address", address]);
+        assert_eq!(serving.ask("point", POINT).status, 200, "{address}");
+    }
+}
+
 #[cfg(unix)]
 #[test]
 fn a_signal_ends_it_soon() {
     let folder = Folder::new();
     let mut serving = Serving::new(&folder);
+    // Somebody waits for what takes long.
+    let text = "fields = [\"abscissa\"]\n".to_owned()
+        + &PLANE.replace("12.0, points = 80", "1e5, points = 9000");
+    let _waiting = asking(&serving, &text);
+    std::thread::sleep(Duration::from_millis(300));
     let id = serving.child.id().to_string();
     let begun = Instant::now();
     let sent = std::process::Command::new("kill")

@@ -2,8 +2,10 @@
 
 use std::io::Write;
 use std::net::{IpAddr, Ipv4Addr};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
+
+use tempfile::TempPath;
 
 use slipmap::serve::{Place, ReaderCommand, Server, Serving};
 
@@ -79,8 +81,8 @@ impl Args {
         }
     }
 
-    /// Who may use the server, and how.
-    fn tell(&self, server: &Server) {
+    /// Tells who may use the server, and how.
+    fn tell(&self) {
         match self.place() {
             #[cfg(unix)]
             Place::Socket { path, port } => say::remark(format_args!(
@@ -96,21 +98,36 @@ impl Args {
                 say::remark("whoever has this link may use the server; Ctrl-C ends it");
             }
         }
-        if self.open {
-            open(&server.link());
-        }
     }
 }
 
-/// Opens a link in a browser; where that fails, it can be opened by hand.
-fn open(link: &str) {
+/// A file for this user alone that leads a browser to a link: what is on a command line is seen by
+/// all users of a machine.
+fn leading_to(link: &str) -> std::io::Result<TempPath> {
+    let named = tempfile::Builder::new()
+        .prefix("slipmap-")
+        .suffix(".html")
+        .tempfile();
+    let mut file = named?;
+    write!(
+        file,
+        "<!doctype html><meta charset=\"utf-8\"><title>slipmap</title>\
+        <meta http-equiv=\"refresh\" content=\"0; url={link}\"><a href=\"{link}\">slipmap</a>"
+    )?;
+    Ok(file.into_temp_path())
+}
+
+/// Opens a file in a browser; where that fails, the link can be opened by hand.
+fn open(file: &Path) {
     let mut command = Command::new(OPENER);
-    command.arg(link).stdin(Stdio::null());
+    command.arg(file).stdin(Stdio::null());
     match command.stdout(Stdio::null()).stderr(Stdio::null()).spawn() {
         Ok(mut child) => {
             std::thread::spawn(move || match child.wait() {
                 Ok(ended) if ended.success() => {}
-                _ => say::remark(format_args!("{OPENER} did not open the link")),
+                _ => say::remark(format_args!(
+                    "{OPENER} did not open the link, open it by hand"
+                )),
             });
         }
         Err(error) => say::remark(format_args!(
@@ -136,7 +153,15 @@ pub(super) fn main(args: &Args) -> Result<(), Failure> {
     };
     let server = Server::listen(&serving).map_err(|error| args.refused(&error))?;
     writeln!(std::io::stdout().lock(), "{}", server.link())?;
-    args.tell(&server);
+    args.tell();
+    let leading = args.open.then(|| leading_to(&server.link()));
+    match &leading {
+        Some(Ok(file)) => open(file),
+        Some(Err(error)) => say::remark(format_args!(
+            "no file can be made that leads a browser to the link, open it by hand: {error}"
+        )),
+        None => {}
+    }
     let stop = std::sync::Arc::clone(&signals.stop);
     server.run(move || stop.load(std::sync::atomic::Ordering::Relaxed))?;
     Ok(())

@@ -15,9 +15,10 @@ use super::problem::Problem;
 use super::vc::CriticalVelocity;
 use super::{chart_bytes, motion_bytes};
 use crate::slip::stop::Stop;
-use crate::sweep::input::command::command_line;
+use crate::sweep::input::command::{command_line, vc_command};
 use crate::sweep::input::point_file::{PointOf, PointSpec};
-use crate::sweep::input::search::Protocol;
+use crate::sweep::plan::memory;
+use crate::sweep::{CaseSpec, Plan};
 
 /// Roots of a point.
 pub const ROOTS: u8 = 16;
@@ -105,53 +106,101 @@ pub struct WithCommand<T> {
     pub command: Option<String>,
 }
 
-/// The bytes of the answer to `request` about what `text` describes, of
-/// [`Request::content_type`]. Once `stop` is set it ends soon, between steps of motions and tiles
-/// of charts.
+/// A request whose text was read, and is within limits.
+#[derive(Debug, Clone)]
+pub enum Asked {
+    /// [`Request::Chart`].
+    Chart(Arc<Plan>),
+    /// [`Request::Point`].
+    Point(PointSpec),
+    /// [`Request::CriticalVelocity`].
+    CriticalVelocity(PointSpec),
+    /// [`Request::Motion`].
+    Motion(Box<CaseSpec>, motion::Limits),
+    /// [`Request::Law`].
+    Law(PointSpec),
+    /// [`Request::Parameters`].
+    Parameters,
+}
+
+impl Asked {
+    /// Reads the text of a request.
+    ///
+    /// # Errors
+    /// When it is not understood, or asks for too much.
+    pub fn read(request: Request, text: &str, limits: &Limits) -> Result<Self, Problem> {
+        let point = |of| PointSpec::read(text, of);
+        Ok(match request {
+            Request::Chart => Self::Chart(Chart::plan(text, limits.chart)?),
+            Request::Point => Self::Point(point(PointOf::Sliding)?),
+            Request::CriticalVelocity => Self::CriticalVelocity(point(PointOf::CriticalVelocity)?),
+            Request::Motion => Self::Motion(Box::new(text.parse()?), limits.motion),
+            Request::Law => Self::Law(point(PointOf::Law)?),
+            Request::Parameters => Self::Parameters,
+        })
+    }
+
+    /// The bytes that the answer takes at most while it is computed and put into bytes, where they
+    /// are worth mentioning.
+    #[must_use]
+    pub fn bytes(&self) -> u64 {
+        match self {
+            Self::Chart(plan) => chart::bytes(plan),
+            Self::CriticalVelocity(point) => memory::of_critical_velocity(&point.setting),
+            Self::Motion(case, limits) => memory::of_motion(&case.setting) + limits.bytes(),
+            Self::Point(_) | Self::Law(_) | Self::Parameters => 0,
+        }
+    }
+
+    /// The bytes of the answer, of [`Request::content_type`]. Once `stop` is set it ends soon,
+    /// between steps of motions and tiles of charts.
+    ///
+    /// # Errors
+    /// When it cannot be computed, or was stopped.
+    pub fn answer(&self, stop: &Arc<AtomicBool>) -> Result<Vec<u8>, Problem> {
+        match self {
+            Self::Chart(plan) => {
+                // There is no clock in WebAssembly.
+                let begun = (!cfg!(target_family = "wasm")).then(Instant::now);
+                let chart = Chart::of(plan, stop)?;
+                let took = begun.map(|begun| begun.elapsed().as_secs_f64() * 1e3);
+                Ok(chart_bytes::encoded(&chart, took)?)
+            }
+            Self::Point(PointSpec { setting, .. }) => json(&WithCommand {
+                answer: Point::at(setting, ROOTS)?,
+                command: command_line("point", setting, |p| setting.uses(p))
+                    .map(|command| format!("{command} --roots={ROOTS}")),
+            }),
+            Self::CriticalVelocity(point) => {
+                let stop = Stop::when(stop);
+                let answer = CriticalVelocity::of(&point.setting, point.protocol, &stop)?;
+                if stop.is_set() {
+                    return Err(Problem::stopped());
+                }
+                let command = vc_command(&point.setting, point.protocol);
+                json(&WithCommand { answer, command })
+            }
+            Self::Motion(case, limits) => {
+                let followed = Followed::of(case, *limits, &Stop::when(stop))?;
+                Ok(motion_bytes::encoded(&followed)?)
+            }
+            Self::Law(point) => json(&LawCurve::of(point)?),
+            Self::Parameters => json(&Known::all()),
+        }
+    }
+}
+
+/// The bytes of the answer to `request` about what `text` describes.
 ///
 /// # Errors
-/// When the text is not understood, it asks for too much, or it was stopped.
+/// As [`Asked::read`] and [`Asked::answer`].
 pub fn answer(
     request: Request,
     text: &str,
     limits: &Limits,
     stop: &Arc<AtomicBool>,
 ) -> Result<Vec<u8>, Problem> {
-    match request {
-        Request::Chart => {
-            // There is no clock in WebAssembly.
-            let begun = (!cfg!(target_family = "wasm")).then(Instant::now);
-            let chart = Chart::of(text, limits.chart, stop)?;
-            let took = begun.map(|begun| begun.elapsed().as_secs_f64() * 1e3);
-            Ok(chart_bytes::encoded(&chart, took)?)
-        }
-        Request::Point => {
-            let setting = PointSpec::read(text, PointOf::Sliding)?.setting;
-            json(&WithCommand {
-                answer: Point::at(&setting, ROOTS)?,
-                command: command_line("point", &setting, |p| setting.uses(p))
-                    .map(|command| format!("{command} --roots={ROOTS}")),
-            })
-        }
-        Request::CriticalVelocity => {
-            let (setting, stop) = (
-                PointSpec::read(text, PointOf::CriticalVelocity)?.setting,
-                Stop::when(stop),
-            );
-            let answer = CriticalVelocity::of(&setting, Protocol::Follow, &stop)?;
-            if stop.is_set() {
-                return Err(Problem::stopped());
-            }
-            let command = command_line("vc", &setting, |p| setting.uses(p));
-            json(&WithCommand { answer, command })
-        }
-        Request::Motion => {
-            let followed = Followed::of(text, limits.motion, &Stop::when(stop))?;
-            Ok(motion_bytes::encoded(&followed)?)
-        }
-        Request::Law => json(&LawCurve::of(&PointSpec::read(text, PointOf::Law)?)?),
-        Request::Parameters => json(&Known::all()),
-    }
+    Asked::read(request, text, limits)?.answer(stop)
 }
 
 fn json(answer: &impl Serialize) -> Result<Vec<u8>, Problem> {

@@ -6,7 +6,11 @@ use std::sync::atomic::AtomicBool;
 use crate::linear::curves::CurvePiece;
 use crate::sweep::engine::RunError;
 use crate::sweep::grid::{Grid, TooLarge};
+use crate::sweep::plan::memory::Memory;
 use crate::sweep::{Plan, SpecError, SweepSpec};
+
+/// What the curves of a plane take, unless there are very many of them.
+const BYTES_OF_CURVES: u64 = 1 << 20;
 
 /// How much a chart may take.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -17,15 +21,24 @@ pub struct Limits {
     pub rooted: u64,
     /// The most cells whose motion is followed, or whose critical velocity is looked for.
     pub followed: u64,
+    /// The most bytes of all cells.
+    pub bytes: u64,
+    /// The most points of an axis.
+    pub points: u64,
+    /// The most planes in which curves are traced.
+    pub planes: u64,
 }
 
 impl Default for Limits {
-    /// What takes about a second on one core.
+    /// What most often takes a second on one core at most.
     fn default() -> Self {
         Self {
             counted: 4_000_000,
             rooted: 1_000_000,
             followed: 1000,
+            bytes: 32 << 20,
+            points: 1 << 16,
+            planes: 16,
         }
     }
 }
@@ -42,6 +55,14 @@ pub enum ChartError {
         /// How many it has.
         cells: u64,
         /// How many it may have.
+        most: u64,
+    },
+    /// It has curves in more planes than a chart may have.
+    #[error("a chart has curves in at most {most} planes, this one in {planes}")]
+    TooManyPlanes {
+        /// In how many it has them.
+        planes: u64,
+        /// In how many it may have them.
         most: u64,
     },
     /// It was stopped before it was complete.
@@ -88,20 +109,33 @@ pub struct Chart {
 }
 
 impl Chart {
-    /// Computes the sweep that `text` describes on this thread; a `stop` is heeded between tiles.
+    /// The sweep that `text` describes, if a chart may be as large.
     ///
     /// # Errors
-    /// When the text is not understood, it has too many cells, or it was stopped.
-    pub fn of(text: &str, limits: Limits, stop: &Arc<AtomicBool>) -> Result<Self, ChartError> {
-        let spec: SweepSpec = text.parse()?;
-        let plan = Arc::new(Plan::new(spec)?);
-        let (cells, most) = (plan.cells(), limits.most(&plan.spec));
+    /// When the text is not understood, or it has too many cells or planes.
+    pub fn plan(text: &str, limits: Limits) -> Result<Arc<Plan>, ChartError> {
+        let plan = Plan::new(SweepSpec::read(text, limits.points)?)?;
+        let (cells, most) = (plan.cells(), limits.most(&plan));
         if cells > most {
             return Err(ChartError::TooManyCells { cells, most });
         }
-        let grid = Grid::compute_here(&plan, stop).map_err(|error| match error {
+        let (planes, most) = (plan.boundary_planes(), limits.planes);
+        if planes > most {
+            return Err(ChartError::TooManyPlanes { planes, most });
+        }
+        Ok(Arc::new(plan))
+    }
+
+    /// Computes it on this thread; a `stop` is heeded between tiles.
+    ///
+    /// # Errors
+    /// When it cannot be computed, or was stopped.
+    pub fn of(plan: &Arc<Plan>, stop: &Arc<AtomicBool>) -> Result<Self, ChartError> {
+        let grid = Grid::compute_here(plan, stop).map_err(|error| match error {
             RunError::Interrupted => ChartError::Stopped,
-            RunError::Sink(TooLarge { .. }) => ChartError::TooManyCells { cells, most },
+            RunError::Sink(TooLarge { .. }) => {
+                ChartError::Failed("there is no memory for its cells".into())
+            }
             other => ChartError::Failed(other.to_string()),
         })?;
         let curves = curves(&grid);
@@ -111,15 +145,24 @@ impl Chart {
 
 impl Limits {
     /// The most cells of a sweep with these fields.
-    fn most(&self, spec: &SweepSpec) -> u64 {
-        if spec.follows_motions() || spec.critical.is_some() {
+    fn most(&self, plan: &Plan) -> u64 {
+        let spec = &plan.spec;
+        let most = if spec.follows_motions() || spec.critical.is_some() {
             self.followed
         } else if spec.fields.iter().any(|field| field.roots_needed() > 0) {
             self.rooted
         } else {
             self.counted
-        }
+        };
+        most.min(self.bytes / plan.bytes_per_cell())
     }
+}
+
+/// The bytes that a chart of this sweep takes at most while it is computed and put into bytes.
+#[must_use]
+pub fn bytes(plan: &Plan) -> u64 {
+    let cells = plan.cells() * plan.bytes_per_cell() + plan.boundary_planes() * BYTES_OF_CURVES;
+    Memory::of(plan).per_thread + 2 * cells
 }
 
 fn curves(grid: &Grid) -> Vec<ChartCurve> {
@@ -149,7 +192,7 @@ mod tests {
 
     fn chart(text: &str) -> Result<Chart, ChartError> {
         let stop = Arc::new(AtomicBool::new(false));
-        Chart::of(text, Limits::default(), &stop)
+        Chart::of(&Chart::plan(text, Limits::default())?, &stop)
     }
 
     #[test]
@@ -171,14 +214,30 @@ mod tests {
     #[test]
     fn too_much_is_refused_before_anything_is_computed() {
         for (fields, points, most) in [
-            ("", 100_001, 4_000_000),
+            ("", 50_001, 4_000_000),
             ("fields = [\"abscissa\"]\n", 30_000, 1_000_000),
+            (
+                "fields = [\"abscissa\", \"frequency\", \"delay_margin\", \"relaxation_time\"]\n",
+                12_000,
+                // With the margin of the certificate, and the status.
+                (32 << 20) / (5 * 8 + 1),
+            ),
         ] {
             let longer = PLANE.replace("points = 50", &format!("points = {points}"));
+            let longer = longer.replace("points = 40", "points = 100");
             let refused = chart(&format!("{fields}{longer}")).unwrap_err();
-            let cells = 40 * points;
+            let cells = 100 * points;
             assert_eq!(refused, ChartError::TooManyCells { cells, most });
         }
+        let planes = "boundaries = true\n[axes]\nmass = { from = 1, to = 2, points = 17 }\n";
+        let many = PLANE.replace("[axes]\n", planes);
+        let (planes, most) = (17, 16);
+        assert_eq!(
+            chart(&many).unwrap_err(),
+            ChartError::TooManyPlanes { planes, most }
+        );
+        let long = PLANE.replace("points = 50", "points = 65537");
+        assert!(matches!(chart(&long).unwrap_err(), ChartError::Spec(_)));
         let axis = "[axes]\ntau = { from = 0.1, to = 9, points = 1001 }\n[fixed]\nv0 = 0.2\n\
             [friction]\nlaw = \"coulomb\"\nmu0 = 0.5\n";
         let followed = chart(&format!("fields = [\"outcome\"]\n{axis}")).unwrap_err();
@@ -199,7 +258,8 @@ mod tests {
         assert!(error.span.is_some());
         let stop = Arc::new(AtomicBool::new(false));
         stop.store(true, Ordering::Relaxed);
-        let stopped = Chart::of(PLANE, Limits::default(), &stop);
+        let plan = Chart::plan(PLANE, Limits::default()).unwrap();
+        let stopped = Chart::of(&plan, &stop);
         assert_eq!(stopped.unwrap_err(), ChartError::Stopped);
     }
 }

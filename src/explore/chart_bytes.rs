@@ -27,7 +27,7 @@ struct AxisHead {
     long_name: &'static str,
     symbol: &'static str,
     unit: String,
-    values: Vec<f64>,
+    values: Array,
 }
 
 #[derive(Debug, Serialize)]
@@ -85,7 +85,7 @@ pub fn encoded(chart: &Chart, milliseconds: Option<f64>) -> Result<Vec<u8>, serd
                 long_name: axis.parameter.long_name(),
                 symbol: axis.parameter.symbol(),
                 unit: units.of_parameter(axis.parameter),
-                values: axis.values.clone(),
+                values: arrays.push(axis.values.iter().copied()),
             })
             .collect(),
         fields: fields(chart, &mut arrays),

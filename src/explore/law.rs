@@ -105,11 +105,11 @@ impl LawCurve {
 
 /// Where a curve ends: beyond what the law does by itself, and beyond v0.
 fn last_speed(law: &FrictionLaw, v0: Option<f64>) -> f64 {
+    let scale = law.speed_scale(0.0);
     let own = match law.kind() {
-        Kind::Coulomb { .. } => 0.0,
-        Kind::Weakening { v_s, .. } => SCALES * v_s,
-        Kind::Stribeck { v_s, .. } => 0.5 * SCALES * v_s,
         Kind::Table(table) => table.speeds().last().map_or(0.0, |last| 1.1 * last),
+        _ if scale.is_finite() => SCALES * scale,
+        _ => 0.0,
     };
     match own.max(2.0 * v0.unwrap_or(0.0)) {
         0.0 => 1.0,
@@ -149,7 +149,7 @@ mod tests {
     fn every_law_has_a_curve() {
         for (law, last) in [
             ("law = \"coulomb\"\nmu0 = 0.4", 1.0),
-            ("law = \"stribeck\"\nmu0 = 0.4\nv_s = 2", 6.0),
+            ("law = \"stribeck\"\nmu0 = 0.4\nv_s = 2", 12.0),
             (
                 "law = \"table\"\nspeeds = [0, 1, 2]\nmu_k = [0.9, 0.6, 0.5]",
                 2.2,

@@ -27,7 +27,7 @@ pub mod vc;
 #[cfg(all(feature = "wasm", target_family = "wasm"))]
 pub mod wasm;
 
-pub use answer::{Limits, Request, answer};
+pub use answer::{Asked, Limits, Request, answer};
 pub use problem::Problem;
 
 /// A number that JSON can tell.

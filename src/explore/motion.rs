@@ -4,8 +4,9 @@ use serde::Serialize;
 
 use crate::slip::stop::Stop;
 use crate::sweep::cells::samples::Most;
+use crate::sweep::cells::trace::Sample;
 use crate::sweep::cells::trace::{TraceError, TraceEvent};
-use crate::sweep::{CaseSpec, SpecError, Trace};
+use crate::sweep::{CaseSpec, Trace};
 
 /// How much a motion may take.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -26,12 +27,17 @@ impl Default for Limits {
     }
 }
 
+impl Limits {
+    /// Bytes of samples and events at most, and of what is made of them.
+    #[must_use]
+    pub const fn bytes(&self) -> u64 {
+        (4 * self.samples * size_of::<Sample>()) as u64
+    }
+}
+
 /// Why there is no motion.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum MotionError {
-    /// The case is not understood.
-    #[error(transparent)]
-    Spec(#[from] SpecError),
     /// It has more events than a motion may have.
     #[error("the motion has more than {0} events")]
     TooLong(usize),
@@ -56,12 +62,12 @@ pub struct Followed {
 }
 
 impl Followed {
-    /// Follows the case that `text` describes; a `stop` is heeded with every step.
+    /// Follows a case; a `stop` is heeded with every step.
     ///
     /// # Errors
-    /// When the text is not understood, it takes too much, or it was stopped.
-    pub fn of(text: &str, limits: Limits, stop: &Stop) -> Result<Self, MotionError> {
-        let mut spec: CaseSpec = text.parse()?;
+    /// When it takes too much, or was stopped.
+    pub fn of(case: &CaseSpec, limits: Limits, stop: &Stop) -> Result<Self, MotionError> {
+        let mut spec = case.clone();
         let asked = spec.case.steps;
         spec.case.steps = asked.min(limits.steps);
         let trace = Trace::within(&spec, Most::Thinned(limits.samples), stop);
@@ -158,7 +164,7 @@ mod tests {
     const FIG3A: &str = include_str!("../../sweeps/fig3a.toml");
 
     fn followed(text: &str, limits: Limits) -> Result<Followed, MotionError> {
-        Followed::of(text, limits, &Stop::default())
+        Followed::of(&text.parse().unwrap(), limits, &Stop::default())
     }
 
     #[test]

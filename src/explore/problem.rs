@@ -100,8 +100,10 @@ impl From<ChartError> for Problem {
     fn from(error: ChartError) -> Self {
         match error {
             ChartError::Spec(error) => error.into(),
-            ChartError::TooManyCells { .. } => Self::new(Why::TooLarge, error.to_string())
-                .help("run it: slipmap run SWEEP.toml has no such limit"),
+            ChartError::TooManyCells { .. } | ChartError::TooManyPlanes { .. } => {
+                Self::new(Why::TooLarge, error.to_string())
+                    .help("run it: slipmap run SWEEP.toml has no such limit")
+            }
             ChartError::Stopped => Self::stopped(),
             ChartError::Failed(why) => Self::new(Why::Unprocessable, why),
         }
@@ -111,7 +113,6 @@ impl From<ChartError> for Problem {
 impl From<MotionError> for Problem {
     fn from(error: MotionError) -> Self {
         match error {
-            MotionError::Spec(error) => error.into(),
             MotionError::Stopped => Self::stopped(),
             MotionError::TooLong(_) | MotionError::TooManySteps(_) => {
                 Self::new(Why::TooLarge, error.to_string())

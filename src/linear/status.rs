@@ -13,6 +13,9 @@ pub const SATURATED: u8 = 16;
 /// The cell was recomputed by a second method, as a sample.
 pub const SAMPLED: u8 = 32;
 
+/// Something is amiss with a cell that has one of these.
+pub const AMISS: u8 = MARGINAL | NOT_CONVERGED | DISAGREE | SATURATED;
+
 /// Every bit with its name as it stands in the map, in the order of the bits.
 pub const FLAGS: [(u8, &str); 6] = [
     (CERTIFIED, "certified"),

@@ -5,9 +5,9 @@ use std::sync::Arc;
 use axum::Router;
 use axum::extract::{DefaultBodyLimit, Query, Request, State};
 use axum::http::header::{self, HeaderName, HeaderValue};
-use axum::http::{HeaderMap, Method, StatusCode};
+use axum::http::{StatusCode, Uri};
 use axum::middleware::{self, Next};
-use axum::response::{IntoResponse, Redirect, Response};
+use axum::response::{IntoResponse, Response};
 use axum::routing::get;
 use serde::Deserialize;
 
@@ -15,6 +15,7 @@ use super::access::Access;
 use super::connections;
 use super::maps::{self, Maps};
 use super::problem::{Problem, nothing_here};
+use super::room::Room;
 use super::served::Served;
 use super::work::Work;
 use super::{computed, openapi, page};
@@ -22,13 +23,17 @@ use super::{computed, openapi, page};
 /// The longest text that is read: friction laws of some thousand points.
 const LONGEST_BODY: usize = 1 << 18;
 
+/// Megabytes of what is computed at a time, and of what is sent of it.
+const ROOM: u32 = 128;
+
 /// What a page may load: its own files, and nothing from elsewhere.
 const POLICY: &str = "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self' \
     data: blob:; connect-src 'self'; base-uri 'none'; form-action 'none'; frame-ancestors 'none'";
 
 /// The router of all addresses.
 pub(super) fn routes(access: Arc<Access>, work: Work, maps: Arc<Maps>) -> Router {
-    let served = Served { access, work };
+    let room = Room::of(ROOM);
+    let served = Served { access, work, room };
     let interface = computed::routes().merge(maps::routes(maps));
     let all = openapi::described(interface)
         .route("/", get(front))
@@ -47,13 +52,16 @@ pub(super) fn routes(access: Arc<Access>, work: Work, maps: Arc<Maps>) -> Router
 async fn guarded(State(served): State<Served>, request: Request, next: Next) -> Response {
     let (method, headers) = (request.method(), request.headers());
     let checked = served.access.check_host(headers);
-    // The link brings its token itself.
-    let checked = match request.uri().path() {
-        "/" => checked,
+    let checked = match link_token(request.uri()) {
+        // The link brings its token itself.
+        Some(token) if served.access.is_token(&token) => checked,
         _ => checked.and_then(|()| served.access.check(method, headers)),
     };
     let mut response = match checked {
-        Ok(()) => next.run(request).await,
+        Ok(()) => {
+            connections::is_answered(&request);
+            next.run(request).await
+        }
         Err(refusal) => {
             let mut response = Problem::from(refusal).into_response();
             // Who is refused holds no connection.
@@ -87,26 +95,22 @@ struct Link {
     token: Option<String>,
 }
 
-/// The page. A token in the address becomes a cookie, and leaves the address.
-async fn front(
-    State(served): State<Served>,
-    Query(link): Query<Link>,
-    method: Method,
-    headers: HeaderMap,
-) -> Result<Response, Problem> {
-    match link.token {
-        Some(token) if served.access.is_token(&token) => {
-            let cookie = HeaderValue::from_str(&served.access.cookie());
-            let cookie = cookie.map_err(|_| {
-                Problem::of(StatusCode::INTERNAL_SERVER_ERROR, "the cookie is no header")
-            })?;
-            Ok(([(header::SET_COOKIE, cookie)], Redirect::to("/")).into_response())
-        }
-        _ => {
-            served.access.check(&method, &headers)?;
-            Ok(page::front())
-        }
+/// The token in the address of the page.
+fn link_token(uri: &Uri) -> Option<String> {
+    let link = Query::<Link>::try_from_uri(uri).ok()?;
+    link.0.token.filter(|_| uri.path() == "/")
+}
+
+/// The page. A token in the address becomes a cookie, and leaves the address: not by a redirect,
+/// which would go without the cookie if the link was followed from another page.
+async fn front(State(served): State<Served>, uri: Uri) -> Result<Response, Problem> {
+    if link_token(&uri).is_none() {
+        return Ok(page::front());
     }
+    let cookie = HeaderValue::from_str(&served.access.cookie());
+    let cookie = cookie
+        .map_err(|_| Problem::of(StatusCode::INTERNAL_SERVER_ERROR, "the cookie is no header"))?;
+    Ok(([(header::SET_COOKIE, cookie)], page::onwards()).into_response())
 }
 
 async fn nothing() -> Problem {

@@ -3,7 +3,7 @@
 use axum::body::Bytes;
 use axum::extract::State;
 use axum::http::header::{self, HeaderMap};
-use axum::response::{IntoResponse, Response};
+use axum::response::Response;
 use utoipa_axum::router::OpenApiRouter;
 use utoipa_axum::routes;
 
@@ -15,7 +15,7 @@ use crate::explore::known::Known;
 use crate::explore::law::LawCurve;
 use crate::explore::point::Point;
 use crate::explore::vc::CriticalVelocity;
-use crate::explore::{self, Limits};
+use crate::explore::{self, Asked, Limits};
 
 /// Their addresses.
 pub(super) fn routes() -> OpenApiRouter<Served> {
@@ -45,7 +45,10 @@ mod examples {
 /// The text of a request.
 fn text(headers: &HeaderMap, body: &Bytes) -> Result<String, Problem> {
     let kind = headers.get(header::CONTENT_TYPE);
-    if kind.is_none_or(|kind| kind.as_bytes() != b"application/toml") {
+    let kind = kind.and_then(|kind| kind.to_str().ok());
+    // What stands behind a semicolon is a charset, and TOML has one only.
+    let kind = kind.and_then(|kind| kind.split(';').next()).map(str::trim);
+    if !kind.is_some_and(|kind| kind.eq_ignore_ascii_case("application/toml")) {
         return Err(Problem::no_toml());
     }
     let text = std::str::from_utf8(body);
@@ -58,13 +61,10 @@ async fn answer(
     request: explore::Request,
     text: Result<String, Problem>,
 ) -> Result<Response, Problem> {
-    let text = text?;
-    let limits = Limits::default();
-    let computed = served
-        .work
-        .run(move |stop| explore::answer(request, &text, &limits, stop));
-    let kind = [(header::CONTENT_TYPE, request.content_type())];
-    Ok((kind, computed.await?).into_response())
+    let asked = Asked::read(request, &text?, &Limits::default())?;
+    let room = served.room.take(asked.bytes()).await?;
+    let bytes = served.work.run(move |stop| asked.answer(stop)).await?;
+    Ok(room.send(request.content_type(), bytes))
 }
 
 /// Cells and curves of a sweep

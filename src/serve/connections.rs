@@ -103,8 +103,8 @@ async fn one<S: AsyncRead + AsyncWrite + Unpin + Send + 'static>(
     place: tokio::sync::OwnedSemaphorePermit,
 ) {
     let app = TowerToHyperService::new(app);
-    let service = service_fn(move |request| {
-        asked.store(true, Ordering::Relaxed);
+    let service = service_fn(move |mut request: hyper::Request<hyper::body::Incoming>| {
+        request.extensions_mut().insert(Silence(Arc::clone(&asked)));
         app.call(request)
     });
     let stream = TokioIo::new(Patient::new(stream, TO_READ));
@@ -116,6 +116,17 @@ async fn one<S: AsyncRead + AsyncWrite + Unpin + Send + 'static>(
     // Clients that break off are no news.
     drop(connection.await);
     drop(place);
+}
+
+/// What ends with the first request of a connection that is answered.
+#[derive(Clone)]
+struct Silence(Arc<AtomicBool>);
+
+/// A request may be made, so its connection makes no room for others.
+pub(super) fn is_answered(request: &Request) {
+    if let Some(Silence(asked)) = request.extensions().get() {
+        asked.store(true, Ordering::Relaxed);
+    }
 }
 
 /// Reads the body of a request, of so many bytes at most, before anything is done about it.

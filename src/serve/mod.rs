@@ -16,12 +16,13 @@ mod maps;
 mod openapi;
 mod page;
 mod problem;
+mod room;
 mod served;
 #[cfg(unix)]
 mod socket;
 mod work;
 
-use std::net::{IpAddr, Ipv4Addr, SocketAddr, TcpListener};
+use std::net::{IpAddr, Ipv4Addr, Ipv6Addr, SocketAddr, TcpListener};
 use std::path::PathBuf;
 use std::sync::Arc;
 
@@ -96,7 +97,8 @@ impl Server {
                 let listener = TcpListener::bind((address, port))?;
                 listener.set_nonblocking(true)?;
                 let bound = listener.local_addr()?;
-                let hosts = match address.is_loopback() {
+                let own = address == Ipv4Addr::LOCALHOST || address == Ipv6Addr::LOCALHOST;
+                let hosts = match own {
                     true => Hosts::Own(bound.port()),
                     false => Hosts::And(address, bound.port()),
                 };

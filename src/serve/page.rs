@@ -1,6 +1,7 @@
 //! The page and its files, which are part of the program.
 
 use axum::extract::Path;
+use axum::extract::rejection::PathRejection;
 use axum::http::header::CONTENT_TYPE;
 use axum::response::{IntoResponse, Response};
 
@@ -16,6 +17,8 @@ macro_rules! files {
 }
 
 const FILES: &[(&str, &str)] = &files![
+    "asked.js",
+    "catalogue.js",
     "cells.js",
     "colours.js",
     "controls.js",
@@ -24,9 +27,11 @@ const FILES: &[(&str, &str)] = &files![
     "explorer.js",
     "frame.js",
     "legend.js",
+    "list.js",
     "live.js",
     "motion.js",
     "newest.js",
+    "onwards.js",
     "panel.js",
     "pen.js",
     "plane.js",
@@ -34,6 +39,7 @@ const FILES: &[(&str, &str)] = &files![
     "pointing.js",
     "saved.js",
     "scale.js",
+    "slice.js",
     "source.js",
     "state.js",
     "sweep.js",
@@ -49,8 +55,18 @@ pub(super) fn front() -> Response {
     ([(CONTENT_TYPE, "text/html; charset=utf-8")], FRONT).into_response()
 }
 
+/// What leads to the page.
+pub(super) fn onwards() -> Response {
+    let text = "<!doctype html><meta charset=\"utf-8\"><link rel=\"icon\" href=\"data:,\">\
+        <title>slipmap</title><script src=\"/onwards.js\"></script>\
+        <noscript><meta http-equiv=\"refresh\" content=\"0; url=/\"></noscript>\
+        <p><a href=\"/\">slipmap</a>";
+    ([(CONTENT_TYPE, "text/html; charset=utf-8")], text).into_response()
+}
+
 /// One of its files.
-pub(super) async fn asset(Path(name): Path<String>) -> Result<Response, Problem> {
+pub(super) async fn asset(name: Result<Path<String>, PathRejection>) -> Result<Response, Problem> {
+    let Path(name) = name.map_err(|_| nothing_here())?;
     let file = FILES.iter().find(|(known, _)| *known == name);
     let (name, text) = *file.ok_or_else(nothing_here)?;
     let kind = match name.rsplit_once('.') {

@@ -1,11 +1,14 @@
 //! Problems as answers: what is told of a request that cannot be answered (RFC 9457).
 
 use axum::http::StatusCode;
-use axum::http::header::{CONTENT_TYPE, HeaderValue};
+use axum::http::header::{CONTENT_TYPE, HeaderValue, RETRY_AFTER};
 use axum::response::{IntoResponse, Response};
 
 use super::access::Refusal;
 pub(super) use crate::explore::Problem;
+
+/// Seconds after which what is not to be had now may be asked for again.
+const SOON: &str = "2";
 
 impl Problem {
     /// With any status.
@@ -81,6 +84,10 @@ impl IntoResponse for Problem {
         let mut response = (status, axum::Json(self)).into_response();
         let kind = HeaderValue::from_static("application/problem+json");
         response.headers_mut().insert(CONTENT_TYPE, kind);
+        if status == StatusCode::SERVICE_UNAVAILABLE {
+            let soon = HeaderValue::from_static(SOON);
+            response.headers_mut().insert(RETRY_AFTER, soon);
+        }
         response
     }
 }

@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use super::access::Access;
+use super::room::Room;
 use super::work::Work;
 
 /// What all answers share.
@@ -12,4 +13,6 @@ pub(super) struct Served {
     pub access: Arc<Access>,
     /// What computes.
     pub work: Work,
+    /// Memory for what is computed.
+    pub room: Room,
 }

@@ -18,6 +18,15 @@ pub struct ChunkLayout {
 }
 
 impl ChunkLayout {
+    /// Number of chunks.
+    #[must_use]
+    pub fn chunks(&self) -> usize {
+        let along = self.shape.iter().zip(&self.chunk);
+        along.fold(1, |count: usize, (&whole, &length)| {
+            count.saturating_mul(whole.div_ceil(length))
+        })
+    }
+
     /// Values of a whole chunk.
     #[must_use]
     pub fn cells(&self) -> usize {
@@ -65,4 +74,26 @@ fn unshuffled(bytes: &[u8], size: usize) -> Vec<u8> {
         }
     }
     out
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn chunks_at_the_far_edges_count() {
+        let chunks = |shape: &[usize], chunk: &[usize]| {
+            let layout = ChunkLayout {
+                shape: shape.to_vec(),
+                chunk: chunk.to_vec(),
+                element: 2,
+                deflated: true,
+                shuffled: true,
+            };
+            layout.chunks()
+        };
+        assert_eq!(chunks(&[10, 7], &[3, 7]), 4);
+        assert_eq!(chunks(&[20_000, 20_000], &[1, 1]), 400_000_000);
+        assert_eq!(chunks(&[usize::MAX; 3], &[1, 1, 1]), usize::MAX);
+    }
 }

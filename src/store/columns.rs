@@ -6,6 +6,7 @@ use super::map_file::MapFile;
 use super::schema::STATUS;
 use super::values::{Chunks, is_of};
 use crate::sweep::input::field::Storage;
+use crate::sweep::plan::MOST_TILES;
 
 /// The columns of a map, each open: the fields in the order of [`MapFile::fields`], then the
 /// status.
@@ -36,9 +37,14 @@ impl FileColumns {
                 return Err(StoreError::not_a_map(map.path(), why));
             }
             let chunks = Chunks::of(&dataset).map_err(StoreError::hdf5("read", map.path()))?;
-            chunks.ok_or_else(|| {
-                StoreError::not_a_map(map.path(), format!("{name} is not stored in chunks"))
-            })
+            let odd = |why: String| StoreError::not_a_map(map.path(), why);
+            let chunks = chunks.ok_or_else(|| odd(format!("{name} is not stored in chunks")))?;
+            match chunks.layout().chunks() {
+                ..=MOST_TILES => Ok(chunks),
+                count => Err(odd(format!(
+                    "{name} is stored in {count} chunks, and slipmap writes {MOST_TILES} at most"
+                ))),
+            }
         };
         let columns: Result<_, _> = columns.chain([(STATUS, Storage::Kind)]).map(open).collect();
         Ok(Self {

@@ -33,6 +33,7 @@ pub mod schema;
 mod seal;
 pub mod soundness;
 pub mod source;
+pub mod stamp;
 pub mod tiles;
 pub mod trace_file;
 mod values;

@@ -2,7 +2,7 @@
 
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { atRest, openPage, opened, picture, violations } from "./support.mjs";
+import { atRest, openPage, opened, picture, settled, violations } from "./support.mjs";
 
 const { browser, server } = await opened();
 
@@ -53,6 +53,27 @@ test("every control has a name, and focus is seen", async () => {
   for (const id of ["CANVAS chart", "INPUT p-mu_prime", "SELECT law", "BUTTON save-csv"]) {
     assert.ok(names.has(id), `${id} among ${[...names].join(", ")}`);
   }
+});
+
+test("a key in the form leaves the focus where it is", async () => {
+  const page = await openPage(browser, server.link);
+  const focus = () => page.evaluate(() => document.activeElement.id);
+  const press = async (id, key) => {
+    await page.locator(`#${id}`).focus();
+    await page.keyboard.press(key);
+    await page.waitForTimeout(50);
+    assert.equal(await focus(), id);
+  };
+  await press("axis-x", "ArrowDown");
+  await press("axis-x", "ArrowDown");
+  assert.notEqual(await page.locator("#axis-x").inputValue(), "alpha_v");
+  await press("axis-y-log", "Space");
+  await press("law", "ArrowDown");
+  await press("law", "ArrowUp");
+  await settled(page);
+  await page.locator("#take-law").focus();
+  await page.keyboard.press("Enter");
+  assert.equal(await focus(), "motion-title");
 });
 
 test("a table tells what the chart shows", async () => {

@@ -13,6 +13,8 @@ import {
   opened,
   placeOf,
   serve,
+  settled,
+  show,
   slipmap,
 } from "./support.mjs";
 
@@ -270,6 +272,7 @@ test("an address that makes no sense shows what it can", async () => {
   ]) {
     const page = await openPage(browser, null);
     await page.goto(server.link);
+    await page.waitForURL((url) => url.search === "");
     await page.goto(`http://127.0.0.1:${server.port}/${fragment}`);
     await page.waitForTimeout(300);
     assert.match(await page.locator("h1").innerText(), /slipmap/);
@@ -398,7 +401,7 @@ test("units label axes and numbers", async () => {
   const page = await openPage(browser, server.link);
   await page.getByText("Mass, spring, load, units").click();
   await page.locator("#units").selectOption("N,m,s");
-  await atRest(page);
+  await settled(page);
   const axes = await page.evaluate(() => window.slipmap.plane.plane.axes.map(({ unit }) => unit));
   assert.deepEqual(axes, ["s-1", "s"]);
   assert.match(await page.locator("#readout").innerText(), /τ = 4.15 s/);
@@ -422,6 +425,27 @@ test("the page goes on when its server is back", async () => {
     `--tau=${tau}`,
   ]);
   await anew.end();
+});
+
+test("the link opens from a file and from another site's page", async () => {
+  const { createServer } = await import("node:http");
+  const file = join(newFolder(), "link.html");
+  writeFileSync(file, `<meta http-equiv="refresh" content="0; url=${server.link}">`);
+  const site = createServer((_, response) => {
+    response.setHeader("Content-Type", "text/html");
+    response.end(`<a href="${server.link}">slipmap</a>`);
+  });
+  await new Promise((done) => site.listen(0, "127.0.0.1", done));
+  for (const from of [`file://${file}`, `http://localhost:${site.address().port}/`]) {
+    const page = await openPage(browser, null);
+    await page.goto(from);
+    if (from.startsWith("http")) await page.getByRole("link").click();
+    await page.waitForURL((url) => url.port === String(server.port) && url.search === "");
+    await atRest(page);
+    assert.deepEqual(page.faults, []);
+  }
+  site.closeAllConnections();
+  site.close();
 });
 
 test("another site's page can do nothing", async () => {
@@ -462,4 +486,353 @@ test("another site's page can do nothing", async () => {
     `${statuses}`,
   );
   evil.close();
+});
+
+const words = (page, id) => page.locator(`#${id}`).innerText();
+const axes = (page) => page.evaluate(() => [window.slipmap.state.x, window.slipmap.state.y]);
+const minus = (x) => String(x).replace("-", "−");
+
+test("the readout says what the panel says, of a point and of a cell", async () => {
+  const page = await openPage(browser, server.link);
+  await settled(page);
+  const agree = async (point, flags = velocity(point)) => {
+    const { n_unstable: n, abscissa } = asked(["point", ...flags]);
+    const count = n === 0 ? "stable" : `${n} unstable root`;
+    const digits = minus(Number(abscissa.toPrecision(6)));
+    const [readout, panel] = [await words(page, "readout"), await words(page, "point")];
+    assert.ok(
+      readout.includes(count) && readout.includes(digits),
+      `${readout}: ${count} ${digits}`,
+    );
+    assert.ok(panel.includes(`${n} unstable root`) && panel.includes(digits), panel);
+  };
+  await agree([-0.33, 4.15]);
+  await show(page, "#v=1&at=-0.9,4.42973");
+  await agree([-0.9, 4.42973]);
+  // A cell is told by its own values.
+  const place = await placeOf(page, [-0.7123, 3.777]);
+  await page.mouse.move(place.x, place.y);
+  const told = await words(page, "hover");
+  const numbers = told
+    .replaceAll("−", "-")
+    .match(/= (-?[\d.]+), τ = ([\d.]+): .*abscissa (-?[\d.]+)/);
+  const { abscissa } = asked(["point", ...velocity(numbers.slice(1, 3))]);
+  assert.ok(Math.abs(abscissa - Number(numbers[3])) < 1e-5, `${told}: ${abscissa}`);
+  // The point is out of view, and something else changes.
+  await show(page, "#v=1&x=alpha_v,-1.6,-0.8&at=-0.33,4.15");
+  await set(page, "mu_prime", -0.9);
+  await page.waitForTimeout(50);
+  await settled(page);
+  await agree(null, ["--mu-prime=-0.9", "--alpha-v=-0.33", "--tau=4.15"]);
+  // What is amiss with a cell is told.
+  await show(page, "#v=1&x=mu_prime,-0.4,0.399&y=tau,0,12&alpha_v=0&at=0,3");
+  assert.match(await words(page, "readout"), /marginal/);
+  const zero = await placeOf(page, [0, 6]);
+  await page.mouse.move(zero.x, zero.y);
+  assert.match(await words(page, "hover"), /marginal/);
+  assert.deepEqual(page.faults, []);
+});
+
+test("a point that cannot be is told as such, and nothing of another one is left", async () => {
+  const page = await openPage(browser, server.link);
+  await settled(page);
+  await show(page, "#v=1&at=-0.33,-5");
+  const told = () => words(page, "point-problem");
+  assert.match(await told(), /tau = -5 is outside its range/);
+  assert.match(await words(page, "point-where"), /τ = −5/);
+  assert.ok(await page.locator("#cards").isHidden());
+  // Another chart does not wipe it away.
+  await set(page, "mu_prime", -0.4);
+  await page.waitForTimeout(50);
+  await settled(page);
+  assert.match(await told(), /tau = -5/);
+  assert.equal(await words(page, "problem"), "");
+  await show(page, "#v=1&law=weakening&at=-0.5,3&start=1e300,0");
+  assert.equal(await told(), "");
+  assert.match(await words(page, "motion-problem"), /x_dot0 = 1e300 is outside/);
+  assert.ok(await page.locator("#point").isVisible());
+  assert.equal(await words(page, "outcome"), "");
+  await show(page, "#v=1&law=weakening&at=-0.5,3");
+  assert.deepEqual(await page.evaluate(() => window.slipmap.panel.motion.start), [0, 0]);
+  assert.match(await words(page, "outcome"), /known at/);
+  await page.locator("#law").selectOption("table");
+  await page.waitForTimeout(50);
+  await settled(page);
+  assert.match(await told(), /two points/);
+  assert.ok(await page.locator("#cards").isHidden());
+});
+
+test("pasted tables come back from their addresses, and mistakes are told by line", async () => {
+  const page = await openPage(browser, server.link);
+  await page.locator("#law").selectOption("table");
+  const paste = async (text) => {
+    await page.locator("#law-table").fill(text);
+    await page.waitForTimeout(50);
+    await settled(page);
+  };
+  for (const separator of [" ", "\t", ";", ", "]) {
+    const rows = ["0 0.52", "0.1 0.41", "1 0.36"].map((row) => row.replace(" ", separator));
+    await paste(rows.join("\n"));
+    assert.match(page.url(), /table=0:0.52,0.1:0.41,1:0.36/);
+  }
+  const [fragment, before] = [new URL(page.url()).hash, await words(page, "point")];
+  await show(page, "#v=1");
+  await show(page, fragment);
+  assert.equal(await words(page, "point"), before);
+  // There is no command for it, and so nothing to copy.
+  assert.equal(await page.locator("#command").inputValue(), "");
+  assert.ok(await page.locator("#copy-command").isDisabled());
+  for (const [text, mistake] of [
+    ["0,1;0,5\n1,2;0,4", /line 1 of the table/],
+    ["v,mu\n0,0.5\n1,\n2,0.3", /line 3 of the table/],
+    ["0,0.5\nmu\n2,0.3", /line 2 of the table/],
+    ["v,mu\n\n0,0.5\n0.2,0.4\n0.2,0.3", /line 5 of the table: speeds = 0.2/],
+  ]) {
+    await paste(text);
+    assert.match(await words(page, "problem"), mistake);
+  }
+});
+
+test("axes are swapped, zoomed and moved within what there is", async () => {
+  const page = await openPage(browser, server.link);
+  const choose = async (control) => {
+    await page.getByRole("radio", { name: control }).check();
+    await atRest(page);
+  };
+  const times = async (count, button) => {
+    for (let k = 0; k < count; k++) await page.locator(button).click();
+    await atRest(page);
+  };
+  await choose("both");
+  await page.locator("#axis-y").selectOption("alpha_n");
+  await choose("velocity");
+  assert.deepEqual(
+    (await axes(page)).map(({ name }) => name),
+    ["alpha_v", "tau"],
+  );
+  await choose("load");
+  const all = await axes(page);
+  await times(2, "#zoom-in");
+  assert.notDeepEqual(await axes(page), all);
+  await times(1, "#zoom-all");
+  assert.deepEqual(await axes(page), all);
+  // A drag beyond τ = 0 moves, and does not zoom.
+  const [from, to] = [await placeOf(page, [-2, 2]), await placeOf(page, [-2, 8])];
+  await page.mouse.move(from.x, from.y);
+  await page.mouse.down();
+  await page.mouse.move(to.x, to.y, { steps: 4 });
+  await page.mouse.up();
+  assert.deepEqual((await axes(page))[1], all[1]);
+  await page.locator("#axis-y-log").check();
+  const shown = [];
+  for (let k = 0; k < 3; k++) {
+    await times(1, "#zoom-out");
+    shown.push((await axes(page))[1]);
+  }
+  assert.ok(
+    shown.every(({ from: low }, k) => low > 0 && (!k || low < shown[k - 1].from)),
+    shown,
+  );
+  assert.equal(await words(page, "problem"), "");
+  await times(1, "#zoom-all");
+  assert.deepEqual((await axes(page))[1], { ...all[1], from: 0.012, log: true });
+  assert.deepEqual(page.faults, []);
+});
+
+test("every pair of axes begins with a chart, whatever the law", async () => {
+  const page = await openPage(browser, server.link);
+  const [count, failures] = await page.evaluate(async () => {
+    const { catalogue, state, source } = window.slipmap;
+    const { parametersOf, sweepOf } = await import("./sweep.js");
+    const table = "0, 0.52\n0.1, 0.41\n1, 0.36";
+    const left = [];
+    for (const law of ["none", ...catalogue.laws.map(({ name }) => name)]) {
+      // Both controls have the gains of each.
+      const begun = { ...state, control: "mixed", law, table, values: {} };
+      const names = parametersOf(begun, catalogue);
+      for (const x of names) {
+        for (const y of names) {
+          // Chosen one after the other; the order matters to friction coefficients only.
+          if (x === y || (x > y && !/^mu/.test(x + y))) continue;
+          const other = catalogue.axis(y, begun, { name: "" }, 0.52);
+          const view = { ...begun, x: catalogue.axis(x, begun, other, 0.52), y: other };
+          left.push(sweepOf(view, catalogue, [3, 3], ["n_unstable"]));
+        }
+      }
+    }
+    const [size, wrong] = [left.length, []];
+    const some = async () => {
+      for (let text = left.pop(); text; text = left.pop())
+        await source.chart(text).catch(({ message }) => wrong.push([message, text]));
+    };
+    await Promise.all([some(), some(), some()]);
+    return [size, wrong.slice(0, 5)];
+  });
+  assert.deepEqual(failures, []);
+  assert.ok(count > 200, `${count}`);
+});
+
+test("what an address asks for and there is not is told in words", async () => {
+  const page = await openPage(browser, server.link);
+  for (const [fragment, told] of [
+    ["#v=1&x=alpha_v,-Infinity,0.4", /axis across, alpha_v from -Infinity to 0.4: outside/],
+    ["#v=1&x=tau,0,1&y=tau,0,2", /both axes are the same/],
+    ["#v=1&x=alpha_v,0,1e-320", /too narrow/],
+    ["#v=1&x=foo,0,1", /axis across, "foo", is no parameter/],
+    ["#v=1&x=constructor,0,1", /"constructor", is no parameter/],
+    ["#v=1&y=mass,-1,1", /axis upwards, mass from -1 to 1: outside its range: greater than 0/],
+    ["#v=1&x=alpha_v,-1,1,log", /does not reach 0/],
+    ["#v=1&units=foo", /"foo" is no units/],
+    ["#v=1&law=weakening&show=vc", /"vc" is no field/],
+    ["#v=1&mu_prime=1e300", /mu_prime = 1e300 is outside its range/],
+    ["#v=2", /none of this version/],
+  ]) {
+    const notes = await page.evaluate(async (hash) => {
+      const { stateOf } = await import("./state.js");
+      return stateOf(hash, window.slipmap.catalogue).notes.join();
+    }, fragment);
+    assert.match(notes, told, fragment);
+  }
+  await show(page, "#v=1&x=tau,0,1&y=tau,0,2&law=q&mass=-1");
+  assert.match(
+    await words(page, "address-told"),
+    /"q" is no friction law.*; mass = -1 is.*; both axes/,
+  );
+  assert.equal(await words(page, "problem"), "");
+  assert.ok(await page.locator("#cards").isVisible());
+  await show(page, "#v=1");
+  assert.equal(await words(page, "address-told"), "");
+  // A map that is not there leaves nothing to be moved.
+  await page.evaluate(() => (location.hash = "#v=1&map=0000000000000000"));
+  await page.waitForFunction(() => /no map/.test(document.getElementById("problem").innerText));
+  assert.ok(await page.locator("#cards").isHidden());
+  await page.locator("#chart").focus();
+  for (const key of ["+", "0", "ArrowLeft", "Enter"]) await page.keyboard.press(key);
+  const missing = page.faults.filter((fault) => !/404/.test(fault));
+  assert.deepEqual(missing, []);
+});
+
+test("a start is dragged while something is looked at, and a key asks for no more than it must", async () => {
+  const page = await openPage(browser, server.link);
+  await show(page, "#v=1&law=weakening");
+  await page.locator("#phase").scrollIntoViewIfNeeded();
+  const box = await page.locator("#phase").boundingBox();
+  await page.mouse.move(box.x + 0.5 * box.width, box.y + 0.4 * box.height);
+  await page.mouse.down();
+  // As when a map is looked at that grows.
+  await page.evaluate(() => {
+    const { panel, state } = window.slipmap;
+    const { texts, where } = panel.next;
+    const other = (text) => text.replace("4.15", "4.05");
+    const [point, vc, motion] = [texts.point, texts.vc, texts.motion].map(other);
+    panel.look({ point, vc, motion }, { where, start: state.start });
+  });
+  await page.mouse.move(box.x + 0.6 * box.width, box.y + 0.3 * box.height, { steps: 4 });
+  await page.mouse.up();
+  await page.waitForTimeout(300);
+  await settled(page);
+  assert.deepEqual(page.faults, []);
+  const questions = [];
+  page.on("request", (request) => questions.push(new URL(request.url()).pathname));
+  await page.locator("#phase").focus();
+  await page.keyboard.press("ArrowUp");
+  await page.waitForTimeout(300);
+  await settled(page);
+  assert.deepEqual(
+    questions.filter((path) => /api/.test(path)),
+    ["/api/v1/motion"],
+  );
+});
+
+test("pictures have a ground in the dark, and a copy that fails is told", async () => {
+  const page = await openPage(browser, server.link, { colorScheme: "dark" });
+  await settled(page);
+  const { bytes } = await downloaded(page, "PNG");
+  const corner = await page.evaluate(async (base64) => {
+    const image = new Image();
+    image.src = `data:image/png;base64,${base64}`;
+    await image.decode();
+    const context = new OffscreenCanvas(8, 8).getContext("2d");
+    context.drawImage(image, 0, 0);
+    return Array.from(context.getImageData(2, 2, 1, 1).data);
+  }, bytes.toString("base64"));
+  assert.deepEqual(corner, [0x16, 0x18, 0x1b, 255]);
+  const button = page.locator("#copy-link");
+  await button.click();
+  await button.click();
+  await page.waitForFunction(() => document.getElementById("copy-link").innerText === "Copied");
+  assert.equal(await page.evaluate(() => navigator.clipboard.readText()), page.url());
+  await page.waitForFunction(() => document.getElementById("copy-link").innerText === "Copy link");
+  await page.evaluate(() => {
+    Object.defineProperty(navigator, "clipboard", { value: undefined });
+    window.selected = null;
+    document.execCommand = () => {
+      window.selected = document.activeElement.value;
+      return false;
+    };
+  });
+  await button.click();
+  await page.waitForFunction(() => document.getElementById("copy-link").innerText === "Not copied");
+  assert.equal(await page.evaluate(() => window.selected), page.url());
+  assert.ok(await button.evaluate((it) => it === document.activeElement));
+});
+
+test("the panel's numbers have the units of the model", async () => {
+  const page = await openPage(browser, server.link);
+  await show(page, "#v=1&law=weakening&units=mN,mm,s&at=-0.33,4.15");
+  assert.match(await words(page, "point-where"), /α_v = −0.33 s-1, τ = 4.15 s/);
+  const told = await words(page, "point");
+  for (const part of [
+    /slope μ′\s+−0.34\d+ mm-1 s/,
+    /margin\s+[\d.]+ s/,
+    /abscissa\s+−[\d.]+ s-1/,
+  ]) {
+    assert.match(told, part);
+  }
+  assert.match(
+    await words(page, "vc"),
+    /velocity\s+0.34\d+ mm s-1.*stuck [\d.]+ s, slipping [\d.]+ s/s,
+  );
+  assert.match(await words(page, "outcome"), /at t = [\d.]+ s\s.*load\s+[\d.]+ mN/s);
+  assert.match(await words(page, "readout"), /spectral abscissa −[\d.]+ s-1/);
+  assert.match(await words(page, "law-told"), /at v0 = 0.35 mm s-1/);
+  const command = (await page.locator("#vc-command").inputValue()).split(" ");
+  assert.equal(command.shift(), "slipmap");
+  assert.ok((await words(page, "vc")).includes(Number(asked(command).vc.toPrecision(6))));
+});
+
+test("kinds have colours of their own, and the legend tells those in view", async () => {
+  const page = await openPage(browser, server.link);
+  const found = await page.evaluate(async () => {
+    const [{ coloursOf }, { tellLegend }] = await Promise.all([
+      import("./colours.js"),
+      import("./legend.js"),
+    ]);
+    const field = window.slipmap.catalogue.fields.find(({ name }) => name === "outcome");
+    const cells = [7, 7, 9, 0, 3];
+    const colours = coloursOf(field, cells);
+    const list = document.createElement("ul");
+    tellLegend(list, { colours, field, cells, bits: [0, 0, 0, 4, 2], marks: [] });
+    return [colours.colours, [...list.children].map((item) => item.textContent)];
+  });
+  assert.equal(new Set(found[0]).size, 14);
+  assert.deepEqual(found[1], ["grazing", "period-doubling"]);
+});
+
+test("where a map has no v0, only the critical velocity is told", async () => {
+  const page = await openPage(browser, server.link);
+  await show(page, "#v=1&law=weakening");
+  const seen = await page.evaluate(() => {
+    const { panel } = window.slipmap;
+    const { vc } = panel.next.texts;
+    panel.look({ point: null, vc, motion: null }, { where: "γ = 1", start: null, fixed: true });
+    const shown = (id) => document.getElementById(id).checkVisibility();
+    const cards = ["sliding", "roots", "delays", "vc", "motion", "same"];
+    return cards.filter((card) => shown(`${card}-card`));
+  });
+  assert.deepEqual(seen, ["vc", "same"]);
+  assert.match(await words(page, "point-none"), /no v0/);
+  assert.ok(await page.locator("#copy-command").isHidden());
+  assert.match(await page.locator("#vc-command").inputValue(), /^slipmap vc /);
+  assert.match(await page.locator("#vc-toml").inputValue(), /law = "weakening"/);
 });

@@ -35,7 +35,10 @@ const server = await serve([folder]);
 /** Of the top of the page, as large as the window. */
 async function picture(page, name) {
   await atRest(page);
-  await page.waitForFunction(() => !/…/.test(document.getElementById("vc").innerText));
+  await page.waitForFunction(() => {
+    const vc = document.getElementById("vc");
+    return vc.offsetParent === null || !/…/.test(vc.innerText);
+  });
   await page.waitForTimeout(500);
   await page.screenshot({ path: join(ROOT, "doc", name) });
 }

@@ -85,3 +85,14 @@ test("it computes where one points, and has no maps", async () => {
   assert.ok(words.includes(String(Number(Math.abs(told.abscissa).toPrecision(6)))), words);
   assert.deepEqual(page.faults, []);
 });
+
+test("a link to a map says that maps need a server", async () => {
+  const page = await openPage(browser, address());
+  await page.evaluate(() => (location.hash = "#v=1&map=0123456789abcdef"));
+  await page.locator("#problem", { hasText: "slipmap serve" }).waitFor();
+  assert.ok(await page.locator("#origin").isHidden());
+  await page.getByRole("button", { name: "Live chart" }).click();
+  await atRest(page);
+  assert.equal(await page.locator("#origin").innerText(), "computed now");
+  assert.deepEqual(page.faults, []);
+});

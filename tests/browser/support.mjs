@@ -40,8 +40,8 @@ export async function serve(args = [], port = 0) {
   return { link, end, child, token: link.split("token=")[1], port: Number(new URL(link).port) };
 }
 
-/** A headless Chromium that talks to nobody else. */
-export const openBrowser = () =>
+/** A headless Chromium that talks to nobody else; `more` are flags besides. */
+export const openBrowser = (more = []) =>
   chromium.launch({
     executablePath: process.env.SLIPMAP_CHROMIUM,
     args: [
@@ -52,6 +52,7 @@ export const openBrowser = () =>
       "--disable-default-apps",
       "--disable-sync",
       "--no-first-run",
+      ...more,
     ],
   });
 
@@ -115,6 +116,22 @@ export async function atRest(page) {
     const idle = (requests) => !requests.next && requests.underWay.size === 0;
     return plane.plane.rests && idle(live.requests) && idle(saved.windows);
   }, undefined, { timeout: 30000 });
+}
+
+/** Waits until everything about the point is there, too. */
+export async function settled(page) {
+  await atRest(page);
+  await page.waitForFunction(() => {
+    const { settling, panel } = window.slipmap;
+    return !settling && panel.next && !panel.pending;
+  });
+}
+
+/** Shows the view of an address, and waits for it. */
+export async function show(page, fragment) {
+  await page.evaluate((hash) => (location.hash = hash), fragment);
+  await page.waitForTimeout(50);
+  await settled(page);
 }
 
 /** Tries until nothing is thrown, for ten seconds. */

@@ -45,7 +45,11 @@ impl Serving {
     /// With more arguments.
     pub(crate) fn with(folder: &Folder, more: &[&str]) -> Self {
         let usual = ["serve", "--port", "0", "--threads", "2"];
-        let mut command = folder.command(&[&usual, more].concat());
+        Self::of(&mut folder.command(&[&usual, more].concat()))
+    }
+
+    /// By a command.
+    pub(crate) fn of(command: &mut std::process::Command) -> Self {
         let mut child = command
             .stdout(Stdio::piped())
             .stderr(Stdio::null())

@@ -1,6 +1,7 @@
 //! Windows on a map as they should be, by looking at every cell for every pixel.
 
 use serde_json::Value;
+use slipmap::linear::status::AMISS;
 use slipmap::store::MapFile;
 use slipmap::sweep::Field;
 
@@ -55,16 +56,31 @@ pub(crate) fn complete(serving: &Serving, path: &str) -> Decoded {
     panic!("{path} is never complete");
 }
 
-/// The nearest cell to each pixel, and the cells inside it.
-fn pixels(
-    values: &[f64],
-    ends: Option<(f64, f64)>,
-    count: usize,
-    scale: &str,
-) -> Vec<(usize, Vec<usize>)> {
+/// What a pixel is of.
+struct Pixel {
+    nearest: usize,
+    inside: Vec<usize>,
+    beyond: bool,
+}
+
+/// The nearest cell to each pixel, the cells inside it, and whether it lies beyond them: by more
+/// than half way to the neighbour of the last.
+fn pixels(values: &[f64], ends: Option<(f64, f64)>, count: usize, scale: &str) -> Vec<Pixel> {
     let coordinate = |value: f64| match scale {
         "log" => value.abs().ln() * value.signum(),
         _ => value,
+    };
+    let mut sorted: Vec<f64> = values.iter().map(|&value| coordinate(value)).collect();
+    sorted.sort_by(f64::total_cmp);
+    let reach = match sorted[..] {
+        [_] => (f64::NEG_INFINITY, f64::INFINITY),
+        [first, second, ..] => {
+            let [.., before, last] = sorted[..] else {
+                unreachable!()
+            };
+            (first - (second - first) / 2.0, last + (last - before) / 2.0)
+        }
+        [] => unreachable!(),
     };
     let (from, to) = ends.unwrap_or((values[0], values[values.len() - 1]));
     let (a, b) = (coordinate(from), coordinate(to));
@@ -85,14 +101,33 @@ fn pixels(
                 || u == if rises { low } else { high }
                 || (last && u == coordinate(to))
         };
-        (nearest.unwrap(), (0..values.len()).filter(inside).collect())
+        let inside: Vec<usize> = (0..values.len()).filter(inside).collect();
+        Pixel {
+            nearest: nearest.unwrap(),
+            beyond: inside.is_empty() && !(reach.0..=reach.1).contains(&centre),
+            inside,
+        }
     };
     (0..count).map(pixel).collect()
 }
 
-/// All of a window is as it should be.
+/// What of a status says that something is amiss, for every cell of a map.
+fn amiss(map: &MapFile) -> impl Fn(&[usize]) -> u8 {
+    let file = hdf5::File::open(map.path()).unwrap();
+    let all = file.dataset("status").unwrap().read_raw::<u8>().unwrap();
+    let shape: Vec<usize> = map.axes().iter().map(|axis| axis.values.len()).collect();
+    move |index| {
+        let place = index
+            .iter()
+            .zip(&shape)
+            .fold(0, |place, (i, n)| place * n + i);
+        all[place] & AMISS
+    }
+}
+
+/// All of a window is as it should be; how many of its pixels hide something.
 #[track_caller]
-pub(crate) fn check(serving: &Serving, id: &str, map: &MapFile, window: &Window) {
+pub(crate) fn check(serving: &Serving, id: &str, map: &MapFile, window: &Window) -> usize {
     let path = window.path(id, map);
     let told = complete(serving, &path);
     let numbers = |array: &Value| told.numbers(array);
@@ -101,43 +136,56 @@ pub(crate) fn check(serving: &Serving, id: &str, map: &MapFile, window: &Window)
     let across = along(window.x, window.x_ends, window.size.0, window.scales.0);
     let up = match window.y {
         Some(y) => along(y, window.y_ends, window.size.1, window.scales.1),
-        None => vec![(0, vec![0])],
+        None => vec![Pixel {
+            nearest: 0,
+            inside: vec![0],
+            beyond: false,
+        }],
     };
     let (row, column) = (window.y.unwrap_or(window.x), window.x);
     let plane = map
         .plane(window.field, &window.at, (row, column), usize::MAX)
         .unwrap();
     let cell = |x: usize, y: usize| plane.cells[y * plane.columns.len() + x];
+    let amiss = amiss(map);
+    let amiss = |x: usize, y: usize| {
+        let mut at = window.at.clone();
+        at[row] = y;
+        at[column] = x;
+        amiss(&at)
+    };
     let (values, bits) = (numbers(&told.head["values"]), numbers(&told.head["bits"]));
     let index = numbers(&told.head["x"]["index"]);
     assert_eq!(values.len(), across.len() * up.len());
     let mut hiding = 0;
-    for (ix, (x, xs)) in across.iter().enumerate() {
-        assert_eq!(index[ix], *x as f64, "{path} {ix}");
-        for (iy, (y, ys)) in up.iter().enumerate() {
-            let place = ix * up.len() + iy;
-            let (found, expected) = (values[place], cell(*x, *y));
-            let fill = expected.is_nan() && (found.is_nan() || found == 255.0 || found == 65535.0);
-            assert!(
-                found == expected || fill,
-                "{path} {ix} {iy}: {found} {expected}"
-            );
-            let hidden = || {
-                xs.iter()
-                    .flat_map(|&x| ys.iter().map(move |&y| cell(x, y).to_bits()))
-            };
-            let several = hidden().any(|bits| Some(bits) != hidden().next());
-            assert_eq!(bits[place] as u8 & 1 != 0, several, "{path} {ix} {iy}");
+    for (ix, x) in across.iter().enumerate() {
+        assert_eq!(index[ix], x.nearest as f64, "{path} {ix}");
+        for (iy, y) in up.iter().enumerate() {
+            let (place, at) = (ix * up.len() + iy, format!("{path} {ix} {iy}"));
+            let found = values[place];
+            let is_fill = found.is_nan() || found == 255.0 || found == 65535.0;
+            if x.beyond || y.beyond {
+                assert!(is_fill && bits[place] == 8.0, "{at}: {found}");
+                continue;
+            }
+            let expected = cell(x.nearest, y.nearest);
+            let fits = found == expected || expected.is_nan() && is_fill;
+            assert!(fits, "{at}: {found} {expected}");
+            let inside = x.inside.iter();
+            let inside = inside.flat_map(|&x| y.inside.iter().map(move |&y| (x, y)));
+            let mut values = inside.clone().map(|(x, y)| cell(x, y).to_bits());
+            let first = values.next();
+            let shows_sound = amiss(x.nearest, y.nearest) == 0;
+            let several = values.any(|other| Some(other) != first)
+                || shows_sound && inside.clone().any(|(x, y)| amiss(x, y) != 0);
+            assert_eq!(bits[place], f64::from(u8::from(several)), "{at}");
             hiding += usize::from(several);
         }
     }
-    let all = across.len() * up.len();
     let shown = told.head["y"]["index"]
         .as_object()
         .map(|_| numbers(&told.head["y"]["index"]));
-    assert!(shown.is_none_or(|shown| shown.iter().zip(&up).all(|(i, (y, _))| *i == *y as f64)));
-    assert!(
-        hiding <= all && bits.iter().all(|bits| *bits as u8 & !1 == 0),
-        "{path}"
-    );
+    let mut all = shown.iter().flatten().zip(&up);
+    assert!(all.all(|(i, y)| *i == y.nearest as f64), "{path}");
+    hiding
 }

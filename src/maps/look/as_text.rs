@@ -1,11 +1,13 @@
 //! A cell's setting as text that gives the same setting when it is read: for requests, files and
 //! the command line.
 
+use crate::critical::switch_on::Phase;
 use crate::model::Control;
 use crate::model::table::TableColumn;
-use crate::sweep::input::command::command_line;
+use crate::sweep::input::command::{command_line, vc_command};
 use crate::sweep::input::law_kind::LawKind;
 use crate::sweep::input::parameter::{Group, Parameter};
+use crate::sweep::input::search::Protocol;
 use crate::sweep::input::setting::Setting;
 use crate::sweep::input::simulation::Simulation;
 use crate::sweep::input::units::Units;
@@ -45,12 +47,17 @@ impl CellTexts {
         let law = setting.law().is_some();
         let point = (slides && delay).then(|| text(spec, &setting, |_| true));
         let no_v0 = |parameter| parameter != Parameter::V0;
-        let vc = (law && (delay || uncontrolled)).then(|| text(spec, &setting, no_v0));
+        let protocol = spec
+            .critical
+            .map_or(Protocol::Follow, |search| search.protocol);
+        let protocol = protocol.at(&setting);
+        let vc = (law && (delay || uncontrolled))
+            .then(|| asked_for(protocol) + &text(spec, &setting, no_v0));
         let moves = law && slides && (delay || uncontrolled);
         let of_point = |parameter| of_point(&setting, parameter);
         let command = match (&point, &vc) {
             (Some(_), _) => command_line("point", &setting, of_point),
-            (None, Some(_)) => command_line("vc", &setting, |p| no_v0(p) && of_point(p)),
+            (None, Some(_)) => vc_command(&setting, protocol),
             (None, None) => None,
         };
         Self {
@@ -65,6 +72,24 @@ impl CellTexts {
 /// Whether a point of this setting has the parameter.
 fn of_point(setting: &Setting, parameter: Parameter) -> bool {
     !parameter.of_start() && setting.uses(parameter)
+}
+
+/// The keys that say by which protocol a critical velocity is looked for.
+fn asked_for(protocol: Protocol) -> String {
+    let name = protocol.name();
+    match protocol {
+        Protocol::Follow => String::new(),
+        Protocol::SwitchOn(Phase::Worst(_)) => {
+            format!("protocol = \"{name}\"\nphase = \"worst\"\n\n")
+        }
+        Protocol::SwitchOn(Phase::After(time)) => {
+            let phase = Parameter::SwitchOnPhase.name();
+            format!(
+                "protocol = \"{name}\"\nstart.{phase} = {}\n\n",
+                number(time)
+            )
+        }
+    }
 }
 
 /// A number that is read as the same.

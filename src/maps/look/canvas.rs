@@ -5,12 +5,15 @@ use std::ops::Range;
 use super::cells::{Cell, Reader, Slab};
 use super::pixels::Pixels;
 
-/// The pixel hides cells of several values.
+/// The pixel hides cells of several values or, where nothing is amiss with the one that it shows,
+/// some with which something is.
 pub const SEVERAL: u8 = 1;
 /// The cell that it shows was not read yet.
 pub const UNREAD: u8 = 2;
 /// The cell that it shows is not computed yet.
 pub const NOT_COMPUTED: u8 = 4;
+/// It lies beyond the axes, and shows no cell.
+pub const BEYOND: u8 = 8;
 /// Its value is that of a cell that it hides, until the one that it shows is read.
 const HIDDEN_SEEN: u8 = 128;
 
@@ -37,8 +40,16 @@ impl<T: Cell> Canvas<T> {
         }
     }
 
+    /// Pixels that have seen this already: what differs from it is marked.
+    pub(super) fn that_saw(value: T, pixels: usize) -> Self {
+        Self {
+            values: vec![value; pixels],
+            bits: vec![UNREAD | HIDDEN_SEEN; pixels],
+        }
+    }
+
     /// Shows the cells of a slab that are nearest to pixels and, where `several` is asked for,
-    /// marks pixels that hide others.
+    /// marks pixels that hide cells of several values.
     pub(super) fn paint(&mut self, slab: &Slab<T>, under: &Under, several: bool) {
         self.show(slab, under);
         if several {
@@ -78,12 +89,18 @@ impl<T: Cell> Canvas<T> {
         }
     }
 
-    fn compare(&mut self, slab: &Slab<T>, under: &Under) {
+    /// Marks pixels that hide cells of several values.
+    pub(super) fn compare(&mut self, slab: &Slab<T>, under: &Under) {
         let (rows, _) = &under.cells;
         let mut readers = [slab.cells.reader(), slab.cells.reader()];
+        let constant = slab.cells.is_constant();
         for down in under.slow.holding(rows) {
             let inside = &under.slow.inside[down];
-            let inside = inside.start.max(rows.start)..inside.end.min(rows.end);
+            let mut inside = inside.start.max(rows.start)..inside.end.min(rows.end);
+            if constant && !inside.is_empty() {
+                // One row says it for all.
+                inside.end = inside.start + 1;
+            }
             for row in inside.clone() {
                 let from = slab.base + (row - rows.start) as usize * slab.row;
                 match row == inside.start {
@@ -153,5 +170,166 @@ impl<T: Cell> Canvas<T> {
             }
             at = end;
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::sync::Arc;
+
+    use super::super::cells::Cells;
+    use super::super::pixels::{Scale, Stretch};
+    use super::*;
+
+    /// Numbers by chance, the same every time.
+    struct Chance(u64);
+
+    impl Chance {
+        fn of(&mut self, count: usize) -> usize {
+            self.0 ^= self.0 << 13;
+            self.0 ^= self.0 >> 7;
+            self.0 ^= self.0 << 17;
+            (self.0 % count as u64) as usize
+        }
+
+        fn part(&mut self) -> f64 {
+            self.of(1 << 40) as f64 / (1_u64 << 40) as f64
+        }
+
+        /// An uneven axis, and pixels on a stretch of it that may reach beyond.
+        fn axis(&mut self, most: usize) -> (usize, Pixels) {
+            let mut value = 0.0;
+            let count = 1 + self.of(most);
+            let values: Vec<f64> = (0..count)
+                .map(|_| {
+                    value += 0.1 + self.part();
+                    value
+                })
+                .collect();
+            let mut end = || Some((1.6 * self.part() - 0.3) * value);
+            let stretch = Stretch {
+                from: end(),
+                to: end(),
+                pixels: 1 + self.of(9),
+                scale: Scale::Linear,
+            };
+            (count, Pixels::along(&values, &stretch).unwrap())
+        }
+
+        /// These cells, stored in one way or the other.
+        fn stored(&mut self, cells: Vec<u16>) -> Cells<u16> {
+            if self.of(2) == 0 {
+                return Cells::Each(cells);
+            }
+            let (mut ends, mut values) = (Vec::new(), Vec::new());
+            for run in cells.chunk_by(|a, b| a == b) {
+                ends.push(ends.last().unwrap_or(&0) + run.len() as u32);
+                values.push(run[0]);
+            }
+            Cells::Runs { ends, values }
+        }
+    }
+
+    /// A plane of cells, row by row.
+    struct Field {
+        width: usize,
+        cells: Vec<u16>,
+    }
+
+    impl Field {
+        fn at(&self, row: u32, column: u32) -> u16 {
+            self.cells[row as usize * self.width + column as usize]
+        }
+
+        /// The part of it in a chunk, with something between its rows.
+        fn slab(
+            &self,
+            (rows, columns): &(Range<u32>, Range<u32>),
+            chance: &mut Chance,
+        ) -> Slab<u16> {
+            let (base, between) = (chance.of(3), chance.of(3));
+            let mut cells = vec![9; base];
+            for row in rows.clone() {
+                cells.extend(columns.clone().map(|column| self.at(row, column)));
+                cells.resize(cells.len() + between, 9);
+            }
+            Slab {
+                cells: Arc::new(chance.stored(cells)),
+                base,
+                row: columns.len() + between,
+            }
+        }
+    }
+
+    /// The chunks of a plane, in any order.
+    fn chunks(shape: [usize; 2], chance: &mut Chance) -> Vec<(Range<u32>, Range<u32>)> {
+        let length = shape.map(|length| 1 + chance.of(length));
+        let along = |axis: usize| {
+            let starts = (0..shape[axis]).step_by(length[axis]);
+            starts.map(move |from| from as u32..(from + length[axis]).min(shape[axis]) as u32)
+        };
+        let mut all: Vec<_> = along(0)
+            .flat_map(|rows| along(1).map(move |columns| (rows.clone(), columns)))
+            .collect();
+        for last in (1..all.len()).rev() {
+            all.swap(last, chance.of(last + 1));
+        }
+        all
+    }
+
+    /// What a pixel of all cells shows, and whether it hides several values.
+    #[track_caller]
+    fn check(canvas: &Canvas<u16>, field: &Field, slow: &Pixels, fast: &Pixels) -> usize {
+        let mut several = 0;
+        for down in 0..slow.len() {
+            for across in 0..fast.len() {
+                let place = down * fast.len() + across;
+                let bits = canvas.bits[place];
+                if !slow.on_axis.contains(&down) || !fast.on_axis.contains(&across) {
+                    assert_eq!(bits, UNREAD);
+                    continue;
+                }
+                let (row, column) = (slow.nearest[down], fast.nearest[across]);
+                assert_eq!(canvas.values[place], field.at(row, column));
+                let rows = slow.inside[down].clone();
+                let mut hidden =
+                    rows.flat_map(|y| fast.inside[across].clone().map(move |x| field.at(y, x)));
+                let first = hidden.next();
+                let expected = hidden.any(|value| Some(value) != first);
+                assert_eq!(bits, if expected { SEVERAL } else { 0 }, "{down} {across}");
+                several += usize::from(expected);
+            }
+        }
+        several
+    }
+
+    #[test]
+    fn pixels_show_the_nearest_cell_and_say_what_they_hide_however_chunks_come() {
+        let mut chance = Chance(0x5eed);
+        let mut several = 0;
+        for _ in 0..3000 {
+            let ((height, slow), (width, fast)) = (chance.axis(12), chance.axis(25));
+            let mut value = 0;
+            let cells = (0..height * width).map(|_| {
+                if chance.of(6) == 0 {
+                    value = chance.of(3) as u16;
+                }
+                value
+            });
+            let cells = cells.collect();
+            let field = Field { width, cells };
+            let mut canvas = Canvas::new(slow.len() * fast.len());
+            for cells in chunks([height, width], &mut chance) {
+                let slab = field.slab(&cells, &mut chance);
+                let under = Under {
+                    slow: &slow,
+                    fast: &fast,
+                    cells,
+                };
+                canvas.paint(&slab, &under, true);
+            }
+            several += check(&canvas, &field, &slow, &fast);
+        }
+        assert!(several > 1000, "{several}");
     }
 }

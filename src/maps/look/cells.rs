@@ -92,9 +92,53 @@ impl<T: Cell> Cells<T> {
         }
     }
 
+    /// Whether some cell is so.
+    pub(super) fn any(&self, is_so: impl Fn(T) -> bool) -> bool {
+        let (Self::Runs { values: all, .. } | Self::Each(all)) = self;
+        all.iter().any(|&cell| is_so(cell))
+    }
+
+    /// What `of` makes of each.
+    pub(super) fn map(&self, of: impl Fn(T) -> T) -> Self {
+        let (ends, values) = match self {
+            Self::Each(cells) => return Self::Each(cells.iter().map(|&cell| of(cell)).collect()),
+            Self::Runs { ends, values } => (ends, values),
+        };
+        let (mut new_ends, mut new_values): (Vec<u32>, Vec<T>) = (Vec::new(), Vec::new());
+        for (&end, value) in ends.iter().zip(values.iter().map(|&value| of(value))) {
+            match (new_ends.last_mut(), new_values.last()) {
+                (Some(last), Some(before)) if *before == value => *last = end,
+                _ => {
+                    new_ends.push(end);
+                    new_values.push(value);
+                }
+            }
+        }
+        Self::Runs {
+            ends: new_ends,
+            values: new_values,
+        }
+    }
+
+    /// Whether they are known to be equal.
+    pub(super) fn is_constant(&self) -> bool {
+        matches!(self, Self::Runs { values, .. } if values.len() == 1)
+    }
+
     /// Whether they are stored as runs.
     pub(super) fn is_runs(&self) -> bool {
         matches!(self, Self::Runs { .. })
+    }
+
+    /// A copy of cells that are stored as runs; none of others, which take more room.
+    pub(super) fn copied_runs(&self) -> Option<Self> {
+        match self {
+            Self::Runs { ends, values } => Some(Self::Runs {
+                ends: ends.clone(),
+                values: values.clone(),
+            }),
+            Self::Each(_) => None,
+        }
     }
 
     fn bytes(&self) -> usize {
@@ -220,6 +264,21 @@ mod tests {
         }
         assert_eq!(reader.only(97, 194), Some(1));
         assert_eq!(reader.only(96, 194), None);
+        assert!(
+            [&runs, &Cells::Each(cells.clone())]
+                .iter()
+                .all(|all| { all.any(|value| value == 10) && !all.any(|value| value == 11) })
+        );
+        let coarse = runs.map(|value| value / 4);
+        assert!(coarse.bytes() < runs.bytes() / 3);
+        let each = Cells::Each(cells.clone()).map(|value| value / 4);
+        for (place, cell) in cells.iter().enumerate() {
+            let expected = cell / 4;
+            assert_eq!(
+                [&coarse, &each].map(|of| of.reader().at(place)),
+                [expected; 2]
+            );
+        }
         let cut = Cut {
             base: 5,
             strides: (10, 2),

@@ -11,24 +11,28 @@
 pub mod as_text;
 mod canvas;
 mod cells;
+mod jobs;
 mod pixels;
 mod reading;
 mod shelf;
+mod short;
 mod source;
 mod view;
 mod window;
 
 use std::collections::VecDeque;
+use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::Path;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Arc, Condvar, Mutex, MutexGuard};
 use std::time::{Duration, Instant};
 
-pub use canvas::{NOT_COMPUTED, SEVERAL, UNREAD};
-pub use pixels::{Scale, Stretch};
+pub use canvas::{BEYOND, NOT_COMPUTED, SEVERAL, UNREAD};
+pub use pixels::{Scale, Stretch, finite};
 pub use source::Facts;
 pub use window::{Asked, Numbers, Shot, Shown};
 
+use jobs::Job;
 use reading::Reading;
 use source::{Cells, Source, Still};
 pub use view::View;
@@ -80,7 +84,11 @@ impl Look {
         let threads = std::thread::available_parallelism().map_or(1, std::num::NonZero::get);
         for _ in 0..threads.min(MOST_THREADS) {
             let (reading, desk) = (Arc::clone(&reading), Arc::clone(&desk));
-            std::thread::spawn(move || desk.work(&reading));
+            std::thread::spawn(move || {
+                loop {
+                    desk.work(|view, job| reading.read(view, job));
+                }
+            });
         }
         Ok(Self {
             facts,
@@ -222,30 +230,94 @@ impl Desk {
         locked(&self.views)
     }
 
-    /// One thread's work: the next chunk of the newest window that has any left.
-    fn work(&self, reading: &Reading) {
+    /// The next chunk of the newest window that has any left; waits for one.
+    fn next(&self) -> (Arc<View>, Job) {
+        let mut views = self.views();
         loop {
-            let mut views = self.views();
-            let next = loop {
-                let mut all = views.iter();
-                let found = all.find_map(|view| {
-                    let job = locked(&view.jobs).pop_front()?;
-                    Some((Arc::clone(view), job))
-                });
-                if let Some(found) = found {
-                    break found;
-                }
-                let woken = self.work.wait(views);
-                views = woken.unwrap_or_else(std::sync::PoisonError::into_inner);
-            };
-            drop(views);
-            let (view, job) = next;
-            view.finish_one(reading.read(&view, job));
-            if view.is_complete() {
-                // With the lock, so that nobody misses it between looking and waiting.
-                drop(self.views());
-                self.news.notify_all();
+            let mut all = views.iter();
+            let found = all.find_map(|view| {
+                let job = locked(&view.jobs).next()?;
+                Some((Arc::clone(view), job))
+            });
+            if let Some(found) = found {
+                return found;
             }
+            let woken = self.work.wait(views);
+            views = woken.unwrap_or_else(std::sync::PoisonError::into_inner);
         }
+    }
+
+    /// Reads the next chunk. A window is complete also where reading one fails.
+    fn work(&self, read: impl FnOnce(&View, Job) -> Result<(), String>) {
+        let (view, job) = self.next();
+        let done = catch_unwind(AssertUnwindSafe(|| read(&view, job)));
+        let failed = "a chunk could not be read; this is a fault of slipmap";
+        view.finish_one(done.unwrap_or_else(|_| Err(failed.into())));
+        if view.is_complete() {
+            // With the lock, so that nobody misses it between looking and waiting.
+            drop(self.views());
+            self.news.notify_all();
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::store::chunk_layout::ChunkLayout;
+    use crate::store::map_file::MapAxis;
+    use crate::sweep::{Field, Parameter};
+
+    /// A map of one axis, in chunks of 4 cells.
+    fn facts() -> Facts {
+        let layout = |element| ChunkLayout {
+            shape: vec![20],
+            chunk: vec![4],
+            element,
+            deflated: false,
+            shuffled: false,
+        };
+        Facts {
+            axes: vec![MapAxis {
+                parameter: Parameter::Tau,
+                values: (0..20).map(f64::from).collect(),
+                unit: "1".into(),
+            }],
+            fields: vec![Field::NUnstable],
+            plan: None,
+            layouts: vec![layout(2), layout(1)],
+        }
+    }
+
+    #[test]
+    fn a_window_is_complete_also_where_a_chunk_fails() {
+        let stretch = Stretch {
+            from: None,
+            to: None,
+            pixels: 10,
+            scale: Scale::Linear,
+        };
+        let asked = Asked {
+            field: Field::NUnstable,
+            x: 0,
+            y: None,
+            at: vec![0],
+            across: stretch,
+            up: stretch,
+        };
+        let facts = facts();
+        let view = Arc::new(View::new(asked, &facts, 1, 1).unwrap());
+        let desk = Desk::default();
+        desk.views().push_front(Arc::clone(&view));
+        for number in 0..10 {
+            assert!(!view.is_complete(), "{number}");
+            desk.work(|_, _| match number {
+                3 => panic!("as a fault would"),
+                _ => Ok(()),
+            });
+        }
+        assert!(view.is_complete());
+        let damage = view.shot(&facts).damage;
+        assert!(damage.is_some_and(|why| why.contains("fault of slipmap")));
     }
 }

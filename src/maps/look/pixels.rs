@@ -34,6 +34,8 @@ pub(super) struct Pixels {
     pub nearest: Vec<u32>,
     /// The cells whose values lie in each, one stretch behind the other.
     pub inside: Vec<Range<u32>>,
+    /// Those that are on the axis; the others are empty.
+    pub on_axis: Range<usize>,
     /// The first pixel that was asked for comes last.
     pub flipped: bool,
 }
@@ -58,14 +60,33 @@ impl Coordinate {
     }
 }
 
+/// Whether these can be ends of a window; none stands for an end of the axis.
+///
+/// # Errors
+/// When one of them is no finite number, in words.
+pub fn finite(ends: impl IntoIterator<Item = Option<f64>>) -> Result<(), &'static str> {
+    match ends.into_iter().flatten().all(f64::is_finite) {
+        true => Ok(()),
+        false => Err("the ends of a window are finite numbers"),
+    }
+}
+
+/// The number at this part of the way between two others.
+fn between(from: f64, to: f64, part: f64) -> f64 {
+    let whole = to - from;
+    match whole.is_finite() {
+        true => from + whole * part,
+        // Halves of finite numbers are not too far apart.
+        false => 2.0 * (from / 2.0 + (to / 2.0 - from / 2.0) * part),
+    }
+}
+
 impl Stretch {
     /// The ends, in the coordinate of the pixels.
     fn ends(&self, values: &[f64]) -> Result<(Coordinate, f64, f64), String> {
+        finite([self.from, self.to])?;
         let (first, last) = (values[0], values[values.len() - 1]);
         let (from, to) = (self.from.unwrap_or(first), self.to.unwrap_or(last));
-        if !(from.is_finite() && to.is_finite()) {
-            return Err("the ends of a window are finite numbers".into());
-        }
         if self.scale == Scale::Linear {
             return Ok((Coordinate::Linear, from, to));
         }
@@ -135,6 +156,22 @@ impl Rising<'_> {
         above
     }
 
+    /// Whether this lies on the axis: the cells at its ends reach as far beyond it as half way to
+    /// their neighbours, and one that has none everywhere.
+    fn holds(&self, to: f64) -> bool {
+        let last = self.values.len() - 1;
+        if last == 0 {
+            return true;
+        }
+        let beyond = |end: usize, next: usize| {
+            let reach = (self.at(next) - self.at(end)).abs() / 2.0;
+            (to - self.at(end)).abs() > reach
+        };
+        let below = to < self.at(0) && beyond(0, 1);
+        let above = to > self.at(last) && beyond(last, last - 1);
+        !(below || above)
+    }
+
     /// The index of a place.
     fn index(&self, place: usize) -> u32 {
         match self.falls {
@@ -166,7 +203,7 @@ impl Pixels {
             coordinate,
         };
         let count = stretch.pixels;
-        let at = |part: f64| from + (to - from) * (part / count as f64);
+        let at = |part: f64| between(from, to, part / count as f64);
         // How many values lie before the edge of a pixel, counted the way that pixels run.
         let rises = from <= to;
         let before = |edge: usize| match (rises, edge == count) {
@@ -176,18 +213,25 @@ impl Pixels {
             (false, true) => rising.count(|value| value < to),
         };
         let edges: Vec<usize> = (0..=count).map(before).collect();
-        let place = |pixel| rising.index(rising.nearest(at(pixel as f64 + 0.5)));
+        let centre = |pixel: usize| at(pixel as f64 + 0.5);
+        let place = |pixel| rising.index(rising.nearest(centre(pixel)));
+        let on_axis =
+            |pixel: &usize| edges[*pixel] != edges[pixel + 1] || rising.holds(centre(*pixel));
+        let first = (0..count).find(on_axis).unwrap_or(count);
+        let behind = (first..count).rfind(on_axis).map_or(first, |last| last + 1);
         let mut pixels = Self {
             nearest: (0..count).map(place).collect(),
             inside: edges
                 .windows(2)
                 .map(|edge| rising.indices(edge[0].min(edge[1])..edge[0].max(edge[1])))
                 .collect(),
+            on_axis: first..behind,
             flipped: rises == rising.falls,
         };
         if pixels.flipped {
             pixels.nearest.reverse();
             pixels.inside.reverse();
+            pixels.on_axis = count - behind..count - first;
         }
         Ok(pixels)
     }
@@ -198,6 +242,7 @@ impl Pixels {
         Self {
             nearest: vec![cell],
             inside: std::iter::once(cell..cell + 1).collect(),
+            on_axis: 0..1,
             flipped: false,
         }
     }
@@ -212,11 +257,12 @@ impl Pixels {
         self.inside.iter().any(|inside| inside.len() > 1)
     }
 
-    /// The pixels whose nearest cells are among these.
+    /// The pixels that show these cells.
     pub(super) fn showing(&self, cells: &Range<u32>) -> Range<usize> {
         let from = self.nearest.partition_point(|&cell| cell < cells.start);
         let to = self.nearest.partition_point(|&cell| cell < cells.end);
-        from..to
+        let from = from.max(self.on_axis.start);
+        from..to.min(self.on_axis.end).max(from)
     }
 
     /// The pixels in which some of these cells may lie.
@@ -236,16 +282,18 @@ impl Pixels {
 
     /// The chunks of this length that hold a cell of these pixels: that one of them shows, and
     /// whether that one shows or only hides.
-    pub(super) fn chunks(&self, length: usize, hidden: bool) -> Vec<(usize, bool)> {
-        let mut chunks: Vec<(usize, bool)> = Vec::new();
-        let mut add = |chunk: usize, shown: bool| match chunks.last_mut() {
+    pub(super) fn chunks(&self, length: usize, hidden: bool) -> Vec<(u32, bool)> {
+        let length = length as u32;
+        let mut chunks: Vec<(u32, bool)> = Vec::new();
+        let mut add = |chunk: u32, shown: bool| match chunks.last_mut() {
             Some((last, was)) if *last == chunk => *was |= shown,
             _ => chunks.push((chunk, shown)),
         };
-        for (&nearest, inside) in self.nearest.iter().zip(&self.inside) {
-            let shown = nearest as usize / length;
+        for pixel in self.on_axis.clone() {
+            let (nearest, inside) = (self.nearest[pixel], &self.inside[pixel]);
+            let shown = nearest / length;
             let holds = match hidden && !inside.is_empty() {
-                true => inside.start as usize / length..(inside.end as usize - 1) / length + 1,
+                true => inside.start / length..(inside.end - 1) / length + 1,
                 false => shown..shown + 1,
             };
             for chunk in holds {
@@ -307,9 +355,24 @@ mod tests {
             end = cells.last().map_or(end, |last| last + 1);
             start..end
         };
+        let inside: Vec<Range<u32>> = inside.into_iter().map(range).collect();
+        // Half way on beyond the first and the last value.
+        let mut sorted: Vec<f64> = values.iter().map(|&value| coordinate(value)).collect();
+        sorted.sort_by(f64::total_cmp);
+        let last = sorted.len() - 1;
+        let low = sorted[0] - (sorted[1] - sorted[0]) / 2.0;
+        let high = sorted[last] + (sorted[last] - sorted[last - 1]) / 2.0;
+        let centre = |pixel: usize| a + (b - a) * ((pixel as f64 + 0.5) / pixels as f64);
+        let on_axis = (0..pixels).filter(|&place| {
+            let pixel = if flipped { pixels - 1 - place } else { place };
+            !inside[place].is_empty() || (low..=high).contains(&centre(pixel))
+        });
+        let on_axis: Vec<usize> = on_axis.collect();
+        let first = on_axis.first().copied().unwrap_or(pixels);
         Pixels {
             nearest,
-            inside: inside.into_iter().map(range).collect(),
+            inside,
+            on_axis: first..first + on_axis.len(),
             flipped,
         }
     }
@@ -327,6 +390,9 @@ mod tests {
                     (0.4, 0.55),
                     (3.1, 3.1001),
                     (0.3, 100.0),
+                    (1e-4, 1e6),
+                    (500.0, 60.0),
+                    (1e-5, 1e-4),
                 ] {
                     for pixels in [1, 7, 40, 200] {
                         let found = along(values, Some(ends), pixels, scale);
@@ -337,6 +403,11 @@ mod tests {
                         };
                         assert_eq!(lists(&found), lists(&expected), "{ends:?} {pixels}");
                         assert_eq!(found.flipped, expected.flipped);
+                        let empty = |p: &Pixels| p.on_axis.is_empty();
+                        match empty(&expected) {
+                            true => assert!(empty(&found) && found.chunks(2, true).is_empty()),
+                            false => assert_eq!(found.on_axis, expected.on_axis, "{ends:?}"),
+                        }
                     }
                 }
             }
@@ -373,6 +444,18 @@ mod tests {
             assert!(Pixels::along(&values, &stretch).is_err());
         }
         let one = along(&[3.0], None, 3, Scale::Linear);
-        assert_eq!(one.nearest, [0, 0, 0]);
+        assert_eq!((one.nearest, one.on_axis), (vec![0, 0, 0], 0..3));
+    }
+
+    #[test]
+    fn windows_may_be_as_wide_as_numbers_are() {
+        let values = [-1.0, 0.0, 1.0, 2.0];
+        for ends in [(-1e308, 1.2e308), (1e308, -1.2e308)] {
+            let all = along(&values, Some(ends), 4, Scale::Linear);
+            // One pixel holds them all, and the others nothing.
+            assert_eq!(all.on_axis.len(), 1, "{all:?}");
+            assert_eq!(all.place(all.on_axis.start), 1);
+            assert_eq!(all.inside[all.on_axis.start], 0..4);
+        }
     }
 }

@@ -1,26 +1,25 @@
 //! From the chunks of a map to the pixels of a window.
 
-use std::collections::HashMap;
 use std::ops::Range;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Arc, Mutex};
 
 use super::canvas::{Canvas, Under};
-use super::cells::{AnyCells, Cell, Cells, Cut, Slab};
+use super::cells::{Cell, Cells, Cut, Slab};
+use super::jobs::Job;
 use super::shelf::{Key, Plane, Shelf};
+use super::short::Short;
 use super::source::{Facts, Source};
-use super::view::{AnyCanvas, Job, View, locked};
+use super::view::{AnyCanvas, View, locked};
+use crate::linear::status::AMISS;
 use crate::store::chunk_layout::ChunkLayout;
+use crate::sweep::engine::STATUS_FILL;
 use crate::sweep::plan::tile::{memory_strides, place_of};
 
 /// A whole chunk is kept as runs where these take at most this part of it.
 const SHARE_OF_CHUNK: usize = 16;
 /// A plane's part of a chunk, where they take at most this part.
 const SHARE_OF_SLAB: usize = 4;
-/// Chunks of fewer bytes are not inflated again where another one had the same.
-const SHORT: usize = 2048;
-/// So many of them are remembered.
-const MOST_SHORT: usize = 64;
 
 /// Reads the chunks of a map.
 #[derive(Debug)]
@@ -29,8 +28,7 @@ pub(super) struct Reading {
     pub version: AtomicU64,
     facts: Arc<Facts>,
     shelf: Mutex<Shelf>,
-    /// Chunks in runs, by the column's bytes and what is stored.
-    short: Mutex<HashMap<(usize, Vec<u8>), AnyCells>>,
+    short: Mutex<Short>,
 }
 
 /// A chunk of a column, and what of it lies in a plane.
@@ -129,6 +127,14 @@ fn number_of(layout: &ChunkLayout, offset: &[usize]) -> u64 {
     })
 }
 
+/// What of a status says that something is amiss, or that it is none.
+pub(super) fn amiss(status: u8) -> u8 {
+    match status {
+        STATUS_FILL => STATUS_FILL,
+        _ => status & AMISS,
+    }
+}
+
 /// The cells of a chunk as they were read.
 struct Fetched<T> {
     cells: Cells<T>,
@@ -150,7 +156,7 @@ impl Reading {
     /// Shows what is kept of a window; what is not stays to be read.
     pub(super) fn show_kept(&self, view: &View) {
         let mut jobs = std::mem::take(&mut *locked(&view.jobs));
-        jobs.retain(|&job| {
+        jobs.retain(|job| {
             let shown = self.show(view, job, true);
             if let Ok(true) = shown {
                 view.finish_one(Ok(()));
@@ -182,6 +188,13 @@ impl Reading {
                 return Ok(false);
             };
             locked(&view.status).paint(&slab, &under, false);
+            if view.crowded && slab.cells.any(|status| amiss(status) != 0) {
+                let amiss = Slab {
+                    cells: Arc::new(slab.cells.map(amiss)),
+                    ..slab
+                };
+                view.mark_amiss(&amiss, &under);
+            }
             return Ok(true);
         }
         let several = view.crowded;
@@ -284,33 +297,20 @@ impl Reading {
                 missing: Some(version),
             });
         };
-        let short = (stored.len() < SHORT).then(|| (T::SIZE, stored.clone()));
-        if let Some(known) = short
-            .as_ref()
-            .and_then(|key| locked(&self.short).get(key).cloned())
-            && let Some(cells) = T::unwrapped(&known)
-            && let Cells::Runs { ends, values } = &**cells
-        {
-            let cells = Cells::Runs {
-                ends: ends.clone(),
-                values: values.clone(),
-            };
-            return Ok(Fetched {
-                cells,
-                missing: None,
-            });
-        }
-        let bytes = layout.decoded(stored)?;
-        let cells: Vec<T> = bytes.chunks_exact(T::SIZE).map(T::of).collect();
-        drop(bytes);
-        let cells = Cells::of(cells, SHARE_OF_CHUNK);
-        if let (Some(key), Cells::Runs { ends, values }) = (short, &cells) {
-            let mut short = locked(&self.short);
-            if short.len() < MOST_SHORT {
-                let (ends, values) = (ends.clone(), values.clone());
-                short.insert(key, T::wrapped(Arc::new(Cells::Runs { ends, values })));
+        let short = Short::key(layout, &stored);
+        let known = short.as_ref().and_then(|key| locked(&self.short).get(key));
+        let cells = if let Some(cells) = known {
+            cells
+        } else {
+            let bytes = layout.decoded(stored)?;
+            let cells: Vec<T> = bytes.chunks_exact(T::SIZE).map(T::of).collect();
+            drop(bytes);
+            let cells = Cells::of(cells, SHARE_OF_CHUNK);
+            if let Some(key) = short {
+                locked(&self.short).put(key, &cells);
             }
-        }
+            cells
+        };
         Ok(Fetched {
             cells,
             missing: None,

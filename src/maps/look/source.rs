@@ -8,6 +8,7 @@ use crate::store::chunk_layout::ChunkLayout;
 use crate::store::columns::FileColumns;
 use crate::store::map_file::MapAxis;
 use crate::store::schema::root;
+use crate::store::stamp::Stamp;
 use crate::store::tiles::GrowingMap;
 use crate::store::{MapFile, StoreError};
 use crate::sweep::engine::{FEW_FILL, N_UNSTABLE_FILL, STATUS_FILL};
@@ -84,25 +85,13 @@ pub(super) enum Cells {
 pub(super) struct Source {
     path: PathBuf,
     pub cells: Cells,
-    stamp: Stamp,
+    stamp: Option<Stamp>,
     looked: Instant,
     refreshed: Instant,
     /// Grows with what is there.
     pub version: u64,
     /// Cells that are there.
     pub cells_done: u64,
-}
-
-/// Where a map's file is still the same, this is.
-type Stamp = Option<(u64, Option<SystemTime>, u64)>;
-
-fn stamp(path: &Path) -> Stamp {
-    let found = path.metadata().ok()?;
-    #[cfg(unix)]
-    let node = std::os::unix::fs::MetadataExt::ino(&found);
-    #[cfg(not(unix))]
-    let node = 0;
-    Some((found.len(), found.modified().ok(), node))
 }
 
 /// What came of a look whether a map is what it was.
@@ -121,7 +110,7 @@ impl Source {
     /// # Errors
     /// When there is none, or it is damaged.
     pub(super) fn open(path: &Path) -> Result<(Self, Facts), StoreError> {
-        let stamp = stamp(path);
+        let stamp = Stamp::of(path);
         let held = stamp.is_some().then(|| MapFile::open(path)).transpose()?;
         let growing = match held.as_ref().is_none_or(MapFile::is_partial) {
             true => GrowingMap::of(path)?,
@@ -141,7 +130,7 @@ impl Source {
         let now = Instant::now();
         let source = Self {
             path: path.to_owned(),
-            version: version_of(&stamp, &cells),
+            version: version_of(stamp, &cells),
             cells,
             stamp,
             looked: now,
@@ -158,7 +147,7 @@ impl Source {
             return Still::Same;
         }
         self.looked = now;
-        if stamp(&self.path) != self.stamp {
+        if Stamp::of(&self.path) != self.stamp {
             return Still::Gone;
         }
         let Cells::Growing(growing) = &mut self.cells else {
@@ -172,7 +161,7 @@ impl Source {
             return Still::Gone;
         }
         let (_, done) = growing.done();
-        let version = version_of(&self.stamp, &self.cells);
+        let version = version_of(self.stamp, &self.cells);
         if version == self.version {
             return Still::Same;
         }
@@ -194,12 +183,12 @@ impl Source {
 }
 
 /// A number that changes with what is there.
-fn version_of(stamp: &Stamp, cells: &Cells) -> u64 {
+fn version_of(stamp: Option<Stamp>, cells: &Cells) -> u64 {
     match cells {
         Cells::Growing(growing) => growing.done().0,
         Cells::File(_) => {
             let since = |time: SystemTime| time.duration_since(SystemTime::UNIX_EPOCH).ok();
-            let modified = stamp.and_then(|(_, modified, _)| since(modified?));
+            let modified = stamp.and_then(|stamp| since(stamp.modified?));
             // Exact as a number of JavaScript.
             modified.map_or(0, |time| time.as_micros() as u64)
         }

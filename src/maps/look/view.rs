@@ -1,29 +1,17 @@
 //! A window that is being read: its pixels, and the chunks that are still to be looked at.
 
-use std::collections::VecDeque;
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-use super::canvas::{Canvas, NOT_COMPUTED, SEVERAL, UNREAD};
-use super::cells::Cell;
+use super::canvas::{BEYOND, Canvas, NOT_COMPUTED, SEVERAL, UNREAD, Under};
+use super::cells::{Cell, Slab};
+use super::jobs::Jobs;
 use super::pixels::Pixels;
+use super::reading::amiss;
 use super::shelf::Plane;
 use super::source::Facts;
 use super::window::{Asked, Numbers, Shot, Shown};
-use crate::store::chunk_layout::ChunkLayout;
 use crate::sweep::engine::STATUS_FILL;
-use crate::sweep::plan::pieces::mixed;
-
-/// A chunk that is to be looked at.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) struct Job {
-    /// Of the status, else of the field.
-    pub status: bool,
-    /// Numbers of the chunk along the slower and the faster axis.
-    pub chunk: (usize, usize),
-    /// It holds cells that pixels show.
-    pub shown: bool,
-}
 
 /// The pixels of a field, of which there are three types.
 #[derive(Debug)]
@@ -66,7 +54,9 @@ pub struct View {
     pub(super) crowded: bool,
     pub(super) field: Mutex<AnyCanvas>,
     pub(super) status: Mutex<Canvas<u8>>,
-    pub(super) jobs: Mutex<VecDeque<Job>>,
+    /// Which pixels hide cells with which something is amiss; none where no such were found.
+    amiss: Mutex<Option<Canvas<u8>>>,
+    pub(super) jobs: Mutex<Jobs>,
     total: usize,
     done: AtomicUsize,
     damage: Mutex<Option<String>>,
@@ -114,14 +104,12 @@ impl View {
         let crowded = slow.is_crowded() || fast.is_crowded();
         let field = &facts.layouts[column];
         let pixels = slow.len() * fast.len();
-        let jobs = jobs(
-            &plane,
-            (&slow, &fast),
-            (field, &facts.layouts[facts.status()]),
-        );
+        let layouts = (field, &facts.layouts[facts.status()]);
+        let jobs = Jobs::of(&plane, (&slow, &fast), layouts);
         Ok(Self {
             field: Mutex::new(AnyCanvas::new(field.element, pixels)),
             status: Mutex::new(Canvas::new(pixels)),
+            amiss: Mutex::default(),
             total: jobs.len(),
             jobs: Mutex::new(jobs),
             done: AtomicUsize::new(0),
@@ -139,8 +127,8 @@ impl View {
 
     /// Bytes of its pixels.
     pub(super) fn bytes(&self) -> usize {
-        // Value and bits, and the same of the status.
-        self.slow.len() * self.fast.len() * (self.asked.field.bytes() + 3)
+        // Value and bits, and the same of the status and of what is amiss.
+        self.slow.len() * self.fast.len() * (self.asked.field.bytes() + 5)
     }
 
     pub(super) fn is_complete(&self) -> bool {
@@ -153,6 +141,47 @@ impl View {
             locked(&self.damage).get_or_insert(why);
         }
         self.done.fetch_add(1, Ordering::Release);
+    }
+
+    /// Marks pixels that hide cells of a slab with which something is amiss; there are few such.
+    pub(super) fn mark_amiss(&self, slab: &Slab<u8>, under: &Under) {
+        let mut hiding = locked(&self.amiss);
+        let pixels = self.slow.len() * self.fast.len();
+        let hiding = hiding.get_or_insert_with(|| Canvas::that_saw(0, pixels));
+        hiding.compare(slab, under);
+    }
+
+    /// The bits of pixels, by those of the field and by what is known of their status.
+    fn marks(
+        &self,
+        of_field: &[u8],
+        status: &Canvas<u8>,
+        places: impl Iterator<Item = usize>,
+    ) -> Vec<u8> {
+        let marks = |place: usize| {
+            let (of_field, of_status) = (of_field[place], status.bits[place]);
+            let missing = of_status & UNREAD == 0 && status.values[place] == STATUS_FILL;
+            let unread = (of_field | of_status) & UNREAD;
+            (of_field & SEVERAL) | unread | if missing { NOT_COMPUTED } else { 0 }
+        };
+        let (rows, columns) = (&self.slow.on_axis, &self.fast.on_axis);
+        let (height, width) = (self.slow.len(), self.fast.len());
+        let hiding = locked(&self.amiss);
+        if hiding.is_none() && *rows == (0..height) && *columns == (0..width) {
+            return places.map(marks).collect();
+        }
+        let hides = |place: usize| match &*hiding {
+            Some(hiding) => hiding.bits[place] & SEVERAL != 0 && amiss(status.values[place]) == 0,
+            None => false,
+        };
+        let all = places.map(|place| {
+            match rows.contains(&(place / width)) && columns.contains(&(place % width)) {
+                true if hides(place) => marks(place) | SEVERAL,
+                true => marks(place),
+                false => BEYOND,
+            }
+        });
+        all.collect()
     }
 
     /// What it shows so far, of a map of these facts.
@@ -195,12 +224,6 @@ impl View {
                 Numbers::F64(bits.into_iter().map(f64::from_bits).collect())
             }
         };
-        let bits = |place: usize| {
-            let (of_field, of_status) = (field.bits()[place], status.bits[place]);
-            let missing = of_status & UNREAD == 0 && status.values[place] == STATUS_FILL;
-            let unread = (of_field | of_status) & UNREAD;
-            (of_field & SEVERAL) | unread | if missing { NOT_COMPUTED } else { 0 }
-        };
         let unread = |place: usize| status.bits[place] & UNREAD != 0;
         Shot {
             complete: done >= self.total,
@@ -210,7 +233,7 @@ impl View {
             y: self.asked.y.map(|y| shown(y, up)),
             values,
             status: picked(&status, places(), unread, STATUS_FILL),
-            bits: places().map(bits).collect(),
+            bits: self.marks(field.bits(), &status, places()),
             damage: locked(&self.damage).clone(),
         }
     }
@@ -228,46 +251,4 @@ fn picked<T: Cell>(
         false => canvas.values[place],
     };
     places.map(value).collect()
-}
-
-/// The chunks of a window: first those that pixels show, spread all over it, field and status in
-/// turn, then those whose cells are all hidden.
-fn jobs(
-    plane: &Plane,
-    (slow, fast): (&Pixels, &Pixels),
-    (field, status): (&ChunkLayout, &ChunkLayout),
-) -> VecDeque<Job> {
-    let of = |layout: &ChunkLayout, status: bool| {
-        let hidden = !status && (slow.is_crowded() || fast.is_crowded());
-        let down = match plane.slow {
-            Some(axis) => slow.chunks(layout.chunk[axis], hidden),
-            None => vec![(0, true)],
-        };
-        let across = fast.chunks(layout.chunk[plane.fast], hidden);
-        let mut jobs = Vec::with_capacity(down.len() * across.len());
-        for &(row, shown) in &down {
-            jobs.extend(across.iter().map(|&(column, too)| Job {
-                status,
-                chunk: (row, column),
-                shown: shown && too,
-            }));
-        }
-        jobs.sort_by_key(|job| {
-            let number = (job.chunk.0 as u64) << 32 | job.chunk.1 as u64;
-            (!job.shown, mixed(number))
-        });
-        jobs
-    };
-    let (field, status) = (of(field, false), of(status, true));
-    let mut jobs = VecDeque::with_capacity(field.len() + status.len());
-    let mut status = status.into_iter();
-    for job in field {
-        if !job.shown {
-            jobs.extend(status.by_ref());
-        }
-        jobs.push_back(job);
-        jobs.extend(status.next());
-    }
-    jobs.extend(status);
-    jobs
 }

@@ -58,7 +58,7 @@ pub struct Shot {
     /// Their status.
     pub status: Vec<u8>,
     /// [`SEVERAL`](super::SEVERAL), [`UNREAD`](super::UNREAD),
-    /// [`NOT_COMPUTED`](super::NOT_COMPUTED).
+    /// [`NOT_COMPUTED`](super::NOT_COMPUTED), [`BEYOND`](super::BEYOND).
     pub bits: Vec<u8>,
     /// Why some cells could not be read.
     pub damage: Option<String>,

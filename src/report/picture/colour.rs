@@ -27,8 +27,8 @@ pub(super) const UNSTABLE: [Rgb; 4] = [
 ];
 
 /// Motions that slide, stick and slip, oscillate, lift off, diverge; undecided ones; where there is
-/// none. The first ones are as far apart for the colour-blind as in colours. Then ends of
-/// stick-slip: grazing, fold, period doubling, irregular, persists, never, lost.
+/// none. Then ends of stick-slip: grazing, fold, period doubling, irregular, persists, never, lost.
+/// Of the colour-blind, too, none takes one for another.
 const OUTCOMES: [Rgb; 14] = [
     STABLE,
     Rgb(0xdf, 0xc2, 0x7d),
@@ -37,13 +37,13 @@ const OUTCOMES: [Rgb; 14] = [
     Rgb(0x22, 0x22, 0x22),
     Rgb(0xb9, 0xb9, 0xb9),
     Rgb(0xe8, 0xe8, 0xe8),
-    Rgb(0x35, 0x97, 0x8f),
-    Rgb(0xdf, 0xc2, 0x7d),
-    Rgb(0xbf, 0x81, 0x2d),
-    Rgb(0x7a, 0x46, 0x08),
-    Rgb(0x22, 0x22, 0x22),
-    Rgb(0xd5, 0xee, 0xea),
-    Rgb(0x35, 0x97, 0x8f),
+    Rgb(0x00, 0x99, 0x99),
+    Rgb(0xdd, 0x99, 0x00),
+    Rgb(0xbb, 0x77, 0x55),
+    Rgb(0x99, 0x00, 0x00),
+    Rgb(0x77, 0x33, 0xbb),
+    Rgb(0x00, 0x77, 0x99),
+    Rgb(0xbb, 0x77, 0xdd),
 ];
 
 /// Working velocities that are stable, bistable, unstable, beyond a lift-off; undecided ones.

@@ -62,7 +62,7 @@ impl Scale {
         let (low, high) = positive.fold((f64::INFINITY, 0.0), |(low, high), v| {
             (f64::min(low, v), f64::max(high, v))
         });
-        let lowest = 10f64.powi(high.log10().floor() as i32 - decades);
+        let lowest = 10f64.powi((high.log10().floor() as i32).saturating_sub(decades));
         (high > 0.0).then(|| Self::logarithmic(f64::max(low / 1.3, lowest), high * 1.3))
     }
 

@@ -1,15 +1,14 @@
 //! What is told of a map's cells and curves, by the process that reads it.
 
+use std::collections::BTreeMap;
 use std::sync::{Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
-use serde::Serialize;
-use serde_json::{Value, json};
-
+use super::described::{CellValue, CurvesHead, MapCell, WindowAt, WindowAxis, WindowHead};
 use super::frames::{CellQuery, CurvesQuery, MOST_PIXELS, Refused, ScaleName, WindowQuery};
 use crate::explore::chart::ChartCurve;
 use crate::explore::chart_bytes::CurveHead;
-use crate::explore::encoded::{Array, Arrays};
+use crate::explore::encoded::Arrays;
 use crate::linear::status::FLAGS;
 use crate::maps::look::as_text::CellTexts;
 use crate::maps::look::{Asked, Facts, Look, Numbers, Scale, Shot, Shown, Stretch};
@@ -110,37 +109,6 @@ fn asked(facts: &Facts, query: &WindowQuery) -> Result<Asked, Refused> {
     })
 }
 
-#[derive(Serialize)]
-struct WindowHead {
-    complete: bool,
-    progress: f64,
-    version: u64,
-    field: &'static str,
-    x: AxisHead,
-    y: Option<AxisHead>,
-    at: Vec<AtHead>,
-    values: Array,
-    status: Array,
-    bits: Array,
-    /// Why some cells could not be read.
-    damage: Option<String>,
-    milliseconds: f64,
-}
-
-#[derive(Serialize)]
-struct AxisHead {
-    name: &'static str,
-    index: Array,
-    values: Array,
-}
-
-#[derive(Serialize)]
-struct AtHead {
-    name: &'static str,
-    index: usize,
-    value: f64,
-}
-
 /// A window, as far as it was read, in two parts; `one` is held while they are put together.
 pub(super) fn window(
     look: &Look,
@@ -162,7 +130,7 @@ fn encoded(
     begun: Instant,
 ) -> Result<[Vec<u8>; 2], serde_json::Error> {
     let mut arrays = Arrays::default();
-    let mut axis = |axis: usize, shown: &Shown| AxisHead {
+    let mut axis = |axis: usize, shown: &Shown| WindowAxis {
         name: facts.axes[axis].parameter.name(),
         index: arrays.push(shown.index.iter().copied()),
         values: arrays.push(shown.values.iter().copied()),
@@ -195,21 +163,15 @@ fn encoded(
 }
 
 /// Where a plane lies along the axes that do not span it.
-fn at(facts: &Facts, index: &[usize], spanned: &[Option<usize>]) -> Vec<AtHead> {
+fn at(facts: &Facts, index: &[usize], spanned: &[Option<usize>]) -> Vec<WindowAt> {
     let axes = facts.axes.iter().zip(index).enumerate();
     axes.filter(|(axis, _)| !spanned.contains(&Some(*axis)))
-        .map(|(_, (axis, &index))| AtHead {
+        .map(|(_, (axis, &index))| WindowAt {
             name: axis.parameter.name(),
             index,
             value: axis.values[index],
         })
         .collect()
-}
-
-#[derive(Serialize)]
-struct CurvesHead {
-    version: u64,
-    curves: Vec<CurveHead>,
 }
 
 /// The curves of a plane, x and y vertex by vertex; none where curves are of other planes.
@@ -244,34 +206,34 @@ pub(super) fn curves(look: &Look, query: &CurvesQuery) -> Result<Vec<u8>, Refuse
 }
 
 /// A number that JSON may not have.
-fn number(value: f64) -> Value {
+fn number(value: f64) -> CellValue {
     match value {
-        f64::INFINITY => "inf".into(),
-        f64::NEG_INFINITY => "-inf".into(),
-        _ => json!(Some(value).filter(|value| !value.is_nan())),
+        f64::INFINITY => CellValue::Infinite("inf"),
+        f64::NEG_INFINITY => CellValue::Infinite("-inf"),
+        _ if value.is_nan() => CellValue::None,
+        _ => CellValue::Number(value),
     }
 }
 
 /// One cell: what it holds, and what can be asked there.
-pub(super) fn cell(look: &Look, query: &CellQuery) -> Result<Value, Refused> {
+pub(super) fn cell(look: &Look, query: &CellQuery) -> Result<MapCell, Refused> {
     let facts = look.facts();
     let index: Option<Vec<usize>> = indices(facts, &query.at)?.into_iter().collect();
     let index = index.ok_or_else(|| Refused::asked("a cell has an index along every axis"))?;
     let bits = |column: usize| look.cell(column, &index).map_err(Refused::damaged);
-    let (mut fields, mut kinds) = (serde_json::Map::new(), serde_json::Map::new());
+    let (mut fields, mut kinds) = (BTreeMap::new(), BTreeMap::new());
     for (column, field) in facts.fields.iter().enumerate() {
         let bits = bits(column)?;
         let value = match field.storage() {
             Storage::Real => number(f64::from_bits(bits)),
-            Storage::Count if bits == u64::from(N_UNSTABLE_FILL) => Value::Null,
-            Storage::Kind | Storage::Few if bits == u64::from(FEW_FILL) => Value::Null,
-            _ => bits.into(),
+            Storage::Count if bits == u64::from(N_UNSTABLE_FILL) => CellValue::None,
+            Storage::Kind | Storage::Few if bits == u64::from(FEW_FILL) => CellValue::None,
+            _ => CellValue::Count(bits),
         };
         if let Some(names) = field.kinds() {
-            let name = names.get(bits as usize).copied();
-            kinds.insert(field.name().into(), json!(name));
+            kinds.insert(field.name(), names.get(bits as usize).copied());
         }
-        fields.insert(field.name().into(), value);
+        fields.insert(field.name(), value);
     }
     let status = bits(facts.status())?;
     let computed = status != u64::from(STATUS_FILL);
@@ -279,14 +241,19 @@ pub(super) fn cell(look: &Look, query: &CellQuery) -> Result<Value, Refused> {
         .iter()
         .filter(|(mask, _)| computed && status & u64::from(*mask) != 0);
     let axes = facts.axes.iter().zip(&index);
-    let axes = axes.map(|(axis, &i)| (axis.parameter.name().to_owned(), json!(axis.values[i])));
     let texts = facts.plan.as_ref().map(|plan| CellTexts::of(plan, &index));
     let texts = texts.unwrap_or_default();
-    Ok(json!({
-        "axes": axes.collect::<serde_json::Map<_, _>>(),
-        "fields": fields, "kinds": kinds,
-        "status": flags.map(|(_, name)| *name).collect::<Vec<_>>(),
-        "computed": computed,
-        "point": texts.point, "vc": texts.vc, "motion": texts.motion, "command": texts.command,
-    }))
+    Ok(MapCell {
+        axes: axes
+            .map(|(axis, &i)| (axis.parameter.name(), axis.values[i]))
+            .collect(),
+        fields,
+        kinds,
+        status: flags.map(|(_, name)| *name).collect(),
+        computed,
+        point: texts.point,
+        vc: texts.vc,
+        motion: texts.motion,
+        command: texts.command,
+    })
 }

@@ -5,7 +5,7 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 
-use super::frames::{Ask, Frame, Kind, Refused, Request};
+use super::frames::{Ask, Frame, Kind, Refused, Request, fits};
 use super::{answers, description};
 use crate::maps::look::Look;
 use crate::store::StoreError;
@@ -53,7 +53,7 @@ pub fn read_map<W: Write + Send + 'static>(
                     detail: "the map could not be read; this is a fault of slipmap".into(),
                 })
             });
-            let (frame, more) = answered.unwrap_or_else(|refused| {
+            let (frame, more) = answered.and_then(fitting).unwrap_or_else(|refused| {
                 let kind = Kind::Problem;
                 let bytes = serde_json::to_vec(&refused).unwrap_or_default();
                 (Frame { kind, bytes }, Vec::new())
@@ -92,11 +92,17 @@ impl Opened {
     }
 }
 
+/// An answer that can be sent.
+fn fitting((frame, more): (Frame, Vec<u8>)) -> Result<(Frame, Vec<u8>), Refused> {
+    fits(frame.bytes.len() + more.len())?;
+    Ok((frame, more))
+}
+
 fn frame(kind: Kind, bytes: Vec<u8>) -> Frame {
     Frame { kind, bytes }
 }
 
-fn json(value: &serde_json::Value) -> Result<Frame, Refused> {
+fn json(value: &impl serde::Serialize) -> Result<Frame, Refused> {
     let bytes = serde_json::to_vec(value).map_err(Refused::damaged)?;
     Ok(frame(Kind::Json, bytes))
 }
@@ -105,8 +111,12 @@ fn json(value: &serde_json::Value) -> Result<Frame, Refused> {
 fn refused(error: &StoreError) -> Refused {
     Refused::damaged(match error {
         StoreError::NotAMap { why, .. } => format!("it is not a map of slipmap: {why}"),
-        StoreError::InUse { .. } => "another program has it open for writing".into(),
-        StoreError::Io { action, source, .. } => format!("cannot {action} it: {source}"),
+        StoreError::InUse { .. } => {
+            return Refused::for_now("another program has it open for writing");
+        }
+        StoreError::Io { action, source, .. } => {
+            return Refused::for_now(format!("cannot {action} it: {source}"));
+        }
         StoreError::Hdf5 { action, cause, .. } => format!("cannot {action} it: {cause}"),
         StoreError::Manifest { why, .. } => format!("the manifest of its tiles is damaged: {why}"),
         StoreError::OtherTiles { difference, .. } => {

@@ -1,7 +1,6 @@
 //! What a map tells of itself besides its cells.
 
-use serde_json::{Value, json};
-
+use super::described::{self, MapAxisEnds, MapField, MapFlag, MapScalar, MapSummary, MapTold};
 use crate::explore::known::KnownField;
 use crate::linear::status::FLAGS;
 use crate::maps::look::Look;
@@ -15,15 +14,24 @@ use crate::sweep::{Field, Parameter};
 /// The most values of an axis that are listed.
 const MOST_VALUES: usize = 4096;
 
-fn axis_json(axis: &MapAxis) -> Value {
-    json!({
-        "name": axis.parameter.name(),
-        "symbol": axis.parameter.symbol(),
-        "unit": axis.unit,
-        "from": axis.values.first(),
-        "to": axis.values.last(),
-        "points": axis.values.len(),
-    })
+fn ends(axis: &MapAxis) -> MapAxisEnds {
+    MapAxisEnds {
+        name: axis.parameter.name().into(),
+        symbol: axis.parameter.symbol().into(),
+        unit: axis.unit.clone(),
+        from: axis.values[0],
+        to: axis.values[axis.values.len() - 1],
+        points: axis.values.len(),
+    }
+}
+
+fn axis(axis: &MapAxis) -> described::MapAxis {
+    let listed = axis.values.len() <= MOST_VALUES;
+    described::MapAxis {
+        ends: ends(axis),
+        long_name: axis.parameter.long_name().into(),
+        values: listed.then(|| axis.values.clone()),
+    }
 }
 
 fn title(look: &Look) -> String {
@@ -34,28 +42,22 @@ fn title(look: &Look) -> String {
 }
 
 /// What a list tells of it.
-pub(super) fn summary(look: &Look) -> Value {
+pub(super) fn summary(look: &Look) -> MapSummary {
     let facts = look.facts();
-    json!({
-        "title": title(look),
-        "cells": facts.cells(),
-        "cells_done": look.version().1,
-        "axes": facts.axes.iter().map(axis_json).collect::<Vec<_>>(),
-        "fields": facts.fields.iter().map(|field| field.name()).collect::<Vec<_>>(),
-    })
+    let fields = facts.fields.iter().map(|field| field.name().into());
+    MapSummary {
+        title: Some(title(look)),
+        cells: Some(facts.cells()),
+        cells_done: Some(look.version().1),
+        axes: facts.axes.iter().map(ends).collect(),
+        fields: fields.collect(),
+    }
 }
 
 /// What there is to know of it besides its cells.
-pub(super) fn description(look: &Look) -> Value {
+pub(super) fn description(look: &Look) -> MapTold {
     let facts = look.facts();
     let (version, cells_done) = look.version();
-    let axis = |axis: &MapAxis| {
-        let mut told = axis_json(axis);
-        told["long_name"] = axis.parameter.long_name().into();
-        let listed = (axis.values.len() <= MOST_VALUES).then_some(&axis.values);
-        told["values"] = json!(listed);
-        told
-    };
     let critical = facts.plan.as_ref().and_then(|plan| plan.spec.critical);
     let limit = facts.plan.as_ref().is_some_and(|plan| plan.spec.limit);
     let protocol = match limit {
@@ -63,39 +65,38 @@ pub(super) fn description(look: &Look) -> Value {
         false => critical.map(|search| search.protocol.name()),
     };
     let plane = look.curves_plane();
-    let plane = plane.map(|(p, tau)| [p, tau].map(|axis| facts.axes[axis].parameter.name()));
-    let unit = |field: Field| {
-        let of_tiles = |growing: &GrowingMap| field.unit(&growing.plan().spec.units);
-        look.told(|map| map.field_unit(field), of_tiles)
-    };
     let field = |&field: &Field| {
         let (long_name, comment) = match critical {
             Some(_) => field.described_at_vc(),
             None => (field.long_name(), field.comment()),
         };
-        let known = KnownField {
-            long_name,
-            comment,
-            ..KnownField::of(field)
-        };
-        let mut told = json!(known);
-        told["unit"] = unit(field).into();
-        told
+        let of_tiles = |growing: &GrowingMap| field.unit(&growing.plan().spec.units);
+        MapField {
+            known: KnownField {
+                long_name,
+                comment,
+                ..KnownField::of(field)
+            },
+            unit: look.told(|map| map.field_unit(field), of_tiles),
+        }
     };
-    json!({
-        "title": title(look), "cells": facts.cells(), "cells_done": cells_done,
-        "version": version,
-        "axes": facts.axes.iter().map(axis).collect::<Vec<_>>(),
-        "fields": facts.fields.iter().map(field).collect::<Vec<_>>(),
-        "scalars": scalars(look),
-        "flags": FLAGS.map(|(mask, name)| json!({ "mask": mask, "name": name })),
-        "curves_plane": plane, "protocol": protocol,
-        "program_version": look.told(
+    MapTold {
+        title: title(look),
+        cells: facts.cells(),
+        cells_done,
+        version,
+        axes: facts.axes.iter().map(axis).collect(),
+        fields: facts.fields.iter().map(field).collect(),
+        scalars: scalars(look),
+        flags: FLAGS.map(|(mask, name)| MapFlag { mask, name }).into(),
+        curves_plane: plane.map(|(p, tau)| [p, tau].map(|axis| facts.axes[axis].parameter.name())),
+        protocol,
+        program_version: look.told(
             |map| map.root_text(root::PROGRAM_VERSION),
             |growing| Some(growing.manifest().program_version.clone()),
         ),
-        "sweep": sweep(look),
-    })
+        sweep: sweep(look),
+    }
 }
 
 /// The sweep file's text.
@@ -107,7 +108,7 @@ pub(super) fn sweep(look: &Look) -> String {
 }
 
 /// The parameters that are no axes.
-fn scalars(look: &Look) -> Vec<Value> {
+fn scalars(look: &Look) -> Vec<MapScalar> {
     let facts = look.facts();
     let found: Vec<(Parameter, f64)> = look.told(MapFile::scalars, |growing| {
         let spec = &growing.plan().spec;
@@ -118,11 +119,12 @@ fn scalars(look: &Look) -> Vec<Value> {
     });
     let units = facts.plan.as_ref().map(|plan| &plan.spec.units);
     let unit = |p: Parameter| units.map_or("1".into(), |units| units.of_parameter(p));
-    let told = |(p, value): (Parameter, f64)| {
-        json!({
-            "name": p.name(), "symbol": p.symbol(), "long_name": p.long_name(),
-            "unit": unit(p), "value": value,
-        })
+    let told = |(p, value): (Parameter, f64)| MapScalar {
+        name: p.name(),
+        symbol: p.symbol(),
+        long_name: p.long_name(),
+        unit: unit(p),
+        value,
     };
     found.into_iter().map(told).collect()
 }

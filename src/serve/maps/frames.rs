@@ -13,6 +13,9 @@ use utoipa::{IntoParams, ToSchema};
 /// No answer is longer.
 const LONGEST: u32 = 64 << 20;
 
+/// The status of answers about a damaged map.
+const DAMAGED: u16 = 502;
+
 /// The most pixels of a window each way.
 pub(super) const MOST_PIXELS: usize = 2048;
 
@@ -142,12 +145,36 @@ impl Refused {
         Self { status, detail }
     }
 
+    /// It cannot be read now, whatever the file holds.
+    pub(super) fn for_now(detail: impl Into<String>) -> Self {
+        let status = 503;
+        let detail = detail.into();
+        Self { status, detail }
+    }
+
+    /// Whether it says something of the file, which holds as long as that stays as it is.
+    pub(super) fn is_of_file(&self) -> bool {
+        self.status == DAMAGED
+    }
+
     /// The map cannot be read.
     pub(super) fn damaged(detail: impl std::fmt::Display) -> Self {
         Self {
-            status: 502,
+            status: DAMAGED,
             detail: format!("{detail}"),
         }
+    }
+}
+
+/// Whether an answer of so many bytes can be sent; its asker may ask for less.
+pub(super) fn fits(bytes: usize) -> Result<(), Refused> {
+    match bytes <= LONGEST as usize {
+        true => Ok(()),
+        false => Err(Refused::asked(format!(
+            "the answer would take {} MB, and {} MB are the most",
+            bytes.div_ceil(1 << 20),
+            LONGEST >> 20
+        ))),
     }
 }
 
@@ -160,6 +187,9 @@ pub(super) struct Frame {
 
 impl Frame {
     /// Writes an answer, of which the bytes may go on with `more`.
+    ///
+    /// # Errors
+    /// When it cannot be written.
     pub(super) fn write(&self, more: &[u8], number: u64, out: &mut impl Write) -> io::Result<()> {
         let length = u32::try_from(self.bytes.len() + more.len()).map_err(io::Error::other)?;
         let mut head = Vec::with_capacity(13);
@@ -214,6 +244,8 @@ mod tests {
             assert_eq!((found, frame.kind, frame.bytes.len()), (number, kind, 10));
         }
         assert!((0..23).all(|end| Frame::read(&mut &bytes[..end]).is_err()));
+        assert!(fits(LONGEST as usize).is_ok());
+        assert_eq!(fits(LONGEST as usize + 1).unwrap_err().status, 422);
         bytes[8] = 77;
         assert!(Frame::read(&mut &bytes[..]).is_err());
     }

@@ -1,15 +1,15 @@
 //! The list of maps below a folder, each with what a process of its own told of it.
 
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant, SystemTime};
 
-use serde_json::{Value, json};
 use tokio::sync::{Notify, Semaphore};
 
+use super::described::{MapEntry, MapList, MapSummary};
 use super::frames::{Ask, Kind};
-use super::process::{Reader, ReaderCommand, Trouble};
+use super::process::{Held, Place, Reader, ReaderCommand, Trouble};
 use super::readers::refused;
 use super::scan::{Found, Mark, Scanned, scan};
 
@@ -17,8 +17,8 @@ use super::scan::{Found, Mark, Scanned, scan};
 const BETWEEN_SCANS: Duration = Duration::from_secs(1);
 /// A list waits so long for what is not known yet.
 const PATIENCE: Duration = Duration::from_millis(1500);
-/// A process that takes longer to tell of a map is ended.
-const LONGEST_PROBE: Duration = Duration::from_secs(5);
+/// After how many tries the time between them grows no more.
+const MOST_DOUBLED: u32 = 5;
 /// Maps that are asked at a time.
 const MOST_PROBES: usize = 2;
 
@@ -26,9 +26,41 @@ const MOST_PROBES: usize = 2;
 #[derive(Debug, Clone)]
 enum Told {
     /// By its process.
-    Summary(Value),
-    /// Why it cannot be read.
+    Summary(MapSummary),
+    /// Why the file is no sound map.
     Damaged(String),
+    /// Why it could not be read, which tells nothing of the file; when that was, and how often.
+    Unread(String, Instant, u32),
+}
+
+/// How long things may take.
+#[derive(Debug, Clone, Copy)]
+struct Times {
+    /// A process that takes longer to tell of a map is ended.
+    probe: Duration,
+    /// What could not be read is tried again after so long, and each time twice as long.
+    again: Duration,
+}
+
+impl Default for Times {
+    fn default() -> Self {
+        Self {
+            probe: Duration::from_secs(5),
+            again: Duration::from_secs(4),
+        }
+    }
+}
+
+impl Told {
+    /// Whether it holds as long as the file stays as it is.
+    fn holds(&self, times: Times) -> bool {
+        match self {
+            Self::Summary(_) | Self::Damaged(_) => true,
+            Self::Unread(_, at, tries) => {
+                at.elapsed() < times.again * (1 << (tries - 1).min(MOST_DOUBLED))
+            }
+        }
+    }
 }
 
 #[derive(Debug, Default)]
@@ -38,7 +70,7 @@ struct Known {
     /// By id, what was there when it was told.
     told: HashMap<String, (Mark, Told)>,
     /// Those that are being asked.
-    asked: HashMap<String, Mark>,
+    asked: HashSet<String>,
 }
 
 /// The maps below a folder.
@@ -49,7 +81,9 @@ pub(super) struct List {
     known: Mutex<Known>,
     scanning: tokio::sync::Mutex<()>,
     probes: Arc<Semaphore>,
-    news: Notify,
+    held: Held,
+    news: Arc<Notify>,
+    times: Times,
 }
 
 impl List {
@@ -60,7 +94,9 @@ impl List {
             known: Mutex::default(),
             scanning: tokio::sync::Mutex::default(),
             probes: Arc::new(Semaphore::new(MOST_PROBES)),
-            news: Notify::new(),
+            held: Held::default(),
+            news: Arc::default(),
+            times: Times::default(),
         }
     }
 
@@ -97,7 +133,7 @@ impl List {
     }
 
     /// All maps, as far as they are known.
-    pub(super) async fn json(self: &Arc<Self>) -> Value {
+    pub(super) async fn all(self: &Arc<Self>) -> MapList {
         self.scan().await;
         let until = tokio::time::Instant::now() + PATIENCE;
         loop {
@@ -124,12 +160,12 @@ impl List {
         let mut unknown = 0;
         for found in scanned.maps.iter().filter(|found| found.odd.is_none()) {
             let of_now = |mark: &Mark| *mark == found.mark;
-            if told.get(&found.id).is_some_and(|(mark, _)| of_now(mark)) {
+            let known = told.get(&found.id);
+            if known.is_some_and(|(mark, told)| of_now(mark) && told.holds(self.times)) {
                 continue;
             }
             unknown += usize::from(!told.contains_key(&found.id));
-            if !asked.contains_key(&found.id) {
-                asked.insert(found.id.clone(), found.mark.clone());
+            if asked.insert(found.id.clone()) {
                 tokio::spawn(Arc::clone(self).ask_one(found.clone()));
             }
         }
@@ -137,52 +173,89 @@ impl List {
     }
 
     async fn ask_one(self: Arc<Self>, found: Found) {
-        let place = Arc::clone(&self.probes).acquire_owned().await;
-        let told = self.probe(&found).await;
-        drop(place);
+        let mut told = self.probe(&found).await;
         let mut known = self.known();
         known.asked.remove(&found.id);
+        let before = known.told.get(&found.id);
+        if let (Told::Unread(_, _, tries), Some((mark, Told::Unread(_, _, before)))) =
+            (&mut told, before)
+            && *mark == found.mark
+        {
+            *tries += before;
+        }
         known.told.insert(found.id.clone(), (found.mark, told));
         drop(known);
         self.news.notify_waiters();
     }
 
-    async fn probe(&self, found: &Found) -> Told {
-        let (command, path) = (self.command.clone(), found.path.clone());
-        let started = tokio::task::spawn_blocking(move || Reader::start(&command, &path)).await;
-        let Ok(Ok(reader)) = started else {
-            return Told::Damaged("the process that reads it could not be started".into());
-        };
-        let answer = reader.ask(Ask::Summary, LONGEST_PROBE).await;
-        drop(tokio::task::spawn_blocking(move || drop(reader)).await);
-        match answer {
-            Ok(frame) if frame.kind == Kind::Json => match serde_json::from_slice(&frame.bytes) {
-                Ok(summary) => Told::Summary(summary),
-                Err(error) => Told::Damaged(error.to_string()),
-            },
-            Ok(frame) => Told::Damaged(refused(&frame).detail),
-            Err(Trouble::TooLong) => Told::Damaged("reading it took longer than 5 s".into()),
-            Err(_) => Told::Damaged("the process that read it ended".into()),
+    /// A place for a process that reads `path`, unless one that was told to end is there for long.
+    async fn place(&self, path: &Path) -> Option<Place> {
+        let until = tokio::time::Instant::now() + self.times.probe;
+        loop {
+            let news = self.news.notified();
+            let permit = Arc::clone(&self.probes).acquire_owned().await.ok()?;
+            if let Some(place) = self.held.place(path, permit, &self.news) {
+                return Some(place);
+            }
+            tokio::time::timeout_at(until, news).await.ok()?;
         }
     }
 
-    fn told(&self) -> Value {
+    async fn probe(&self, found: &Found) -> Told {
+        let unread = |why: &str| Told::Unread(why.into(), Instant::now(), 1);
+        let Some(place) = self.place(&found.path).await else {
+            return unread("the process that read it before has not ended yet");
+        };
+        let (command, path) = (self.command.clone(), found.path.clone());
+        let start = move || Reader::start(&command, &path, place);
+        let Ok(Ok(reader)) = tokio::task::spawn_blocking(start).await else {
+            return unread("the process that reads it could not be started");
+        };
+        match reader.ask(Ask::Summary, self.times.probe).await {
+            Ok(frame) if frame.kind == Kind::Json => match serde_json::from_slice(&frame.bytes) {
+                Ok(summary) => Told::Summary(summary),
+                Err(error) => unread(&error.to_string()),
+            },
+            Ok(frame) => {
+                let refused = refused(&frame);
+                match refused.is_of_file() {
+                    true => Told::Damaged(refused.detail),
+                    false => unread(&refused.detail),
+                }
+            }
+            Err(Trouble::TooLong) => {
+                let seconds = self.times.probe.as_secs_f64();
+                unread(&format!("reading it took longer than {seconds} s"))
+            }
+            Err(_) => unread("the process that read it ended; the file may be damaged"),
+        }
+    }
+
+    /// The map of an id was read just now, whatever was said of it before.
+    pub(super) fn was_read(&self, id: &str) {
+        let mut known = self.known();
+        if !matches!(known.told.get(id), Some((_, Told::Summary(_)))) {
+            known.told.remove(id);
+        }
+    }
+
+    fn told(&self) -> MapList {
         let known = self.known();
         let maps = known.scanned.maps.iter().map(|found| {
             let told = known.told.get(&found.id).map(|(_, told)| told);
             entry(found, told)
         });
-        json!({
-            "folder": self.folder.to_string_lossy(),
-            "maps": maps.collect::<Vec<_>>(),
-            "folders_skipped": known.scanned.folders_skipped,
-            "links_skipped": known.scanned.links_skipped,
-            "truncated": known.scanned.truncated,
-        })
+        MapList {
+            folder: self.folder.to_string_lossy().into(),
+            maps: maps.collect(),
+            folders_skipped: known.scanned.folders_skipped,
+            links_skipped: known.scanned.links_skipped,
+            truncated: known.scanned.truncated,
+        }
     }
 }
 
-/// The state of a map, and why it is damaged where it is.
+/// The state of a map, and why it is damaged or unread where it is.
 fn state(found: &Found, told: Option<&Told>) -> (&'static str, Option<String>) {
     if let Some(odd) = found.odd {
         return ("damaged", Some(odd.into()));
@@ -190,28 +263,77 @@ fn state(found: &Found, told: Option<&Told>) -> (&'static str, Option<String>) {
     match told {
         None => ("unknown", None),
         Some(Told::Damaged(why)) => ("damaged", Some(why.clone())),
+        Some(Told::Unread(why, ..)) => ("unread", Some(why.clone())),
         Some(Told::Summary(summary)) => {
-            let complete = summary["cells"] == summary["cells_done"];
+            let complete = summary.cells == summary.cells_done;
             (found.state(complete), None)
         }
     }
 }
 
-fn entry(found: &Found, told: Option<&Told>) -> Value {
+fn entry(found: &Found, told: Option<&Told>) -> MapEntry {
     let (state, why) = state(found, told);
     let modified = found.modified();
     let age = modified.and_then(|time| SystemTime::now().duration_since(time).ok());
     let since = modified.and_then(|time| time.duration_since(SystemTime::UNIX_EPOCH).ok());
-    let mut entry = json!({
-        "id": found.id, "name": found.name, "state": state, "why": why,
-        "bytes": found.bytes(),
-        "modified": since.map(|since| since.as_secs_f64()),
-        "age_seconds": age.map(|age| age.as_secs_f64()),
-        "title": null, "cells": null, "cells_done": null, "axes": [], "fields": [],
-    });
-    if let (Some(Told::Summary(Value::Object(summary))), Value::Object(entry)) = (told, &mut entry)
-    {
-        entry.extend(summary.clone());
+    MapEntry {
+        id: found.id.clone(),
+        name: found.name.clone(),
+        state,
+        why,
+        bytes: found.bytes(),
+        modified: since.map(|since| since.as_secs_f64()),
+        age_seconds: age.map(|age| age.as_secs_f64()),
+        summary: match told {
+            Some(Told::Summary(summary)) => summary.clone(),
+            _ => MapSummary::default(),
+        },
     }
-    entry
+}
+
+#[cfg(all(test, unix))]
+mod tests {
+    use super::super::test_reader::{self, hang};
+    use super::*;
+
+    /// A process that is over its time says nothing of the file, which is tried again.
+    #[test]
+    fn what_could_not_be_read_is_tried_again() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a.h5");
+        std::fs::write(&path, "held").unwrap();
+        let list = List {
+            times: Times {
+                probe: Duration::from_millis(200),
+                again: Duration::from_millis(400),
+            },
+            ..List::of(folder.path(), test_reader::command())
+        };
+        let list = Arc::new(list);
+        let runtime = tokio::runtime::Builder::new_multi_thread();
+        let runtime = { runtime }.worker_threads(2).enable_all().build().unwrap();
+        runtime.block_on(async {
+            let held = hang(&path);
+            let until = |wanted: &'static str| {
+                let list = Arc::clone(&list);
+                async move {
+                    let begun = Instant::now();
+                    loop {
+                        let mut all = list.all().await;
+                        let entry = all.maps.remove(0);
+                        if entry.state == wanted {
+                            return entry;
+                        }
+                        assert!(begun.elapsed() < Duration::from_secs(20), "{:?}", entry.why);
+                        tokio::time::sleep(Duration::from_millis(20)).await;
+                    }
+                }
+            };
+            let told = until("unread").await;
+            assert_eq!(told.why.unwrap(), "reading it took longer than 0.2 s");
+            drop(held);
+            assert_eq!(until("complete").await.summary.cells, Some(4));
+            assert!(test_reader::started(&path) > 1);
+        });
+    }
 }

@@ -2,7 +2,7 @@
 //!
 //! ```text
 //! [scan] names below the folder → ids → [list] what a process of each tells, remembered
-//! [routes] request → [readers] the process that reads the map → [frames] → answer
+//! [routes] request → [readers] → [places] the process that reads the map → [frames] → answer
 //!          in that process: [child] → [description], [answers] → maps::look
 //! ```
 //!
@@ -14,10 +14,13 @@ mod described;
 mod description;
 mod frames;
 mod list;
+mod places;
 mod process;
 mod readers;
 mod routes;
 mod scan;
+#[cfg(all(test, unix))]
+mod test_reader;
 
 pub use child::read_map;
 pub use process::ReaderCommand;

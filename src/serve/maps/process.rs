@@ -1,13 +1,13 @@
 //! The server's side of a process that reads a map.
 
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 use std::io::{BufReader, Write};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::process::{Child, ChildStdin, ChildStdout, Command, Stdio};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
 
-use tokio::sync::oneshot;
+use tokio::sync::{Notify, OwnedSemaphorePermit, oneshot};
 
 use super::frames::{Ask, Frame, Request};
 
@@ -26,6 +26,47 @@ pub struct ReaderCommand {
     pub arguments: Vec<String>,
 }
 
+/// What a process takes until the system has done with it, also where that takes long after it was
+/// told to end.
+#[derive(Debug)]
+pub(super) struct Place {
+    permit: Option<OwnedSemaphorePermit>,
+    path: PathBuf,
+    held: Held,
+    freed: Arc<Notify>,
+}
+
+/// The files whose processes the system has not done with.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Held(Arc<Mutex<HashSet<PathBuf>>>);
+
+impl Held {
+    /// A place for a process that reads `path`, unless there is one still: a file that processes
+    /// hang on is not to take the places of others. Those who wait hear of it once it is free.
+    pub(super) fn place(
+        &self,
+        path: &Path,
+        permit: OwnedSemaphorePermit,
+        freed: &Arc<Notify>,
+    ) -> Option<Place> {
+        let first = locked(&self.0).insert(path.to_owned());
+        first.then(|| Place {
+            permit: Some(permit),
+            path: path.to_owned(),
+            held: self.clone(),
+            freed: Arc::clone(freed),
+        })
+    }
+}
+
+impl Drop for Place {
+    fn drop(&mut self) {
+        locked(&self.held.0).remove(&self.path);
+        self.permit.take();
+        self.freed.notify_waiters();
+    }
+}
+
 /// Why there is no answer.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Trouble {
@@ -37,6 +78,8 @@ pub(super) enum Trouble {
     TooLong,
     /// Others wait already.
     Busy,
+    /// Every place for a process is taken by other maps.
+    NoPlace,
     /// No map is asked for that much.
     LongRequest,
 }
@@ -48,10 +91,13 @@ struct Waiting {
     ended: bool,
 }
 
-/// A process that reads a map; it ends with this.
+/// A process, until somebody waits for its end.
+type Running = Arc<Mutex<Option<Child>>>;
+
+/// A process that reads a map; it is told to end with this.
 #[derive(Debug)]
 pub(super) struct Reader {
-    child: Mutex<Child>,
+    child: Running,
     requests: Mutex<ChildStdin>,
     waiting: Arc<Mutex<Waiting>>,
 }
@@ -61,8 +107,12 @@ fn locked<T>(of: &Mutex<T>) -> MutexGuard<'_, T> {
 }
 
 impl Reader {
-    /// Starts a process for the map at `path`.
-    pub(super) fn start(command: &ReaderCommand, path: &Path) -> Result<Self, Trouble> {
+    /// Starts a process for the map at `path`, which the system may take long for.
+    pub(super) fn start(
+        command: &ReaderCommand,
+        path: &Path,
+        place: Place,
+    ) -> Result<Self, Trouble> {
         let mut child = Command::new(&command.program)
             .args(&command.arguments)
             .arg(path)
@@ -79,16 +129,28 @@ impl Reader {
         let (Some(requests), Some(answers)) = (child.stdin.take(), child.stdout.take()) else {
             return Err(Trouble::NotStarted);
         };
+        let child = Arc::new(Mutex::new(Some(child)));
         let waiting = Arc::new(Mutex::new(Waiting::default()));
         let reader = Self {
-            child: Mutex::new(child),
+            child: Arc::clone(&child),
             requests: Mutex::new(requests),
-            waiting: Arc::clone(&waiting),
+            waiting,
         };
-        let listening = std::thread::Builder::new()
-            .stack_size(1 << 17)
-            .spawn(move || listen(answers, &waiting));
-        listening.map_err(|_| Trouble::NotStarted)?;
+        let (of_thread, waiting) = (Arc::clone(&child), Arc::clone(&reader.waiting));
+        // Where no thread can be started, the process is waited for here; it keeps its place so
+        // long.
+        let place = Arc::new(Mutex::new(Some(place)));
+        let kept = Arc::clone(&place);
+        let listening = std::thread::Builder::new().stack_size(1 << 17);
+        let listening = listening.spawn(move || {
+            listen(answers, &waiting);
+            wait_for(&of_thread);
+            drop(locked(&kept).take());
+        });
+        if listening.is_err() {
+            wait_for(&child);
+            return Err(Trouble::NotStarted);
+        }
         Ok(reader)
     }
 
@@ -97,10 +159,11 @@ impl Reader {
         locked(&self.waiting).ended
     }
 
+    /// Tells it to end. Who listens to it waits until it has.
     fn end(&self) {
-        let mut child = locked(&self.child);
-        drop(child.kill());
-        drop(child.wait());
+        if let Some(child) = &mut *locked(&self.child) {
+            drop(child.kill());
+        }
     }
 
     /// Its answer. One that does not answer within `patience` is ended.
@@ -152,6 +215,15 @@ impl Drop for Reader {
     }
 }
 
+/// Waits until a process that says nothing more has ended, with no lock held.
+fn wait_for(child: &Running) {
+    let child = locked(child).take();
+    if let Some(mut child) = child {
+        drop(child.kill());
+        drop(child.wait());
+    }
+}
+
 /// Hands answers to who waits for them, until there are no more.
 fn listen(answers: ChildStdout, waiting: &Mutex<Waiting>) {
     let mut answers = BufReader::with_capacity(1 << 16, answers);
@@ -164,4 +236,27 @@ fn listen(answers: ChildStdout, waiting: &Mutex<Waiting>) {
     let mut waiting = locked(waiting);
     waiting.ended = true;
     waiting.answers.clear();
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_file_has_one_place_until_its_process_has_ended() {
+        let (places, freed) = (Arc::new(tokio::sync::Semaphore::new(2)), Arc::default());
+        let (held, path) = (Held::default(), Path::new("map.h5"));
+        let permit = || Arc::clone(&places).try_acquire_owned().unwrap();
+        let first = held.place(path, permit(), &freed);
+        assert!(first.is_some());
+        assert!(held.place(path, permit(), &freed).is_none());
+        assert_eq!(places.available_permits(), 1, "the other one is given back");
+        assert!(
+            held.place(Path::new("other.h5"), permit(), &freed)
+                .is_some()
+        );
+        drop(first);
+        assert!(held.place(path, permit(), &freed).is_some());
+        assert_eq!(places.available_permits(), 2);
+    }
 }

@@ -1,26 +1,25 @@
-//! Which processes read maps: few at a time, those that were asked last.
+//! What is asked of maps, by the processes that read them.
 
-use std::path::{Path, PathBuf};
-use std::sync::{Arc, Mutex, PoisonError};
+use std::path::Path;
+use std::sync::Arc;
 use std::time::Duration;
 
 use axum::http::StatusCode;
-use tokio::sync::{OwnedSemaphorePermit, Semaphore};
 
 use super::frames::{Ask, Frame, Kind, MOST_PIXELS, Refused, WindowQuery};
 use super::list::List;
-use super::process::{Reader, ReaderCommand, Trouble};
+use super::places::Places;
+use super::process::{ReaderCommand, Trouble};
 use super::scan::Found;
 use crate::serve::problem::Problem;
+use crate::serve::room::{Room, Taken};
 
-/// Maps that are read at a time.
-const MOST_READERS: usize = 2;
 /// A process that takes longer is ended.
 const PATIENCE: Duration = Duration::from_secs(20);
-/// Megabytes of windows that are asked for or sent at a time.
+/// Megabytes of windows and curves that are asked for or sent at a time.
 const ROOM: u32 = 32;
-/// Room is waited for so long.
-const FOR_ROOM: Duration = Duration::from_secs(10);
+/// What the curves of a plane take, unless there are very many of them.
+const BYTES_OF_CURVES: u64 = 8 << 20;
 /// Bytes of a pixel at most: a real, its status, and its bits.
 const BYTES_OF_PIXEL: usize = 10;
 /// How often a map is opened anew that is another one by now.
@@ -30,11 +29,8 @@ const MOST_OPENED: usize = 3;
 #[derive(Debug)]
 pub(in crate::serve) struct Maps {
     pub(super) list: Arc<List>,
-    command: ReaderCommand,
-    /// The one that was asked last comes last.
-    readers: Mutex<Vec<(PathBuf, Arc<Reader>)>>,
-    /// Megabytes that answers may take.
-    room: Arc<Semaphore>,
+    places: Arc<Places>,
+    room: Room,
 }
 
 impl Maps {
@@ -42,23 +38,22 @@ impl Maps {
     pub(in crate::serve) fn below(folder: &Path, command: ReaderCommand) -> Self {
         Self {
             list: Arc::new(List::of(folder, command.clone())),
-            command,
-            readers: Mutex::default(),
-            room: Arc::new(Semaphore::new(ROOM as usize)),
+            places: Places::of(command),
+            room: Room::of(ROOM),
         }
     }
 
     /// Room for the answer about a window; it is waited for while others are sent.
-    pub(super) async fn room(&self, query: &WindowQuery) -> Result<OwnedSemaphorePermit, Problem> {
+    pub(super) async fn room(&self, query: &WindowQuery) -> Result<Taken, Problem> {
         let pixels = |asked: Option<usize>| asked.unwrap_or(usize::MAX).min(MOST_PIXELS);
         let height = query.y.as_ref().map_or(1, |_| pixels(query.h));
         let bytes = pixels(query.w) * height * BYTES_OF_PIXEL;
-        let needed = (1 + (bytes >> 20) as u32).min(ROOM);
-        let room = Arc::clone(&self.room).acquire_many_owned(needed);
-        match tokio::time::timeout(FOR_ROOM, room).await {
-            Ok(Ok(room)) => Ok(room),
-            _ => Err(problem(Trouble::Busy)),
-        }
+        self.room.take(bytes as u64).await
+    }
+
+    /// Room for the curves of a plane.
+    pub(super) async fn room_for_curves(&self) -> Result<Taken, Problem> {
+        self.room.take(BYTES_OF_CURVES).await
     }
 
     /// What the process that reads a map answers.
@@ -67,52 +62,35 @@ impl Maps {
             return Err(damaged(odd));
         }
         for _ in 0..MOST_OPENED {
-            let reader = self.reader(&found.path).map_err(problem)?;
+            let used = self.places.reader(&found.path).await.map_err(problem)?;
+            let reader = &used.reader;
             let frame = match reader.ask(ask.clone(), PATIENCE).await {
                 Ok(frame) => frame,
                 Err(trouble) => {
-                    self.forget(&reader);
+                    if matches!(trouble, Trouble::Ended | Trouble::TooLong) {
+                        self.places.forget(reader);
+                    }
                     return Err(problem(trouble));
                 }
             };
             match frame.kind {
-                Kind::OtherMap => self.forget(&reader),
+                Kind::OtherMap => self.places.forget(reader),
                 Kind::Problem => {
                     let refused = refused(&frame);
                     if refused.status >= 500 {
                         // The file may be another one the next time.
-                        self.forget(&reader);
+                        self.places.forget(reader);
                     }
                     return Err(refused.into());
                 }
-                _ => return Ok(frame),
+                _ => {
+                    self.list.was_read(&found.id);
+                    return Ok(frame);
+                }
             }
         }
         let detail = "the map changes all the time";
         Err(Problem::of(StatusCode::SERVICE_UNAVAILABLE, detail))
-    }
-
-    /// The process that reads the map at `path`.
-    fn reader(&self, path: &Path) -> Result<Arc<Reader>, Trouble> {
-        let mut readers = self.readers.lock().unwrap_or_else(PoisonError::into_inner);
-        readers.retain(|(_, reader)| !reader.has_ended());
-        if let Some(place) = readers.iter().position(|(of, _)| of == path) {
-            let known = readers.remove(place);
-            let reader = Arc::clone(&known.1);
-            readers.push(known);
-            return Ok(reader);
-        }
-        if readers.len() >= MOST_READERS {
-            readers.remove(0);
-        }
-        let reader = Arc::new(Reader::start(&self.command, path)?);
-        readers.push((path.to_owned(), Arc::clone(&reader)));
-        Ok(reader)
-    }
-
-    fn forget(&self, reader: &Arc<Reader>) {
-        let mut readers = self.readers.lock().unwrap_or_else(PoisonError::into_inner);
-        readers.retain(|(_, other)| !Arc::ptr_eq(other, reader));
     }
 }
 
@@ -153,6 +131,97 @@ fn problem(trouble: Trouble) -> Problem {
             StatusCode::SERVICE_UNAVAILABLE,
             "too many requests wait for this map",
         ),
+        Trouble::NoPlace => Problem::of(
+            StatusCode::SERVICE_UNAVAILABLE,
+            "too many other maps are being read",
+        ),
         Trouble::LongRequest => Problem::of(StatusCode::URI_TOO_LONG, "the request is too long"),
+    }
+}
+
+#[cfg(all(test, unix))]
+mod tests {
+    use std::fs;
+    use std::time::Instant;
+
+    use super::super::described::MapEntry;
+    use super::super::test_reader::{self, hang};
+    use super::*;
+
+    fn running<T>(what: impl Future<Output = T>) -> T {
+        let runtime = tokio::runtime::Builder::new_multi_thread();
+        let runtime = { runtime }.worker_threads(2).enable_all().build();
+        runtime.unwrap().block_on(what)
+    }
+
+    async fn entry(maps: &Maps) -> MapEntry {
+        maps.list.all().await.maps.remove(0)
+    }
+
+    /// A file that could not be read for a while is not called damaged, and a map again once it is.
+    #[test]
+    fn what_took_too_long_is_forgotten_once_the_map_answers() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a.h5");
+        fs::write(&path, "held").unwrap();
+        let maps = Maps::below(folder.path(), test_reader::command());
+        running(async {
+            let held = hang(&path);
+            let begun = Instant::now();
+            while entry(&maps).await.state == "unknown" {
+                assert!(begun.elapsed() < Duration::from_secs(20));
+            }
+            let told = entry(&maps).await;
+            assert_eq!(told.state, "unread");
+            assert_eq!(told.why.unwrap(), "reading it took longer than 5 s");
+            drop(held);
+            let found = maps.list.find(&told.id).await.unwrap();
+            maps.ask(&found, &Ask::Description).await.unwrap();
+            // At once, long before it would be tried again.
+            assert_eq!(entry(&maps).await.state, "complete");
+        });
+    }
+
+    /// Who comes when too many wait is turned away, and the process goes on.
+    #[test]
+    fn a_busy_process_is_kept() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a.h5");
+        fs::write(&path, "held").unwrap();
+        let maps = Arc::new(Maps::below(folder.path(), test_reader::command()));
+        running(async {
+            let id = entry(&maps).await.id;
+            let found = maps.list.find(&id).await.unwrap();
+            maps.ask(&found, &Ask::Description).await.unwrap();
+            let started = test_reader::started(&path);
+            let held = hang(&path);
+            let asking = (0..20).map(|_| {
+                let (maps, found) = (Arc::clone(&maps), found.clone());
+                tokio::spawn(async move { maps.ask(&found, &Ask::Description).await })
+            });
+            let asking: Vec<_> = asking.collect();
+            tokio::time::sleep(Duration::from_millis(500)).await;
+            let at = "a".repeat(5000);
+            let long = Ask::Cell(super::super::frames::CellQuery { at });
+            drop(held);
+            let mut turned_away = 0;
+            for asked in asking {
+                turned_away += match asked.await.unwrap() {
+                    Ok(_) => 0,
+                    Err(problem) => {
+                        assert_eq!(problem.status, 503);
+                        1
+                    }
+                };
+            }
+            assert_eq!(turned_away, 4);
+            assert_eq!(maps.ask(&found, &long).await.unwrap_err().status, 414);
+            maps.ask(&found, &Ask::Description).await.unwrap();
+            assert_eq!(
+                test_reader::started(&path),
+                started,
+                "the process is the same"
+            );
+        });
     }
 }

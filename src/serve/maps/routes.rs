@@ -2,24 +2,24 @@
 
 use std::sync::Arc;
 
-use axum::body::Bytes;
 use axum::extract::rejection::QueryRejection;
-use axum::extract::{Path, Query, State};
+use axum::extract::{FromRequestParts, Path, Query, State};
 use axum::http::StatusCode;
 use axum::http::header::CONTENT_TYPE;
+use axum::http::request::Parts;
 use axum::response::{IntoResponse, Response};
 use serde_json::Value;
-use tokio::sync::OwnedSemaphorePermit;
 use utoipa::OpenApi;
 use utoipa_axum::router::OpenApiRouter;
 use utoipa_axum::routes;
 
-use super::described::{CurvesHead, MapCell, MapDescription, MapList, WindowHead};
+use super::described::{CurvesHead, MapCell, MapDescription, MapList, MapTold, WindowHead};
 use super::frames::{Ask, CellQuery, CurvesQuery, Frame, Kind, ScaleName, WindowQuery};
 use super::readers::Maps;
 use super::scan::Found;
+use crate::maps::look::finite;
 use crate::serve::openapi::Encoded;
-use crate::serve::problem::{Denied, Problem};
+use crate::serve::problem::{Denied, Problem, nothing_here};
 
 /// The routes of all addresses below `/api/v1/maps`.
 pub(in crate::serve) fn routes<S>(maps: Arc<Maps>) -> OpenApiRouter<S>
@@ -54,6 +54,24 @@ enum NoMap {
     /// The map cannot be read
     #[response(status = 502, content_type = "application/problem+json")]
     Damaged(Problem),
+    /// Reading it took too long
+    #[response(status = 504, content_type = "application/problem+json")]
+    TooLong(Problem),
+}
+
+const ENCODED: &str = "application/octet-stream";
+
+/// The id of a map, as it stands in an address.
+struct Id(String);
+
+impl<S: Send + Sync> FromRequestParts<S> for Id {
+    type Rejection = Problem;
+
+    async fn from_request_parts(parts: &mut Parts, state: &S) -> Result<Self, Problem> {
+        let id = Path::from_request_parts(parts, state).await;
+        let Path(id) = id.map_err(|_| nothing_here())?;
+        Ok(Self(id))
+    }
 }
 
 type Asked<T> = Result<Query<T>, QueryRejection>;
@@ -74,7 +92,7 @@ fn answered(frame: Frame) -> Response {
     let kind = match frame.kind {
         Kind::Text => "text/plain; charset=utf-8",
         Kind::Json => "application/json",
-        _ => "application/octet-stream",
+        _ => ENCODED,
     };
     ([(CONTENT_TYPE, kind)], frame.bytes).into_response()
 }
@@ -94,8 +112,8 @@ async fn asked(maps: &Maps, id: &str, ask: Ask) -> Result<Response, Problem> {
         Denied,
     ),
 )]
-async fn list(State(maps): State<Arc<Maps>>) -> axum::Json<Value> {
-    axum::Json(maps.list.json().await)
+async fn list(State(maps): State<Arc<Maps>>) -> axum::Json<MapList> {
+    axum::Json(maps.list.all().await)
 }
 
 /// What there is to know of a map besides its cells
@@ -105,24 +123,28 @@ async fn list(State(maps): State<Arc<Maps>>) -> axum::Json<Value> {
     tag = "maps",
     params(("id" = String, Path, description = "as the list has it")),
     responses(
-        (status = 200, description = "The map", body = MapDescription),
+        (status = 200, description = "The map", body = MapDescription<MapTold>),
         Denied,
         NoMap,
     ),
 )]
 async fn description(
     State(maps): State<Arc<Maps>>,
-    Path(id): Path<String>,
-) -> Result<axum::Json<Value>, Problem> {
+    Id(id): Id,
+) -> Result<axum::Json<MapDescription<Value>>, Problem> {
     let found = found(&maps, &id).await?;
     let frame = maps.ask(&found, &Ask::Description).await?;
-    let mut told: Value = serde_json::from_slice(&frame.bytes)
+    let told: Value = serde_json::from_slice(&frame.bytes)
         .map_err(|error| Problem::of(StatusCode::BAD_GATEWAY, error.to_string()))?;
     let complete = told["cells"] == told["cells_done"];
-    told["state"] = found.state(complete).into();
-    told["id"] = found.id.into();
-    told["name"] = found.name.into();
-    Ok(axum::Json(told))
+    let state = found.state(complete);
+    let Found { id, name, .. } = found;
+    Ok(axum::Json(MapDescription {
+        id,
+        name,
+        state,
+        told,
+    }))
 }
 
 /// Cells in a plane, as pixels
@@ -140,33 +162,17 @@ async fn description(
 )]
 async fn window(
     State(maps): State<Arc<Maps>>,
-    Path(id): Path<String>,
+    Id(id): Id,
     query: Asked<WindowQuery>,
 ) -> Result<Response, Problem> {
     let query = said(query)?;
-    let ends = [query.x0, query.x1, query.y0, query.y1];
-    if ends.into_iter().flatten().any(|end| !end.is_finite()) {
-        let detail = "the ends of a window are finite numbers";
-        return Err(Problem::of(StatusCode::UNPROCESSABLE_ENTITY, detail));
-    }
+    // Here, since JSON would lose others on the way to the process.
+    finite([query.x0, query.x1, query.y0, query.y1])
+        .map_err(|detail| Problem::of(StatusCode::UNPROCESSABLE_ENTITY, detail))?;
     let found = found(&maps, &id).await?;
     let room = maps.room(&query).await?;
     let Frame { bytes, .. } = maps.ask(&found, &Ask::Window(query)).await?;
-    // The room is given back when the last byte is sent.
-    let body = Bytes::from_owner(Sent { bytes, _room: room });
-    Ok(([(CONTENT_TYPE, "application/octet-stream")], body).into_response())
-}
-
-/// An answer that takes room until it is sent.
-struct Sent {
-    bytes: Vec<u8>,
-    _room: OwnedSemaphorePermit,
-}
-
-impl AsRef<[u8]> for Sent {
-    fn as_ref(&self) -> &[u8] {
-        &self.bytes
-    }
+    Ok(room.send(ENCODED, bytes))
 }
 
 /// The curves in a plane
@@ -184,10 +190,14 @@ impl AsRef<[u8]> for Sent {
 )]
 async fn curves(
     State(maps): State<Arc<Maps>>,
-    Path(id): Path<String>,
+    Id(id): Id,
     query: Asked<CurvesQuery>,
 ) -> Result<Response, Problem> {
-    asked(&maps, &id, Ask::Curves(said(query)?)).await
+    let query = said(query)?;
+    let found = found(&maps, &id).await?;
+    let room = maps.room_for_curves().await?;
+    let frame = maps.ask(&found, &Ask::Curves(query)).await?;
+    Ok(room.send(ENCODED, frame.bytes))
 }
 
 /// One cell
@@ -204,7 +214,7 @@ async fn curves(
 )]
 async fn cell(
     State(maps): State<Arc<Maps>>,
-    Path(id): Path<String>,
+    Id(id): Id,
     query: Asked<CellQuery>,
 ) -> Result<Response, Problem> {
     asked(&maps, &id, Ask::Cell(said(query)?)).await
@@ -223,6 +233,6 @@ async fn cell(
         NoMap,
     ),
 )]
-async fn sweep(State(maps): State<Arc<Maps>>, Path(id): Path<String>) -> Result<Response, Problem> {
+async fn sweep(State(maps): State<Arc<Maps>>, Id(id): Id) -> Result<Response, Problem> {
     asked(&maps, &id, Ask::Sweep).await
 }

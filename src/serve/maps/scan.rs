@@ -8,6 +8,7 @@ use std::time::SystemTime;
 
 use sha2::{Digest, Sha256};
 
+use crate::store::stamp::Stamp;
 use crate::store::tiles::shards;
 use crate::sweep::plan::in_hexadecimal;
 
@@ -27,7 +28,7 @@ const DIGITS: usize = 16;
 /// What is there of a map, by which it is seen that something has changed.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub(super) struct Mark {
-    file: Option<(u64, Option<SystemTime>, u64)>,
+    file: Option<Stamp>,
     /// Tile files, their bytes, and when the last came.
     tiles: Option<(u64, u64, Option<SystemTime>)>,
 }
@@ -49,14 +50,14 @@ pub(super) struct Found {
 impl Found {
     /// Bytes of it.
     pub(super) fn bytes(&self) -> u64 {
-        let file = self.mark.file.map_or(0, |(length, ..)| length);
+        let file = self.mark.file.map_or(0, |stamp| stamp.length);
         file + self.mark.tiles.map_or(0, |(_, bytes, _)| bytes)
     }
 
     /// When it was last written to.
     pub(super) fn modified(&self) -> Option<SystemTime> {
         let tiles = self.mark.tiles.and_then(|(.., modified)| modified);
-        tiles.max(self.mark.file.and_then(|(_, modified, _)| modified))
+        tiles.max(self.mark.file.and_then(|stamp| stamp.modified))
     }
 
     /// The state of a map that can be read, of which all cells are there or not.
@@ -186,25 +187,14 @@ fn id_of(relative: &Path) -> String {
     id
 }
 
-#[cfg(unix)]
-fn node(found: &Metadata) -> u64 {
-    std::os::unix::fs::MetadataExt::ino(found)
-}
-
-#[cfg(not(unix))]
-fn node(_: &Metadata) -> u64 {
-    0
-}
-
 /// What the system tells of a map; none where it is gone again.
 fn look(root: &Path, path: PathBuf, odd: Option<&'static str>) -> Option<Found> {
     let relative = path.strip_prefix(root).ok()?;
-    let told = |found: Metadata| (found.len(), found.modified().ok(), node(&found));
     let folders = shards::present(&path).unwrap_or_default();
     let tiles = folders.iter().map(|(_, folder)| tiles_in(folder));
     let tiles = tiles.reduce(|a, b| (a.0 + b.0, a.1 + b.1, a.2.max(b.2)));
     let mark = Mark {
-        file: path.metadata().ok().map(told),
+        file: Stamp::of(&path),
         tiles,
     };
     if mark == Mark::default() {

@@ -5,8 +5,13 @@ import { told } from "./scale.js";
 const STABLE = "#5fb9ae";
 const NO_VALUE = "#b9b9b9";
 const COUNTS = [STABLE, "#f6e8c3", "#dfc27d", "#bf812d", "#7a4608"];
+/** What stands for no count, and for no small one. */
+const [NO_COUNT, NO_FEW] = [65535, 255];
 const COUNT_NAMES = ["stable", "1 or 2 unstable roots", "3 or 4", "5 or 6", "7 or more"];
-/** Fates of motions, ends of stick-slip, working velocities, methods, by name. */
+/**
+ * Fates of motions, ends of stick-slip, working velocities, by name. Those of one field are all told
+ * apart, by the colour-blind too.
+ */
 const KINDS = {
   sliding: STABLE,
   "stick-slip": "#dfc27d",
@@ -15,13 +20,13 @@ const KINDS = {
   diverged: "#222222",
   undecided: NO_VALUE,
   "no-cycle": "#e8e8e8",
-  grazing: "#35978f",
-  fold: "#dfc27d",
-  "period-doubling": "#bf812d",
-  irregular: "#7a4608",
-  persists: "#222222",
-  never: "#d5eeea",
-  lost: "#35978f",
+  grazing: "#009999",
+  fold: "#dd9900",
+  "period-doubling": "#bb7755",
+  irregular: "#990000",
+  persists: "#7733bb",
+  never: "#007799",
+  lost: "#bb77dd",
   stable: STABLE,
   bistable: "#c2e3f2",
   unstable: "#dfc27d",
@@ -49,6 +54,10 @@ const BROWN_TEAL = [
   "#35978f",
   "#01665e",
 ];
+/** How slipmap calls values that are the better the farther they lie below 0. */
+const BELOW = new Set(["better-below", "relative-error"]);
+/** And values over orders of magnitude. */
+const LONG = new Set(["long-tail", "magnitudes", "decades", "relaxation"]);
 /** Steps of a colour bar. */
 const STEPS = 255;
 
@@ -66,20 +75,21 @@ function sampled(table, part) {
 
 const css = ([r, g, b]) => `rgb(${r}, ${g}, ${b})`;
 
-/** Colours of numbers that stand for a few things. */
+/** Colours of numbers that stand for a few things; all others are no values. */
 class Classes {
   constructor(names, colours, classOf) {
     [this.names, this.colours, this.classOf] = [names, colours, classOf];
     this.ints = Uint32Array.from(colours, int);
     this.none = int(NO_VALUE);
+    this.noValue = NO_VALUE;
   }
 
   pixel(value) {
-    return Number.isNaN(value) ? this.none : this.ints[this.classOf(value)];
+    return this.ints[this.classOf(value)] ?? this.none;
   }
 
   name(value) {
-    return Number.isNaN(value) ? "no value" : this.names[this.classOf(value)];
+    return this.names[this.classOf(value)] ?? "no value";
   }
 
   /** What the colours mean: {colour, text} each. */
@@ -166,11 +176,12 @@ function aboutZero(values, stable, words) {
  */
 export function coloursOf(field, values) {
   if (field.name === "n_unstable") {
-    return new Classes(COUNT_NAMES, COUNTS, (n) => Math.min(4, Math.ceil(n / 2)));
+    const classOf = (n) => (n === NO_COUNT ? NaN : Math.min(4, Math.ceil(n / 2)));
+    return new Classes(COUNT_NAMES, COUNTS, classOf);
   }
   if (field.kinds) {
     const colours = field.kinds.map((kind, i) => KINDS[kind] ?? FEW[i % FEW.length]);
-    return new Classes(field.kinds, colours, (n) => Math.min(n, field.kinds.length - 1));
+    return new Classes(field.kinds, colours, (n) => n);
   }
   const spread = field.spread ?? "";
   if (spread === "about-zero") {
@@ -178,7 +189,10 @@ export function coloursOf(field, values) {
       field.unit && /^abscissa/.test(field.name) ? ["grows", "decays"] : ["unstable", "stable"];
     return aboutZero(values, field.stable_sign ?? 1, words);
   }
-  if (/below|error/.test(spread)) return aboutZero(values, -1, ["above 0", "below 0"]);
-  if (/tail|magnitude|decade|relax/.test(spread)) return logarithmic(values);
-  return linear(values);
+  if (BELOW.has(spread)) return aboutZero(values, -1, ["above 0", "below 0"]);
+  if (LONG.has(spread)) return logarithmic(values);
+  const bar = linear(values);
+  const { part } = bar;
+  if (field.storage === "few") bar.part = (v) => (v === NO_FEW ? NaN : part(v));
+  return bar;
 }

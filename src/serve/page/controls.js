@@ -1,53 +1,23 @@
 // The form of the live chart: control, axes, parameters, friction law, units.
 
+import { RANGES, SHOWN, UNITS, withoutZero } from "./catalogue.js";
 import { element, make } from "./dom.js";
 import { drawLaw } from "./plots.js";
-import { MODEL, VALUES, parametersOf, pointTexts } from "./sweep.js";
-import { told } from "./scale.js";
+import { told, unitOf, withUnit } from "./scale.js";
+import { MODEL, highestOf, parametersOf, pointTexts } from "./sweep.js";
 
-/** Ranges of sliders. */
-const RANGES = {
-  mu_prime: [-0.95, 0.5],
-  mu_k: [0.05, 2],
-  v0: [0.01, 3],
-  mu0: [0.05, 1],
-  v_s: [0.02, 4],
-  mu_s: [0.1, 2],
-  alpha_v: [-3, 3],
-  alpha_n: [-10, 10],
-  tau: [0, 25],
-  mass: [0.1, 10],
-  stiffness: [0.1, 10],
-  normal_load: [0.1, 10],
-};
-/** Axes of a chart as they begin. */
-const AXES = {
-  mu_prime: [-0.95, 0.2],
-  mu_k: [0.05, 2],
-  v0: [0.02, 2],
-  mu0: [0.05, 1],
-  v_s: [0.05, 2],
-  mu_s: [0.2, 2],
-  alpha_v: [-1.6, 0.4],
-  alpha_n: [-3, 1],
-  tau: [0, 12],
-  mass: [0.2, 5],
-  stiffness: [0.2, 5],
-  normal_load: [0.2, 5],
-};
-const SHOWN = ["n_unstable", "abscissa", "relaxation_time", "delay_margin", "frequency"];
 const STEPS = 1000;
 
 export class Controls {
   /**
    * @param {object} state see state.js; what is set is written there
-   * @param {{parameters: object[], laws: object[], fields: object[]}} catalogue
+   * @param {import("./catalogue.js").Catalogue} catalogue
    * @param {object} source
-   * @param {{changed: () => void, failed: (error: Error) => void}} done
+   * @param {{changed: () => void, failed: (error: Error) => void,
+   *   words: (error: Error) => string}} done
    */
   constructor(state, catalogue, source, done) {
     Object.assign(this, { state, catalogue, source, ...done });
-    this.about = Object.fromEntries(catalogue.parameters.map((p) => [p.name, p]));
     this.#fill();
     this.#listen();
     this.build();
@@ -62,6 +32,7 @@ export class Controls {
     );
     const named = laws.map(({ name }) => option(name, name));
     element("law").append(option("none", "only its slope μ′"), ...named);
+    element("units").append(...Object.entries(UNITS).map(([units, text]) => option(units, text)));
   }
 
   #listen() {
@@ -83,55 +54,40 @@ export class Controls {
     element("units").addEventListener("change", (event) => {
       state.units = event.target.value;
       this.changed();
+      this.#tellLaw();
     });
   }
 
   /** Another control: its gain takes the place of the other one's. */
   #control(control) {
-    const { state } = this;
-    state.control = control;
-    const gain = { velocity: ["alpha_n", "alpha_v"], load: ["alpha_v", "alpha_n"] }[control];
-    for (const axis of [state.x, state.y]) {
-      if (gain && axis.name === gain[0]) this.#setAxis(axis, gain[1]);
-    }
-    state.point = null;
-    this.build();
-    this.changed();
-  }
-
-  #setAxis(axis, name) {
-    const [from, to] = AXES[name];
-    Object.assign(axis, { name, from, to, log: false });
+    this.state.control = control;
+    this.#mendAxes();
   }
 
   /** Sets the friction law. */
   takeLaw(law) {
-    const { state } = this;
-    state.law = law;
-    const known = parametersOf(state, this.catalogue.laws);
-    const left = (axis) => !known.includes(axis.name) && !axis.name.startsWith("alpha");
-    for (const [axis, other] of [
-      [state.x, state.y],
-      [state.y, state.x],
-    ]) {
-      if (!left(axis)) continue;
-      const gain = state.control === "load" ? "alpha_n" : "alpha_v";
-      this.#setAxis(axis, other.name === gain ? "tau" : gain);
-      state.point = null;
-    }
+    this.state.law = law;
+    this.#mendAxes();
+  }
+
+  #mendAxes() {
+    const { state, catalogue } = this;
+    const names = parametersOf(state, catalogue);
+    if (catalogue.mendAxes(state, names, highestOf(state.table))) state.point = null;
     this.build();
     this.changed();
   }
 
-  /** Makes the form anew from what is set. */
+  /** Makes the form anew from what is set. What has the focus keeps it. */
   build() {
     const { state } = this;
+    const focused = document.activeElement?.id;
     for (const radio of document.querySelectorAll("input[name=control]")) {
       radio.checked = radio.value === state.control;
     }
     [element("show").value, element("law").value] = [state.show, state.law];
     [element("units").value, element("law-table").value] = [state.units, state.table];
-    const names = parametersOf(state, this.catalogue.laws);
+    const names = parametersOf(state, this.catalogue);
     const free = names.filter((name) => name !== state.x.name && name !== state.y.name);
     const sliders = (list) => list.map((name) => this.#slider(name));
     const first = free.filter((name) => !MODEL.includes(name) && name !== "mu_k");
@@ -140,23 +96,24 @@ export class Controls {
     element("model-sliders").replaceChildren(...sliders(others));
     const legend = element("axes").querySelector("legend");
     const axes = [
-      ["Across", state.x, state.y],
-      ["Upwards", state.y, state.x],
+      ["Across", "x", "y"],
+      ["Upwards", "y", "x"],
     ];
     element("axes").replaceChildren(legend, ...axes.map((axis) => this.#axis(names, ...axis)));
+    if (focused && document.activeElement?.id !== focused) element(focused)?.focus();
     this.#tellLaw();
   }
 
   /** The text of a parameter: its symbol, and what it is. */
   #text(name) {
-    const { symbol, long_name: text } = this.about[name] ?? { symbol: name, long_name: name };
+    const { symbol, long_name: text } = this.catalogue.about(name);
     return `${symbol}, ${text}`;
   }
 
   #slider(name) {
     const { state } = this;
     const text = this.#text(name);
-    const at = state.values[name] ?? VALUES[name];
+    const at = this.catalogue.value(state, name);
     const [low, high] = RANGES[name];
     const label = make("label", { htmlFor: `p-${name}` }, text);
     const range = make("input", {
@@ -166,7 +123,12 @@ export class Controls {
       max: Math.max(high, at),
       step: (high - low) / STEPS,
     });
-    const number = make("input", { type: "number", step: "any", "aria-label": `${text}, typed` });
+    const number = make("input", {
+      type: "number",
+      id: `n-${name}`,
+      step: "any",
+      "aria-label": `${text}, typed`,
+    });
     [range.value, number.value] = [at, at];
     for (const input of [range, number]) {
       input.addEventListener("input", () => {
@@ -182,45 +144,49 @@ export class Controls {
     return make("div", { className: "slider" }, label, range, number);
   }
 
-  #axis(names, title, axis, other) {
-    const choice = make("select", { "aria-label": `${title}: which parameter` });
+  /** The part of the form of an axis of the state, `key`, with the other one at `beside`. */
+  #axis(names, title, key, beside) {
+    const { state, catalogue } = this;
+    const [axis, other] = [state[key], state[beside]];
+    const choice = make("select", {
+      id: `axis-${key}`,
+      "aria-label": `${title}: which parameter`,
+    });
     const free = names.filter((name) => name !== other.name);
-    const option = (name) => make("option", { value: name }, this.about[name]?.symbol ?? name);
+    const option = (name) => make("option", { value: name }, catalogue.about(name).symbol);
     choice.append(...free.map(option));
     choice.value = axis.name;
     choice.addEventListener("change", () => {
-      this.#setAxis(axis, choice.value);
-      this.state.point = null;
+      state[key] = catalogue.axis(choice.value, state, other, highestOf(state.table));
+      state.point = null;
       this.build();
       this.changed();
     });
-    const end = (key, word) => {
+    const end = (which, word) => {
       const input = make("input", {
         type: "number",
+        id: `axis-${key}-${which}`,
         step: "any",
-        value: axis[key],
+        value: axis[which],
         "aria-label": `${title}, ${word}`,
       });
-      input.dataset.end = key;
+      input.dataset.end = which;
       input.addEventListener("change", () => {
-        const ends = { ...axis, [key]: input.valueAsNumber };
-        if (Number.isFinite(ends[key]) && ends.from < ends.to) {
-          axis[key] = ends[key];
-          this.changed();
+        const wrong = catalogue.wrong({ ...axis, [which]: input.valueAsNumber });
+        if (wrong) {
+          this.failed(new RangeError(`${title}, ${word} ${input.value || "nothing"}: ${wrong}`));
+          input.value = axis[which];
         } else {
-          this.failed(new RangeError(`${title}: from must be less than to`));
-          input.value = axis[key];
+          axis[which] = input.valueAsNumber;
+          this.changed();
         }
       });
       return input;
     };
-    const log = make("input", { type: "checkbox", checked: axis.log });
+    const log = make("input", { type: "checkbox", id: `axis-${key}-log`, checked: axis.log });
     log.addEventListener("change", () => {
-      if (log.checked && !(axis.from * axis.to > 0)) {
-        const far = Math.max(Math.abs(axis.from), Math.abs(axis.to));
-        [axis.from, axis.to] = axis.to > 0 ? [far / 1000, far] : [-far, -far / 1000];
-      }
       axis.log = log.checked;
+      if (log.checked) [axis.from, axis.to] = withoutZero([axis.from, axis.to]);
       this.build();
       this.changed();
     });
@@ -234,7 +200,7 @@ export class Controls {
       make("span", {}, "to"),
       end("to", "to"),
     );
-    part.dataset.axis = axis === this.state.x ? "x" : "y";
+    part.dataset.axis = key;
     return part;
   }
 
@@ -259,19 +225,22 @@ export class Controls {
     this.laws?.abort();
     this.laws = new AbortController();
     try {
-      const point = [state.x, state.y].map(({ name }) => state.values[name] ?? VALUES[name]);
-      const law = await this.source.law(
-        pointTexts(state, this.catalogue.laws, point).point,
-        this.laws.signal,
-      );
+      const point = [state.x, state.y].map(({ name }) => this.catalogue.value(state, name));
+      const { point: text } = pointTexts(state, this.catalogue, point);
+      const law = await this.source.law(text, this.laws.signal);
       drawLaw(element("law-curve"), law);
-      const at =
-        law.at &&
-        `at v0 = ${told(law.at.v0)}: μ_K = ${told(law.at.mu_k)}, slope μ′ = ` +
-          told(law.at.mu_prime);
-      element("law-told").textContent = at ?? "";
+      element("law-told").textContent = law.at ? this.#lawAt(law.at) : "";
     } catch (error) {
-      if (error.name !== "AbortError") element("law-told").textContent = error.message;
+      if (error.name !== "AbortError") element("law-told").textContent = this.words(error);
     }
+  }
+
+  /** What a law is at the working velocity, in words. */
+  #lawAt({ v0, mu_k: mu, mu_prime: slope }) {
+    const words = (name, value) =>
+      withUnit(told(value), unitOf(this.catalogue.about(name).dimension, this.state.units));
+    return (
+      `at v0 = ${words("v0", v0)}: μ_K = ${told(mu)}, ` + `slope μ′ = ${words("mu_prime", slope)}`
+    );
   }
 }

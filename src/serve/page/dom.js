@@ -33,21 +33,36 @@ export function download(name, content, type) {
   setTimeout(() => URL.revokeObjectURL(link.href), 1000);
 }
 
-/** Copies the text of a field, and says so on the button. */
-export async function copy(field, button) {
-  const { value } = field;
+/** Copies a text; whether the browser has done it. */
+async function copied(text) {
   try {
-    await navigator.clipboard.writeText(value);
+    await navigator.clipboard.writeText(text);
+    return true;
   } catch {
+    // Without encryption there is no clipboard but the selection.
+    const field = make("textarea", { value: text, readOnly: true, className: "aside" });
+    const before = document.activeElement;
+    document.body.append(field);
     field.select();
-    document.execCommand("copy");
+    const done = document.execCommand("copy");
+    field.remove();
+    before?.focus();
+    return done;
   }
-  tellCopied(button);
 }
 
-/** Says on a button for a moment that it has copied. */
-export function tellCopied(button) {
-  const before = button.textContent;
-  button.textContent = "Copied";
-  setTimeout(() => (button.textContent = before), 1200);
+/** What buttons say while they do not tell of a copy. */
+const labels = new WeakMap();
+
+/** Copies a text, and says on the button for a moment what came of it. */
+export async function copy(text, button, words = "Copied") {
+  const told = (await copied(text)) ? words : "Not copied";
+  const { label = button.textContent, timer } = labels.get(button) ?? {};
+  clearTimeout(timer);
+  button.textContent = told;
+  const back = () => {
+    button.textContent = label;
+    labels.delete(button);
+  };
+  labels.set(button, { label, timer: setTimeout(back, 1200) });
 }

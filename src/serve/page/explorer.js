@@ -1,17 +1,19 @@
 // The page: what is set, what is shown, and the point that is looked at.
 
+import { Catalogue, withoutZero } from "./catalogue.js";
+import { isBeyond, lacking, valueOf } from "./cells.js";
 import { Controls } from "./controls.js";
-import { download, element, tellCopied } from "./dom.js";
+import { copy, download, element } from "./dom.js";
 import { tellLegend } from "./legend.js";
 import { Live } from "./live.js";
-import { Panel } from "./panel.js";
+import { Panel, counted } from "./panel.js";
 import { PlaneView } from "./plane.js";
 import { ZOOM, follow, zoomed } from "./pointing.js";
 import { Saved } from "./saved.js";
-import { Scale, told } from "./scale.js";
+import { Scale, begun, movedInto, roundEnds, told, unitOf, withUnit } from "./scale.js";
 import { openSource } from "./source.js";
-import { addressOf, stateOf } from "./state.js";
-import { VALUES, parametersOf, pointTexts } from "./sweep.js";
+import { addressOf, leavesTable, stateOf } from "./state.js";
+import { lineOfMistake, parametersOf, pointTexts } from "./sweep.js";
 import { tellTable } from "./table.js";
 
 /** How long after the last change the address and the panel follow, in milliseconds. */
@@ -24,18 +26,38 @@ const GONE = "The server does not answer. This page goes on when it is back.";
 const ANEW =
   "The server was started anew: open the link that it has printed, and this page goes on.";
 
+/** What a point's answer says of the fields of the live chart. */
+const ANSWERED = {
+  abscissa: ({ abscissa }) => abscissa,
+  frequency: ({ frequency }) => frequency,
+  delay_margin: ({ delay_margin: margin }) => margin ?? Infinity,
+  relaxation_time: ({ abscissa }) =>
+    abscissa === null ? null : abscissa < 0 ? -1 / abscissa : Infinity,
+};
+
 class Explorer {
+  /**
+   * @param {object} source see source.js
+   * @param {Catalogue} catalogue
+   */
   constructor(source, catalogue) {
     this.source = source;
     this.catalogue = catalogue;
-    this.state = stateOf(location.hash);
+    this.state = stateOf(location.hash, catalogue);
     this.plane = new PlaneView(element("chart"));
     const failed = (error) => this.failed(error);
+    const words = (error) => this.words(error);
     this.live = new Live(source, catalogue, { shown: (plane) => this.#shown(plane), failed });
-    this.panel = new Panel(source, { moved: (start) => this.#started(start), failed });
+    this.panel = new Panel(source, {
+      moved: (start) => this.#started(start),
+      told: () => this.#say(),
+      lost: (error) => this.#lost(error),
+      words,
+    });
     this.controls = new Controls(this.state, catalogue, source, {
-      changed: () => this.changed(),
+      changed: () => this.#set(),
       failed,
+      words,
     });
     this.saved = new Saved(source, this.state, this.plane, {
       shown: (plane) => this.#shown(plane),
@@ -64,7 +86,10 @@ class Explorer {
     element("save-toml").title = map ? "The sweep file of this map" : "Run this overnight";
     this.plane.plane = null;
     if (map) {
+      // Nothing is moved or zoomed before the map is there.
+      this.plane.view = null;
       this.live.stop();
+      this.panel.clear();
       this.saved.open();
     } else {
       this.saved.close();
@@ -77,9 +102,10 @@ class Explorer {
   /** The point of the letter's Fig. 3(a), where it is in view. */
   #usualPoint() {
     const view = this.plane.view;
-    const usual = [this.state.x, this.state.y].map(({ name }) => VALUES[name]);
+    const { state, catalogue } = this;
+    const usual = [state.x, state.y].map(({ name }) => catalogue.value({ values: {} }, name));
     const inside = view.every((scale, i) => scale.part(usual[i]) >= 0 && scale.part(usual[i]) <= 1);
-    return inside ? usual : view.map((scale) => scale.value(0.5));
+    return inside ? usual : view.map((scale) => Number(scale.value(0.5).toPrecision(9)));
   }
 
   #ownView() {
@@ -87,9 +113,39 @@ class Explorer {
     this.plane.view = [scale(this.state.x), scale(this.state.y)];
   }
 
+  /** Something was set in the form. */
+  #set() {
+    this.#tellNotes([]);
+    this.#keepWhole();
+    this.changed();
+  }
+
+  /** What an address says that there is not. */
+  #tellNotes(notes) {
+    const begins = "Not everything in this address is understood: ";
+    element("address-told").textContent = notes.length ? `${begins}${notes.join("; ")}.` : "";
+  }
+
+  /** Remembers axes as they were set: that is what "All" shows, however the view is moved. */
+  #keepWhole() {
+    this.whole ??= {};
+    for (const key of ["x", "y"]) {
+      const [axis, seen] = [this.state[key], this.whole[key]];
+      const { now, all } = seen ?? {};
+      const same = now?.name === axis.name;
+      if (same && now.from === axis.from && now.to === axis.to && now.log === axis.log) continue;
+      const next = { ...axis };
+      if (same && now.log !== axis.log) {
+        [next.from, next.to] = axis.log ? withoutZero([all.from, all.to]) : [all.from, all.to];
+      }
+      this.whole[key] = { now: { ...axis }, all: next };
+    }
+  }
+
   /** What is set has changed. */
   changed() {
     if (this.state.map) return;
+    element("readout").classList.add("asking");
     this.#ownView();
     if (!this.state.point) this.plane.point = this.#usualPoint();
     this.live.changed(this.state);
@@ -97,13 +153,14 @@ class Explorer {
   }
 
   #address() {
-    return addressOf(this.state, parametersOf(this.state, this.catalogue.laws));
+    return addressOf(this.state, parametersOf(this.state, this.catalogue));
   }
 
   /** Address, panel and table follow when nothing changes any more. */
   #settle() {
     clearTimeout(this.settling);
     this.settling = setTimeout(() => {
+      this.settling = null;
       history.replaceState(null, "", this.#address());
       if (!this.state.map) this.look();
       this.#table();
@@ -119,13 +176,15 @@ class Explorer {
     const cells = (plane.nx * plane.ny).toLocaleString("en");
     const time = `${cells} cells in ${plane.milliseconds.toFixed(1)} ms`;
     element("speed").textContent = plane.note ?? time;
-    if (plane.rests) this.#say(this.plane.point);
-    if (plane.rests) this.#table();
+    if (!plane.rests) return;
+    // What is asked at the point tells it more exactly, soon.
+    if (this.state.map || this.#exact()) this.#say();
+    this.#table();
   }
 
   #title({ field, axes }) {
-    const what = field.short_name ?? field.name;
-    return `${what[0].toUpperCase()}${what.slice(1)} over ${axes[0].symbol} and ${axes[1].symbol}`;
+    const over = axes.map(({ symbol }) => symbol).join(" and ");
+    return `${begun(field.short_name ?? field.name)} over ${over}`;
   }
 
   #table() {
@@ -133,98 +192,125 @@ class Explorer {
     if (plane && view && element("table-part").open) tellTable(element("table"), plane, view);
   }
 
-  /** What the chart shows at a point, in words. */
+  /** What the chart shows at a point, in words: its cell, by the values of the cell itself. */
   #words(point) {
     const { plane } = this.plane;
     const index = point && plane && this.plane.indexAt(point);
     if (!index) return "";
     const n = index[0] * plane.ny + index[1];
-    const exact = plane.axes.map((axis, i) => (plane.exact ? axis.values[index[i]] : point[i]));
-    const where = plane.axes.map(
-      ({ symbol, unit }, i) => `${symbol} = ${told(exact[i], 7)}${unit === "1" ? "" : ` ${unit}`}`,
-    );
-    const value = plane.cells[n];
-    const { name, unit, short_name: words } = plane.field;
-    const count = value === 0 ? "stable" : `${value} unstable roots`;
-    const kinds = plane.field.kinds ? plane.colours.name(value) : null;
-    const number = `${words ?? name} ${told(value)}${!unit || unit === "1" ? "" : ` ${unit}`}`;
-    const parts = [name === "n_unstable" ? count : (kinds ?? number)];
+    const values = plane.axes.map((axis, i) => axis.values?.[index[i]] ?? point[i]);
+    const where = this.#where(plane.axes, isBeyond(plane, n) ? point : values);
+    const lack = lacking(plane, n);
+    if (lack) return `${where}: ${lack}`;
     const { abscissa } = plane.others ?? {};
-    if (abscissa && name !== "abscissa") parts.push(`spectral abscissa ${told(abscissa[n])}`);
-    if (plane.flags) parts.push(...plane.flags(n));
-    return `${where.join(", ")}: ${parts.join(", ")}`;
+    const parts = this.#values(plane, valueOf(plane, n), abscissa?.[n]);
+    return `${where}: ${[...parts, ...(plane.flags?.(n) ?? [])].join(", ")}`;
   }
 
-  #say(point) {
-    const words = this.#words(point);
-    if (words) element("readout").textContent = words;
+  #where(axes, values) {
+    return axes
+      .map(({ symbol, unit }, i) => withUnit(`${symbol} = ${told(values[i], 7)}`, unit))
+      .join(", ");
+  }
+
+  /** The value of a chart's field, and the abscissa that goes with it. */
+  #values({ field, colours }, value, abscissa) {
+    const { name, unit, kinds, short_name: words } = field;
+    const parts = [];
+    if (Number.isNaN(value)) parts.push(`${words ?? name}: no value`);
+    else if (name === "n_unstable") parts.push(value === 0 ? "stable" : counted(value));
+    else if (kinds) parts.push(colours.name(value));
+    else parts.push(withUnit(`${words ?? name} ${told(value)}`, unit));
+    if (abscissa !== undefined && name !== "abscissa") {
+      parts.push(withUnit(`spectral abscissa ${told(abscissa)}`, this.#unit([0, 0, -1])));
+    }
+    return parts;
+  }
+
+  #unit(dimension) {
+    return unitOf(dimension, this.state.units);
+  }
+
+  /** What is asked at the point; the reason why nothing can be. */
+  #asked() {
+    try {
+      return { texts: pointTexts(this.state, this.catalogue, this.plane.point) };
+    } catch (error) {
+      return { error };
+    }
+  }
+
+  /** What is known of the point of the live chart by its own values. */
+  #exact() {
+    const { plane } = this.plane;
+    const { texts } = this.#asked();
+    const point = texts && this.panel.answerTo(texts.point);
+    if (!point || !plane || plane.field.name !== this.state.show) return null;
+    const value = plane.field.name === "n_unstable" ? point.n_unstable : this.#answered(point);
+    const parts = this.#values(plane, value, point.abscissa);
+    if (point.marginal) parts.push("marginal");
+    if (point.certified) parts.push("certified");
+    return `${this.#where(plane.axes, this.plane.point)}: ${parts.join(", ")}`;
+  }
+
+  #answered(point) {
+    return ANSWERED[this.state.show](point);
+  }
+
+  /** Tells of the point: in the live chart by what the panel says, as soon as that is there. */
+  #say() {
+    const exact = this.state.map ? null : this.#exact();
+    const words = exact ?? this.#words(this.plane.point);
+    const readout = element("readout");
+    readout.classList.remove("asking");
+    if (readout.textContent !== words) readout.textContent = words;
   }
 
   /** Looks closely at the point of the chart. */
   look() {
-    const { state, plane } = this;
+    const { state, plane, catalogue } = this;
     if (state.map) return this.saved.look();
-    try {
-      const texts = pointTexts(state, this.catalogue.laws, plane.point);
-      const symbol = (axis) => this.catalogue.parameters.find((p) => p.name === axis.name)?.symbol;
-      const where = [state.x, state.y].map(
-        (axis, i) => `${symbol(axis)} = ${told(plane.point[i], 9)}`,
-      );
-      const unit = state.units ? state.units.split(",")[2] : "1";
-      this.panel.look(texts, { where: where.join(", "), start: state.start, unit });
-    } catch (error) {
-      this.failed(error);
-    }
+    const where = [state.x, state.y].map(({ name }, i) => {
+      const { symbol, dimension } = catalogue.about(name);
+      return withUnit(`${symbol} = ${told(plane.point[i], 9)}`, this.#unit(dimension));
+    });
+    const about = { where: where.join(", "), start: state.start };
+    const { texts, error } = this.#asked();
+    if (error) this.panel.refuse(error, about);
+    else this.panel.look(texts, about);
     return undefined;
   }
 
   /** Moves the point; by a key, in a map, at least to the next cell. */
   #move(point, byKey) {
     const { state, plane } = this;
-    const kept = point.map((x) => Number(x.toPrecision(9)));
-    plane.point = state.map ? this.saved.move(kept, byKey) : kept;
-    if (!state.map) state.point = plane.point;
+    if (state.map) this.saved.move(point, byKey);
+    else state.point = plane.point = point.map((x) => Number(x.toPrecision(9)));
     plane.draw();
-    this.#say(plane.point);
+    this.#say();
   }
 
   #view(view) {
     const { state } = this;
     if (state.map) return this.saved.view(view);
-    if (!view) {
-      this.#allOfAxes();
-    } else {
-      for (const [axis, scale] of [
-        [state.x, view[0]],
-        [state.y, view[1]],
-      ])
-        this.#setEnds(axis, scale);
-    }
+    ["x", "y"].forEach((key, i) => {
+      if (view) this.#setEnds(state[key], view[i]);
+      else Object.assign(state[key], this.whole[key].all);
+      this.whole[key].now = { ...state[key] };
+    });
+    this.#tellNotes([]);
     this.controls.tellEnds();
     this.changed();
     this.plane.draw();
     return undefined;
   }
 
-  /** The ends of an axis, with no more digits than the eye tells apart. */
-  #setEnds(axis, { from, to }) {
-    const digits = (x) => {
-      const step = 10 ** (Math.floor(Math.log10(Math.abs(to - from))) - 4);
-      return Number((Math.round(x / step) * step).toPrecision(12));
-    };
-    const never = axis.name === "tau" ? 0 : -Infinity;
-    const ends = [Math.max(never, digits(from)), digits(to)];
-    if (ends[0] < ends[1] && Number.isFinite(ends[0])) [axis.from, axis.to] = ends;
-  }
-
-  #allOfAxes() {
-    const { x, y } = this.begun ?? {};
-    for (const [axis, was] of [
-      [this.state.x, x],
-      [this.state.y, y],
-    ]) {
-      if (was && was.name === axis.name) Object.assign(axis, was);
-    }
+  /** The ends of an axis, within what there is, and with no more digits than the eye tells apart. */
+  #setEnds(axis, scale) {
+    const range = this.catalogue.reach(axis);
+    const within = (x) => Math.min(range[1], Math.max(range[0], x));
+    const [from, to] = roundEnds(movedInto(scale, range)).map(within);
+    if (!this.catalogue.wrong({ ...axis, from, to })) Object.assign(axis, { from, to });
   }
 
   #started(start) {
@@ -232,16 +318,28 @@ class Explorer {
     this.#settle();
   }
 
-  failed(error) {
-    const lost = error instanceof TypeError && /fetch|network|load failed/i.test(error.message);
-    if (lost || error.status === NO_TOKEN) return this.#lost(error);
-    element("problem").textContent = error.message + (error.help ? ` (${error.help})` : "");
-    if (!error.status && !(error instanceof RangeError)) console.error(error);
-    return undefined;
+  /** An error in words; of a mistake in a pasted table with its line. */
+  words(error) {
+    const { map, law, table } = this.state;
+    const line = !map && law === "table" ? lineOfMistake(error, table) : null;
+    const where = line === null ? "" : `line ${line} of the table: `;
+    return where + error.message + (error.help ? ` (${error.help})` : "");
   }
 
-  /** The server is gone, or is another one: asks until it answers, then for what is to be seen. */
+  /** Tells of an error of the chart or the map. */
+  failed(error) {
+    if (this.#lost(error)) return;
+    element("problem").textContent = this.words(error);
+    if (!error.status && !(error instanceof RangeError)) console.error(error);
+  }
+
+  /**
+   * Whether the server is gone, or is another one. Then it is asked until it answers, and then for
+   * what is to be seen.
+   */
   #lost(error) {
+    const gone = error instanceof TypeError && /fetch|network|load failed/i.test(error.message);
+    if (!gone && error.status !== NO_TOKEN) return false;
     const words = error.status ? ANEW : GONE;
     [element("gone").hidden, element("gone").textContent] = [false, words];
     this.retrying ??= setInterval(async () => {
@@ -255,16 +353,22 @@ class Explorer {
       if (this.state.map) this.saved.open();
       else this.changed();
     }, RETRY);
+    return true;
   }
 
   #alive() {
+    element("gone").hidden = true;
+    if (!this.retrying) return;
     clearInterval(this.retrying);
     this.retrying = null;
-    element("gone").hidden = true;
+    // What was asked meanwhile is asked again.
+    if (this.state.map) this.saved.look();
+    else this.look();
   }
 
   #listen() {
-    this.begun = { x: { ...this.state.x }, y: { ...this.state.y } };
+    this.#keepWhole();
+    this.#tellNotes(this.state.notes);
     follow(this.plane, {
       look: (point) => {
         this.#move(point, false);
@@ -284,16 +388,27 @@ class Explorer {
     click("zoom-in", () => zoom(ZOOM));
     click("zoom-out", () => zoom(1 / ZOOM));
     click("zoom-all", () => this.#view(null));
-    click("take-law", () => this.controls.takeLaw("weakening"));
+    click("take-law", () => {
+      this.controls.takeLaw("weakening");
+      // The button is gone then.
+      element("motion-title").focus();
+    });
     click("to-live", () => {
       this.state.map = null;
       this.#mode();
     });
     this.#downloads(click);
     element("table-part").addEventListener("toggle", () => this.#table());
+    document.querySelector(".skip").addEventListener("click", (event) => {
+      // Its hash would take the place of the view's.
+      event.preventDefault();
+      element("chart-title").focus();
+    });
     window.addEventListener("hashchange", () => {
       if (location.hash === this.#address()) return;
-      Object.assign(this.state, stateOf(location.hash));
+      Object.assign(this.state, stateOf(location.hash, this.catalogue));
+      this.#tellNotes(this.state.notes);
+      this.#keepWhole();
       this.controls.build();
       this.#mode();
     });
@@ -324,11 +439,10 @@ class Explorer {
         this.failed(error);
       }
     });
-    click("copy-link", async (event) => {
+    click("copy-link", (event) => {
       history.replaceState(null, "", this.#address());
-      const button = event.target;
-      await navigator.clipboard?.writeText(location.href).catch(() => {});
-      tellCopied(button);
+      const words = leavesTable(this.state) ? "Copied, without the table" : "Copied";
+      copy(location.href, event.target, words);
     });
   }
 }
@@ -336,7 +450,7 @@ class Explorer {
 async function begin() {
   try {
     const source = await openSource();
-    const explorer = new Explorer(source, await source.parameters());
+    const explorer = new Explorer(source, new Catalogue(await source.parameters()));
     // For tests and the curious.
     window.slipmap = explorer;
   } catch (error) {

@@ -1,10 +1,11 @@
 // What colours and marks of a chart mean, in words.
 
+import { lacking, valueOf } from "./cells.js";
 import { make } from "./dom.js";
 
 /** Writes the legend of a plane. */
 export function tellLegend(list, plane) {
-  const { legend } = plane.colours;
+  const legend = meanings(plane);
   const items = Array.isArray(legend) ? legend.map(swatch) : bar(legend);
   const marks = plane.marks.map(({ mark, text }) => {
     return make("li", {}, make("i", { className: `box ${mark}` }), text);
@@ -14,6 +15,19 @@ export function tellLegend(list, plane) {
   if (list.dataset.key === key) return;
   list.dataset.key = key;
   list.replaceChildren(...items, ...marks);
+}
+
+/** What the colours of a plane mean; of many kinds, those that are to be seen. */
+function meanings(plane) {
+  const { colours, field, cells } = plane;
+  const { legend } = colours;
+  if (!field.kinds) return legend;
+  const seen = new Set();
+  for (let n = 0; n < cells.length; n++) {
+    if (!lacking(plane, n)) seen.add(colours.classOf(valueOf(plane, n)));
+  }
+  const none = seen.has(NaN) ? [{ colour: colours.noValue, text: "no value" }] : [];
+  return [...legend.filter((_, kind) => seen.has(kind)), ...none];
 }
 
 function swatch({ colour, text }) {

@@ -6,11 +6,20 @@ import { Scale } from "./scale.js";
 import { sweepOf } from "./sweep.js";
 
 /** Cells of a chart along x and y. */
-export const CELLS = [800, 600];
+const CELLS = [800, 600];
 /** How long nothing moves before it rests, in milliseconds. */
 const REST = 150;
 /** Fields whose cells cost no more than counts. */
 const QUICK = ["n_unstable", "delay_margin"];
+/** What the bits of a cell's status say. */
+const FLAGS = [
+  [1, "certified"],
+  [2, "marginal"],
+  [4, "not converged"],
+  [8, "two methods disagree"],
+  [16, "more than can be counted"],
+  [32, "recomputed by a second method"],
+];
 
 /** The scale of an axis from the edge of its first cell to that of its last one. */
 function edges({ values }, log) {
@@ -37,18 +46,27 @@ export class Live {
    * @param {object} source see source.js
    * @param {{shown: Function, failed: Function}} told
    */
-  constructor(source, { laws, fields }, told) {
-    this.laws = laws;
-    this.fields = Object.fromEntries(fields.map((field) => [field.name, field]));
+  constructor(source, catalogue, told) {
+    this.catalogue = catalogue;
+    this.fields = Object.fromEntries(catalogue.fields.map((field) => [field.name, field]));
     this.told = told;
-    const ask = async (question, signal) => source.chart(question.text, signal);
-    const show = (chart, question) => this.#show(chart, question);
+    const ask = async (question, signal) => {
+      try {
+        return await source.chart(question.text, signal);
+      } catch (error) {
+        if (error.name !== "AbortError") this.refused = question.number;
+        throw error;
+      }
+    };
+    // A chart of before does not stand for what is refused.
+    const show = (chart, question) => question.number > this.refused && this.#show(chart, question);
+    [this.number, this.refused] = [0, 0];
     this.requests = new Newest(ask, show, told.failed, 2);
   }
 
   /** The sweep file of what is set. */
   text(state, cells = CELLS, fields = [...new Set(["n_unstable", state.show])]) {
-    return sweepOf(state, this.laws, cells, fields);
+    return sweepOf(state, this.catalogue, cells, fields);
   }
 
   /** What is set has changed, and may change again soon. */
@@ -68,8 +86,11 @@ export class Live {
   #want(state, fields, show, rests = false) {
     try {
       const text = this.text(state, CELLS, fields);
-      this.requests.want({ text, show, logs: [state.x.log, state.y.log], rests });
+      const logs = [state.x.log, state.y.log];
+      this.requests.want({ text, show, logs, rests, number: ++this.number });
     } catch (error) {
+      // What was asked before is not what is set.
+      this.requests.stop();
       this.told.failed(error);
     }
   }
@@ -79,6 +100,8 @@ export class Live {
     const field = { ...this.fields[found.name], ...found };
     const byName = Object.fromEntries(chart.fields.map(({ name, values }) => [name, values]));
     const [nx, ny] = chart.axes.map(({ values }) => values.length);
+    const flags = (n) =>
+      FLAGS.filter(([mask]) => byName.status?.[n] & mask).map(([, name]) => name);
     this.told.shown({
       axes: chart.axes,
       ends: chart.axes.map((axis, i) => edges(axis, logs[i])),
@@ -88,6 +111,7 @@ export class Live {
       cells: field.values,
       status: byName.status,
       others: byName,
+      flags,
       colours: coloursOf(field, field.values),
       curves: curvesOf(chart),
       milliseconds: chart.milliseconds,

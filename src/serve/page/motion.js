@@ -1,9 +1,10 @@
 // The motion from a start that can be dragged: in the phase plane and in time.
 
 import { element, terms } from "./dom.js";
+import { titleOf } from "./frame.js";
 import { Newest } from "./newest.js";
-import { drawPhase, phaseScales } from "./plots.js";
-import { told } from "./scale.js";
+import { drawPhase, linesIn, phaseScales } from "./plots.js";
+import { told, withUnit } from "./scale.js";
 
 /** Points of a line that are drawn; more cannot be told apart. */
 const MOST_DRAWN = 6000;
@@ -12,28 +13,43 @@ const REST = [0, 0];
 export class MotionCard {
   /**
    * @param {object} source see source.js
-   * @param {(start: number[]) => void} moved told where a start was dragged to
-   * @param {(error: Error) => void} failed
+   * @param {{moved: (start: number[]) => void, heard: (asked: object) => void,
+   *   words: (error: Error) => string}} told of: where a start was moved to, an answer, an error
    */
-  constructor(source, moved, failed) {
+  constructor(source, { moved, heard, words }) {
+    Object.assign(this, { moved, words });
     this.phase = element("phase");
     this.start = REST;
-    this.text = null;
-    this.moved = moved;
-    const show = (motion) => this.#show(motion);
-    this.requests = new Newest((text, signal) => source.motion(text, signal), show, failed);
+    /** The case without its start, and the last answer: to which text and start, and what. */
+    [this.text, this.last, this.wanted] = [null, {}, null];
+    const ask = async ({ text, asked }, signal) => {
+      try {
+        return { text, asked, motion: await source.motion(asked, signal) };
+      } catch (error) {
+        if (error.name === "AbortError") throw error;
+        return { text, asked, error };
+      }
+    };
+    const show = (answer) => {
+      if (answer.text !== this.text) return;
+      [this.last, this.wanted] = [answer, null];
+      heard(answer);
+    };
+    this.requests = new Newest(ask, show, () => {});
     this.#listen();
     new ResizeObserver(() => this.#draw()).observe(this.phase);
   }
 
   /** Follows the motion of a case, without its start; none: there is no law. */
   look(text, start) {
+    if (text !== this.text) {
+      this.requests.stop();
+      this.wanted = null;
+    }
     this.text = text;
-    this.start = start ?? this.start;
-    [this.motion, this.scales] = [null, null];
-    element("motion").hidden = text === null;
-    element("motion-none").hidden = text !== null;
-    if (text !== null) this.#ask();
+    // A start that is held is nobody else's.
+    if (!this.dragging) this.start = start ?? REST;
+    this.#ask();
   }
 
   /** The case file of what is shown. */
@@ -42,7 +58,26 @@ export class MotionCard {
     return `${this.text}\n[start]\nx_dot0 = ${u}\na0 = ${a}\n`;
   }
 
+  /** Whether the motion from the start is not known yet. */
+  get pending() {
+    return this.text !== null && (this.last.asked !== this.case() || Boolean(this.last.lost));
+  }
+
   #ask() {
+    this.#tellStart();
+    const asked = this.case();
+    if (this.wanted === asked) return;
+    if (!this.pending) {
+      // It is known; another one that is under way is not to take its place.
+      this.requests.stop();
+      this.wanted = null;
+      return;
+    }
+    this.wanted = asked;
+    this.requests.want({ text: this.text, asked });
+  }
+
+  #tellStart() {
     for (const [id, at] of [
       ["start-u", 0],
       ["start-a", 1],
@@ -50,20 +85,37 @@ export class MotionCard {
       const input = element(id);
       if (document.activeElement !== input) input.value = this.start[at];
     }
-    element("case").value = this.case();
-    this.requests.want(this.case());
+  }
+
+  /** Shows what is known. */
+  tell() {
+    const { text, last } = this;
+    element("motion").hidden = text === null;
+    element("motion-none").hidden = text !== null;
+    const ours = text !== null && last.text === text;
+    const error = ours && !this.pending ? last.error : null;
+    element("motion-problem").textContent = error ? this.words(error) : "";
+    const motion = (ours && last.motion) || null;
+    // Of another case nothing is left to be seen; of another start only while it is moved.
+    element("motion").classList.toggle("blank", !motion);
+    element("motion").classList.toggle("failed", Boolean(error));
+    element("outcome").classList.toggle("asking", this.pending);
+    if (motion === this.motion) return;
+    this.motion = motion;
+    if (motion) this.#show(motion);
+    else terms(element("outcome"), []);
   }
 
   #show(motion) {
-    this.motion = motion;
     this.scales = (this.dragging && this.scales) || phaseScales(motion.arrays, this.start);
     this.#draw();
     const { outcome, decided, settle_time: settle, n_min: load, period } = motion;
+    const time = (t, digits) => withUnit(told(t, digits), motion.unit_t);
     terms(element("outcome"), [
-      ["outcome", `${outcome}, known at t = ${told(decided, 5)}`],
-      ["settles after", settle === null ? "never" : told(settle, 6)],
-      ["smallest load", told(load, 6)],
-      ["period of stick-slip", period === null ? "none" : told(period, 6)],
+      ["outcome", `${outcome}, known at t = ${time(decided, 5)}`],
+      ["settles after", settle === null ? "never" : time(settle, 6)],
+      ["smallest load", withUnit(told(load, 6), motion.unit_N)],
+      ["period of stick-slip", period === null ? "none" : time(period, 6)],
     ]);
   }
 
@@ -72,34 +124,33 @@ export class MotionCard {
     const units = { a: this.motion.unit_a, u: this.motion.unit_x_dot };
     const { arrays } = this.motion;
     this.area = drawPhase(this.phase, arrays, this.start, this.scales, units);
-    if (!this.dragging) this.#drawTime(arrays);
+    if (!this.dragging) this.#drawTime(this.motion);
   }
 
-  #drawTime({ t, x_dot: u, a, N: load }) {
+  #drawTime({ arrays: { t, x_dot: u, a, N: load }, ...units }) {
     const target = element("time");
     const every = Math.ceil(t.length / MOST_DRAWN);
     const thinned = (values) => values.filter((_, k) => k % every === 0 || k === values.length - 1);
     const data = [t, u, a, load].map(thinned);
     const size = { width: Math.max(200, target.clientWidth), height: 260 };
-    const style = getComputedStyle(target);
-    const ink = style.color;
+    const { colour, axis } = linesIn(target);
     const line = (label, name, scale) => ({
       label,
       scale,
-      stroke: style.getPropertyValue(`--${name}`).trim(),
+      stroke: colour(name),
       width: 1.5,
     });
-    const grid = { stroke: style.getPropertyValue("--grid").trim(), width: 1 };
-    const axis = (more) => ({ stroke: ink, grid, ticks: grid, ...more });
+    const title = (symbol, unit) => titleOf({ symbol, unit });
+    const both = `${title("a", units.unit_a)}, ${title("N", units.unit_N)}`;
     this.plot?.destroy();
     this.plot = new window.uPlot(
       {
         ...size,
         scales: { x: { time: false } },
         axes: [
-          axis({ label: "t" }),
-          axis({ scale: "u", label: "ẋ" }),
-          axis({ scale: "a", side: 1, label: "a, N", grid: { show: false } }),
+          axis({ label: title("t", units.unit_t) }),
+          axis({ scale: "u", label: title("ẋ", units.unit_x_dot) }),
+          axis({ scale: "a", side: 1, label: both, grid: { show: false } }),
         ],
         series: [
           { label: "t" },
@@ -139,8 +190,9 @@ export class MotionCard {
     const up = () => {
       if (!this.dragging) return;
       this.dragging = false;
+      // The axes follow again.
+      if (this.motion) this.#show(this.motion);
       this.moved(this.start);
-      this.#ask();
     };
     for (const kind of ["pointerup", "pointercancel"]) phase.addEventListener(kind, up);
     phase.addEventListener("keydown", (event) => {

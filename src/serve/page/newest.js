@@ -4,7 +4,7 @@ export class Newest {
   /**
    * @param {(question: any, signal: AbortSignal) => Promise<any>} ask
    * @param {(answer: any, question: any) => void} show
-   * @param {(error: Error) => void} fail
+   * @param {(error: Error, question: any) => void} fail
    * @param {number} most questions that are under way at once
    */
   constructor(ask, show, fail, most = 1) {
@@ -19,10 +19,11 @@ export class Newest {
     this.#go();
   }
 
-  /** Asks nothing more, and drops what is under way. */
+  /** Asks nothing more, and drops what is under way: nothing waits for it. */
   stop() {
     this.next = null;
     for (const controller of this.underWay.values()) controller.abort();
+    this.underWay.clear();
   }
 
   #go() {
@@ -44,7 +45,7 @@ export class Newest {
         this.show(answer, question);
       }
     } catch (error) {
-      if (error.name !== "AbortError" && number > this.shown) this.fail(error);
+      if (!controller.signal.aborted && number > this.shown) this.fail(error, question);
     } finally {
       this.underWay.delete(number);
       this.#go();

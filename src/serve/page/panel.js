@@ -1,13 +1,15 @@
 // Everything about one point, by its exact values.
 
+import { Asked } from "./asked.js";
 import { copy, element, make, terms } from "./dom.js";
 import { MotionCard } from "./motion.js";
-import { Newest } from "./newest.js";
 import { drawDelays, drawRoots } from "./plots.js";
-import { told } from "./scale.js";
+import { told, unitOf, withUnit } from "./scale.js";
 
 /** Intervals and roots that are told in words. */
 const [INTERVALS, ROOTS] = [8, 8];
+/** How long what is slower than the point is waited for, in milliseconds: so nothing flickers. */
+const PATIENCE = 250;
 
 const ENDS = {
   grazing: "the slip grazes the sticking velocity",
@@ -16,29 +18,41 @@ const ENDS = {
   persists: "it survives at every velocity that is tried",
   never: "stick-slip is never sustained",
 };
+const NO_COMMAND = "There is no command line for a table; see the TOML.";
+const NO_V0 = "This map gives no v0: there is no sliding to look at, only the critical velocity.";
+const NO_POINT = "This map is not about single points of the model.";
+
+/** The units that a text is written in, as "force,length,time"; none of a dimensionless one. */
+function unitsOf(text) {
+  const names = ["force", "length", "time"].map(
+    (key) => text?.match(new RegExp(`^${key} = "([^"]*)"`, "m"))?.[1],
+  );
+  return names.every(Boolean) ? names.join(",") : "";
+}
+
+/** A number of unstable roots in words. */
+export const counted = (n) => `${n} unstable root${n === 1 ? "" : "s"}`;
 
 export class Panel {
   /**
    * @param {object} source see source.js
-   * @param {{moved: (start: number[]) => void, failed: (error: Error) => void}} told
+   * @param {{moved: (start: number[]) => void, told: () => void, words: (error: Error) => string,
+   *   lost: (error: Error) => boolean}} told of: a start that was moved, a point that is shown, an
+   *   error's words, whether the server is gone
    */
-  constructor(source, { moved, failed }) {
-    const ask = (kind) => (text, signal) => source[kind](text, signal);
-    this.points = new Newest(ask("point"), (answer) => this.#showPoint(answer), failed);
-    this.velocities = new Newest(
-      ask("vc"),
-      (found) => this.#showVc(found),
-      (error) => {
-        terms(element("vc"), [["critical velocity", error.message]]);
-      },
-    );
-    this.motion = new MotionCard(source, moved, failed);
-    for (const [button, field] of [
-      ["copy-command", "command"],
-      ["copy-toml", "toml"],
-      ["copy-case", "case"],
-    ]) {
-      element(button).addEventListener("click", (event) => copy(element(field), event.target));
+  constructor(source, { moved, told: shown, words, lost }) {
+    Object.assign(this, { shown, words });
+    const heard = (asked) => {
+      asked.lost = Boolean(asked.error) && lost(asked.error);
+      if (asked.error && !asked.lost && !asked.error.status) console.error(asked.error);
+      this.#tell();
+    };
+    this.points = new Asked((text, signal) => source.point(text, signal), heard);
+    this.velocities = new Asked((text, signal) => source.vc(text, signal), heard);
+    this.motion = new MotionCard(source, { moved, heard, words });
+    for (const field of ["command", "vc-command", "toml", "vc-toml", "case"]) {
+      const click = (event) => copy(element(field).value, event.target);
+      element(`copy-${field}`).addEventListener("click", click);
     }
     const redraw = () => this.#draw();
     for (const id of ["roots", "delays"]) new ResizeObserver(redraw).observe(element(id));
@@ -46,78 +60,166 @@ export class Panel {
   }
 
   /**
-   * Asks for everything at a point.
+   * Asks for everything at a point. Until that is there, what is shown stays, with its heading.
    * @param {{point: string | null, vc: string | null, motion: string | null, v0?: number}} texts
-   * @param {{where: string, start: number[] | null, unit: string, fixed?: boolean}} about fixed: no
-   *   other friction law can be chosen
+   * @param {{where: string, start: number[] | null, fixed?: boolean}} about fixed: no other friction
+   *   law can be chosen
    */
-  look(texts, { where, start, unit = "1", fixed = false }) {
-    element("point-where").textContent = where;
-    element("toml").value = texts.point ?? "";
-    element("point-none").hidden = texts.point !== null;
-    this.unit = unit;
-    this.v0 = texts.v0;
-    if (texts.point !== null) this.points.want(texts.point);
-    element("take-law").hidden = fixed;
-    const law = fixed ? "The map has none." : "Choose one first.";
-    element("vc-none").textContent = `It depends on the whole friction law. ${law}`;
-    element("vc-none").hidden = texts.vc !== null;
-    element("vc").hidden = texts.vc === null;
-    if (texts.vc !== null) {
-      terms(element("vc"), [["critical velocity", "…"]]);
-      this.velocities.want(texts.vc);
-    }
-    this.motion.look(texts.motion, start);
+  look(texts, about) {
+    this.next = { texts, ...about, problem: null };
+    this.points.want(texts.point);
+    this.velocities.want(texts.vc);
+    this.motion.look(texts.motion, about.start);
+    clearTimeout(this.patience);
+    this.patience = setTimeout(() => {
+      this.patience = null;
+      this.#tell();
+    }, PATIENCE);
+    this.#tell();
   }
 
-  #showPoint(point) {
-    this.point = point;
-    this.#draw();
-    const margin = point.delay_margin === null ? "infinite" : told(point.delay_margin);
+  /** Shows that nothing can be asked at a point, and why. */
+  refuse(error, about) {
+    this.look({ point: null, vc: null, motion: null }, about);
+    this.next.problem = error;
+    this.#tell();
+  }
+
+  /** Shows no point until the next one. */
+  clear() {
+    this.look({ point: null, vc: null, motion: null }, { where: "", start: null });
+    clearTimeout(this.patience);
+    [this.patience, this.next] = [null, null];
+    element("point-none").hidden = true;
+  }
+
+  /** The answer about a text, if it is the one that is shown. */
+  answerTo(text) {
+    return this.point && this.text === text ? this.point : null;
+  }
+
+  /** Whether something is asked for. */
+  get pending() {
+    return this.points.pending || this.velocities.pending || this.motion.pending;
+  }
+
+  #tell() {
+    if (!this.next) return;
+    const { points, velocities, motion, next } = this;
+    const slow = this.patience && (velocities.pending || motion.pending);
+    const waits = points.pending || points.lost || (slow && !points.error);
+    const section = element("point-title").closest("section");
+    section.classList.toggle("asking", Boolean(waits));
+    section.setAttribute("aria-busy", String(Boolean(waits)));
+    if (waits) return;
+    const { texts, where, fixed = false } = next;
+    const problem = next.problem ?? points.error;
+    element("point-where").textContent = where;
+    element("point-problem").textContent = problem ? this.words(problem) : "";
+    element("point-none").textContent = texts.vc === null ? NO_POINT : NO_V0;
+    element("point-none").hidden = Boolean(problem) || texts.point !== null;
+    element("cards").hidden = Boolean(problem) || Object.values(texts).every((t) => t === null);
+    this.units = unitsOf(texts.point ?? texts.vc);
+    this.#tellPoint(points.answer);
+    this.#tellVc(texts, fixed);
+    element("motion-card").hidden = texts.motion === null && (fixed || texts.point === null);
+    motion.tell();
+    this.#tellSame(texts);
+    this.shown();
+  }
+
+  /** A quantity in words, by its powers of force, length and time. */
+  #quantity(value, dimension) {
+    if (value === null) return "no value";
+    return withUnit(told(value), unitOf(dimension, this.units));
+  }
+
+  #time(value) {
+    return this.#quantity(value, [0, 0, 1]);
+  }
+
+  #tellPoint(point) {
+    for (const card of ["sliding", "roots", "delays"]) element(`${card}-card`).hidden = !point;
+    const before = this.point;
+    [this.point, this.text] = [point, this.points.text];
+    if (!point || point === before) return;
+    const margin = point.delay_margin === null ? "infinite" : this.#time(point.delay_margin);
     const verdict = point.marginal ? "marginal" : point.stable ? "stable" : "unstable";
-    const interval = ([from, to]) => `${told(from)} < τ < ${to === null ? "∞" : told(to)}`;
+    const interval = ([from, to]) => `${told(from)} < τ < ${to === null ? "∞" : this.#time(to)}`;
     const stable = point.stable_delays.slice(0, INTERVALS).map(interval);
     const more = point.stable_delays.length - stable.length;
     if (more > 0) stable.push(`${more}${point.stable_delays_truncated ? " or more" : ""} others`);
-    const root = ([re, im]) => told(re) + (im === 0 ? "" : ` ± ${told(im)} i`);
-    const count = `${point.n_unstable} unstable root${point.n_unstable === 1 ? "" : "s"}`;
+    const rate = unitOf([0, 0, -1], this.units);
+    const root = ([re, im]) => withUnit(told(re) + (im === 0 ? "" : ` ± ${told(im)} i`), rate);
     const sure = point.certified ? "confirmed by the argument principle" : "not certified";
+    const abscissa = point.abscissa === null ? "unknown" : withUnit(told(point.abscissa), rate);
     terms(element("point"), [
-      ["sliding is", `${verdict}, ${count}`],
-      ["slope μ′", told(point.mu_prime)],
+      ["sliding is", `${verdict}, ${counted(point.n_unstable)}`],
+      ["slope μ′", this.#quantity(point.mu_prime, [0, -1, 1])],
       ["delay margin", margin],
-      ["spectral abscissa", point.abscissa === null ? "unknown" : told(point.abscissa)],
+      ["spectral abscissa", abscissa],
       ["rightmost roots", sure],
     ]);
     const delays = stable.length ? stable.join(", ") : "none";
     terms(element("intervals"), [["stable delays", delays]]);
     const list = point.roots.slice(0, ROOTS).map((r) => make("li", {}, root(r)));
     element("root-list").replaceChildren(...list);
-    element("command").value =
-      point.command ?? "there is no command line for a table; see the TOML";
+    this.#draw();
   }
 
   #draw() {
     if (!this.point || element("roots").clientWidth === 0) return;
-    const rate = this.unit === "1" ? "1" : `1/${this.unit}`;
+    const rate = unitOf([0, 0, -1], this.units);
     drawRoots(element("roots"), { ...this.point, unit: rate });
-    drawDelays(element("delays"), this.point, { unit: this.unit });
+    drawDelays(element("delays"), this.point, { unit: unitOf([0, 0, 1], this.units) });
   }
 
-  #showVc(found) {
-    const here = this.v0;
-    const below = found.vc !== null && here !== undefined;
-    const verdict = below ? (here < found.vc ? " (v0 lies below it)" : " (v0 lies above it)") : "";
+  #tellVc({ vc, v0 }, fixed) {
+    element("vc-card").hidden = vc === null && fixed;
+    element("vc-none").hidden = vc !== null;
+    element("vc").hidden = vc === null;
+    const { answer: found, error } = this.velocities;
+    const one = (words) => terms(element("vc"), [["critical velocity", words]]);
+    if (error && !this.velocities.lost) one(this.words(error));
+    else if (!found) one("…");
+    if (!found) return;
+    const velocity = (v) => this.#quantity(v, [0, 1, -1]);
+    const below = found.vc !== null && v0 !== undefined;
+    const verdict = below ? (v0 < found.vc ? " (v0 lies below it)" : " (v0 lies above it)") : "";
+    const [stuck, slipping] = [found.stick_time, found.slip_time].map((t) => this.#time(t));
     terms(element("vc"), [
-      ["critical velocity", found.vc === null ? "none" : told(found.vc) + verdict],
+      ["critical velocity", found.vc === null ? "none" : velocity(found.vc) + verdict],
       [
         "stick-slip ends by",
         `${found.outcome}${ENDS[found.outcome] ? `: ${ENDS[found.outcome]}` : ""}`,
       ],
-      ["in a period there", `stuck ${told(found.stick_time)}, slipping ${told(found.slip_time)}`],
-      ["load reaches 0 from", found.v_liftoff === null ? "no velocity" : told(found.v_liftoff)],
+      ["in a period there", `stuck ${stuck}, slipping ${slipping}`],
+      ["load reaches 0 from", found.v_liftoff === null ? "no velocity" : velocity(found.v_liftoff)],
       ["asked by the protocol", found.protocol],
       ["found by", `${found.method}${found.decided ? "" : "; not decided beyond"}`],
     ]);
+  }
+
+  /** What to type and to save for the same. There is no button without something to copy. */
+  #tellSame(texts) {
+    const commands = [
+      ["command", texts.point, this.point],
+      ["vc-command", texts.vc, this.velocities.answer],
+    ];
+    for (const [id, text, answer] of commands) {
+      const command = (text !== null && answer?.command) || "";
+      element(`same-${id}`).hidden = text === null || !answer;
+      element(id).placeholder = command ? "" : NO_COMMAND;
+      element(id).value = command;
+      element(`copy-${id}`).disabled = !command;
+    }
+    for (const [id, text] of [
+      ["toml", texts.point],
+      ["vc-toml", texts.vc],
+      ["case", texts.motion && this.motion.case()],
+    ]) {
+      element(`same-${id}`).hidden = text === null;
+      element(id).value = text ?? "";
+    }
   }
 }

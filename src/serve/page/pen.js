@@ -12,8 +12,9 @@ export class CanvasPen {
     if (canvas.width !== w || canvas.height !== h) [canvas.width, canvas.height] = [w, h];
     this.context = canvas.getContext("2d");
     this.context.setTransform(scale, 0, 0, scale, 0, 0);
-    this.context.clearRect(0, 0, this.width, this.height);
     this.style = getComputedStyle(canvas);
+    // A file of it is looked at on any ground.
+    this.box({ x: 0, y: 0, w: this.width, h: this.height }, { fill: this.colour("paper") });
   }
 
   /** A colour of the page's style. */

@@ -1,13 +1,15 @@
 // A plane of parameter space on a canvas: cells, curves over them, axes around, and a point.
 
-import { paint } from "./cells.js";
+import { isBeyond, lacking, paint, tellNumber, valueOf } from "./cells.js";
 import { areaWithin, drawFrame, placed } from "./frame.js";
 import { CanvasPen, SvgPen } from "./pen.js";
 
 /**
  * What is seen of a plane.
  * @typedef {object} Plane
- * @property {{name: string, symbol: string, unit: string, long_name?: string}[]} axes x and y
+ * @property {{name: string, symbol: string, unit: string, long_name?: string, points?: number,
+ *   values?: ArrayLike<number>, index?: ArrayLike<number>}[]} axes x and y, or x alone; with the
+ *   values of the cells that its pixels show and, of a map, their indices
  * @property {import("./scale.js").Scale[]} ends of the image's edges, along x and y
  * @property {number} nx columns of cells
  * @property {number} ny rows
@@ -15,6 +17,8 @@ import { CanvasPen, SvgPen } from "./pen.js";
  * @property {Uint8Array} [status]
  * @property {Uint8Array} [bits]
  * @property {object} field name, long_name, unit, kinds
+ * @property {[string, number][]} [fixed] parameters that are no axes here
+ * @property {{mask: number, name: string}[]} [flagNames] those of its status
  * @property {object} colours see colours.js
  * @property {{values: Float64Array, stable_side: number, degree_of_stability: number}[]} curves
  *   with their vertices as [x0, y0, x1, y1, …]
@@ -65,6 +69,15 @@ export class PlaneView {
     this.plane = plane;
     plane.marks = paint(this.image, plane);
     this.draw();
+  }
+
+  /** Shows nothing. */
+  clear() {
+    [this.plane, this.point] = [null, null];
+    const { width, height } = this.canvas;
+    const context = this.canvas.getContext("2d");
+    context.setTransform(1, 0, 0, 1, 0, 0);
+    context.clearRect(0, 0, width, height);
   }
 
   draw() {
@@ -135,23 +148,62 @@ export class PlaneView {
     return new Promise((done) => this.canvas.toBlob(done, "image/png"));
   }
 
-  /** Every cell that is seen: both values, the field, and its status where there is one. */
+  /** Every cell that is seen, once: its values along the axes, the field's, and its status. */
   csv() {
-    const { axes, ends, nx, ny, cells, status, bits, field, at } = this.plane;
-    const [xs, ys] = ends;
-    const value = (scale, i, n, exact) => exact?.[i] ?? scale.value((i + 0.5) / n);
-    const lines = [`# ${field.name}: ${field.long_name ?? ""} (${field.unit ?? "1"})`];
-    for (const [name, text] of at ?? []) lines.push(`# ${name} = ${text}`);
-    const extra = [status && "status", bits && "marks"].filter(Boolean);
-    lines.push([axes[0].name, axes[1].name, field.name, ...extra].join(","));
-    for (let i = 0; i < nx; i++) {
-      const x = value(xs, i, nx, axes[0].values);
-      for (let j = 0; j < ny; j++) {
-        const n = i * ny + j;
-        const more = [status?.[n], bits?.[n]].filter((flag) => flag !== undefined);
-        lines.push([x, value(ys, j, ny, axes[1].values), cells[n], ...more].join(","));
+    const { axes, status, field } = this.plane;
+    const [xs, ys] = [0, 1].map((axis) => this.#seen(axis));
+    const lacks = (n) => lacking(this.plane, n);
+    const lackIn = xs.some(({ i }) => ys.some(({ i: j }) => lacks(i * this.plane.ny + j)));
+    const extra = [status && "status", lackIn && "lacking"].filter(Boolean);
+    const lines = [...this.#header(xs, ys)];
+    lines.push([...axes.map(({ name }) => name), field.name, ...extra].join(","));
+    for (const { i, value: x } of xs) {
+      for (const { i: j, value: y } of ys) {
+        const n = i * this.plane.ny + j;
+        const [lack, value] = [lacks(n), valueOf(this.plane, n)];
+        const kind = field.kinds ? tellNumber(field, value) : value;
+        const row = [...[x, y].slice(0, axes.length), Number.isNaN(value) ? "" : kind];
+        if (status) row.push(lack ? "" : status[n]);
+        if (lackIn) row.push(lack ?? "");
+        lines.push(row.join(","));
       }
     }
     return `${lines.join("\n")}\n`;
+  }
+
+  /** Pixels along an axis that show different cells, and the values of these. */
+  #seen(axis) {
+    const { axes, ends, nx, ny } = this.plane;
+    const [shown, n] = [axes[axis], [nx, ny][axis]];
+    const across = Array.from({ length: (nx * ny) / n }, (_, j) => j);
+    const place = (i, j) => (axis === 0 ? i * ny + j : j * ny + i);
+    const there = (i) => across.some((j) => !isBeyond(this.plane, place(i, j)));
+    const all = Array.from({ length: n }, (_, i) => i).filter(there);
+    const first = ({ index }) => all.filter((i, k) => k === 0 || index[i] !== index[all[k - 1]]);
+    return (shown?.index ? first(shown) : all).map((i) => ({
+      i,
+      value: shown?.values?.[i] ?? ends[axis].value((i + 0.5) / n),
+    }));
+  }
+
+  /** What a file of cells says before them. */
+  *#header(xs, ys) {
+    const { axes, field, fixed = [], flagNames = [], note, rests } = this.plane;
+    const line = (text) => `# ${String(text).replace(/\s+/g, " ")}`;
+    yield line(`${field.name}: ${field.long_name ?? ""} (${field.unit ?? "1"})`);
+    for (const [name, value] of fixed) yield line(`${name} = ${value}`);
+    for (const [axis, { index, name, points }] of axes.entries()) {
+      if (!index) continue;
+      const count = [xs, ys][axis].length;
+      const [first, last] = [index[0], index[index.length - 1]];
+      const all = count === Math.abs(last - first) + 1;
+      const why = all ? "all in view" : "those that pixels show, others lie between them";
+      yield line(`along ${name} ${count} of ${points} values, ${why}`);
+    }
+    if (flagNames.length) {
+      const flags = flagNames.map(({ mask, name }) => `${mask} ${name}`);
+      yield line(`status: the sum of ${flags.join(", ")}`);
+    }
+    if (axes[0].index && !rests) yield line(`not all was read yet: ${note}`);
   }
 }

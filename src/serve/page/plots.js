@@ -1,8 +1,17 @@
 // Pictures of a point: its roots in the complex plane, and its stable delays.
 
-import { areaWithin, drawFrame, placed } from "./frame.js";
+import { areaWithin, drawFrame, placed, titleOf } from "./frame.js";
 import { CanvasPen } from "./pen.js";
-import { Scale, told } from "./scale.js";
+import { Scale, told, withUnit } from "./scale.js";
+
+/** What uPlot's options need of an element's style: colours by name, and axes with a grid. */
+export function linesIn(target) {
+  const style = getComputedStyle(target);
+  const colour = (name) => style.getPropertyValue(`--${name}`).trim();
+  const grid = { stroke: colour("grid"), width: 1 };
+  const axis = (more) => ({ stroke: style.color, grid, ticks: grid, ...more });
+  return { colour, axis };
+}
 
 /** A range with some room around. */
 function roomy(values, part = 0.08) {
@@ -71,7 +80,7 @@ export function drawDelays(canvas, point, axis) {
   const here = x(point.tau);
   pen.line([here, area.y - 8, here, area.y + area.h], { colour: pen.colour("mark"), width: 3 });
   const side = here > area.x + area.w / 2 ? "right" : "left";
-  pen.text(`τ = ${told(point.tau, 5)}`, [here, area.y - 10], {
+  pen.text(withUnit(`τ = ${told(point.tau, 5)}`, axis.unit), [here, area.y - 10], {
     colour,
     align: side,
     base: "bottom",
@@ -80,8 +89,11 @@ export function drawDelays(canvas, point, axis) {
     pen.line([x(tick), area.y + area.h, x(tick), area.y + area.h + 5], { colour });
     pen.text(told(tick), [x(tick), area.y + area.h + 8], { colour, base: "top" });
   }
-  const title = axis.unit && axis.unit !== "1" ? `τ (${axis.unit})` : "τ";
-  pen.text(title, [area.x + area.w / 2, area.y + area.h + 26], { colour, base: "top", size: 14 });
+  pen.text(titleOf({ symbol: "τ", ...axis }), [area.x + area.w / 2, area.y + area.h + 26], {
+    colour,
+    base: "top",
+    size: 14,
+  });
 }
 
 /** A friction law: μ_K over v, and where the block slides. */

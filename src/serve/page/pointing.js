@@ -78,6 +78,7 @@ export function follow(plane, told) {
   canvas.addEventListener("pointercancel", up);
   canvas.addEventListener("pointerleave", () => told.hover(null));
   canvas.addEventListener("dblclick", (event) => {
+    if (!plane.view) return;
     told.view(zoomed(plane.view, partsOf(at(event)), event.shiftKey ? 1 / ZOOM : ZOOM));
   });
   // The wheel scrolls the page until the chart is used.

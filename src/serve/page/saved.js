@@ -1,33 +1,32 @@
-// Maps from files: their list, and views of one of them.
+// Maps from files: views of one of them.
 
+import { flagsOf, valuesOf } from "./cells.js";
 import { coloursOf } from "./colours.js";
 import { element, make, terms } from "./dom.js";
+import { MapList } from "./list.js";
 import { Newest } from "./newest.js";
 import { Scale, told } from "./scale.js";
+import { Slice } from "./slice.js";
+import { Problem } from "./source.js";
 
-/** How often the list is looked at, while the page is seen; in milliseconds. */
-const LOOK = 2500;
-/** How soon an unfinished view is asked for again. */
+/** How soon an unfinished view is asked for again, in milliseconds. */
 const AGAIN = 60;
 /** The most pixels of a window each way. */
 const MOST_PIXELS = 2048;
 /** In all: more of a field of real numbers is refused. */
 const MOST_IN_ALL = 2 ** 21;
-const LINE_HEIGHT = 220;
-
-const ages = [
-  [86400, "day"],
-  [3600, "hour"],
-  [60, "minute"],
-  [1, "second"],
-];
-
-/** How long ago, in words. */
-function age(seconds) {
-  const [size, word] = ages.find(([s]) => seconds >= s) ?? [1, "second"];
-  const count = Math.max(0, Math.floor(seconds / size));
-  return `${count} ${word}${count === 1 ? "" : "s"} ago`;
-}
+/** So many planes' curves are kept. */
+const MOST_CURVES = 8;
+/** Ends of a view are rounded to this part of its width; it is no narrower than that of its ends. */
+const [FINE, NARROWEST] = [1e-8, 1e-11];
+/** Less of a view's width is no way at all. */
+const NO_WAY = 1e-6;
+/** What has no second axis is a strip. */
+const STRIP = [0, 1];
+const NO_SERVER = {
+  detail: "This page has no server: maps from files need `slipmap serve`.",
+  status: 404,
+};
 
 export class Saved {
   /**
@@ -39,104 +38,56 @@ export class Saved {
    */
   constructor(source, state, plane, told_) {
     Object.assign(this, { source, state, plane, told: told_ });
+    [this.map, this.curves, this.describing, this.remarks] = [null, new Map(), 0, []];
     this.windows = new Newest(
-      (query, signal) => source.window(this.map.id, query, signal),
-      (answer, query) => this.#show(answer, query),
+      (asked, signal) => {
+        this.#askCurves(asked);
+        return source.window(asked.id, asked.query, signal);
+      },
+      (answer, asked) => this.#show(answer, asked),
       (error) => this.#failed(error),
     );
-    this.lines = new Newest(
-      (query, signal) => source.window(this.map.id, query, signal),
-      (answer) => this.#showLine(answer),
-      told_.failed,
-    );
     this.cells = new Newest(
-      (at, signal) => source.cell(this.map.id, { at }, signal),
-      (cell) => this.#showCell(cell),
+      ({ id, at }, signal) => source.cell(id, { at }, signal),
+      (cell, asked) => this.#showCell(cell, asked),
       told_.failed,
     );
+    this.slice = new Slice(source, told_.failed);
+    this.list = new MapList(source, {
+      chosen: (id) => {
+        this.state.map = { id, at: {} };
+        told_.opened();
+        element("chart-title").focus();
+      },
+      listed: (maps) => this.#listed(maps),
+      failed: told_.failed,
+    });
     this.#listen();
   }
 
-  /** Looks at the list, again and again. */
-  async begin() {
-    const look = async () => {
-      if (document.visibilityState === "visible") await this.#list();
-      setTimeout(look, LOOK);
-    };
-    await look();
+  begin() {
+    return this.list.begin();
   }
 
-  async #list() {
-    try {
-      const { folder, maps } = await this.source.maps();
-      element("to-maps").hidden = maps.length === 0;
-      element("to-maps").textContent = `Maps (${maps.length})`;
-      element("maps-title").textContent = `Maps in ${folder}`;
-      this.#tellList(maps);
-      const own = maps.find(({ id }) => id === this.map?.id);
-      const grown =
-        own && (own.cells_done !== this.seen.cells_done || own.state !== this.seen.state);
-      if (grown && this.state.map) await this.#describe();
-    } catch (error) {
-      // A folder that was not given is no mistake; a server that is gone is told elsewhere.
-      if (error.status !== 404) this.told.failed(error);
-    }
-  }
-
-  #tellList(maps) {
-    const key = JSON.stringify(
-      maps.map((map) => ({ ...map, age_seconds: Math.floor(map.age_seconds / 60) })),
-    );
-    if (key === this.listed) return;
-    this.listed = key;
-    const words = ["Map", "State", "Axes", "Fields", "Cells", "Changed"];
-    const head = make("tr", {}, ...words.map((word) => make("th", { scope: "col" }, word)));
-    const rows = maps.map((map) => this.#row(map));
-    const [table, focused] = [element("maps-table"), document.activeElement?.dataset?.map];
-    table.replaceChildren(make("thead", {}, head), make("tbody", {}, ...rows));
-    if (focused) table.querySelector(`[data-map="${focused}"]`)?.focus();
-  }
-
-  #row(map) {
-    const share = map.cells ? Math.floor((100 * map.cells_done) / map.cells) : 0;
-    const partial = ["running", "interrupted"].includes(map.state);
-    const state = partial ? `${map.state}, ${share} %` : map.state;
-    const axes = (map.axes ?? []).map(({ symbol, points }) => `${symbol} (${points})`).join(" × ");
-    const button = make("button", { type: "button", className: "link" }, map.name);
-    button.dataset.map = map.id;
-    button.disabled = !(map.axes ?? []).length;
-    button.addEventListener("click", () => {
-      this.state.map = { id: map.id, at: {} };
-      element("maps").hidden = true;
-      this.told.opened();
-      element("chart-title").focus();
-    });
-    const cells = map.cells ? map.cells.toLocaleString("en") : "";
-    const texts = [
-      map.why ? `${state}: ${map.why}` : state,
-      axes,
-      (map.fields ?? []).join(", "),
-      cells,
-      map.age_seconds === undefined ? "" : age(map.age_seconds),
-    ];
-    const row = make("tr", {}, make("th", { scope: "row" }, button));
-    row.append(...texts.map((text) => make("td", {}, text)));
-    row.className = map.state;
-    return row;
+  /** A map that has grown is described anew, and one that can be opened again. */
+  #listed(maps) {
+    const own = maps.find(({ id }) => id === this.state.map?.id);
+    if (!own?.axes?.length || this.seen === undefined) return;
+    const seen = `${own.cells_done} ${own.state}`;
+    if (seen === this.seen) return;
+    this.seen = seen;
+    this.#describe();
   }
 
   #listen() {
-    element("to-maps").addEventListener("click", () => {
-      const list = element("maps");
-      list.hidden = !list.hidden;
-      element("to-maps").setAttribute("aria-expanded", String(!list.hidden));
-    });
     element("map").addEventListener("submit", (event) => event.preventDefault());
     const set = (id, key, read) =>
       element(id).addEventListener("change", (event) => {
         const { map } = this.state;
+        if (!this.map) return;
         const before = map[key];
         map[key] = read(event.target);
+        this.remarks = [];
         if (key === "x" || key === "y") this.#axesChosen(key, before);
         if (key === "xlog" || key === "ylog") this.#allInView();
         this.#build();
@@ -148,44 +99,91 @@ export class Saved {
     set("x-log", "xlog", ({ checked }) => checked);
     set("y-log", "ylog", ({ checked }) => checked);
     element("slice-axis").addEventListener("change", (event) => {
+      if (!this.map) return;
       this.state.map.slice = event.target.value;
       this.#askLine();
+      this.told.changed();
     });
   }
 
-  /** Opens the map that the state names. */
+  /** Opens the map that the state names. Of another one nothing stays, on the screen or under way. */
   async open() {
-    this.curves = { key: null, list: [] };
-    [this.map, this.range] = [null, null];
-    await this.#describe();
+    const other = this.map?.id !== this.state.map.id;
+    this.#stop();
+    [this.range, this.looked, this.toldCell] = [null, null, null];
+    this.#blank("Map");
+    [this.map, this.place, this.plane.view] = [null, null, null];
+    if (other) element("map").hidden = element("slice-part").hidden = true;
+    if (this.source.map) await this.#describe();
+    else this.#notOpened(new Problem(NO_SERVER));
   }
 
   /** No map is looked at any more. */
   close() {
-    for (const requests of [this.windows, this.lines, this.cells]) requests.stop();
-    clearTimeout(this.again);
-    element("reading").hidden = true;
+    this.#stop();
     this.map = null;
+    element("origin").hidden = false;
+    if (this.seen !== undefined) this.#blank("Chart");
+    this.seen = undefined;
+  }
+
+  #stop() {
+    this.windows.stop();
+    this.cells.stop();
+    clearTimeout(this.again);
+    this.slice.clear();
+    this.describing += 1;
+    [this.wanted, this.curves] = [null, new Map()];
+  }
+
+  /** Nothing is seen, and nothing is said of what was. */
+  #blank(title) {
+    this.plane.clear();
+    for (const id of ["speed", "readout", "hover"]) element(id).textContent = "";
+    for (const id of ["legend", "table"]) element(id).replaceChildren();
+    delete element("legend").dataset.key;
+    element("chart-title").textContent = title;
+    element("reading").hidden = true;
   }
 
   async #describe() {
     const { id } = this.state.map;
+    const number = ++this.describing;
     try {
       const map = await this.source.map(id);
-      if (this.state.map?.id !== id) return;
+      if (number !== this.describing) return;
+      const before = this.map;
       this.map = map;
-      this.seen = { cells_done: map.cells_done, state: map.state };
+      this.seen = `${map.cells_done} ${map.state}`;
+      // Another file may have taken the name.
+      const other = before && JSON.stringify(before.axes) !== JSON.stringify(map.axes);
+      if (other) [this.range, this.place] = [null, null];
+      element("map").hidden = element("slice-part").hidden = element("origin").hidden = false;
       this.#begin();
       this.#build();
       this.#ask();
-      this.look();
+      this.look(before !== null && !other);
     } catch (error) {
-      this.#failed(error);
+      if (number === this.describing) this.#notOpened(error);
     }
   }
 
+  #notOpened(error) {
+    // Who does not answer may do so later; then everything is asked for anew.
+    if (error.status) {
+      this.#stop();
+      [this.map, this.plane.view, this.seen] = [null, null, this.seen ?? ""];
+      this.#blank("No map");
+      terms(element("cell"), []);
+      element("map").hidden = element("slice-part").hidden = element("origin").hidden = true;
+    }
+    this.told.failed(error);
+  }
+
+  /** A window that is not there leaves no older one of something else in its place. */
   #failed(error) {
     element("reading").hidden = true;
+    if (this.plane.plane?.of !== this.wanted?.of) this.#blank(this.map?.name ?? "Map");
     this.told.failed(error);
   }
 
@@ -201,40 +199,60 @@ export class Saved {
     if (!names.includes(map.y) || map.y === map.x) {
       map.y = [q, ...long, ...names].find((name) => name && name !== map.x) ?? null;
     }
-    if (!names.includes(map.slice)) map.slice = map.y ?? map.x;
-    for (const axis of this.map.axes) {
-      const at = map.at[axis.name];
-      map.at[axis.name] = Math.min(
-        axis.points - 1,
-        Number.isInteger(at) ? at : Math.floor(axis.points / 2),
-      );
+    if (!long.includes(map.slice)) map.slice = long.includes(map.y) ? map.y : (long[0] ?? null);
+    const middle = ({ name, points }) => {
+      const at = map.at[name];
+      return [name, Math.min(points - 1, Number.isInteger(at) ? at : Math.floor(points / 2))];
+    };
+    map.at = Object.fromEntries(this.map.axes.map(middle));
+    if (this.plane.view && this.range) return;
+    this.remarks = [];
+    for (const key of ["x", "y"]) {
+      if (map[`${key}log`] && !this.#logarithm(map[key])) {
+        map[`${key}log`] = false;
+        if (map[key]) this.remarks.push(`no logarithm of 0: ${this.#axis(map[key]).symbol}`);
+      }
     }
-    if (!this.plane.view || !this.range) this.#setView(map.xr, map.yr);
+    this.#setView();
   }
 
   #axis(name) {
     return this.map.axes.find((axis) => axis.name === name);
   }
 
+  /** Whether an axis can be logarithmic: none that touches or crosses 0 can. */
+  #logarithm(name) {
+    const axis = this.#axis(name);
+    return Boolean(axis) && axis.from * axis.to > 0;
+  }
+
   /** The scale of a whole axis; of one value, with room around it. */
   #whole(name, log) {
     const axis = this.#axis(name);
-    if (!axis) return new Scale(0, 1);
+    if (!axis) return new Scale(...STRIP);
     const [low, high] = axis.from < axis.to ? [axis.from, axis.to] : [axis.to, axis.from];
     const room = low === high ? Math.abs(low) / 2 || 0.5 : 0;
     return new Scale(low - room, high + room, log);
   }
 
-  #setView(xr, yr) {
+  /** The view that the state names, or of all there is. */
+  #setView() {
     const { map } = this.state;
     this.range = [this.#whole(map.x, map.xlog), this.#whole(map.y, map.ylog)];
-    const part = (pair, whole) => (pair ? new Scale(pair[0], pair[1], whole.log) : whole);
-    this.plane.view = [part(xr, this.range[0]), part(yr, this.range[1])];
+    this.plane.view = ["xr", "yr"].map((key, i) => {
+      const [whole, pair] = [this.range[i], map[key]];
+      if (!pair || !this.#axis(map[key[0]])) return whole;
+      const scale = new Scale(...pair, whole.log);
+      if (pair[0] < pair[1] && scale.log === whole.log && within(scale, whole)) return scale;
+      this.remarks.push(`${key}=${pair} is no part of the axis, all of it is shown`);
+      map[key] = null;
+      return whole;
+    });
   }
 
   #allInView() {
     Object.assign(this.state.map, { xr: null, yr: null });
-    this.#setView(null, null);
+    this.#setView();
     this.plane.plane = null;
   }
 
@@ -246,11 +264,12 @@ export class Saved {
       map[other] = before;
       [map.xlog, map.ylog] = [map.ylog, map.xlog];
     }
-    map.point = null;
+    map.xlog &&= this.#logarithm(map.x);
+    map.ylog &&= this.#logarithm(map.y);
     this.#allInView();
   }
 
-  /** Makes the form from the map. */
+  /** Makes the form from the map. What has not changed stays, and keeps the focus. */
   #build() {
     const { map } = this.state;
     element("map-title").textContent = this.map.title || this.map.name;
@@ -267,52 +286,56 @@ export class Saved {
         told(value) + (unit === "1" ? "" : ` ${unit}`),
       ]),
     ]);
-    const options = (id, list, value) => {
-      const select = element(id);
-      select.replaceChildren(...list.map(([name, text]) => make("option", { value: name }, text)));
-      select.value = value;
-    };
-    const axes = this.map.axes.map(({ name, symbol }) => [name, symbol]);
-    options(
-      "field",
-      this.map.fields.map((f) => [f.name, f.short_name ?? f.name]),
-      map.field,
-    );
+    const fields = this.map.fields.map((f) => [f.name, f.short_name ?? f.name]);
+    const named = ({ name, symbol }) => [name, symbol];
+    const axes = this.map.axes.map(named);
+    const long = this.map.axes.filter(({ points }) => points > 1).map(named);
+    options("field", fields, map.field);
     options("map-x", axes, map.x);
     options("map-y", axes, map.y);
-    options("slice-axis", axes, map.slice);
-    [element("x-log").checked, element("y-log").checked] = [Boolean(map.xlog), Boolean(map.ylog)];
-    const others = this.map.axes.filter(({ name }) => name !== map.x && name !== map.y);
-    element("map-sliders").replaceChildren(...others.map((axis) => this.#slider(axis)));
+    options("slice-axis", long, map.slice);
+    element("map-y-row").hidden = element("y-log-row").hidden = !map.y;
+    element("slice-part").hidden = long.length === 0;
+    for (const key of ["x", "y"]) {
+      const can = this.#logarithm(map[key]);
+      const box = element(`${key}-log`);
+      [box.checked, box.disabled] = [Boolean(map[`${key}log`]), !can];
+      element(`${key}-log-why`).textContent = can ? "" : "– not of an axis with 0";
+    }
+    this.#buildSliders();
   }
 
-  #slider(axis) {
+  #buildSliders() {
     const { map } = this.state;
-    const range = make("input", {
-      type: "range",
-      id: `at-${axis.name}`,
-      min: 0,
-      max: axis.points - 1,
-      step: 1,
-    });
-    range.value = map.at[axis.name];
-    const output = make("output", { htmlFor: range.id });
-    const tell = (value) => (output.value = value === undefined ? "" : told(value, 7));
-    tell(axis.values?.[map.at[axis.name]]);
-    output.dataset.axis = axis.name;
+    const part = element("map-sliders");
+    const others = this.map.axes.filter(({ name }) => name !== map.x && name !== map.y);
+    const key = JSON.stringify(others);
+    if (key !== part.dataset.key) part.replaceChildren(...others.map((axis) => this.#slider(axis)));
+    part.dataset.key = key;
+    for (const { name, values } of others) {
+      element(`at-${name}`).value = map.at[name];
+      this.#tellSlider(name, values?.[map.at[name]]);
+    }
+  }
+
+  #slider({ name, symbol, long_name: words, points, values }) {
+    const id = `at-${name}`;
+    const range = make("input", { type: "range", id, min: 0, max: points - 1, step: 1 });
+    const output = make("output", { htmlFor: id });
+    output.dataset.axis = name;
     range.addEventListener("input", () => {
-      map.at[axis.name] = range.valueAsNumber;
-      tell(axis.values?.[range.valueAsNumber]);
+      if (!this.map) return;
+      this.state.map.at[name] = range.valueAsNumber;
+      this.#tellSlider(name, values?.[range.valueAsNumber]);
       this.#ask();
     });
-    const text = `${axis.symbol}, ${axis.long_name}`;
-    return make(
-      "div",
-      { className: "slider" },
-      make("label", { htmlFor: range.id }, text),
-      range,
-      output,
-    );
+    const label = make("label", { htmlFor: id }, `${symbol}, ${words}`);
+    return make("div", { className: "slider" }, label, range, output);
+  }
+
+  #tellSlider(name, value) {
+    const output = element("map-sliders").querySelector(`output[data-axis="${name}"]`);
+    if (output) output.value = value === undefined ? "" : told(value, 7);
   }
 
   #at(without) {
@@ -325,15 +348,21 @@ export class Saved {
   #ask() {
     const { map } = this.state;
     const { w, h } = this.plane.area();
-    const [xs, ys] = this.plane.view;
+    // Beyond its ends an axis has no cells.
+    const [xs, ys] = this.plane.view.map((scale, i) => within(scale, this.range[i]));
+    const share = (scale, i) => {
+      const seen = this.plane.view[i];
+      return seen.part(scale.to) - seen.part(scale.from);
+    };
     const part = Math.min(1, Math.sqrt(MOST_IN_ALL / (w * h)));
     const pixels = (length) => Math.min(MOST_PIXELS, Math.max(1, Math.floor(part * length)));
+    const at = this.#at([map.x, map.y]);
     const query = {
       field: map.field,
       x: map.x,
-      at: this.#at([map.x, map.y]),
-      w: pixels(w),
-      h: pixels(h),
+      at,
+      w: pixels(w * share(xs, 0)),
+      h: pixels(h * share(ys, 1)),
       x0: xs.from,
       x1: xs.to,
       xscale: xs.log ? "log" : "linear",
@@ -341,164 +370,190 @@ export class Saved {
     if (map.y)
       Object.assign(query, { y: map.y, y0: ys.from, y1: ys.to, yscale: ys.log ? "log" : "linear" });
     else query.h = 1;
+    const axes = [map.x, map.y].filter(Boolean).map((name) => this.#axis(name));
+    const { id, version } = this.map;
+    // What an answer is about is told by its question: the state may be another one by then.
+    this.wanted = {
+      id,
+      query,
+      axes,
+      ends: [xs, ys],
+      field: this.map.fields.find(({ name }) => name === map.field),
+      flags: this.map.flags ?? [],
+      fixed: (this.map.scalars ?? []).map(({ name, value }) => [name, value]),
+      of: JSON.stringify([id, map.field, map.x, map.y, at]),
+      curves: JSON.stringify([id, version, map.x, map.y, at]),
+    };
     clearTimeout(this.again);
-    this.windows.want(query);
-    this.#askCurves();
+    this.windows.want(this.wanted);
     this.#askLine();
     this.told.changed();
   }
 
-  async #askCurves() {
-    const { map } = this.state;
-    const query = { x: map.x, y: map.y ?? "", at: this.#at([map.x, map.y]) };
+  /** Asks for the curves of a window's plane, which come on the screen with it or after it. */
+  async #askCurves({ id, query: { x, y, at }, curves: key }) {
+    const { curves } = this;
     const plane = this.map.curves_plane;
-    const there = plane && plane.includes(map.x) && plane.includes(map.y);
-    const key = JSON.stringify([this.map.version, query]);
-    if (this.curves.key === key) return;
-    this.curves = { key, list: [] };
-    if (!there) return;
+    if (curves.has(key) || !plane?.includes(x) || !plane.includes(y)) return;
+    curves.set(key, []);
+    if (curves.size > MOST_CURVES) curves.delete(curves.keys().next().value);
     try {
-      const { curves } = await this.source.curves(this.map.id, query);
-      if (this.curves.key !== key) return;
-      this.curves.list = curves;
-      if (this.plane.plane) {
-        this.plane.plane.curves = this.curves.list;
-        this.plane.draw();
-      }
+      const answer = await this.source.curves(id, { x, y, at });
+      if (this.curves !== curves) return;
+      curves.set(key, answer.curves);
+      const shown = this.plane.plane;
+      if (shown?.curvesOf !== key) return;
+      shown.curves = answer.curves;
+      this.plane.draw();
     } catch (error) {
-      this.told.failed(error);
+      curves.delete(key);
+      if (this.curves === curves) this.told.failed(error);
     }
   }
 
-  #show(answer, query) {
+  /**
+   * Shows a window. One that is not wanted any more is still shown where it only lies elsewhere on
+   * the same axes, while a slider or the view moves on: what is wanted now follows.
+   */
+  #show(answer, asked) {
     const { map } = this.state;
-    if (!this.map || answer.field !== map.field) return;
-    const field = this.map.fields.find(({ name }) => name === answer.field);
-    const axes = [map.x, map.y].map((name, i) => {
-      const found = (i === 0 ? answer.x : answer.y) ?? { values: [0] };
-      return {
-        ...(this.#axis(name) ?? { symbol: "", unit: "1" }),
-        values: found.values,
-        index: found.index,
-      };
+    const { id, query, axes: planeAxes, field } = asked;
+    const same = query.x === map.x && (query.y ?? null) === map.y && query.field === map.field;
+    if (this.map?.id !== id || !same) return;
+    const newest = asked === this.wanted;
+    const axes = planeAxes.map((axis, i) => {
+      const { values, index } = i === 0 ? answer.x : answer.y;
+      return { ...axis, values, index };
     });
-    const ends = [
-      new Scale(query.x0, query.x1, query.xscale === "log"),
-      map.y ? new Scale(query.y0, query.y1, query.yscale === "log") : new Scale(0, 1),
-    ];
-    const flags = (n) => this.#flags(answer, n);
+    const { values: cells, status, bits, damage, complete, progress } = answer;
+    const rests = complete && newest;
+    const plane = { axes, ends: asked.ends, field, cells, status, bits, damage, rests };
+    const numbers = field.storage === "real" || (field.storage === "few" && !field.kinds);
+    this.place = this.place?.id === id ? this.place : null;
     this.#placePoint(axes);
-    this.told.shown({
-      axes,
-      ends,
-      field,
-      flags,
-      nx: axes[0].values.length,
-      ny: axes[1].values.length,
-      cells: answer.values,
-      status: answer.status,
-      bits: answer.bits,
-      colours: coloursOf(field, answer.values),
-      curves: this.curves.list,
-      at: (answer.at ?? []).map(({ name, value }) => [name, value]),
-      milliseconds: answer.milliseconds,
-      note: answer.damage
-        ? `damaged: ${answer.damage}`
-        : answer.complete
-          ? `read in ${answer.milliseconds.toFixed(0)} ms`
-          : `reading, ${Math.floor(100 * answer.progress)} %`,
-      exact: true,
-      rests: answer.complete,
-    });
-    for (const { name, value } of answer.at ?? []) {
-      const output = element("map-sliders").querySelector(`output[data-axis="${name}"]`);
-      if (output && !output.value) output.value = told(value, 7);
+    this.told.shown(
+      Object.assign(plane, {
+        of: asked.of,
+        curvesOf: asked.curves,
+        nx: axes[0].values.length,
+        ny: axes[1]?.values.length ?? 1,
+        flags: (n) => flagsOf(plane, asked.flags, n),
+        flagNames: asked.flags,
+        colours: coloursOf(field, numbers ? valuesOf(plane) : cells),
+        curves: this.curves.get(asked.curves) ?? [],
+        fixed: [...(answer.at ?? []).map(({ name, value }) => [name, value]), ...asked.fixed],
+        milliseconds: answer.milliseconds,
+        note: this.#note(answer),
+      }),
+    );
+    if (asked.of === this.wanted.of) {
+      for (const { name, value } of answer.at ?? []) this.#tellSlider(name, value);
     }
-    element("reading").hidden = answer.complete;
-    element("reading").value = answer.progress;
-    clearTimeout(this.again);
-    if (!answer.complete)
-      this.again = setTimeout(() => this.map && this.windows.want(query), AGAIN);
+    element("reading").hidden = complete;
+    element("reading").value = progress;
+    if (complete || !newest) return;
+    this.again = setTimeout(() => asked === this.wanted && this.windows.want(asked), AGAIN);
+  }
+
+  #note({ damage, complete, progress, milliseconds }) {
+    const read = complete
+      ? `read in ${milliseconds.toFixed(0)} ms`
+      : `reading, ${Math.floor(100 * progress)} %`;
+    return [damage ? `damaged: ${damage}` : read, ...this.remarks].join("; ");
   }
 
   /** The cell of the state, as a point of the plane. */
   #placePoint(axes) {
-    const { map } = this.state;
-    const index = [map.x, map.y].map((name) => map.at[name] ?? 0);
-    const values = axes.map((axis, i) => {
-      const pixel = axis.index?.indexOf(index[i]) ?? -1;
-      return this.#axis(axis.name)?.values?.[index[i]] ?? (pixel >= 0 ? axis.values[pixel] : null);
-    });
-    if (values.every((value) => value !== null)) {
-      this.plane.point = map.y ? values : [values[0], 0.5];
-    }
+    const values = axes.map((axis) => this.#valueOn(axis, this.state.map.at[axis.name]));
+    const known = values.every((value) => value !== null);
+    this.plane.point = known ? [values[0], values[1] ?? (STRIP[0] + STRIP[1]) / 2] : null;
   }
 
-  /** What a pixel says besides its value. */
-  #flags({ status, bits }, n) {
-    const list = [];
-    if (bits?.[n] & 1) list.push("other values are hidden here: zoom in");
-    if (bits?.[n] & 2) return ["not read yet"];
-    if (bits?.[n] & 4 || status?.[n] === 255) return ["not computed yet"];
-    for (const { mask, name } of this.map.flags ?? []) if (status?.[n] & mask) list.push(name);
-    return list;
+  /** A value of an axis that may have too many to be described, as far as they are on the screen. */
+  #valueOn({ name, values, index }, wanted) {
+    const { values: all } = this.#axis(name);
+    if (all) return all[wanted];
+    if (this.place?.at[name] === wanted) return this.place.values[name];
+    const [first, last] = [index[0], index[index.length - 1]];
+    if (wanted < Math.min(first, last) || wanted > Math.max(first, last)) return null;
+    const distance = (pixel) => Math.abs(index[pixel] - wanted);
+    let near = 0;
+    for (let pixel = 1; pixel < index.length; pixel++) {
+      if (distance(pixel) < distance(near)) near = pixel;
+    }
+    return values[near];
   }
 
   /** Moves to the cell nearest to a point; by a key at least to the next one in that direction. */
   move(point, byKey) {
     const { map } = this.state;
-    const { plane } = this.plane;
-    const index = plane && this.plane.indexAt(point);
+    const { plane, view } = this.plane;
+    const index = this.map && plane && this.plane.indexAt(point);
     if (!index) return this.plane.point;
-    [map.x, map.y].forEach((name, i) => {
-      const axis = this.#axis(name);
-      if (!axis) return;
-      const before = map.at[name];
-      let next = plane.axes[i].index?.[index[i]] ?? before;
-      const way = point[i] - (this.plane.point?.[i] ?? point[i]);
-      const far = Math.abs(way) > 1e-8 * Math.abs(axis.to - axis.from);
-      if (byKey && far && next === before) next += Math.sign(way) * Math.sign(axis.to - axis.from);
-      map.at[name] = Math.min(axis.points - 1, Math.max(0, next));
+    plane.axes.forEach((shown, i) => {
+      const axis = this.#axis(shown.name);
+      const before = map.at[axis.name];
+      let next = shown.index[index[i]] ?? before;
+      const from = this.plane.point?.[i] ?? point[i];
+      const way = view[i].part(point[i]) - view[i].part(from);
+      if (byKey && Math.abs(way) > NO_WAY && next === before)
+        next += Math.sign(way) * Math.sign(axis.to - axis.from);
+      map.at[axis.name] = Math.min(axis.points - 1, Math.max(0, next));
     });
-    map.point = [map.at[map.x], map.at[map.y] ?? 0];
     this.#placePoint(plane.axes);
     this.plane.draw();
     return this.plane.point;
   }
 
-  /** Looks closely at the cell. */
-  look() {
+  /**
+   * Looks closely at the cell.
+   * @param {boolean} again at the one that was looked at last, of which nothing may have changed
+   */
+  look(again = false) {
     if (!this.map) return;
-    this.cells.want(this.#at([]));
+    if (!again || !this.looked) this.looked = { at: this.#at([]), index: { ...this.state.map.at } };
+    this.cells.want({ ...this.looked, id: this.map.id, again });
     this.#askLine();
   }
 
-  #showCell(cell) {
+  #showCell(cell, { id, index, again }) {
+    if (this.map?.id !== id) return;
+    this.place = { id, at: index, values: cell.axes };
+    if (this.plane.plane) {
+      this.#placePoint(this.plane.plane.axes);
+      this.plane.draw();
+    }
     const names = Object.keys(cell.axes);
     const where = names.map(
       (name) => `${this.#axis(name)?.symbol ?? name} = ${told(cell.axes[name], 9)}`,
     );
     const { point = null, vc = null, motion = null } = cell;
-    const unit = this.#axis("tau")?.unit ?? "1";
-    this.told.look({ point, vc, motion }, { where: where.join(", "), unit, fixed: true });
-    const value = ([name, v]) => [
-      name,
-      cell.kinds?.[name] ?? (typeof v === "number" ? told(v, 9) : String(v ?? "no value")),
-    ];
+    const key = JSON.stringify([where, point, vc, motion]);
+    // While a map grows, what is computed at the point stays as it is.
+    if (!again || key !== this.toldCell)
+      this.told.look({ point, vc, motion }, { where: where.join(", "), fixed: true });
+    this.toldCell = key;
+    const text = (value) => (typeof value === "number" ? told(value, 9) : (WORDS[value] ?? value));
+    const value = ([name, found]) => [name, cell.kinds?.[name] ?? text(found)];
     const status = cell.computed ? cell.status.join(", ") || "no flags" : "not computed yet";
     terms(element("cell"), [...Object.entries(cell.fields).map(value), ["status", status]]);
   }
 
+  /** Shows a part of the axes; without one, all of them. */
   view(view) {
     const { map } = this.state;
+    if (!this.map) return;
+    this.remarks = [];
     if (view) {
-      this.plane.view = view;
-      [map.xr, map.yr] = view.map(({ from, to }) =>
-        [from, to].map((x) => Number(x.toPrecision(9))),
-      );
+      const ends = view.map((scale, i) => (i === 1 && !map.y ? STRIP : rounded(scale)));
+      if (ends.includes(null)) return;
+      const scales = ends.map(([from, to], i) => new Scale(from, to, view[i].log));
+      if (!scales.every((scale, i) => within(scale, this.range[i]))) return;
+      this.plane.view = scales;
+      [map.xr, map.yr] = [ends[0], map.y ? ends[1] : null];
     } else {
-      this.#setView(null, null);
       Object.assign(map, { xr: null, yr: null });
+      this.#setView();
     }
     this.plane.draw();
     this.#ask();
@@ -507,53 +562,8 @@ export class Saved {
   #askLine() {
     const { map } = this.state;
     const axis = this.#axis(map.slice);
-    if (!axis || axis.points < 2) return;
-    const w = Math.min(MOST_PIXELS, axis.points, Math.max(100, element("slice").clientWidth));
-    this.lines.want({ field: map.field, x: axis.name, at: this.#at([axis.name]), w, h: 1 });
-  }
-
-  #showLine({ x, values, bits, field, complete }) {
-    const about = this.map?.fields.find(({ name }) => name === field);
-    if (!about) return;
-    const axis = this.#axis(x.name);
-    const kept = [];
-    for (let i = 0; i < values.length; i++)
-      if (i === 0 || x.index[i] !== x.index[i - 1]) kept.push(i);
-    const rows = kept.map((i) => {
-      const there = !(bits?.[i] & 6) && Number.isFinite(values[i]);
-      return [x.values[i], there ? values[i] : null];
-    });
-    rows.sort((p, q) => p[0] - q[0]);
-    const target = element("slice");
-    const style = getComputedStyle(target);
-    const grid = { stroke: style.getPropertyValue("--grid").trim(), width: 1 };
-    const ends = (unit) => (unit === "1" ? "" : ` (${unit})`);
-    const ink = { stroke: style.color, grid, ticks: grid };
-    this.line?.destroy();
-    this.line = new window.uPlot(
-      {
-        width: Math.max(200, target.clientWidth),
-        height: LINE_HEIGHT,
-        scales: { x: { time: false } },
-        axes: [
-          { ...ink, label: axis.symbol + ends(axis.unit) },
-          { ...ink, label: (about.short_name ?? about.name) + ends(about.unit) },
-        ],
-        series: [
-          { label: axis.symbol },
-          {
-            label: about.short_name ?? about.name,
-            width: 1.5,
-            stroke: style.getPropertyValue("--calm").trim(),
-            spanGaps: false,
-            paths: about.storage === "real" ? undefined : window.uPlot.paths.stepped({ align: 0 }),
-          },
-        ],
-      },
-      [rows.map(([at]) => at), rows.map(([, value]) => value)],
-      target,
-    );
-    if (!complete) setTimeout(() => this.map && this.#askLine(), 4 * AGAIN);
+    const field = this.map.fields.find(({ name }) => name === map.field);
+    if (axis) this.slice.want(this.map.id, axis, field, this.#at([axis.name]));
   }
 
   name() {
@@ -561,6 +571,40 @@ export class Saved {
   }
 
   async sweepText() {
+    if (!this.map) throw new Problem({ detail: "No map is open.", status: 404 });
     return this.source.sweepText(this.map.id);
   }
+}
+
+/** Numbers that JSON has not. */
+const WORDS = { inf: "∞", "-inf": "−∞", null: "no value" };
+
+/** Fills a list to choose from, if it is another one than before. */
+function options(id, list, value) {
+  const select = element(id);
+  const key = JSON.stringify(list);
+  if (select.dataset.key !== key) {
+    select.replaceChildren(...list.map(([name, text]) => make("option", { value: name }, text)));
+  }
+  select.dataset.key = key;
+  select.value = value;
+}
+
+/** The part of a scale that lies within another one, if there is one. */
+function within(scale, whole) {
+  const [from, to] = [Math.max(scale.from, whole.from), Math.min(scale.to, whole.to)];
+  return from < to ? new Scale(from, to, scale.log) : null;
+}
+
+/** The ends of a view with digits that can be seen; none where it is too narrow for numbers. */
+function rounded({ from, to, log }) {
+  const size = Math.min(to - from, log ? Math.min(Math.abs(from), Math.abs(to)) : Infinity);
+  if (!(to - from > NARROWEST * Math.max(Math.abs(from), Math.abs(to)))) return null;
+  const digits = Math.floor(Math.log10(FINE * size));
+  const short = (x) => {
+    const kept = Math.floor(Math.log10(Math.abs(x))) - digits + 1;
+    return kept < 1 ? 0 : Number(x.toPrecision(Math.min(17, kept)));
+  };
+  const ends = [from, to].map((x) => (x === 0 ? 0 : short(x)));
+  return ends[0] < ends[1] && ends.every(Number.isFinite) ? ends : null;
 }

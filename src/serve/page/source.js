@@ -2,12 +2,16 @@
 
 /** What is said instead of an answer. */
 export class Problem extends Error {
-  /** @param {{detail?: string, title?: string, help?: string, status?: number}} told */
-  constructor(told) {
+  /**
+   * @param {{detail?: string, title?: string, help?: string, status?: number, span?: number[]}} told
+   * @param {string} [text] what was asked, in which `span` is a place
+   */
+  constructor(told, text) {
     super(told.detail ?? told.title ?? "no answer");
     this.help = told.help;
     this.status = told.status;
     this.span = told.span;
+    this.text = text;
   }
 }
 
@@ -49,17 +53,37 @@ export function decode(bytes) {
   return filled(head, bytes, Math.ceil((4 + length) / 8) * 8);
 }
 
+/** How often a server that is busy is asked. */
+const TRIES = 4;
+
+/** @returns {Promise<void>} after so many milliseconds, unless nobody waits any more */
+const pause = (time, signal) =>
+  new Promise((resolve, reject) => {
+    setTimeout(resolve, time);
+    signal?.addEventListener("abort", () => reject(signal.reason), { once: true });
+  });
+
 /** A server: kind "server". */
 function server() {
-  const answered = async (response) => {
+  const answered = async (response, text) => {
     if (response.ok) return response;
-    throw new Problem(await response.json().catch(() => ({ title: response.statusText })));
+    const told = await response.json().catch(() => ({ title: response.statusText }));
+    throw new Problem(told, text);
   };
   const post = async (path, body, signal) => {
     const headers = { "Content-Type": "application/toml" };
-    return answered(await fetch(`api/v1/${path}`, { method: "POST", headers, body, signal }));
+    const response = fetch(`api/v1/${path}`, { method: "POST", headers, body, signal });
+    return answered(await response, body);
   };
-  const get = async (path, signal) => answered(await fetch(`api/v1/${path}`, { signal }));
+  // Where the server is busy for a moment, it is asked again; what it computes may be too much.
+  const get = async (path, signal) => {
+    for (let tries = 1; ; tries++) {
+      const response = await fetch(`api/v1/${path}`, { signal });
+      const soon = Number(response.headers.get("Retry-After"));
+      if (!soon || tries === TRIES) return answered(response);
+      await pause(1000 * soon, signal);
+    }
+  };
   const decoded = async (response) => decode(await (await response).arrayBuffer());
   const json = async (response) => (await response).json();
   const of = (id, what, query) => `maps/${id}/${what}?${new URLSearchParams(query)}`;
@@ -189,7 +213,7 @@ function page() {
   const ask = async (of, name, toml, signal) => {
     const answer = await of.ask(name, toml, signal);
     if (answer.status === 200) return answer;
-    throw new Problem(JSON.parse(new TextDecoder().decode(answer.bytes)));
+    throw new Problem(JSON.parse(new TextDecoder().decode(answer.bytes)), toml);
   };
   const json = async (name, toml, signal) => {
     const { bytes } = await ask(others, name, toml, signal);

@@ -1,7 +1,10 @@
 // The whole view as an address, short enough to be sent and readable: `#v=1&x=alpha_v,-1,0.2&…`.
 
+import { GAINS, SHOWN, UNITS } from "./catalogue.js";
+import { highestOf, parametersOf, tableOf } from "./sweep.js";
+
 /** What the page shows when the address says nothing: the letter's Fig. 2(a). */
-export const START = {
+const START = {
   control: "velocity",
   x: { name: "alpha_v", from: -1.6, to: 0.4, log: false },
   y: { name: "tau", from: 0, to: 12, log: false },
@@ -17,11 +20,31 @@ export const START = {
 
 /** The first word of every address that this page understands. */
 const VERSION = "1";
-/** A table of friction that is longer has no place in an address. */
+/** A table of friction that takes more characters has no place in an address. */
 const LONGEST_TABLE = 1500;
 
 const number = (text) => (text.trim() === "" ? NaN : Number(text));
 const numbers = (text) => text.split(",").map(number);
+
+/** A table as speeds and coefficients, `v:mu,…`; one that cannot be read as it stands. */
+function tableText({ law, table }) {
+  if (law !== "table") return "";
+  try {
+    const { speeds, mu_k } = tableOf(table);
+    return speeds.map((v, k) => `${v}:${mu_k[k]}`).join(",");
+  } catch {
+    return table.trim();
+  }
+}
+
+/** Whether the friction law of a view is too long for its address. */
+export const leavesTable = (state) => !state.map && tableText(state).length > LONGEST_TABLE;
+
+/** A table from an address, in lines. */
+const tableFrom = (text) =>
+  /^[^,:\s]+:[^,:\s]+(,[^,:\s]+:[^,:\s]+)*$/.test(text)
+    ? text.replace(/,/g, "\n").replace(/:/g, ", ")
+    : text;
 
 /**
  * The fragment of the address of a view.
@@ -44,58 +67,54 @@ export function addressOf(state, parameters) {
       if (range) put(key, range.join(","));
     for (const key of ["xlog", "ylog"]) if (map[key]) put(key, 1);
     for (const [name, index] of Object.entries(map.at ?? {})) put(`at.${name}`, index);
-    if (map.point) put("cell", map.point.join(","));
   } else {
     put("control", state.control);
     put("x", axis(state.x));
     put("y", axis(state.y));
     for (const name of parameters) if (name in state.values) put(name, state.values[name]);
     if (state.law !== "none") put("law", state.law);
-    if (state.law === "table" && state.table.length <= LONGEST_TABLE) {
-      put(
-        "table",
-        state.table
-          .trim()
-          .replace(/[ \t]*\n[ \t]*/g, ";")
-          .replace(/[ \t]+/g, ""),
-      );
-    }
+    const table = tableText(state);
+    if (table.length <= LONGEST_TABLE && table) put("table", table);
     if (state.units) put("units", state.units);
     if (state.show !== START.show) put("show", state.show);
     if (state.point) put("at", state.point.join(","));
   }
   if (state.start) put("start", state.start.join(","));
-  const plain = (text) => encodeURIComponent(text).replace(/%2C/g, ",").replace(/%3B/g, ";");
+  const plain = (text) => encodeURIComponent(text).replace(/%2C/g, ",").replace(/%3A/g, ":");
   return `#${parts.map(([key, value]) => `${key}=${plain(value)}`).join("&")}`;
 }
 
-/** Keys of an address that are no parameters. */
-const WORDS = new Set([
-  "v",
-  "control",
-  "x",
-  "y",
-  "law",
-  "table",
-  "units",
-  "show",
-  "at",
-  "start",
-  "map",
-  "field",
-  "xr",
-  "yr",
-  "xlog",
-  "ylog",
-  "slice",
-  "cell",
-]);
+/** An axis as an address says it; null if it says none. */
+function axisOf(text) {
+  if (text === null) return null;
+  const [name, from, to, scale] = text.split(",");
+  return { name, from: number(from ?? ""), to: number(to ?? ""), log: scale === "log" };
+}
 
-function axisOf(text, otherwise) {
-  const [name, from, to, log] = (text ?? "").split(",");
-  const ends = [number(from ?? ""), number(to ?? "")];
-  if (!/^[a-z_0-9]+$/.test(name) || !(ends[0] < ends[1])) return otherwise;
-  return { name, from: ends[0], to: ends[1], log: log === "log" };
+/** Sets the axes of a view where there can be such ones. */
+function readAxes(state, said, catalogue, notes) {
+  const known = parametersOf(state, catalogue);
+  const highest = highestOf(state.table);
+  for (const [key, beside, title] of [
+    ["x", "y", "across"],
+    ["y", "x", "upwards"],
+  ]) {
+    const axis = axisOf(said.get(key));
+    if (!axis) continue;
+    if (!known.includes(axis.name)) {
+      notes.push(`the axis ${title}, "${axis.name}", is no parameter of this model`);
+      continue;
+    }
+    const wrong = catalogue.wrong(axis);
+    if (wrong) {
+      notes.push(`the axis ${title}, ${axis.name} from ${axis.from} to ${axis.to}: ${wrong}`);
+      state[key] = catalogue.axis(axis.name, state, state[beside], highest);
+    } else {
+      state[key] = axis;
+    }
+  }
+  if (state.x.name === state.y.name) notes.push("both axes are the same");
+  catalogue.mendAxes(state, known, highest);
 }
 
 const pairOf = (text) => {
@@ -103,48 +122,68 @@ const pairOf = (text) => {
   return pair.length === 2 && pair.every(Number.isFinite) ? pair : null;
 };
 
+/** What is shown of a map, as an address says it. */
+function mapOf(said) {
+  const get = (key) => said.get(key);
+  const at = [...said].filter(([key]) => key.startsWith("at."));
+  const named = (key) => (/^[a-z_0-9]+$/.test(get(key) ?? "") ? get(key) : null);
+  return {
+    id: get("map"),
+    field: named("field"),
+    x: named("x"),
+    y: named("y"),
+    slice: named("slice"),
+    xr: pairOf(get("xr")),
+    yr: pairOf(get("yr")),
+    xlog: get("xlog") === "1",
+    ylog: get("ylog") === "1",
+    at: Object.fromEntries(
+      at.map(([key, index]) => [key.slice(3), Math.max(0, number(index) || 0)]),
+    ),
+  };
+}
+
 /**
- * The view of an address; what it does not say, or not in an understandable way, is as at the start.
+ * The view of an address; what it does not say, or not in an understandable way, is as at the
+ * start, and `notes` tell of it.
  * @param {string} fragment
+ * @param {import("./catalogue.js").Catalogue} catalogue
  */
-export function stateOf(fragment) {
+export function stateOf(fragment, catalogue) {
   const said = new URLSearchParams(fragment.replace(/^#/, ""));
   const get = (key) => said.get(key);
+  const notes = [];
   const state = { ...START, x: { ...START.x }, y: { ...START.y }, values: { ...START.values } };
-  if (get("v") !== VERSION) return state;
-  state.start = pairOf(get("start"));
-  if (/^[0-9a-f]{16}$/.test(get("map") ?? "")) {
-    const at = [...said].filter(([key]) => key.startsWith("at."));
-    const named = (key) => (/^[a-z_0-9]+$/.test(get(key) ?? "") ? get(key) : null);
-    state.map = {
-      id: get("map"),
-      field: named("field"),
-      x: named("x"),
-      y: named("y"),
-      slice: named("slice"),
-      xr: pairOf(get("xr")),
-      yr: pairOf(get("yr")),
-      xlog: get("xlog") === "1",
-      ylog: get("ylog") === "1",
-      at: Object.fromEntries(
-        at.map(([key, index]) => [key.slice(3), Math.max(0, number(index) || 0)]),
-      ),
-      point: pairOf(get("cell")),
-    };
+  state.notes = notes;
+  if (get("v") !== VERSION) {
+    if ([...said].length > 0) notes.push("it is none of this version of the page");
     return state;
   }
-  if (["velocity", "load", "mixed"].includes(get("control"))) state.control = get("control");
-  state.x = axisOf(get("x"), state.x);
-  state.y = axisOf(get("y"), state.y);
-  if (get("law")) state.law = get("law");
-  if (get("table")) state.table = get("table").replace(/;/g, "\n");
-  if (get("units")) state.units = get("units");
-  if (get("show")) state.show = get("show");
-  state.point = pairOf(get("at"));
-  for (const [key, text] of said) {
-    const value = number(text);
-    if (!WORDS.has(key) && /^[a-z_0-9]+$/.test(key) && Number.isFinite(value))
-      state.values[key] = value;
+  state.start = pairOf(get("start"));
+  if (/^[0-9a-f]{16}$/.test(get("map") ?? "")) {
+    state.map = mapOf(said);
+    return state;
   }
+  for (const [key, what, offered] of [
+    ["control", "control", Object.keys(GAINS)],
+    ["law", "friction law", ["none", ...catalogue.laws.map(({ name }) => name)]],
+    ["units", "units", Object.keys(UNITS)],
+    ["show", "field", SHOWN],
+  ]) {
+    const value = get(key);
+    if (value === null) continue;
+    if (offered.includes(value)) state[key] = value;
+    else notes.push(`"${value}" is no ${what} of the live chart`);
+  }
+  if (get("table")) state.table = tableFrom(get("table"));
+  else if (state.law === "table") notes.push("its table was too long: paste it again");
+  for (const name of parametersOf(state, catalogue)) {
+    if (get(name) === null) continue;
+    const [value, about] = [number(get(name)), catalogue.about(name)];
+    if (value >= about.range[0] && value <= about.range[1]) state.values[name] = value;
+    else notes.push(`${name} = ${get(name)} is outside its range: ${about.allowed}`);
+  }
+  readAxes(state, said, catalogue, notes);
+  state.point = pairOf(get("at"));
   return state;
 }

@@ -1,30 +1,16 @@
 // Texts in TOML for what is set on the page: the same words as in sweep and case files.
 
+import { GAINS } from "./catalogue.js";
+
 /** Parameters of the block, its spring and its load. */
 export const MODEL = ["mass", "stiffness", "normal_load"];
-const GAINS = { velocity: ["alpha_v"], load: ["alpha_n"], mixed: ["alpha_v", "alpha_n"] };
-
-/** Where nothing else is said. */
-export const VALUES = {
-  mu_prime: -0.3,
-  mu_k: 1,
-  v0: 0.35,
-  mu0: 0.5,
-  v_s: 0.5,
-  mu_s: 1,
-  alpha_v: -0.33,
-  alpha_n: -2,
-  tau: 4.15,
-  mass: 1,
-  stiffness: 1,
-  normal_load: 1,
-};
 
 /** The parameters on which what is shown depends, in the order in which they are set. */
-export function parametersOf(state, laws) {
-  const law = laws.find(({ name }) => name === state.law);
+export function parametersOf(state, catalogue) {
   // Of three that say the same, the page sets two.
-  const described = (law?.parameters ?? []).filter((name) => name !== "mu_prime_rest");
+  const described = (catalogue.law(state.law)?.parameters ?? []).filter(
+    (name) => name !== "mu_prime_rest",
+  );
   const sliding = state.law === "none" ? ["mu_prime", "mu_k"] : ["v0", ...described, "mu_s"];
   return [...sliding, ...GAINS[state.control], "tau", ...MODEL];
 }
@@ -32,29 +18,61 @@ export function parametersOf(state, laws) {
 const ofLaw = (name) => ["mu0", "v_s", "mu_s"].includes(name);
 const line = (name, value) => `${name} = ${value}\n`;
 
-/** The points of a friction law from two columns: v and μ_K. */
+/** The points of a friction law from two columns, v and μ_K, and the lines on which they stand. */
 export function tableOf(text) {
-  const rows = text
-    .trim()
-    .split(/\r?\n/)
-    .filter((row) => row.trim() && !/^\s*[#%a-z]/i.test(row));
-  const pairs = rows.map((row) =>
-    row
-      .trim()
-      .split(/[\s,;]+/)
-      .map(Number),
-  );
-  const wrong = pairs.findIndex(
-    (pair) => pair.length < 2 || !pair.slice(0, 2).every(Number.isFinite),
-  );
-  if (wrong >= 0) throw new RangeError(`line ${wrong + 1} of the table is no pair of numbers`);
-  if (pairs.length < 2) throw new RangeError("the table needs two points or more: v, μ_K");
-  return { speeds: pairs.map(([v]) => v), mu_k: pairs.map(([, mu]) => mu) };
+  const table = { speeds: [], mu_k: [], lines: [] };
+  let begun = false;
+  for (const [k, row] of text
+    .replace(/^\ufeff/, "")
+    .split(/\r\n|\r|\n/)
+    .entries()) {
+    const said = row.trim();
+    if (!said || /^[#%]/.test(said)) continue;
+    // Words may stand above the columns, and nowhere else.
+    const isHead = !begun && /^["\p{L}]/u.test(said);
+    begun = true;
+    if (isHead) continue;
+    const fields = said.split(/\s*[,;]\s*|\s+/);
+    const pair = fields.map((field) => (field === "" ? NaN : Number(field)));
+    if (pair.length !== 2 || !pair.every(Number.isFinite)) {
+      throw new RangeError(
+        `line ${k + 1} of the table, "${said.slice(0, 40)}", is not two numbers, v and μ_K, ` +
+          "with decimal points",
+      );
+    }
+    table.speeds.push(pair[0]);
+    table.mu_k.push(pair[1]);
+    table.lines.push(k + 1);
+  }
+  if (table.lines.length < 2) throw new RangeError("the table needs two points or more: v, μ_K");
+  return table;
+}
+
+/** The largest μ_K of a table as far as it can be read. */
+export function highestOf(text) {
+  try {
+    return Math.max(...tableOf(text).mu_k);
+  } catch {
+    return 0;
+  }
+}
+
+/**
+ * The line of a pasted table where slipmap finds a mistake; none where that is elsewhere.
+ * @param {{span?: number[], text?: string}} error a place in what was asked, in bytes of UTF-8
+ * @param {string} table
+ */
+export function lineOfMistake({ span, text }, table) {
+  if (!span || text === undefined) return null;
+  const before = new TextDecoder().decode(new TextEncoder().encode(text).slice(0, span[0]));
+  const row = before.slice(before.lastIndexOf("\n") + 1);
+  if (!/^(speeds|mu_k) = \[/.test(row)) return null;
+  return tableOf(table).lines[row.split(",").length - 1] ?? null;
 }
 
 /** The tables [friction] and [units]. */
-function tablesOf(state, names) {
-  const value = (name) => state.values[name] ?? VALUES[name];
+function tablesOf(state, catalogue, names) {
+  const value = (name) => catalogue.value(state, name);
   let text = "";
   if (state.law !== "none") {
     text += `\n[friction]\nlaw = "${state.law}"\n`;
@@ -75,10 +93,11 @@ function tablesOf(state, names) {
 }
 
 /** The table [fixed] of parameters, without those that are as if not given. */
-function fixedOf(state, names, given = {}) {
-  const ones = [...MODEL, "mu_k"];
-  const value = (name) => given[name] ?? state.values[name] ?? VALUES[name];
-  const kept = names.filter((name) => !ofLaw(name) && !(ones.includes(name) && value(name) === 1));
+function fixedOf(state, catalogue, names) {
+  const value = (name) => catalogue.value(state, name);
+  const usual = (name) =>
+    [...MODEL, "mu_k"].includes(name) && value(name) === catalogue.about(name).default;
+  const kept = names.filter((name) => !ofLaw(name) && !usual(name));
   return kept.map((name) => line(name, value(name))).join("");
 }
 
@@ -87,13 +106,13 @@ const withFixed = (text) => (text ? `[fixed]\n${text}` : "");
 /**
  * The sweep file of the chart.
  * @param {object} state see state.js
- * @param {object[]} laws
+ * @param {import("./catalogue.js").Catalogue} catalogue
  * @param {[number, number]} points along x and y
  * @param {string[]} fields
  */
-export function sweepOf(state, laws, points, fields) {
+export function sweepOf(state, catalogue, points, fields) {
   const axes = [state.x, state.y];
-  const names = parametersOf(state, laws).filter((name) =>
+  const names = parametersOf(state, catalogue).filter((name) =>
     axes.every((axis) => axis.name !== name),
   );
   const described = axes.map(({ name, from, to, log }, i) => {
@@ -104,25 +123,24 @@ export function sweepOf(state, laws, points, fields) {
   const list = fields.map((field) => `"${field}"`).join(", ");
   return (
     `fields = [${list}]\n${curves}\n[axes]\n${described.join("")}\n` +
-    withFixed(fixedOf(state, names)) +
-    tablesOf(state, names)
+    withFixed(fixedOf(state, catalogue, names)) +
+    tablesOf(state, catalogue, names)
   );
 }
 
 /** What is asked at a point of the chart: `point`, `vc` or, with a start, `motion`. */
-export function pointTexts(state, laws, point) {
+export function pointTexts(state, catalogue, point) {
   const given = { [state.x.name]: point[0], [state.y.name]: point[1] };
   const at = { ...state, values: { ...state.values, ...given } };
-  const names = parametersOf(state, laws);
-  const others = [state.x.name, state.y.name].filter((name) => !names.includes(name));
-  const all = [...names, ...others];
-  const text = withFixed(fixedOf(at, all)) + tablesOf(at, all);
+  const names = parametersOf(state, catalogue);
+  const tables = tablesOf(at, catalogue, names);
+  const text = withFixed(fixedOf(at, catalogue, names)) + tables;
   if (state.law === "none") return { point: text, vc: null, motion: null };
-  const without = all.filter((name) => name !== "v0");
+  const without = names.filter((name) => name !== "v0");
   return {
     point: text,
-    vc: withFixed(fixedOf(at, without)) + tablesOf(at, all),
+    vc: withFixed(fixedOf(at, catalogue, without)) + tables,
     motion: text,
-    v0: at.values.v0 ?? VALUES.v0,
+    v0: catalogue.value(at, "v0"),
   };
 }

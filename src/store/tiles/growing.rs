@@ -1,7 +1,6 @@
 //! A map of which there are only tiles yet, read as far as it is there: no file is written for it,
 //! and what was read once is not read again.
 
-use std::fs::Metadata;
 use std::path::{Path, PathBuf};
 
 use super::super::chunk_layout::ChunkLayout;
@@ -9,6 +8,7 @@ use super::super::curve_reader::{MapCurve, curves_of};
 use super::super::curve_rows::outer_values;
 use super::super::error::StoreError;
 use super::super::source::Source;
+use super::super::stamp::Stamp;
 use super::manifest::{self, Manifest};
 use super::reader::TileReader;
 use super::record::Content;
@@ -29,11 +29,8 @@ pub struct GrowingMap {
 }
 
 /// What changes when a folder's tiles are of something else than before.
-type Stamp = (u64, Option<std::time::SystemTime>);
-
 fn stamp(folder: &Path) -> Option<Stamp> {
-    let told = |found: Metadata| (found.len(), found.modified().ok());
-    folder.join(manifest::NAME).metadata().ok().map(told)
+    Stamp::of(&folder.join(manifest::NAME))
 }
 
 impl GrowingMap {

@@ -2,7 +2,9 @@
 
 use super::law_kind::LawKind;
 use super::parameter::Parameter;
+use super::search::Protocol;
 use super::setting::Setting;
+use crate::critical::switch_on::Phase;
 
 /// `slipmap COMMAND` with the friction law of a setting and its `wanted` parameters, those of
 /// default values left out: numbers in the fewest digits that are read as the same ones. None for
@@ -29,6 +31,20 @@ pub fn command_line(
         "slipmap {command}{law}{}",
         flags.collect::<String>()
     ))
+}
+
+/// `slipmap vc` with a setting, whose v0 and start mean nothing.
+#[must_use]
+pub fn vc_command(setting: &Setting, protocol: Protocol) -> Option<String> {
+    let command = match protocol {
+        Protocol::Follow => "vc".to_owned(),
+        Protocol::SwitchOn(Phase::Worst(_)) => "vc --protocol=switch-on --phase=worst".to_owned(),
+        Protocol::SwitchOn(Phase::After(time)) => {
+            format!("vc --protocol=switch-on --phase={time}")
+        }
+    };
+    let known = |p: Parameter| setting.uses(p) && !p.of_start() && p != Parameter::V0;
+    command_line(&command, setting, known)
 }
 
 #[cfg(test)]

@@ -13,12 +13,17 @@
 //!
 //! [units]                         # optional, as in sweep files
 //! ```
+//!
+//! Of the critical velocity also `protocol`, `phase` and, in `[start]`, `switch_on_phase`, as in
+//! sweep files.
 
 use super::given::{GivenParameters, read_units};
 use super::parameter::Parameter;
+use super::search::Protocol;
 use super::setting::Setting;
 use super::toml_reader::{SpecError, entries, parse};
 use super::units::Units;
+use super::vc_keys::VcKeys;
 use crate::model::Control;
 
 /// What is asked of a point.
@@ -39,6 +44,8 @@ pub struct PointSpec {
     pub setting: Setting,
     /// Their units.
     pub units: Units,
+    /// Which question about the critical velocity is asked.
+    pub protocol: Protocol,
 }
 
 impl PointSpec {
@@ -50,14 +57,25 @@ impl PointSpec {
         let document = parse(text)?;
         let mut given = GivenParameters::default();
         let mut units = Units::default();
+        let mut search = VcKeys::default();
+        let critical = of == PointOf::CriticalVelocity;
         for entry in entries(document.get_ref(), "") {
             match entry.key {
                 "fixed" => given.read_fixed(&entry)?,
                 "friction" => given.read_friction(&entry)?,
                 "units" => units = read_units(&entry)?,
+                "start" if critical => given.read_start(&entry)?,
+                "protocol" | "phase" if critical => drop(search.read(&entry)?),
+                _ if critical => {
+                    let known = ["protocol", "phase", "fixed", "friction", "start", "units"];
+                    return Err(entry.unknown(&known));
+                }
                 _ => return Err(entry.unknown(&["fixed", "friction", "units"])),
             }
         }
+        let protocol = search
+            .search(given.place(Parameter::SwitchOnPhase))?
+            .protocol;
         let mut setting = given.setting();
         match of {
             PointOf::Sliding => given.check(&[], None)?,
@@ -75,7 +93,11 @@ impl PointSpec {
             span: given.ill_posed_place().cloned(),
             ..SpecError::whole(error.to_string())
         })?;
-        Ok(Self { setting, units })
+        Ok(Self {
+            protocol: protocol.at(&setting),
+            setting,
+            units,
+        })
     }
 }
 
@@ -89,6 +111,13 @@ fn check_critical(given: &GivenParameters, setting: &mut Setting) -> Result<(), 
     if let Some(place) = given.place(Parameter::V0) {
         let message = "v0 is what is looked for";
         return Err(SpecError::at(place.clone(), message).help("leave it out"));
+    }
+    for parameter in [Parameter::XDot0, Parameter::A0] {
+        if let Some(place) = given.place(parameter) {
+            let message = format!("{} has no meaning here", parameter.name());
+            let help = "the critical velocity is that of stick-slip, which has no other start";
+            return Err(SpecError::at(place.clone(), message).help(help));
+        }
     }
     let mut optional = vec![Parameter::V0];
     if setting.control() == Control::default() {
@@ -104,6 +133,8 @@ fn check_critical(given: &GivenParameters, setting: &mut Setting) -> Result<(), 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::critical::switch_on::Phase;
+    use crate::sweep::input::search::PHASES;
 
     const LAW: &str = "[friction]\nlaw = \"weakening\"\nmu0 = 0.5\nv_s = 0.5\n";
 
@@ -114,6 +145,29 @@ mod tests {
         assert_eq!(point.setting.get(Parameter::Tau), 4.15);
         let point = PointSpec::read(LAW, PointOf::CriticalVelocity).unwrap();
         assert_eq!(point.setting.get(Parameter::Tau), 0.0);
+    }
+
+    #[test]
+    fn the_protocol_of_a_critical_velocity_is_read() {
+        let protocol = |text: &str| {
+            let text = format!("{text}[fixed]\nalpha_v = -0.33\ntau = 4.15\n{LAW}");
+            let read = PointSpec::read(&text, PointOf::CriticalVelocity);
+            read.map(|point| point.protocol)
+                .map_err(|error| error.message)
+        };
+        assert_eq!(protocol(""), Ok(Protocol::Follow));
+        let switch_on = "protocol = \"switch-on\"\n";
+        let after = |phase| Ok(Protocol::SwitchOn(Phase::After(phase)));
+        assert_eq!(protocol(switch_on), after(0.0));
+        let phase = format!("{switch_on}start = {{ switch_on_phase = 0.25 }}\n");
+        assert_eq!(protocol(&phase), after(0.25));
+        let worst = format!("{switch_on}phase = \"worst\"\n");
+        let all = Protocol::SwitchOn(Phase::Worst(PHASES));
+        assert_eq!(protocol(&worst), Ok(all));
+        assert!(protocol("phase = \"worst\"\n").is_err());
+        let start = "start = { x_dot0 = 0.25 }\n";
+        assert!(protocol(start).unwrap_err().contains("x_dot0"));
+        assert!(protocol("verify = 0.5\n").unwrap_err().contains("verify"));
     }
 
     #[test]

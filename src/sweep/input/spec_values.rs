@@ -39,7 +39,7 @@ pub(super) fn read_range(axis: &Entry, most: u64) -> Result<Vec<f64>, SpecError>
     let to = to.ok_or_else(|| missing("to"))?;
     let points = points.ok_or_else(|| missing("points"))?;
     if points > most {
-        let message = format!("points = {points} is more than the {most} that are allowed here");
+        let message = format!("points = {points} is outside its range: 2 to {most}");
         return Err(axis.error(message));
     }
     spaced(from, to, points, spacing).map_err(|e| axis.error(e.0))

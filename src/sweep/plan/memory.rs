@@ -81,10 +81,33 @@ fn pasts(plan: &Plan) -> u64 {
         (false, true) => PASTS_OF_OUTCOMES,
         (false, false) => return 0,
     };
+    count * past(longest_delay(plan))
+}
+
+/// What a motion with such a delay, τ √(κ/M), is remembered of.
+fn past(delay: f64) -> u64 {
     // Two delays are kept. What the memory of a deque may be larger than what is in it.
-    let steps = 2.0 * longest_delay(plan) * STEPS_PER_TIME + STEPS_AT_LEAST;
+    let steps = 2.0 * delay * STEPS_PER_TIME + STEPS_AT_LEAST;
     let steps = (steps.min(MOST_KEPT as f64) as u64).next_power_of_two();
-    count * steps * BYTES_OF_A_STEP as u64
+    steps * BYTES_OF_A_STEP as u64
+}
+
+/// The delay of a setting, τ √(κ/M).
+fn delay(setting: &Setting) -> f64 {
+    let unit = setting.oscillator().map_or(1.0, |o| o.time_unit());
+    setting.get(Parameter::Tau) / unit
+}
+
+/// Bytes that following one motion of a setting takes at most.
+#[must_use]
+pub fn of_motion(setting: &Setting) -> u64 {
+    PASTS_OF_OUTCOMES * past(delay(setting))
+}
+
+/// Bytes that looking for the critical velocity of a setting takes at most.
+#[must_use]
+pub fn of_critical_velocity(setting: &Setting) -> u64 {
+    PASTS_OF_CRITICAL * past(delay(setting))
 }
 
 /// The longest delay of a sweep, τ √(κ/M).
@@ -100,10 +123,6 @@ fn longest_delay(plan: &Plan) -> f64 {
         longest.set(axis.parameter, at);
         others.set(axis.parameter, other);
     }
-    let delay = |setting: &Setting| {
-        let unit = setting.oscillator().map_or(1.0, |o| o.time_unit());
-        setting.get(Parameter::Tau) / unit
-    };
     delay(&longest).max(delay(&others))
 }
 

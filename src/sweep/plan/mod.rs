@@ -45,7 +45,7 @@ const _: () = assert!(BLOCK_OF_DELAYS.is_multiple_of(BLOCK_OF_VC));
 pub const MOST_CELLS: u64 = 10_000_000_000_000;
 /// More tiles than this are refused: the list of what is done, and of where it is, takes a quarter
 /// of a gigabyte.
-const MOST_TILES: usize = 1 << 21;
+pub const MOST_TILES: usize = 1 << 21;
 /// More planes of curves and best settings than this are refused.
 const MOST_PLANES: u64 = 1_000_000;
 /// Planes up to which crossing curves are traced without being asked for.

@@ -1,6 +1,9 @@
 //! The processes of a server, as the system tells of them.
 
+#![allow(dead_code, reason = "no test uses all of it")]
+
 use std::fs;
+use std::process::Child;
 
 /// The number behind a name in what the system tells of a process.
 fn told(id: u32, name: &str) -> Option<u64> {
@@ -34,4 +37,15 @@ pub(crate) fn signal(id: u32, name: &str) {
         .args([name, &id.to_string()])
         .status();
     assert!(sent.unwrap().success());
+}
+
+/// A process that ends with this, also where a test fails while it is stopped.
+pub(crate) struct Running(pub Child);
+
+impl Drop for Running {
+    fn drop(&mut self) {
+        // It may have ended already.
+        drop(self.0.kill());
+        drop(self.0.wait());
+    }
 }

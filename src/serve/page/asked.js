@@ -1,0 +1,46 @@
+// What is asked about one text, and what came of it.
+
+import { Newest } from "./newest.js";
+
+/** The status of an answer to who does not have the token. */
+const NO_TOKEN = 401;
+
+export class Asked {
+  /**
+   * @param {(text: string, signal: AbortSignal) => Promise<any>} ask
+   * @param {(asked: Asked) => void} told that there is an answer, or an error
+   */
+  constructor(ask, told) {
+    [this.text, this.answer, this.error] = [null, null, null];
+    const tried = async (text, signal) => {
+      try {
+        return { answer: await ask(text, signal) };
+      } catch (error) {
+        if (error.name === "AbortError") throw error;
+        return { error };
+      }
+    };
+    const show = ({ answer = null, error = null }, text) => {
+      if (text !== this.text) return;
+      [this.answer, this.error] = [answer, error];
+      told(this);
+    };
+    this.requests = new Newest(tried, show, () => {});
+  }
+
+  /** Whether there will be an answer. */
+  get pending() {
+    return this.text !== null && !this.answer && !this.error;
+  }
+
+  /** Asks about a text, unless that is known; about nothing with null. */
+  want(text) {
+    const { status } = this.error ?? {};
+    // What is refused once is refused again; what went wrong may go well.
+    const refused = status >= 400 && status < 500 && status !== NO_TOKEN;
+    if (text === this.text && (text === null || this.pending || this.answer || refused)) return;
+    [this.text, this.answer, this.error, this.lost] = [text, null, null, false];
+    this.requests.stop();
+    if (text !== null) this.requests.want(text);
+  }
+}

@@ -1,0 +1,146 @@
+// What can be set: as slipmap tells it, and what the page offers of it.
+
+/** Where the page begins with other values than slipmap, or slipmap with none. */
+const VALUES = {
+  mu_prime: -0.3,
+  v0: 0.35,
+  mu0: 0.5,
+  v_s: 0.5,
+  alpha_v: -0.33,
+  alpha_n: -2,
+  tau: 4.15,
+};
+/** Ranges of sliders. */
+export const RANGES = {
+  mu_prime: [-0.95, 0.5],
+  mu_k: [0.05, 2],
+  v0: [0.01, 3],
+  mu0: [0.05, 1],
+  v_s: [0.02, 4],
+  mu_s: [0.1, 2],
+  alpha_v: [-3, 3],
+  alpha_n: [-10, 10],
+  tau: [0, 25],
+  mass: [0.1, 10],
+  stiffness: [0.1, 10],
+  normal_load: [0.1, 10],
+};
+/** Axes of a chart as they begin. */
+const AXES = {
+  mu_prime: [-0.95, 0.2],
+  mu_k: [0.05, 2],
+  v0: [0.02, 2],
+  mu0: [0.05, 1],
+  v_s: [0.05, 2],
+  mu_s: [0.2, 2],
+  alpha_v: [-1.6, 0.4],
+  alpha_n: [-3, 1],
+  tau: [0, 12],
+  mass: [0.2, 5],
+  stiffness: [0.2, 5],
+  normal_load: [0.2, 5],
+};
+/** Controls, and their gains. */
+export const GAINS = { velocity: ["alpha_v"], load: ["alpha_n"], mixed: ["alpha_v", "alpha_n"] };
+/** Fields of which a chart is made while one looks on. */
+export const SHOWN = ["n_unstable", "abscissa", "relaxation_time", "delay_margin", "frequency"];
+/** Units of force, length and time; none are given for a dimensionless model. */
+export const UNITS = {
+  "": "none, dimensionless",
+  "N,m,s": "N, m, s",
+  "mN,mm,s": "mN, mm, s",
+  "nN,nm,us": "nN, nm, µs",
+};
+/** How many times farther than its slider an axis is moved. */
+const FAR = 1000;
+/** An axis is not narrower than this part of its values: its cells would be the same numbers. */
+const NARROWEST = 1e-9;
+/** Values of less than this do not make an axis that is narrower still. */
+const SMALL = 1e-3;
+
+/** Ends of a logarithmic axis that are as near to the given ones as can be. */
+export function withoutZero([from, to]) {
+  if (from * to > 0) return [from, to];
+  const far = Math.max(Math.abs(from), Math.abs(to));
+  return to > 0 ? [far / 1000, far] : [-far, -far / 1000];
+}
+
+export class Catalogue {
+  /** @param {{parameters: object[], laws: object[], fields: object[]}} told as slipmap answers */
+  constructor({ parameters, laws, fields }) {
+    Object.assign(this, { parameters, laws, fields });
+    this.byName = new Map(parameters.map((parameter) => [parameter.name, parameter]));
+  }
+
+  /** What a parameter is. */
+  about(name) {
+    return this.byName.get(name);
+  }
+
+  law(name) {
+    return this.laws.find((law) => law.name === name);
+  }
+
+  /** The value of a parameter in a view. */
+  value(state, name) {
+    return state.values[name] ?? VALUES[name] ?? this.about(name).default;
+  }
+
+  /** How far an axis is moved and zoomed: farther there is nothing to be found, and it takes long. */
+  reach({ name, from, to }) {
+    const [low, high] = this.about(name).range;
+    const far = Math.max(...[...RANGES[name].map((end) => FAR * end), from, to].map(Math.abs));
+    return [Math.max(low, -far), Math.min(high, far)];
+  }
+
+  /** Why an axis cannot be, in words; null where it can. */
+  wrong({ name, from, to, log }) {
+    const {
+      range: [low, high],
+      allowed,
+    } = this.about(name);
+    if (!(from < to)) return "from must be less than to";
+    if (from < low || to > high) return `outside its range: ${allowed}`;
+    const size = Math.max(Math.abs(from), Math.abs(to), SMALL);
+    if (to - from < NARROWEST * size) return "too narrow";
+    return log && !(from * to > 0) ? "a logarithmic axis does not reach 0" : null;
+  }
+
+  /**
+   * An axis as it begins; of friction coefficients, where the static one is the largest.
+   * @param {string} name
+   * @param {object} state
+   * @param {{name: string, from: number, to: number}} other the other axis
+   * @param {number} highest the largest kinetic coefficient of a table
+   */
+  axis(name, state, other, highest = 0) {
+    let [from, to] = AXES[name];
+    const ends = (of) => (other.name === of ? other : { from: this.value(state, of), to: NaN });
+    if (name === "mu_s") {
+      const { from: mu0, to: most } = ends("mu0");
+      from = Math.max(from, state.law === "table" ? highest : most || mu0);
+      to = Math.max(to, 2 * from);
+    } else if (name === "mu0") {
+      to = Math.min(to, ends("mu_s").from);
+      from = Math.min(from, to / 10);
+    }
+    return { name, from, to, log: false };
+  }
+
+  /** Sets other parameters for axes that the control or the law leaves without; whether it did. */
+  mendAxes(state, names, highest) {
+    let mended = false;
+    for (const [key, beside] of [
+      ["x", "y"],
+      ["y", "x"],
+    ]) {
+      const other = state[beside];
+      if (names.includes(state[key].name) && state[key].name !== other.name) continue;
+      const wanted = [...GAINS[state.control], "tau", ...names];
+      const name = wanted.find((each) => each !== other.name);
+      state[key] = this.axis(name, state, other, highest);
+      mended = true;
+    }
+    return mended;
+  }
+}
