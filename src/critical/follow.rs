@@ -41,9 +41,12 @@ pub(super) fn from_scratch(problem: &Problem) -> Found<'_> {
 fn from_start(problem: &Problem, v0: f64) -> Result<Found<'_>, NoStart> {
     let options = &problem.options.continuation;
     let accuracy = Accuracy::of(options.tolerance);
+    let larger = v0 > problem.options.ramp.starts[0] * problem.law.mu_s();
     match end_without_memory(problem, v0, accuracy) {
         Ok(Some(ending)) => return Ok((ending.critical_velocity(Method::GrazeSlip), None)),
         Err(NoReturn::LiftOff) => return Err(NoStart::LiftOff),
+        // Looked at longer only where no start leads to stick-slip.
+        Err(NoReturn::StopMissed) if !larger => return Err(NoStart::NotSustained),
         Ok(None) | Err(_) => {}
     }
     let [crossing_step, other_step] = problem.options.transition.crossing_steps;
@@ -53,7 +56,6 @@ fn from_start(problem: &Problem, v0: f64) -> Result<Found<'_>, NoStart> {
         entry: None,
     };
     // At a larger velocity than the first one the block may stick once, and not again.
-    let larger = v0 > problem.options.ramp.starts[0] * problem.law.mu_s();
     let (mut critical, mut neighbour) = match WithHistory::released(problem, v0, accuracy) {
         Ok((branch, first)) if !larger => kinds.end(branch, first, options.largest_step),
         Err(NoReturn::LiftOff) => return Err(NoStart::LiftOff),
