@@ -101,6 +101,56 @@ fn the_reference_is_met_by_every_method() {
     }
 }
 
+/// Where v_c is not decided, ramps that an independent program made by slow steps of v0 end within
+/// its bounds; where it is decided, near it.
+#[test]
+fn slow_ramps_end_within_the_bounds() {
+    let table = include_str!("reference/vc_slow_ramps.csv");
+    let (mut open, mut ramps) = (0, 0);
+    for line in table.lines().skip(1) {
+        let words: Vec<&str> = line.split(',').collect();
+        let number = |i: usize| words[i].parse::<f64>().unwrap();
+        let law = match words[0] {
+            "coulomb" => FrictionLaw::coulomb(number(1), 1.0),
+            "weakening" => FrictionLaw::weakening(number(1), number(2), 1.0),
+            other => panic!("{other}"),
+        };
+        let (end, v0) = (words[8], number(9));
+        let found = critical_velocity(&problem(law.unwrap(), number(3), number(4), number(5)));
+        let near = 2.0 * GRAZE_PRECISION;
+        assert!(found.vc_lower * (1.0 - near) <= v0, "{line} {found:?}");
+        assert!(found.vc_upper * (1.0 + near) >= v0, "{line} {found:?}");
+        assert!(found.vc_upper < 1.5 * found.vc_lower, "{line} {found:?}");
+        assert_eq!(
+            found.transition == Transition::LiftOff,
+            end == "lift-off",
+            "{line}"
+        );
+        open += usize::from(!found.decided);
+        ramps += 1;
+    }
+    assert!(ramps >= 20 && 2 * open > ramps, "{open} of {ramps}");
+}
+
+/// What is decided is its own bounds.
+#[test]
+fn decided_velocities_bound_themselves() {
+    let fig3 = critical_velocity(&fig3a());
+    assert!(fig3.decided);
+    assert_eq!([fig3.vc_lower, fig3.vc_upper], [fig3.vc; 2]);
+    let lifted = critical_velocity(&letters(0.0, -10.0, 1.0));
+    assert_eq!(lifted.transition, Transition::LiftOff);
+    assert!(lifted.decided && lifted.sustained);
+    assert_eq!([lifted.vc_lower, lifted.vc_upper], [lifted.v_liftoff; 2]);
+    let coulomb = FrictionLaw::coulomb(0.5, 1.0).unwrap();
+    let persists = critical_velocity(&problem(coulomb.clone(), 0.0, 0.0, 1.0));
+    assert_eq!(persists.transition, Transition::Persists);
+    assert!(persists.vc_lower == 100.0 && persists.vc_upper.is_nan());
+    let never = critical_velocity(&problem(coulomb, 0.0, -100.0, 0.05));
+    assert!(never.decided && never.transition == Transition::Never);
+    assert_eq!([never.vc_lower, never.vc_upper], [0.0; 2]);
+}
+
 #[test]
 fn the_letters_figure_3() {
     for (problem, expected) in [(fig3a(), 0.344467), (letters(0.0, -10.0, 0.5), 0.021540)] {

@@ -25,6 +25,7 @@ pub fn critical_velocities(
     let mut block = Block {
         problems,
         found: vec![None; problems.len()],
+        scratch: vec![false; problems.len()],
         stopped: &stopped,
     };
     if let Some(last) = problems.len().checked_sub(1) {
@@ -33,6 +34,7 @@ pub fn critical_velocities(
             block.start(last);
         }
         block.fill(0, last, neighbour);
+        block.settle();
     }
     block.found
 }
@@ -40,6 +42,8 @@ pub fn critical_velocities(
 struct Block<'p> {
     problems: &'p [Problem],
     found: Vec<Option<CriticalVelocity>>,
+    /// Which cells were looked for from scratch.
+    scratch: Vec<bool>,
     stopped: &'p dyn Fn() -> bool,
 }
 
@@ -67,7 +71,18 @@ impl<'p> Block<'p> {
             }
         }
         self.found[cell] = Some(critical);
+        self.scratch[cell] = true;
         neighbour
+    }
+
+    /// Looks from scratch for the cells that were continued to and stayed in doubt.
+    fn settle(&mut self) {
+        for cell in 0..self.found.len() {
+            let open = self.found[cell].is_some_and(|found| !found.decided);
+            if open && !self.scratch[cell] {
+                self.start(cell);
+            }
+        }
     }
 
     /// Fills the cells between two that were found from scratch; with what leads on from the first
@@ -187,6 +202,7 @@ impl<'p> Block<'p> {
                 return (last, true);
             }
             self.found[cell] = Some(critical);
+            self.scratch[cell] = false;
             if neighbour.surprised() && cell >= checked + self.options().surprises {
                 // Where ends change as fast as that along the line, stick-slip may have another one
                 // below.
@@ -275,7 +291,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_in_doubt_at_the_end_is_so_on_the_way() {
+    fn what_is_in_doubt_at_the_end_is_so_on_the_way_until_it_is_looked_for() {
         let problems = line(4.1, 4.2, 3);
         let decided = Some(from_scratch(&problems[0]).0);
         let open = decided.map(|found| CriticalVelocity {
@@ -285,10 +301,16 @@ mod tests {
         let mut block = Block {
             problems: &problems,
             found: vec![decided, decided, open],
+            scratch: vec![true, false, true],
             stopped: &|| false,
         };
         block.doubt(0, 2);
-        let told = block.found.iter().map(|found| found.unwrap().decided);
-        assert_eq!(told.collect::<Vec<_>>(), [true, false, false]);
+        let told = |block: &Block| [0, 1, 2].map(|cell| block.found[cell].unwrap().decided);
+        assert_eq!(told(&block), [true, false, false]);
+        // That is not its last word.
+        block.settle();
+        assert_eq!(told(&block), [true, true, false]);
+        let [settled, scratch] = [block.found[1].unwrap(), from_scratch(&problems[1]).0];
+        assert_eq!(settled.vc, scratch.vc);
     }
 }

@@ -1,5 +1,6 @@
 //! What searches by simulation tell, alone and together.
 
+use super::bracket::Search;
 use super::options::RampOptions;
 use super::problem::{CriticalVelocity, GRAZE_PRECISION, Method, Problem};
 use super::ramp::{Ramped, from_low_velocity};
@@ -14,7 +15,7 @@ pub fn by_simulation(
     options: &RampOptions,
     accuracy: Accuracy,
 ) -> CriticalVelocity {
-    let ramped = from_low_velocity(problem, options, accuracy);
+    let ramped = from_low_velocity(problem, options, accuracy).ramped;
     // Where irregular stick-slip ends depends on the steps of v0 and on how long each is waited
     // for: one search does not decide it.
     let irregular = |last: &Response| last.regime == Regime::Irregular;
@@ -40,36 +41,45 @@ pub(super) fn gliding(found: &CriticalVelocity, options: &RampOptions) -> RampOp
             end * (1.0 - options.glide_end)
         },
         trials: options.glide_trials,
+        total_steps: options.glide_steps,
         ..*options
     }
 }
 
-/// What was `ramped` by a `search` with these options tells. v0 is raised slowly: an end that is
-/// another one with other steps of v0, a finer integration, or while v0 glides, is not decided.
-/// What ends by chance is where all of these tell the same. `usual` are the options without what is
-/// special to this search.
+/// What the `first` search with these options tells, and all that were made. v0 is raised slowly:
+/// an end that is another one with other steps of v0, a finer integration, or while v0 glides, is
+/// not decided. What ends by chance is where all of these tell the same. `usual` are the options
+/// without what is special to this search.
 pub(super) fn confirmed(
-    ramped: &Ramped,
+    first: Search,
     options: &RampOptions,
     usual: &RampOptions,
-    search: impl Fn(&RampOptions, f64) -> Ramped,
-) -> CriticalVelocity {
-    let critical = told(ramped, usual);
+    search: impl Fn(&RampOptions, f64) -> Search,
+) -> (CriticalVelocity, Vec<Search>) {
+    let critical = told(&first.ramped, usual);
     let other = RampOptions {
         first: options.confirm_first,
         largest: options.confirm_first,
         ..*options
     };
-    let agrees = |options: &RampOptions, tolerance: f64| {
-        let again = told(&search(options, tolerance), usual);
-        again.decided && critical.ends_like(&again)
-    };
-    CriticalVelocity {
-        decided: critical.decided
-            && agrees(&other, options.confirm_tolerance)
-            && agrees(&gliding(&critical, usual), options.tolerance),
-        ..critical
+    let glide = gliding(&critical, usual);
+    let mut decided = critical.decided;
+    let others = [
+        (other, options.confirm_tolerance),
+        (glide, options.tolerance),
+    ];
+    let mut searches = vec![first];
+    for (options, tolerance) in others {
+        let again = search(&options, tolerance);
+        let tells = told(&again.ramped, usual);
+        decided &= tells.decided && critical.ends_like(&tells);
+        searches.push(again);
     }
+    let critical = CriticalVelocity {
+        decided,
+        ..critical
+    };
+    (critical, searches)
 }
 
 /// What a search tells, to be compared with others where it ends by chance.
@@ -103,6 +113,8 @@ pub(super) fn told(ramped: &Ramped, options: &RampOptions) -> CriticalVelocity {
             };
             CriticalVelocity {
                 vc: if lost.is_some() { last.v0 } else { f64::NAN },
+                vc_lower: last.v0,
+                vc_upper: lost.map_or(f64::NAN, |lost| lost.v0),
                 // Rounding can leave less than none of a stick that vanishes.
                 stick_time: last.summary.stick_time - longer.min(last.summary.stick_time),
                 slip_time: last.summary.slip_time + longer,
@@ -237,15 +249,24 @@ mod tests {
             ramped(Some(response(v0, Regime::Periodic)), Some(lost))
         };
         let confirm = |other: f64, glided: f64| {
+            let without_motion = |ramped| Search {
+                ramped,
+                motion: None,
+                step: usual.largest,
+            };
             let search = |options: &RampOptions, tolerance: f64| {
                 if options.glide > 0.0 {
                     assert!((options.glide / 0.4 - 0.98).abs() < 1e-12);
-                    return at(glided);
+                    return without_motion(at(glided));
                 }
                 assert_eq!((options.first, tolerance), (0.2, 1e-10));
-                at(other)
+                without_motion(at(other))
             };
-            confirmed(&at(0.4), &usual, &usual, search).decided
+            let first = without_motion(at(0.4));
+            let (found, searches) = confirmed(first, &usual, &usual, search);
+            let ends = searches.iter().map(|search| search.ramped.last.unwrap().v0);
+            assert_eq!(ends.collect::<Vec<_>>(), [0.4, other, glided]);
+            found.decided
         };
         assert!(confirm(0.40001, 0.39999));
         assert!(!confirm(0.41, 0.4) && !confirm(0.4, 0.41));

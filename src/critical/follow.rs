@@ -5,6 +5,7 @@
 //! next kind; irregular stick-slip in between is crossed by simulation.
 
 use super::after_event::sequel;
+use super::bracket::{Search, bounded};
 use super::confirmation::{confirmed, gliding, told};
 use super::continuation::{Point, continue_to_checked_event, is_jump};
 use super::delay_step::Neighbour;
@@ -34,7 +35,10 @@ pub(super) fn from_scratch(problem: &Problem) -> Found<'_> {
         return (critical, None);
     }
     let found = problem.at_first_start(|v0| from_start(problem, v0));
-    found.unwrap_or_else(|| (simulated(problem), None))
+    found.unwrap_or_else(|| {
+        let (critical, searches) = simulated(problem);
+        (bounded(problem, critical, searches, &[]), None)
+    })
 }
 
 /// The critical velocity of stick-slip that is sustained at the start velocity `v0`.
@@ -43,7 +47,10 @@ fn from_start(problem: &Problem, v0: f64) -> Result<Found<'_>, NoStart> {
     let accuracy = Accuracy::of(options.tolerance);
     let larger = v0 > problem.options.ramp.starts[0] * problem.law.mu_s();
     match end_without_memory(problem, v0, accuracy) {
-        Ok(Some(ending)) => return Ok((ending.critical_velocity(Method::GrazeSlip), None)),
+        Ok(Some(ending)) => {
+            let critical = ending.critical_velocity(Method::GrazeSlip);
+            return Ok((bounded(problem, critical, Vec::new(), &[]), None));
+        }
         Err(NoReturn::LiftOff) => return Err(NoStart::LiftOff),
         // Looked at longer only where no start leads to stick-slip.
         Err(NoReturn::StopMissed) if !larger => return Err(NoStart::NotSustained),
@@ -54,7 +61,9 @@ fn from_start(problem: &Problem, v0: f64) -> Result<Found<'_>, NoStart> {
         problem,
         crossing_step,
         entry: None,
+        searches: Vec::new(),
     };
+    let mut others = Vec::new();
     // At a larger velocity than the first one the block may stick once, and not again.
     let (mut critical, mut neighbour) = match WithHistory::released(problem, v0, accuracy) {
         Ok((branch, first)) if !larger => kinds.end(branch, first, options.largest_step),
@@ -68,7 +77,9 @@ fn from_start(problem: &Problem, v0: f64) -> Result<Found<'_>, NoStart> {
         let again = kinds.again((*entry).clone());
         let glided = kinds.glide(*entry, &critical);
         critical.decided = critical.ends_like(&again) && critical.ends_like(&glided);
+        others = vec![again, glided];
     }
+    let critical = bounded(problem, critical, kinds.searches, &others);
     if let Some(neighbour) = &mut neighbour {
         neighbour.decided = critical.decided;
     }
@@ -85,6 +96,9 @@ struct Handover {
 /// What is found, and what a neighbour may start from.
 type Found<'p> = (CriticalVelocity, Option<Neighbour<'p>>);
 
+/// What is found by simulation, and the searches that told it.
+type Searched = (CriticalVelocity, Vec<Search>);
+
 /// One kind of stick-slip after the other.
 struct Kinds<'p> {
     problem: &'p Problem,
@@ -92,6 +106,8 @@ struct Kinds<'p> {
     crossing_step: f64,
     /// Where irregular stick-slip was come to first.
     entry: Option<Box<Motion>>,
+    /// The searches by simulation that came to an end.
+    searches: Vec<Search>,
 }
 
 impl<'p> Kinds<'p> {
@@ -99,8 +115,14 @@ impl<'p> Kinds<'p> {
     fn end(&mut self, branch: WithHistory<'p, Motion>, at: Point, step: f64) -> Found<'p> {
         match self.follow(branch, at, step) {
             Ok(found) => found,
-            Err(handover) => (simulated_from(self.problem, handover), None),
+            Err(handover) => (self.simulated_from(handover), None),
         }
+    }
+
+    fn simulated_from(&mut self, handover: Handover) -> CriticalVelocity {
+        let (critical, searches) = simulated_from(self.problem, handover);
+        self.searches.extend(searches);
+        critical
     }
 
     /// The end of stick-slip that a block comes to which may not stick again and again.
@@ -109,7 +131,11 @@ impl<'p> Kinds<'p> {
             Sequel::Ends(_) => Err(NoStart::NotSustained),
             Sequel::Periodic(slips) => Ok(self.end_of(motion, slips)),
             // No branch begins there.
-            Sequel::Irregular | Sequel::Undetermined(_) => Ok((simulated(self.problem), None)),
+            Sequel::Irregular | Sequel::Undetermined(_) => {
+                let (critical, searches) = simulated(self.problem);
+                self.searches.extend(searches);
+                Ok((critical, None))
+            }
         }
     }
 
@@ -122,7 +148,7 @@ impl<'p> Kinds<'p> {
         }
         let motions = vec![branch.map().clone()];
         let handover = Handover { motions, step };
-        (simulated_from(self.problem, handover), None)
+        (self.simulated_from(handover), None)
     }
 
     fn follow(
@@ -209,19 +235,28 @@ impl<'p> Kinds<'p> {
             until_periodic: true,
             ..*usual
         };
-        let (ramped, motion) = ramp::from(self.problem, motion, &options);
-        match ramped.last {
-            Some(last) if last.regime == Regime::Periodic => {
+        let search = ramp::from(self.problem, motion, &options);
+        let ramped = &search.ramped;
+        let Some(last) = ramped.last else {
+            // It was lost where it was come to.
+            let by = Method::Simulation;
+            let lost = ramped.lost.filter(|lost| lost.regime == Regime::LiftOff);
+            return Err(CriticalVelocity {
+                decided: false,
+                ..match lost {
+                    Some(lost) => CriticalVelocity::of_lift_off(lost.v0, by),
+                    None => CriticalVelocity::nothing(v0, Transition::Irregular, by),
+                }
+            });
+        };
+        match search.motion {
+            Some(motion) if last.regime == Regime::Periodic => {
                 Ok((motion, last.summary.slips as usize))
             }
-            Some(_) => Err(told(&ramped, usual)),
-            // It was lost where it was come to.
-            None => {
-                let (lost, by) = (Transition::Irregular, Method::Simulation);
-                Err(CriticalVelocity {
-                    decided: false,
-                    ..CriticalVelocity::nothing(v0, lost, by)
-                })
+            _ => {
+                let critical = told(ramped, usual);
+                self.searches.push(search);
+                Err(critical)
             }
         }
     }
@@ -242,10 +277,11 @@ impl<'p> Kinds<'p> {
         let v_max = options.v_max.min(options.glide / self.problem.law.mu_s());
         if entry.parameters().v0 < options.glide {
             let options = RampOptions { v_max, ..options };
-            let (ramped, motion) = ramp::from(self.problem, entry, &options);
-            if ramped.lost.is_some() || ramped.last.is_none() || !ramped.complete {
+            let Search { ramped, motion, .. } = ramp::from(self.problem, entry, &options);
+            let goes_on = ramped.lost.is_none() && ramped.complete;
+            let Some(motion) = motion.filter(|_| goes_on) else {
                 return told(&ramped, usual);
-            }
+            };
             entry = motion;
         }
         self.again(entry)
@@ -276,34 +312,34 @@ fn look_beyond(
 
 /// By simulation from the first of some motions in stick-slip that is sustained; from low
 /// velocities where none is.
-fn simulated_from(problem: &Problem, Handover { motions, step }: Handover) -> CriticalVelocity {
+fn simulated_from(problem: &Problem, Handover { motions, step }: Handover) -> Searched {
     let usual = &problem.options.ramp;
     for motion in motions {
         let search = |options: &RampOptions, tolerance: f64| {
             let mut motion = motion.clone();
             motion.refine(Accuracy::of(tolerance));
             let first = step * options.first;
-            ramp::from(problem, motion, &RampOptions { first, ..*options }).0
+            ramp::from(problem, motion, &RampOptions { first, ..*options })
         };
         let patient = RampOptions {
             patient: true,
             ..*usual
         };
-        let ramped = search(&patient, usual.tolerance);
-        if ramped.last.is_some() {
-            return confirmed(&ramped, &patient, usual, search);
+        let first = search(&patient, usual.tolerance);
+        if first.motion.is_some() {
+            return confirmed(first, &patient, usual, search);
         }
     }
     simulated(problem)
 }
 
 /// By simulation from low velocities on.
-fn simulated(problem: &Problem) -> CriticalVelocity {
+fn simulated(problem: &Problem) -> Searched {
     let usual = &problem.options.ramp;
     let search = |options: &RampOptions, tolerance: f64| {
         ramp::from_low_velocity(problem, options, Accuracy::of(tolerance))
     };
-    confirmed(&search(usual, usual.tolerance), usual, usual, search)
+    confirmed(search(usual, usual.tolerance), usual, usual, search)
 }
 
 #[cfg(test)]
@@ -382,7 +418,8 @@ mod tests {
             motions: vec![motion(0.5), motion(0.3)],
             step: 0.02,
         };
-        let found = simulated_from(&problem, handover);
+        let (found, searches) = simulated_from(&problem, handover);
+        assert_eq!(searches.len(), 3);
         assert_eq!(found.method, Method::Simulation);
         assert!((found.vc / 0.344467 - 1.0).abs() < 1e-5, "{found:?}");
         assert!(found.decided && found.transition == Transition::Grazing);

@@ -86,7 +86,8 @@
 //!
 //! Simulation (`ramp`, `regime`) holds stick-slip at one v0 after the other until it is known what
 //! it comes to; v0 is raised by steps that are halved where it is lost, and its answer has to be
-//! confirmed by other steps (`confirmation`). Along a line of delays the ends at the last delays
+//! confirmed by other steps (`confirmation`). Where these disagree, v_c is not decided; it lies
+//! between the lowest end that any of them came to and the highest (`bracket`). Along a line of delays the ends at the last delays
 //! predict the next one (`delay_step`, [`along_delay`]). By the other protocol, [`switch_on`],
 //! control is switched on at a phase of uncontrolled stick-slip. Coulomb friction under load
 //! control has a closed form as τ → 0: [`limit`], the letter's Fig. 4.
@@ -100,6 +101,7 @@
 
 mod after_event;
 pub mod along_delay;
+mod bracket;
 mod confirmation;
 mod continuation;
 mod delay_step;

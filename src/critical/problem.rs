@@ -80,10 +80,17 @@ impl Problem {
         None
     }
 
+    /// How many times as long velocity control makes a stick that is much longer than a delay.
+    ///
+    /// The spring is pulled at ȧ = v0 + α_v (a(t) − a(t − τ)) there, which goes to v0/(1 − α_v τ).
+    pub(super) fn slower(&self) -> f64 {
+        (1.0 - self.alpha_v * self.tau).max(1.0)
+    }
+
     /// How long to wait for a motion's outcome at `v0`: transients, many delays, and many of
     /// the longest cycles.
     pub(super) fn patience(&self, v0: f64) -> f64 {
-        let longest_cycle = 2.0 * self.law.mu_s() / v0 + 10.0;
+        let longest_cycle = 2.0 * self.law.mu_s() * self.slower() / v0 + 10.0;
         let [always, delays, cycles] = self.options.ramp.patience;
         always + delays * self.tau + cycles * longest_cycle
     }
@@ -169,6 +176,13 @@ impl Method {
 pub struct CriticalVelocity {
     /// The largest v0 at which stick-slip persists; 0 where it never does.
     pub vc: f64,
+    /// The largest v0 at which stick-slip was seen to persist by every step size that was tried:
+    /// v_c where that is decided, `v_liftoff` where the model ends, the end of the range where
+    /// stick-slip persists. NaN where lift-off comes before any stick-slip.
+    pub vc_lower: f64,
+    /// The smallest v0, above v_c, at which stick-slip was lost for good or ended by lift-off; v_c
+    /// or `v_liftoff` where it is decided. NaN where neither was seen up to the end of the range.
+    pub vc_upper: f64,
     /// How it ends there.
     pub transition: Transition,
     /// What gave the answer.
@@ -197,6 +211,30 @@ impl CriticalVelocity {
         }
     }
 
+    /// The smallest v0 above which stick-slip is known not to survive; NaN where there is none, or
+    /// the model ends there.
+    #[must_use]
+    pub fn free_above(&self) -> f64 {
+        match self.transition {
+            Transition::LiftOff => f64::NAN,
+            _ => self.vc_upper,
+        }
+    }
+
+    /// The same with its own bounds: the answer is decided, and v0 was looked at up to `v_max`.
+    pub(super) fn bounded_by_itself(self, v_max: f64) -> Self {
+        let end = match self.sustained || self.transition == Transition::Never {
+            true => self.end_of_stick_slip(),
+            false => f64::NAN,
+        };
+        let persists = self.transition == Transition::Persists;
+        Self {
+            vc_lower: if persists { v_max } else { end },
+            vc_upper: end,
+            ..self
+        }
+    }
+
     /// Whether `other` says the same of the end of stick-slip: at v_c, or the velocity of lift-off,
     /// within [`GRAZE_PRECISION`].
     ///
@@ -222,6 +260,8 @@ impl CriticalVelocity {
     pub(super) fn nothing(vc: f64, transition: Transition, method: Method) -> Self {
         Self {
             vc,
+            vc_lower: vc,
+            vc_upper: vc,
             transition,
             method,
             v_liftoff: f64::NAN,
@@ -236,6 +276,8 @@ impl CriticalVelocity {
     /// N ≤ 0 from `v0` on.
     pub(super) fn of_lift_off(v0: f64, method: Method) -> Self {
         Self {
+            vc_lower: v0,
+            vc_upper: v0,
             v_liftoff: v0,
             n_min: 0.0,
             ..Self::nothing(f64::NAN, Transition::LiftOff, method)
@@ -260,6 +302,7 @@ pub const GRAZE_PRECISION: f64 = 1e-4;
 mod tests {
     use super::super::synthetic::{letters, problem};
     use super::*;
+    use crate::slip::motion::{Event, Mode};
 
     #[test]
     fn sliding_of_figure_3_is_counted() {
@@ -295,8 +338,34 @@ mod tests {
     #[test]
     fn low_velocities_are_waited_for_longer() {
         let problem = letters(-0.33, 0.0, 4.0);
-        // 600 and 20 delays, and 30 cycles of 2 μ_S/v0 and 10.
-        assert!((problem.patience(0.1) - (680.0 + 30.0 * 30.0)).abs() < 1e-9);
+        // 600 and 20 delays, and 30 cycles of 2 μ_S/v0 (1 − α_v τ) and 10.
+        assert!((problem.patience(0.1) - (680.0 + 30.0 * (20.0 * 2.32 + 10.0))).abs() < 1e-9);
+    }
+
+    /// While a block sticks for long its spring is pulled at v0/(1 − α_v τ).
+    #[test]
+    fn velocity_control_makes_sticks_longer() {
+        for (alpha_v, tau, v0) in [(-1.0, 2.0, 1e-3), (-0.33, 4.15, 1e-4)] {
+            let problem = letters(alpha_v, 0.0, tau);
+            let mut motion = problem.released(v0, Accuracy::of(1e-8));
+            while motion.mode() != Mode::Stick {
+                motion.advance(f64::INFINITY);
+            }
+            // Until the slip before has left the delay, and its echoes have faded.
+            let until = motion.t + 10.0 * tau;
+            while motion.t < until {
+                motion.advance(until);
+            }
+            let stuck = (motion.t, motion.a);
+            while motion.advance(f64::INFINITY) != Some(Event::Release) {}
+            let pulled = (motion.a - stuck.1) / (motion.t - stuck.0);
+            assert!(
+                (pulled * problem.slower() / v0 - 1.0).abs() < 0.1,
+                "{pulled} {v0}"
+            );
+        }
+        assert_eq!(letters(0.5, 0.0, 1.0).slower(), 1.0);
+        assert_eq!(letters(0.0, -3.0, 1.0).slower(), 1.0);
     }
 
     #[test]

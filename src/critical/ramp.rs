@@ -5,6 +5,7 @@
 //! so it may have been the size of the step that lost it. It is come nearer to and tried once more
 //! from close by ([`StepControl`]), until the two v0 are as near as asked for.
 
+use super::bracket::Search;
 use super::continuation::times_jump;
 use super::event_functions::{Event, EventFunctions};
 use super::options::{ContinuationOptions, RampOptions};
@@ -53,12 +54,13 @@ pub(super) fn from_low_velocity(
     problem: &Problem,
     options: &RampOptions,
     accuracy: Accuracy,
-) -> Ramped {
+) -> Search {
     let mut lost: Option<Response> = None;
     let found = problem.at_first_start(|v0| {
-        let (ramped, _) = from(problem, problem.released(v0, accuracy), options);
+        let search = from(problem, problem.released(v0, accuracy), options);
+        let ramped = &search.ramped;
         if ramped.last.is_some() {
-            return Ok(ramped);
+            return Ok(search);
         }
         // Where stick-slip was lost otherwise before, a lift-off at a larger start is that of the
         // start alone.
@@ -73,14 +75,24 @@ pub(super) fn from_low_velocity(
             false => Err(NoStart::NotSustained),
         }
     });
-    found.unwrap_or_else(|| Ramped::none(lost))
+    found.unwrap_or_else(|| Search {
+        ramped: Ramped::none(lost),
+        motion: None,
+        step: options.largest,
+    })
 }
 
-/// Follows a motion in stick-slip of `problem` from the v0 it has; with it where it came to.
-pub(super) fn from(problem: &Problem, motion: Motion, options: &RampOptions) -> (Ramped, Motion) {
+/// Follows a motion in stick-slip of `problem` from the v0 it has.
+pub(super) fn from(problem: &Problem, motion: Motion, options: &RampOptions) -> Search {
     let mut block = Simulated { problem, motion };
     let ramped = raise(&mut block, options, &problem.options.continuation);
-    (ramped, block.motion)
+    let motion = ramped.last.is_some().then_some(block.motion);
+    let step = options.largest;
+    Search {
+        ramped,
+        motion,
+        step,
+    }
 }
 
 /// Follows stick-slip from the v0 it has, while v0 is raised, and leaves it where it comes to.

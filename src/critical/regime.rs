@@ -199,7 +199,7 @@ fn response_at(problem: &Problem, motion: &mut Motion, v0: f64, how: &Observatio
     let start = motion.t;
     let limits = Limits {
         horizon: start + problem.patience(v0),
-        steps: options.steps,
+        steps: (options.steps as f64 * problem.slower()) as u64,
         stable_abscissa: match how.waiting {
             Waiting::Patient => problem.stable_abscissa(v0),
             _ => None,

@@ -57,6 +57,10 @@ pub struct Windows {
     /// From and to, increasing; the first from is `v_min` where it survives there already, the last
     /// to `v_max` likewise.
     pub survives: Vec<[f64; 2]>,
+    /// The largest v0 at which it was seen to survive, and the smallest above it from which on it
+    /// was seen not to: the topmost edge, or the velocities that were tried beside it where it is
+    /// not known. The first is 0 where it survives nowhere, the second NaN where it is not seen.
+    pub top_within: [f64; 2],
     /// The smallest v0 at which N ≤ 0 occurs; none where it does not.
     pub v_liftoff: Option<f64>,
     /// Whether something was told at every v0, and no edge is that of irregular stick-slip.
@@ -198,6 +202,7 @@ pub fn windows(problem: &Problem, phase: Phase, scan: &Scan, accuracy: Accuracy)
         if trials.spent > scan.total_steps {
             walk.found.decided = false;
             walk.found.complete = false;
+            walk.found.top_within[1] = f64::NAN;
             break;
         }
         let here = (v0(i), trials.at(v0(i)));
@@ -225,6 +230,11 @@ impl Walk {
             open: regime.persists().then_some(v0),
             found: Windows {
                 survives: Vec::new(),
+                top_within: match regime {
+                    _ if regime.persists() => [v0, f64::NAN],
+                    Regime::Undecided => [0.0, f64::NAN],
+                    _ => [0.0; 2],
+                },
                 v_liftoff: lifts(regime).then_some(v0),
                 decided: regime != Regime::Undecided,
                 complete: true,
@@ -236,12 +246,25 @@ impl Walk {
     fn to(&mut self, here: Tried, trials: &mut Trials, precision: f64) {
         let before = std::mem::replace(&mut self.before, here);
         self.found.decided &= here.1 != Regime::Undecided;
+        let within = &mut self.found.top_within;
+        match here.1 {
+            regime if regime.persists() => *within = [here.0, f64::NAN],
+            Regime::Undecided => within[1] = f64::NAN,
+            _ if within[1].is_nan() => within[1] = here.0,
+            _ => {}
+        }
         if before.1.persists() != here.1.persists() {
             let sides = edge(trials, (before, here), precision, Regime::persists);
-            self.found.decided &= sides.iter().all(|side| certain(side.1));
+            let certain = sides.iter().all(|side| certain(side.1));
+            self.found.decided &= certain;
             let edge = between(sides);
             match self.open.take() {
-                Some(from) => self.found.survives.push([from, edge]),
+                Some(from) => {
+                    self.found.survives.push([from, edge]);
+                    if certain && here.1 != Regime::Undecided {
+                        self.found.top_within = [edge; 2];
+                    }
+                }
                 None => self.open = Some(edge),
             }
         }
@@ -312,6 +335,7 @@ mod tests {
         assert!(found.decided && found.complete && found.v_liftoff.is_none());
         assert_eq!((found.survives.len(), found.survives[0][0]), (1, 1.0));
         assert!((found.top().unwrap() - 4.1414).abs() < 1e-4, "{found:?}");
+        assert_eq!(found.top_within, [found.top().unwrap(); 2]);
         let few = Scan {
             total_steps: 10,
             ..scan
@@ -342,6 +366,9 @@ mod tests {
         walk.open = Some(1.5);
         walk.before = (2.0, Regime::Periodic);
         assert_eq!(walk.end().survives, [[1.5, 2.0]]);
+        assert_eq!(Walk::from((1.0, Regime::Ended)).found.top_within, [0.0; 2]);
+        let open = Walk::from((1.0, Regime::Irregular)).found.top_within;
+        assert!(open[0] == 1.0 && open[1].is_nan());
         assert!(certain(Regime::Slips) && !certain(Regime::Irregular));
         assert!(lifts(Regime::LiftOff) && !lifts(Regime::Ended));
         assert_eq!(

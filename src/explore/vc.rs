@@ -20,6 +20,12 @@ use crate::sweep::input::source::Source;
 pub struct CriticalVelocity {
     /// v_c.
     pub vc: Option<f64>,
+    /// The largest v0 at which stick-slip was seen to persist by every step size that was tried;
+    /// v_c where that is decided.
+    pub vc_lower: Option<f64>,
+    /// The smallest v0 at which it was lost for good or ended by lift-off; v_c where that is
+    /// decided. None where neither was seen up to the end of the range.
+    pub vc_upper: Option<f64>,
     /// Which question it answers: `follow` or `switch-on`.
     pub protocol: &'static str,
     /// How stick-slip ends there.
@@ -51,6 +57,8 @@ impl CriticalVelocity {
         let critical = found.critical;
         Ok(Self {
             vc: finite(critical.vc),
+            vc_lower: finite(critical.vc_lower),
+            vc_upper: finite(critical.vc_upper),
             protocol: protocol.name(),
             outcome: OUTCOMES[usize::from(number_of_outcome(&critical))],
             windows: found.windows,

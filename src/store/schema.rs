@@ -2,8 +2,9 @@
 //! format.
 
 /// Version of the layout described here, which is written. 2: [`DEGREE_OF_STABILITY`] of every
-/// curve. 3: indexes with checksums, and a seal behind the file.
-pub const FORMAT_VERSION: i32 = 3;
+/// curve. 3: indexes with checksums, and a seal behind the file. 4: the fields `vc_lower` and
+/// `vc_upper`, by which `class` and `v_smooth` decide.
+pub const FORMAT_VERSION: i32 = 4;
 /// The first version with a seal.
 pub const SEALED_SINCE: i32 = 3;
 /// The oldest version that is still read; readers refuse older and newer ones.

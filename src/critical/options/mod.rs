@@ -6,12 +6,14 @@
 #[macro_use]
 mod table;
 mod along_delay;
+mod bracket;
 mod continuation;
 mod ramp;
 mod switch_on;
 mod transition;
 
 pub use along_delay::AlongDelayOptions;
+pub use bracket::BracketOptions;
 pub use continuation::ContinuationOptions;
 pub use ramp::RampOptions;
 pub use switch_on::SwitchOnOptions;
@@ -28,6 +30,8 @@ pub struct Options {
     pub along_delay: AlongDelayOptions,
     /// Simulation while v0 is raised.
     pub ramp: RampOptions,
+    /// Bounds where it is not decided.
+    pub bracket: BracketOptions,
     /// Switching control on.
     pub switch_on: SwitchOnOptions,
 }
@@ -40,6 +44,7 @@ impl Options {
             ("transition", TransitionOptions::NAMES),
             ("along_delay", AlongDelayOptions::NAMES),
             ("ramp", RampOptions::NAMES),
+            ("bracket", BracketOptions::NAMES),
             ("switch_on", SwitchOnOptions::NAMES),
         ];
         let names = |(table, names): (&'static str, &'static [&'static str])| {
@@ -59,6 +64,7 @@ impl Options {
             "transition" => self.transition.scale(name, factor),
             "along_delay" => self.along_delay.scale(name, factor),
             "ramp" => self.ramp.scale(name, factor),
+            "bracket" => self.bracket.scale(name, factor),
             "switch_on" => self.switch_on.scale(name, factor),
             _ => false,
         }
@@ -71,6 +77,7 @@ impl Options {
             && self.transition.within_ranges()
             && self.along_delay.within_ranges()
             && self.ramp.within_ranges()
+            && self.bracket.within_ranges()
             && self.switch_on.within_ranges()
     }
 }

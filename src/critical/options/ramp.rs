@@ -22,7 +22,8 @@ options! {
         v_max: f64 = 100.0, in 1e-3..=1e6;
         /// How well cycles have to repeat near the end.
         repeated: f64 = 1e-6, in 1e-12..=1e-2;
-        /// The most steps of the integrator at one v0.
+        /// The most steps of the integrator at one v0; more where velocity control makes sticks
+        /// longer.
         steps: u64 = 50_000, in 100..=1_000_000_000;
         /// The most at all v0 together: some seconds.
         total_steps: u64 = 3_000_000, in 100..=1_000_000_000_000;
@@ -100,6 +101,8 @@ options! {
         confirm_tolerance: f64 = 1e-10, in 1e-14..=1e-3;
         /// Steps of v0 that glides.
         glide_step: f64 = 0.01, in 1e-6..=1.0;
+        /// The most steps of the integrator of such a search: it stops at many more v0.
+        glide_steps: u64 = 30_000_000, in 100..=1_000_000_000_000;
         /// How far below the end v0 glides no longer.
         glide_end: f64 = 0.02, in 1e-6..=0.9;
         /// The most v0 on the way: more than lead from the lowest to the largest.

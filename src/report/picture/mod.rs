@@ -516,7 +516,7 @@ mod tests {
     fn fields_of_the_critical_velocity_are_drawn() {
         let case = Case::new(
             "fields = [\"n_unstable\", \"vc\", \"outcome\", \"method\", \"class\", \"windows\", \
-            \"v_liftoff\", \"stick_time\", \"v_smooth\"]\n\
+            \"v_liftoff\", \"stick_time\", \"vc_lower\", \"vc_upper\", \"v_smooth\"]\n\
              [axes]\nmu_prime_rest = [-1, -0.5]\nalpha_n = [-9, 0, 2]\ntau = [0.4, 1]\n[fixed]\nv0 \
              = 0.1\n\
              [friction]\nlaw = \"weakening\"\nmu0 = 0.5\n",

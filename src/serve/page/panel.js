@@ -22,6 +22,13 @@ const NO_COMMAND = "There is no command line for a table; see the TOML.";
 const NO_V0 = "This map gives no v0: there is no sliding to look at, only the critical velocity.";
 const NO_POINT = "This map is not about single points of the model.";
 
+/** Where `v0` lies, by the bounds of a critical velocity. */
+function placed(v0, found) {
+  if (found.vc_lower !== null && v0 <= found.vc_lower) return " (v0 lies below it)";
+  if (found.vc_upper !== null && v0 > found.vc_upper) return " (v0 lies above it)";
+  return found.vc === null ? "" : " (where v0 lies is not known)";
+}
+
 /** The units that a text is written in, as "force,length,time"; none of a dimensionless one. */
 function unitsOf(text) {
   const names = ["force", "length", "time"].map(
@@ -184,11 +191,14 @@ export class Panel {
     else if (!found) one("…");
     if (!found) return;
     const velocity = (v) => this.#quantity(v, [0, 1, -1]);
-    const below = found.vc !== null && v0 !== undefined;
-    const verdict = below ? (v0 < found.vc ? " (v0 lies below it)" : " (v0 lies above it)") : "";
+    const bound = (v) => (v === null ? "no velocity seen" : velocity(v));
+    const verdict = v0 === undefined ? "" : placed(v0, found);
     const [stuck, slipping] = [found.stick_time, found.slip_time].map((t) => this.#time(t));
     terms(element("vc"), [
-      ["critical velocity", found.vc === null ? "none" : velocity(found.vc) + verdict],
+      ["critical velocity", (found.vc === null ? "none" : velocity(found.vc)) + verdict],
+      ...(found.decided
+        ? []
+        : [["between", `${bound(found.vc_lower)} and ${bound(found.vc_upper)}`]]),
       [
         "stick-slip ends by",
         `${found.outcome}${ENDS[found.outcome] ? `: ${ENDS[found.outcome]}` : ""}`,

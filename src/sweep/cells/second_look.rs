@@ -202,6 +202,8 @@ fn critical_velocity(
     let asked = vc::asked(setting)?;
     let found = CriticalVelocity {
         vc: (stored.value)(Field::Vc),
+        vc_lower: f64::NAN,
+        vc_upper: f64::NAN,
         transition,
         method: Method::Simulation,
         v_liftoff: match transition {

@@ -177,10 +177,7 @@ impl Asked {
             return Class::Unstable;
         }
         match protocol {
-            Protocol::Follow => {
-                let v_max = protocol.v_max() * problem.law.mu_s() * units.velocity;
-                beside_sliding(v0, &found.critical, v_max)
-            }
+            Protocol::Follow => beside_sliding(v0, &found.critical),
             Protocol::SwitchOn(phase) => {
                 let phase = in_motion_units(phase, units);
                 let accuracy = Accuracy::of(SWITCH_ON_ACCURACY);
@@ -196,14 +193,15 @@ impl Asked {
     }
 
     /// The velocity above which, up to `v_max` (in units of μ_S N0/√(κM)), sliding is linearly
-    /// stable and free of stick-slip, whose critical velocity is `vc`; in units of the setting, as
-    /// `vc`. NaN where sliding is not stable at `v_max`, or there is no `vc`.
+    /// stable and free of stick-slip, which does not survive above `free`, v_c or its upper bound;
+    /// in units of the setting, as `free`. NaN where sliding is not stable at `v_max`, or there is
+    /// no `free`.
     #[must_use]
-    pub fn v_smooth(&self, vc: f64, v_max: f64) -> f64 {
+    pub fn v_smooth(&self, free: f64, v_max: f64) -> f64 {
         let Self { problem, units } = self;
         let unit = problem.law.mu_s();
         let stable = |v0: f64| problem.count(v0).stable();
-        let (lowest, mut above) = (vc / units.velocity, v_max * unit);
+        let (lowest, mut above) = (free / units.velocity, v_max * unit);
         if lowest.is_nan() || !stable(above) {
             return f64::NAN;
         }
@@ -217,7 +215,7 @@ impl Asked {
             }
             above = below;
         }
-        vc
+        free
     }
 }
 
@@ -264,10 +262,16 @@ fn switched_on(found: &Windows, v_max: f64, velocity: f64) -> CriticalWindows {
         Some(top) if top >= v_max * (1.0 - 1e-9) => (f64::NAN, Transition::Persists),
         Some(top) => (top, Transition::Lost),
     };
+    let [vc_lower, vc_upper] = match transition {
+        Transition::LiftOff => [f64::NAN; 2],
+        _ => found.top_within,
+    };
     let edge = |v: f64| v * velocity;
     CriticalWindows {
         critical: CriticalVelocity {
             vc: edge(vc),
+            vc_lower: edge(vc_lower),
+            vc_upper: edge(vc_upper),
             transition,
             method: Method::Simulation,
             v_liftoff: edge(found.v_liftoff.unwrap_or(f64::NAN)),
@@ -285,6 +289,8 @@ fn switched_on(found: &Windows, v_max: f64, velocity: f64) -> CriticalWindows {
 fn in_units(found: &CriticalVelocity, units: &CaseUnits) -> CriticalVelocity {
     CriticalVelocity {
         vc: found.vc * units.velocity,
+        vc_lower: found.vc_lower * units.velocity,
+        vc_upper: found.vc_upper * units.velocity,
         v_liftoff: found.v_liftoff * units.velocity,
         stick_time: found.stick_time * units.time,
         slip_time: found.slip_time * units.time,
@@ -329,18 +335,26 @@ fn tells(again: &CriticalVelocity) -> bool {
     again.decided || !matches!(again.transition, Transition::Persists | Transition::Never)
 }
 
-/// The class of `v0` by the protocol `follow`, up to `v_max`, where sliding at `v0` is linearly
-/// stable.
-fn beside_sliding(v0: f64, critical: &CriticalVelocity, v_max: f64) -> Class {
-    match critical.transition {
-        _ if !critical.decided => Class::Undecided,
-        Transition::LiftOff if v0 >= critical.v_liftoff => Class::LiftOff,
-        Transition::LiftOff if !critical.sustained => Class::Stable,
-        Transition::LiftOff => Class::Bistable,
-        Transition::Persists if v0 > v_max => Class::Undecided,
-        Transition::Persists => Class::Bistable,
-        _ if v0 > critical.vc => Class::Stable,
-        _ => Class::Bistable,
+/// The class of `v0` by the protocol `follow`, where sliding at `v0` is linearly stable: below both
+/// bounds of the critical velocity, above both, or not known.
+fn beside_sliding(v0: f64, critical: &CriticalVelocity) -> Class {
+    let lifts_off = critical.transition == Transition::LiftOff;
+    if lifts_off && !critical.sustained {
+        // Without bounds: there is no stick-slip below.
+        return match v0 >= critical.v_liftoff {
+            _ if !critical.decided => Class::Undecided,
+            true => Class::LiftOff,
+            false => Class::Stable,
+        };
+    }
+    if lifts_off && v0 >= critical.vc_upper {
+        Class::LiftOff
+    } else if v0 <= critical.vc_lower {
+        Class::Bistable
+    } else if v0 > critical.vc_upper {
+        Class::Stable
+    } else {
+        Class::Undecided
     }
 }
 
@@ -355,8 +369,12 @@ mod tests {
     use crate::model::FrictionLaw;
 
     fn critical(transition: Transition, vc: f64, v_liftoff: f64) -> CriticalVelocity {
+        let end = if v_liftoff.is_nan() { vc } else { v_liftoff };
+        let persists = transition == Transition::Persists;
         CriticalVelocity {
             vc,
+            vc_lower: if persists { 100.0 } else { end },
+            vc_upper: end,
             transition,
             method: Method::Simulation,
             v_liftoff,
@@ -381,14 +399,36 @@ mod tests {
             (Transition::Persists, none, none, 101.0, Class::Undecided),
         ] {
             let mut critical = critical(transition, vc, v_liftoff);
-            assert_eq!(
-                beside_sliding(at, &critical, 100.0),
-                class,
-                "{transition:?} {at}"
-            );
+            assert_eq!(beside_sliding(at, &critical), class, "{transition:?} {at}");
             critical.decided = false;
-            let unknown = beside_sliding(at, &critical, 100.0);
-            assert_eq!(unknown, Class::Undecided);
+            (critical.vc_lower, critical.vc_upper) = (0.0, none);
+            assert_eq!(beside_sliding(at, &critical), Class::Undecided);
+        }
+    }
+
+    /// What is not decided is known outside its bounds.
+    #[test]
+    fn bounds_tell_the_class() {
+        for (transition, v_liftoff, classes) in [
+            (
+                Transition::Irregular,
+                f64::NAN,
+                [Class::Bistable, Class::Undecided, Class::Stable],
+            ),
+            (
+                Transition::LiftOff,
+                0.3,
+                [Class::Bistable, Class::Undecided, Class::LiftOff],
+            ),
+        ] {
+            let critical = CriticalVelocity {
+                vc_lower: 0.29,
+                vc_upper: 0.32,
+                decided: false,
+                ..critical(transition, 0.3, v_liftoff)
+            };
+            let found = [0.28, 0.3, 0.33].map(|v0| beside_sliding(v0, &critical));
+            assert_eq!(found, classes);
         }
     }
 
@@ -399,7 +439,7 @@ mod tests {
         let mut lifted = critical(Transition::LiftOff, f64::NAN, 0.2);
         lifted.sustained = false;
         for (v0, class) in [(0.1, Class::Stable), (0.2, Class::LiftOff)] {
-            assert_eq!(beside_sliding(v0, &lifted, 100.0), class);
+            assert_eq!(beside_sliding(v0, &lifted), class);
         }
     }
 
@@ -478,6 +518,7 @@ mod tests {
     #[test]
     fn windows_tell_the_critical_velocity() {
         let windows = |survives: Vec<[f64; 2]>, v_liftoff| Windows {
+            top_within: [survives.last().map_or(0.0, |window| window[1]); 2],
             survives,
             v_liftoff,
             decided: true,
@@ -490,6 +531,8 @@ mod tests {
             (0.8, Transition::Lost)
         );
         assert_eq!(found.windows, [[0.002, 0.4], [0.6, 0.8]]);
+        let bounds = |found: &CriticalWindows| [found.critical.vc_lower, found.critical.vc_upper];
+        assert_eq!(bounds(&found), [0.8; 2]);
         let found = switched_on(&windows(vec![[0.1, 10.0]], None), 10.0, 1.0);
         assert!(found.critical.vc.is_nan() && found.critical.transition == Transition::Persists);
         assert_eq!(found.windows.len(), 1);

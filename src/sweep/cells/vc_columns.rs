@@ -122,7 +122,7 @@ impl VcColumns {
         let sampled = is_sampled(here.number, self.search.verify);
         let phase = here.setting.get(Parameter::SwitchOnPhase);
         let found = self.found(&asked, protocol, phase, here.i);
-        let vc = found.critical.vc;
+        let free = found.critical.free_above();
         let mut status = if found.critical.decided {
             0
         } else {
@@ -138,7 +138,7 @@ impl VcColumns {
         let cell = VcCell {
             class: classed.then(|| asked.class_at(v0, protocol, found, tolerance)),
             v_smooth: match smooth {
-                true => asked.v_smooth(vc, protocol.v_max()),
+                true => asked.v_smooth(free, protocol.v_max()),
                 false => f64::NAN,
             },
             found,

@@ -252,7 +252,8 @@ catalogue! {
             comment: Some(
                 "stable: sliding is linearly stable, without stick-slip beside it; bistable: \
                  stick-slip persists beside it; lift-off: linearly stable, but stick-slip leads to \
-                 N <= 0 at v0 or below; undecided: marginal, or not known",
+                 N <= 0 at v0 or below; undecided: marginal, between vc_lower and vc_upper, or not \
+                 known",
             ),
             ..ROW
         };
@@ -435,6 +436,37 @@ catalogue! {
             ),
             ..ROW
         };
+        /// The lower bound of the critical velocity: the largest v0 at which stick-slip was seen
+        /// to persist.
+        VcLower = Row {
+            name: "vc_lower",
+            long_name: "largest v0 at which stick-slip was seen to persist",
+            short_name: "critical velocity, at least",
+            measure: VELOCITY,
+            source: Source::Critical(|cell| cell.found.critical.vc_lower),
+            spread: Spread::Magnitudes,
+            comment: Some(
+                "by every step size of v0 that was tried; vc where that is decided, v_liftoff \
+                 where N <= 0 ends stick-slip, v_max where it survives there; no value where \
+                 N <= 0 comes before any stick-slip",
+            ),
+            ..ROW
+        };
+        /// The upper bound of the critical velocity: the smallest v0 at which stick-slip was lost
+        /// for good.
+        VcUpper = Row {
+            name: "vc_upper",
+            long_name: "smallest v0 at which stick-slip was lost for good or ended by N <= 0",
+            short_name: "critical velocity, at most",
+            measure: VELOCITY,
+            source: Source::Critical(|cell| cell.found.critical.vc_upper),
+            spread: Spread::Magnitudes,
+            comment: Some(
+                "vc where that is decided, v_liftoff where N <= 0 ends stick-slip; no value where \
+                 neither was seen up to v_max",
+            ),
+            ..ROW
+        };
         /// The smallest v0 at which N ≤ 0 occurs.
         VLiftoff = Row {
             name: "v_liftoff",
@@ -475,7 +507,8 @@ catalogue! {
             source: Source::Critical(|cell| cell.v_smooth),
             spread: Spread::Magnitudes,
             comment: Some(
-                "up to v_max; no value where sliding is not stable at v_max or there is no vc",
+                "up to v_max; above vc_upper where vc is not decided; no value where sliding is \
+                 not stable at v_max or neither is known",
             ),
             ..ROW
         };

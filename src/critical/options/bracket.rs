@@ -1,0 +1,31 @@
+//! Options of the bounds of a critical velocity that is not decided.
+
+options! {
+    /// How the bounds that several searches give are looked at longer. Distances are relative.
+    BracketOptions {
+        /// How far the lower bound lies below the lowest end: at least, and as a share of the
+        /// spread of the ends of slow searches. Still slower ones end up to that much lower.
+        below: [f64; 2] = [0.03, 1.0], in 0.0..=10.0;
+        /// How far above the highest end it is seen whether stick-slip is lost, at first. Twice as
+        /// far every time that it is not.
+        above: f64 = 0.005, in 1e-6..=1.0;
+        /// The largest distance from one such v0 to the next.
+        largest_above: f64 = 0.3, in 1e-3..=10.0;
+        /// The most of them.
+        most_above: u32 = 40, in 1..=10_000;
+        /// From so many phases of a cycle it has to be lost.
+        phases: u32 = 6, in 1..=1_000;
+        /// The most steps of the integrator from one phase to the next.
+        steps_of_cycle: u32 = 20_000, in 10..=10_000_000;
+        /// Where the slow search begins, over the lowest end that is known.
+        slow_from: f64 = 0.2, in 1e-6..=1.0;
+        /// The largest step of v0 in it.
+        slow_step: f64 = 0.05, in 1e-4..=1.0;
+        /// The cycles after which stick-slip that does not repeat is irregular in it, and so many
+        /// more for each unit of the delay. What ends by chance ends at a lower v0 the longer it
+        /// is held at each.
+        slow_cycles: [f64; 2] = [60.0, 2.0], in 0.0..=1e5;
+        /// The most steps of the integrator in it: some seconds.
+        slow_steps: u64 = 10_000_000, in 100..=1_000_000_000_000;
+    }
+}
