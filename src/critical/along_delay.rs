@@ -25,6 +25,7 @@ pub fn critical_velocities(
     let mut block = Block {
         problems,
         found: vec![None; problems.len()],
+        ways: vec![None; problems.len()],
         stopped: &stopped,
     };
     if let Some(last) = problems.len().checked_sub(1) {
@@ -40,6 +41,8 @@ pub fn critical_velocities(
 struct Block<'p> {
     problems: &'p [Problem],
     found: Vec<Option<CriticalVelocity>>,
+    /// The kinds of stick-slip on the way, where a cell was found from scratch.
+    ways: Vec<Option<Vec<usize>>>,
     stopped: &'p dyn Fn() -> bool,
 }
 
@@ -67,6 +70,7 @@ impl<'p> Block<'p> {
             }
         }
         self.found[cell] = Some(critical);
+        self.ways[cell] = neighbour.as_ref().map(|neighbour| neighbour.way.clone());
         neighbour
     }
 
@@ -79,16 +83,7 @@ impl<'p> Block<'p> {
         mut neighbour: Option<Neighbour<'p>>,
     ) -> Option<Neighbour<'p>> {
         while first < last && !(self.stopped)() {
-            let options = self.options();
-            let one_kind = neighbour
-                .as_ref()
-                .is_none_or(|neighbour| neighbour.one_kind);
-            let next = first
-                + if one_kind {
-                    options.segment
-                } else {
-                    options.short_segment
-                };
+            let next = first + self.segment(first, last);
             if next < last {
                 let there = self.start(next);
                 neighbour = match (self.fill(first, next, neighbour), there) {
@@ -124,6 +119,20 @@ impl<'p> Block<'p> {
             }
         }
         None
+    }
+
+    /// The length of a segment from `first` on, towards `last`.
+    fn segment(&self, first: usize, last: usize) -> usize {
+        let options = self.options();
+        let longest = match &self.ways[first] {
+            Some(way) if way.len() > 1 => options.short_segment,
+            _ => options.segment,
+        };
+        match self.ways[first] == self.ways[last] {
+            true => longest,
+            // Somewhere between them it changes, and ends may open or close there.
+            false => longest.min((last - first).div_ceil(2)),
+        }
     }
 
     /// Looks where a continuation that led from one cell to another, but does not meet it, meets
@@ -285,6 +294,7 @@ mod tests {
         let mut block = Block {
             problems: &problems,
             found: vec![decided, decided, open],
+            ways: vec![None; 3],
             stopped: &|| false,
         };
         block.doubt(0, 2);

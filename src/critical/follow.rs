@@ -54,6 +54,7 @@ fn from_start(problem: &Problem, v0: f64) -> Result<Found<'_>, NoStart> {
         problem,
         crossing_step,
         entry: None,
+        way: Vec::new(),
     };
     // At a larger velocity than the first one the block may stick once, and not again.
     let (mut critical, mut neighbour) = match WithHistory::released(problem, v0, accuracy) {
@@ -92,6 +93,8 @@ struct Kinds<'p> {
     crossing_step: f64,
     /// Where irregular stick-slip was come to first.
     entry: Option<Box<Motion>>,
+    /// The slips in a period of each kind up to there, and 0 for irregular stick-slip.
+    way: Vec<usize>,
 }
 
 impl<'p> Kinds<'p> {
@@ -132,7 +135,8 @@ impl<'p> Kinds<'p> {
         mut step: f64,
     ) -> Result<Found<'p>, Handover> {
         let options = &self.problem.options.continuation;
-        for kind in 0..options.most_kinds {
+        self.pass(from.orbit.period.cycles().len());
+        for _ in 0..options.most_kinds {
             let start = branch.map().clone();
             let (located, at) = continue_to_checked_event(&mut branch, from, step, options);
             let ending = located
@@ -140,7 +144,7 @@ impl<'p> Kinds<'p> {
             let seen = ending.map(|ending| (ending, verify(self.problem, &mut branch, &ending)));
             let (sequel, motion, beyond) = match seen {
                 Ok((ending, Sequel::Ends(_))) => {
-                    return Ok(self.ended(branch, at, &ending, kind));
+                    return Ok(self.ended(branch, at, &ending));
                 }
                 Ok((ending, Sequel::Undetermined(_))) if ending.event.may_end() => {
                     look_beyond(self.problem, &branch, &at)
@@ -167,10 +171,14 @@ impl<'p> Kinds<'p> {
             let Some(first) = branch.first_point() else {
                 return Err(handover(&before, options.first_step));
             };
-            step = match is_jump(&at.orbit.period, &first.orbit.period, 0.0, options) {
+            let jumps = is_jump(&at.orbit.period, &first.orbit.period, 0.0, options);
+            step = match jumps {
                 true => options.first_step,
                 false => options.step_past_graze,
             };
+            if jumps || slips != at.orbit.period.cycles().len() {
+                self.pass(slips);
+            }
             from = first;
         }
         Err(Handover {
@@ -179,24 +187,31 @@ impl<'p> Kinds<'p> {
         })
     }
 
-    /// The end that the last kind of stick-slip has, after so many others.
+    /// One more kind on the way: what comes after irregular stick-slip does so by chance.
+    fn pass(&mut self, slips: usize) {
+        if self.entry.is_none() {
+            self.way.push(slips);
+        }
+    }
+
+    /// The end that the last kind of stick-slip has.
     fn ended(
         &self,
         branch: WithHistory<'p, Motion>,
         at: Point,
         ending: &Ending,
-        others: usize,
     ) -> Found<'p> {
         let ending = ending.of_stick_slip();
         let critical = ending.critical_velocity(Method::GrazeOrbit);
         let mut neighbour = Neighbour::new(self.problem, branch, at, &ending);
-        neighbour.one_kind = others == 0 && self.entry.is_none();
+        neighbour.way.clone_from(&self.way);
         (critical, Some(neighbour))
     }
 
     /// Through irregular stick-slip, to where it repeats again; else to its end.
     fn cross(&mut self, motion: Motion) -> Result<(Motion, usize), CriticalVelocity> {
         if self.entry.is_none() {
+            self.pass(0);
             self.entry = Some(Box::new(motion.clone()));
         }
         let v0 = motion.parameters().v0;
