@@ -195,12 +195,7 @@ impl<'p> Kinds<'p> {
     }
 
     /// The end that the last kind of stick-slip has.
-    fn ended(
-        &self,
-        branch: WithHistory<'p, Motion>,
-        at: Point,
-        ending: &Ending,
-    ) -> Found<'p> {
+    fn ended(&self, branch: WithHistory<'p, Motion>, at: Point, ending: &Ending) -> Found<'p> {
         let ending = ending.of_stick_slip();
         let critical = ending.critical_velocity(Method::GrazeOrbit);
         let mut neighbour = Neighbour::new(self.problem, branch, at, &ending);
