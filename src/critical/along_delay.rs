@@ -2,10 +2,11 @@
 //!
 //! Such a continuation may go on along a branch of ends that stick-slip raised from low velocities
 //! does not come to. So the cells at both ends of a segment are looked for from scratch, and what
-//! is continued from the one has to meet the other; else the segment is halved. Where a kind of
-//! stick-slip ends, so does a segment, and where ends change fast more cells are looked for from
-//! scratch. A line is cut into blocks for that, so that the answer in a cell depends on its block
-//! alone.
+//! is continued from the one has to meet the other; else the segment is halved. So it is where
+//! stick-slip raised from low velocities is of other kinds on its way to the one than to the other:
+//! what it passes at both may be its end in between. Where a kind of stick-slip ends, so does a
+//! segment, and where ends change fast more cells are looked for from scratch. A line is cut into
+//! blocks for that, so that the answer in a cell depends on its block alone.
 
 use super::delay_step::Neighbour;
 use super::follow::from_scratch;
@@ -26,6 +27,7 @@ pub fn critical_velocities(
         problems,
         found: vec![None; problems.len()],
         scratch: vec![false; problems.len()],
+        ways: vec![None; problems.len()],
         stopped: &stopped,
     };
     if let Some(last) = problems.len().checked_sub(1) {
@@ -44,6 +46,9 @@ struct Block<'p> {
     found: Vec<Option<CriticalVelocity>>,
     /// Which cells were looked for from scratch.
     scratch: Vec<bool>,
+    /// The kinds of stick-slip on the way to its end, where a cell was found from scratch and leads
+    /// on to others.
+    ways: Vec<Option<Vec<usize>>>,
     stopped: &'p dyn Fn() -> bool,
 }
 
@@ -72,6 +77,7 @@ impl<'p> Block<'p> {
         }
         self.found[cell] = Some(critical);
         self.scratch[cell] = true;
+        self.ways[cell] = neighbour.as_ref().map(|neighbour| neighbour.way.clone());
         neighbour
     }
 
@@ -94,16 +100,7 @@ impl<'p> Block<'p> {
         mut neighbour: Option<Neighbour<'p>>,
     ) -> Option<Neighbour<'p>> {
         while first < last && !(self.stopped)() {
-            let options = self.options();
-            let one_kind = neighbour
-                .as_ref()
-                .is_none_or(|neighbour| neighbour.one_kind);
-            let next = first
-                + if one_kind {
-                    options.segment
-                } else {
-                    options.short_segment
-                };
+            let next = first + self.segment(first, last);
             if next < last {
                 let there = self.start(next);
                 neighbour = match (self.fill(first, next, neighbour), there) {
@@ -139,6 +136,20 @@ impl<'p> Block<'p> {
             }
         }
         None
+    }
+
+    /// The length of a segment from `first` on, towards `last`.
+    fn segment(&self, first: usize, last: usize) -> usize {
+        let options = self.options();
+        let longest = match &self.ways[first] {
+            Some(way) if way.len() > 1 => options.short_segment,
+            _ => options.segment,
+        };
+        match self.ways[first] == self.ways[last] {
+            true => longest,
+            // Somewhere between them it changes, and ends may open or close there.
+            false => longest.min((last - first).div_ceil(2)),
+        }
     }
 
     /// Looks where a continuation that led from one cell to another, but does not meet it, meets
@@ -193,6 +204,9 @@ impl<'p> Block<'p> {
             let Some(mut critical) = found else {
                 return (seen, seen == checked);
             };
+            if self.jumps(cell, &critical) {
+                return (seen, seen == checked);
+            }
             critical.decided = neighbour.decided;
             if cell == last {
                 if self.found[last].is_none_or(|there| !meets(&there, &critical, self.options())) {
@@ -216,6 +230,16 @@ impl<'p> Block<'p> {
         }
         (last, true)
     }
+
+    /// Whether the end `there` is at another slip than that of the cell before: the branch has got
+    /// to another one, and which cells end by which has to be looked for from scratch.
+    fn jumps(&self, cell: usize, there: &CriticalVelocity) -> bool {
+        let change = |from: f64, to: f64| (to / from - 1.0).abs();
+        let expected = change(self.problems[cell - 1].tau, self.problems[cell].tau);
+        let before = self.found[cell - 1].map_or(f64::NAN, |before| before.slip_time);
+        // Not for NaN: a lift-off has no such time.
+        change(before, there.slip_time) > self.options().jump_of_slip + expected
+    }
 }
 
 /// Whether two answers are one.
@@ -231,9 +255,10 @@ fn meets(a: &CriticalVelocity, b: &CriticalVelocity, options: &AlongDelayOptions
 
 #[cfg(test)]
 mod tests {
-    use super::super::synthetic::letters;
+    use super::super::synthetic::{letters, problem};
     use super::super::work;
     use super::*;
+    use crate::model::FrictionLaw;
     use std::cell::Cell;
 
     fn line(from: f64, to: f64, cells: usize) -> Vec<Problem> {
@@ -259,6 +284,19 @@ mod tests {
         }
         assert!(3 * along.trials < alone.trials, "{along:?} {alone:?}");
         assert!(3 * along.steps < alone.steps, "{along:?} {alone:?}");
+    }
+
+    /// From τ = 4.214 to 4.272 stick-slip ends by a graze at 0.234, which at other delays it passes
+    /// on its way to another one, at 0.34 to 0.39.
+    #[test]
+    fn an_end_that_opens_below_for_a_few_cells_is_found() {
+        let law = FrictionLaw::weakening(0.5, 0.4288, 1.0).unwrap();
+        let taus = [4.14, 4.16, 4.18, 4.2, 4.22, 4.24, 4.26, 4.34, 4.36];
+        let problems = taus.map(|tau| problem(law.clone(), -0.3888, 0.0, tau));
+        let found = critical_velocities(&problems, || false).into_iter();
+        let low = found.map(|one| one.is_some_and(|one| one.decided && one.vc < 0.24));
+        let known = taus.map(|tau| (4.22..4.27).contains(&tau));
+        assert_eq!(low.collect::<Vec<_>>(), known);
     }
 
     #[test]
@@ -291,6 +329,25 @@ mod tests {
     }
 
     #[test]
+    fn a_branch_that_gets_to_another_slip_jumps() {
+        let problems = line(4.1, 4.11, 2);
+        let one = from_scratch(&problems[0]).0;
+        let block = Block {
+            problems: &problems,
+            found: vec![Some(one), None],
+            scratch: vec![true, false],
+            ways: vec![None; 2],
+            stopped: &|| false,
+        };
+        let jumps = |change: f64| {
+            let slip_time = one.slip_time * change;
+            block.jumps(1, &CriticalVelocity { slip_time, ..one })
+        };
+        assert!(jumps(0.9) && jumps(1.06));
+        assert!(!jumps(0.97) && !jumps(1.03) && !jumps(f64::NAN));
+    }
+
+    #[test]
     fn what_is_in_doubt_at_the_end_is_so_on_the_way_until_it_is_looked_for() {
         let problems = line(4.1, 4.2, 3);
         let decided = Some(from_scratch(&problems[0]).0);
@@ -302,6 +359,7 @@ mod tests {
             problems: &problems,
             found: vec![decided, decided, open],
             scratch: vec![true, false, true],
+            ways: vec![None; 3],
             stopped: &|| false,
         };
         block.doubt(0, 2);

@@ -8,7 +8,7 @@
 //! goes up from the highest end of slow searches, to a v0 at which stick-slip is lost from every
 //! phase of its cycle.
 
-use super::confirmation::gliding;
+use super::confirmation::{gliding, told};
 use super::options::{BracketOptions, RampOptions};
 use super::problem::{CriticalVelocity, Problem};
 use super::ramp::{self, Ramped, from_low_velocity};
@@ -36,23 +36,50 @@ pub(super) fn bounded(
 ) -> CriticalVelocity {
     if critical.decided {
         let v_max = problem.options.ramp.v_max * problem.law.mu_s();
-        return critical.bounded_by_itself(v_max);
+        let by_itself = critical.bounded_by_itself(v_max);
+        // What chance had a part in, or what takes long to show, is decided where slow steps come
+        // to it as well.
+        let long = problem.slower() > problem.options.bracket.long_sticks;
+        let doubtful = |search: &Search| search.ramped.chance || long;
+        if others.is_empty() && !searches.iter().any(doubtful) {
+            return by_itself;
+        }
+        let slowly = slow(problem, by_itself.vc_lower);
+        if critical.ends_like(&told(&slowly.ramped, &problem.options.ramp)) {
+            return by_itself;
+        }
+        let open = CriticalVelocity {
+            decided: false,
+            ..critical
+        };
+        searches.push(slowly);
+        return between(problem, open, searches, others);
     }
     if searches.is_empty() {
         searches.extend(usual_and_gliding(problem, &critical));
     }
+    searches.push(slow(problem, lowest(&searches, &critical, others)));
+    between(problem, critical, searches, others)
+}
+
+/// The lowest v0 to which any of the searches or answers came.
+fn lowest(searches: &[Search], critical: &CriticalVelocity, others: &[CriticalVelocity]) -> f64 {
+    let ends = others.iter().chain([critical]);
+    let ends = ends.map(CriticalVelocity::end_of_stick_slip);
+    let persist = searches.iter().map(Search::persists);
+    // Not those that are NaN.
+    ends.chain(persist).fold(f64::INFINITY, f64::min)
+}
+
+/// The bounds that searches and answers give.
+fn between(
+    problem: &Problem,
+    critical: CriticalVelocity,
+    searches: Vec<Search>,
+    others: &[CriticalVelocity],
+) -> CriticalVelocity {
     let answers = || others.iter().chain([&critical]);
-    let ends = || {
-        answers()
-            .map(CriticalVelocity::end_of_stick_slip)
-            .filter(|end| end.is_finite())
-    };
-    let lowest = |searches: &[Search]| {
-        let persist = searches.iter().map(Search::persists);
-        ends().chain(persist).fold(f64::INFINITY, f64::min)
-    };
-    searches.push(slow(problem, lowest(&searches)));
-    let lowest = lowest(&searches);
+    let lowest = lowest(&searches, &critical, others);
     let lifts_off = |answer: &CriticalVelocity| answer.transition == Transition::LiftOff;
     let lifted = lifts_off(&critical);
     let alike = answers().all(|answer| lifts_off(answer) == lifted)

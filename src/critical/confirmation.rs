@@ -166,6 +166,7 @@ mod tests {
             lost,
             complete: true,
             by_chance: false,
+            chance: false,
             vanish: false,
             graze_step: f64::INFINITY,
         }

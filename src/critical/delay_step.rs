@@ -43,8 +43,8 @@ pub(super) struct Neighbour<'o> {
     slip_seen: f64,
     /// Whether it is known that stick-slip leads there.
     pub decided: bool,
-    /// Whether stick-slip is of one kind all the way from low velocities.
-    pub one_kind: bool,
+    /// The kinds of stick-slip on the way from low velocities, by their slips in a period.
+    pub way: Vec<usize>,
 }
 
 /// The number of ends that a prediction is made of.
@@ -94,13 +94,14 @@ impl<'o> Neighbour<'o> {
             unseen: 0,
             slip_seen: f64::NAN,
             decided: true,
-            one_kind: true,
+            way: Vec::new(),
         }
     }
 
     /// This end, with what is known of one that was come to from scratch at this delay.
     pub(super) fn like(mut self, other: &Self) -> Self {
-        (self.decided, self.one_kind) = (other.decided, other.one_kind);
+        self.decided = other.decided;
+        self.way.clone_from(&other.way);
         self
     }
 

@@ -32,7 +32,7 @@ pub(super) fn from_scratch(problem: &Problem) -> Found<'_> {
     if problem.persists_without_control() {
         let persists = Transition::Persists;
         let critical = CriticalVelocity::nothing(f64::NAN, persists, Method::Simulation);
-        return (critical, None);
+        return (bounded(problem, critical, Vec::new(), &[]), None);
     }
     let found = problem.at_first_start(|v0| from_start(problem, v0));
     found.unwrap_or_else(|| {
@@ -62,6 +62,7 @@ fn from_start(problem: &Problem, v0: f64) -> Result<Found<'_>, NoStart> {
         crossing_step,
         entry: None,
         searches: Vec::new(),
+        way: Vec::new(),
     };
     let mut others = Vec::new();
     // At a larger velocity than the first one the block may stick once, and not again.
@@ -108,6 +109,8 @@ struct Kinds<'p> {
     entry: Option<Box<Motion>>,
     /// The searches by simulation that came to an end.
     searches: Vec<Search>,
+    /// The slips in a period of each kind up to there, and 0 for irregular stick-slip.
+    way: Vec<usize>,
 }
 
 impl<'p> Kinds<'p> {
@@ -158,7 +161,8 @@ impl<'p> Kinds<'p> {
         mut step: f64,
     ) -> Result<Found<'p>, Handover> {
         let options = &self.problem.options.continuation;
-        for kind in 0..options.most_kinds {
+        self.pass(from.orbit.period.cycles().len());
+        for _ in 0..options.most_kinds {
             let start = branch.map().clone();
             let (located, at) = continue_to_checked_event(&mut branch, from, step, options);
             let ending = located
@@ -166,7 +170,7 @@ impl<'p> Kinds<'p> {
             let seen = ending.map(|ending| (ending, verify(self.problem, &mut branch, &ending)));
             let (sequel, motion, beyond) = match seen {
                 Ok((ending, Sequel::Ends(_))) => {
-                    return Ok(self.ended(branch, at, &ending, kind));
+                    return Ok(self.ended(branch, at, &ending));
                 }
                 Ok((ending, Sequel::Undetermined(_))) if ending.event.may_end() => {
                     look_beyond(self.problem, &branch, &at)
@@ -193,10 +197,14 @@ impl<'p> Kinds<'p> {
             let Some(first) = branch.first_point() else {
                 return Err(handover(&before, options.first_step));
             };
-            step = match is_jump(&at.orbit.period, &first.orbit.period, 0.0, options) {
+            let jumps = is_jump(&at.orbit.period, &first.orbit.period, 0.0, options);
+            step = match jumps {
                 true => options.first_step,
                 false => options.step_past_graze,
             };
+            if jumps || slips != at.orbit.period.cycles().len() {
+                self.pass(slips);
+            }
             from = first;
         }
         Err(Handover {
@@ -205,24 +213,26 @@ impl<'p> Kinds<'p> {
         })
     }
 
-    /// The end that the last kind of stick-slip has, after so many others.
-    fn ended(
-        &self,
-        branch: WithHistory<'p, Motion>,
-        at: Point,
-        ending: &Ending,
-        others: usize,
-    ) -> Found<'p> {
+    /// One more kind on the way: what comes after irregular stick-slip does so by chance.
+    fn pass(&mut self, slips: usize) {
+        if self.entry.is_none() {
+            self.way.push(slips);
+        }
+    }
+
+    /// The end that the last kind of stick-slip has.
+    fn ended(&self, branch: WithHistory<'p, Motion>, at: Point, ending: &Ending) -> Found<'p> {
         let ending = ending.of_stick_slip();
         let critical = ending.critical_velocity(Method::GrazeOrbit);
         let mut neighbour = Neighbour::new(self.problem, branch, at, &ending);
-        neighbour.one_kind = others == 0 && self.entry.is_none();
+        neighbour.way.clone_from(&self.way);
         (critical, Some(neighbour))
     }
 
     /// Through irregular stick-slip, to where it repeats again; else to its end.
     fn cross(&mut self, motion: Motion) -> Result<(Motion, usize), CriticalVelocity> {
         if self.entry.is_none() {
+            self.pass(0);
             self.entry = Some(Box::new(motion.clone()));
         }
         let v0 = motion.parameters().v0;

@@ -28,6 +28,8 @@ pub(super) struct Ramped {
     /// Whether stick-slip survived again and again where it had been lost: it is thrown off by
     /// chance.
     pub by_chance: bool,
+    /// Whether irregular stick-slip or a jump was on the way.
+    pub chance: bool,
     /// Whether sticks become shorter such that none is left just beyond the last v0.
     pub vanish: bool,
     /// The relative step beyond the last v0 at which the depth of the stops is predicted to vanish;
@@ -43,6 +45,7 @@ impl Ramped {
             lost,
             complete: true,
             by_chance: false,
+            chance: false,
             vanish: false,
             graze_step: f64::INFINITY,
         }
@@ -134,6 +137,7 @@ pub(super) fn raise<F: Followed>(
         lost: ramp.lost.map(|(lost, _)| lost),
         complete,
         by_chance: ramp.by_chance(),
+        chance: ramp.chance,
         vanish: ramp.vanish,
         graze_step: graze_step(ramp.before, &ramp.last),
     }

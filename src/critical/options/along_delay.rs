@@ -7,11 +7,15 @@ options! {
         /// Cells from one that is found from scratch to the next.
         segment: usize = 64, in 2..=128;
         /// The same where stick-slip of one kind followed another on the way: it may end earlier.
+        /// Where these kinds are other ones at its end a segment is halved whatever its length.
         short_segment: usize = 16, in 2..=128;
         /// An end that surprises is looked for from scratch, unless one was so few cells before.
         surprises: usize = 2, in 1..=128;
         /// An end that far from where it was expected surprises: it changes fast along the line.
         surprise: f64 = 3e-4, in 1e-9..=0.1;
+        /// A time in slip that differs by more from that of the cell before is that of another
+        /// branch; slips that change smoothly do so by a few times less.
+        jump_of_slip: f64 = 0.05, in 1e-9..=0.5;
         /// How well a continuation has to meet what was found from scratch.
         meets: f64 = 3e-5, in 1e-9..=1e-3;
         /// The same for the time in slip, which tells how many slips a period has.

@@ -8,7 +8,7 @@ options! {
         below: [f64; 2] = [0.03, 1.0], in 0.0..=10.0;
         /// How far above the highest end it is seen whether stick-slip is lost, at first. Twice as
         /// far every time that it is not.
-        above: f64 = 0.005, in 1e-6..=1.0;
+        above: f64 = 0.025, in 1e-6..=1.0;
         /// The largest distance from one such v0 to the next.
         largest_above: f64 = 0.3, in 1e-3..=10.0;
         /// The most of them.
@@ -17,6 +17,10 @@ options! {
         phases: u32 = 6, in 1..=1_000;
         /// The most steps of the integrator from one phase to the next.
         steps_of_cycle: u32 = 20_000, in 10..=10_000_000;
+        /// Where velocity control makes sticks longer by this factor, an end that simulation found
+        /// has to be found by a slow search as well: the memory is so long that faster ones may
+        /// pass an end.
+        long_sticks: f64 = 2.0, in 1.0..=1e6;
         /// Where the slow search begins, over the lowest end that is known.
         slow_from: f64 = 0.2, in 1e-6..=1.0;
         /// The largest step of v0 in it.
