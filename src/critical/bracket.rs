@@ -11,7 +11,7 @@
 use super::confirmation::{gliding, told};
 use super::options::{BracketOptions, RampOptions};
 use super::problem::{CriticalVelocity, Problem};
-use super::ramp::{self, Ramped, from_low_velocity};
+use super::ramp::{self, Chance, Ramped, from_low_velocity};
 use super::regime::{Regime, response_at_length};
 use super::transition::Transition;
 use crate::slip::motion::{Accuracy, Event, Motion};
@@ -40,12 +40,15 @@ pub(super) fn bounded(
         // What chance had a part in, or what takes long to show, is decided where slow steps come
         // to it as well.
         let long = problem.slower() > problem.options.bracket.long_sticks;
-        let doubtful = |search: &Search| search.ramped.chance || long;
+        let doubtful = |search: &Search| search.ramped.chance != Chance::None || long;
         if others.is_empty() && !searches.iter().any(doubtful) {
             return by_itself;
         }
         let slowly = slow(problem, by_itself.vc_lower);
-        if critical.ends_like(&told(&slowly.ramped, &problem.options.ramp)) {
+        let agrees = critical.ends_like(&told(&slowly.ramped, &problem.options.ramp));
+        // Sticks that have become too short to be told from none may go on for long.
+        let vanished = long && critical.stick_time < problem.options.bracket.short_stick;
+        if agrees && !vanished {
             return by_itself;
         }
         let open = CriticalVelocity {
@@ -53,13 +56,13 @@ pub(super) fn bounded(
             ..critical
         };
         searches.push(slowly);
-        return between(problem, open, searches, others);
+        return between(problem, open, &searches, others);
     }
     if searches.is_empty() {
         searches.extend(usual_and_gliding(problem, &critical));
     }
     searches.push(slow(problem, lowest(&searches, &critical, others)));
-    between(problem, critical, searches, others)
+    between(problem, critical, &searches, others)
 }
 
 /// The lowest v0 to which any of the searches or answers came.
@@ -75,11 +78,11 @@ fn lowest(searches: &[Search], critical: &CriticalVelocity, others: &[CriticalVe
 fn between(
     problem: &Problem,
     critical: CriticalVelocity,
-    searches: Vec<Search>,
+    searches: &[Search],
     others: &[CriticalVelocity],
 ) -> CriticalVelocity {
     let answers = || others.iter().chain([&critical]);
-    let lowest = lowest(&searches, &critical, others);
+    let lowest = lowest(searches, &critical, others);
     let lifts_off = |answer: &CriticalVelocity| answer.transition == Transition::LiftOff;
     let lifted = lifts_off(&critical);
     let alike = answers().all(|answer| lifts_off(answer) == lifted)

@@ -3,7 +3,7 @@
 use super::bracket::Search;
 use super::options::RampOptions;
 use super::problem::{CriticalVelocity, GRAZE_PRECISION, Method, Problem};
-use super::ramp::{Ramped, from_low_velocity};
+use super::ramp::{Chance, Ramped, from_low_velocity};
 use super::regime::{Regime, Response};
 use super::transition::Transition;
 use crate::slip::motion::Accuracy;
@@ -22,7 +22,7 @@ pub fn by_simulation(
     let by_chance = ramped.lost.is_some() && ramped.last.as_ref().is_some_and(irregular);
     let critical = told(&ramped, options);
     CriticalVelocity {
-        decided: critical.decided && !by_chance && !ramped.by_chance,
+        decided: critical.decided && !by_chance && ramped.chance != Chance::AtEnd,
         ..critical
     }
 }
@@ -165,8 +165,7 @@ mod tests {
             last,
             lost,
             complete: true,
-            by_chance: false,
-            chance: false,
+            chance: Chance::None,
             vanish: false,
             graze_step: f64::INFINITY,
         }

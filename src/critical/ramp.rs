@@ -14,6 +14,17 @@ use super::regime::{Followed, Observation, Regime, Response, Simulated};
 use super::step_control::{Prediction, Retry, StepControl};
 use crate::slip::motion::{Accuracy, Motion};
 
+/// What part chance had in a search.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Chance {
+    /// None.
+    None,
+    /// Irregular stick-slip or a jump was on the way.
+    OnTheWay,
+    /// Stick-slip survived again and again where it had been lost: it is thrown off by chance.
+    AtEnd,
+}
+
 /// How a search by simulation ended.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Ramped {
@@ -25,11 +36,8 @@ pub(super) struct Ramped {
     /// Whether the search came to its end: to the end of the range, or to two v0 as near as asked
     /// for.
     pub complete: bool,
-    /// Whether stick-slip survived again and again where it had been lost: it is thrown off by
-    /// chance.
-    pub by_chance: bool,
-    /// Whether irregular stick-slip or a jump was on the way.
-    pub chance: bool,
+    /// What part chance had in it.
+    pub chance: Chance,
     /// Whether sticks become shorter such that none is left just beyond the last v0.
     pub vanish: bool,
     /// The relative step beyond the last v0 at which the depth of the stops is predicted to vanish;
@@ -44,8 +52,7 @@ impl Ramped {
             last: None,
             lost,
             complete: true,
-            by_chance: false,
-            chance: false,
+            chance: Chance::None,
             vanish: false,
             graze_step: f64::INFINITY,
         }
@@ -136,8 +143,11 @@ pub(super) fn raise<F: Followed>(
         last: Some(ramp.last),
         lost: ramp.lost.map(|(lost, _)| lost),
         complete,
-        by_chance: ramp.by_chance(),
-        chance: ramp.chance,
+        chance: match (ramp.by_chance(), ramp.chance) {
+            (true, _) => Chance::AtEnd,
+            (false, true) => Chance::OnTheWay,
+            (false, false) => Chance::None,
+        },
         vanish: ramp.vanish,
         graze_step: graze_step(ramp.before, &ramp.last),
     }
@@ -383,7 +393,7 @@ mod tests {
     fn a_saddle_node_is_found_where_the_orbit_vanishes() {
         let found = raised(Family::SaddleNode, 0.1, 0.9, &RampOptions::default());
         let [last, lost] = [found.last, found.lost].map(|response| response.unwrap());
-        assert!(found.complete && !found.by_chance);
+        assert!(found.complete && found.chance == Chance::None);
         assert_eq!(
             (last.regime, lost.regime),
             (Regime::Periodic, Regime::Slips)
