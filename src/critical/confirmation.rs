@@ -1,10 +1,10 @@
 //! What searches by simulation tell, alone and together.
 
-use super::bracket::Search;
 use super::options::RampOptions;
 use super::problem::{CriticalVelocity, GRAZE_PRECISION, Method, Problem};
-use super::ramp::{Chance, Ramped, from_low_velocity};
+use super::ramp::from_low_velocity;
 use super::regime::{Regime, Response};
+use super::search::{Chance, Ramped, Search};
 use super::transition::Transition;
 use crate::slip::motion::Accuracy;
 

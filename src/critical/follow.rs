@@ -5,7 +5,7 @@
 //! next kind; irregular stick-slip in between is crossed by simulation.
 
 use super::after_event::sequel;
-use super::bracket::{Search, bounded};
+use super::bracket::bounded;
 use super::confirmation::{confirmed, gliding, told};
 use super::continuation::{Point, continue_to_checked_event, is_jump};
 use super::delay_step::Neighbour;
@@ -16,6 +16,7 @@ use super::problem::{CriticalVelocity, Method, NoStart, Problem};
 use super::ramp;
 use super::regime::Regime;
 use super::return_map::NoReturn;
+use super::search::Search;
 use super::transition::{Ending, Sequel, Transition};
 use super::with_history::WithHistory;
 use crate::slip::motion::{Accuracy, Motion};
@@ -122,9 +123,18 @@ impl<'p> Kinds<'p> {
         }
     }
 
+    /// Keeps what searches tell, of their motions those of slow ones.
+    fn keep(&mut self, searches: Vec<Search>) {
+        let slow = self.problem.options.bracket.slow_step;
+        self.searches.extend(searches.into_iter().map(|search| {
+            let motion = search.motion.filter(|_| search.step <= slow);
+            Search { motion, ..search }
+        }));
+    }
+
     fn simulated_from(&mut self, handover: Handover) -> CriticalVelocity {
         let (critical, searches) = simulated_from(self.problem, handover);
-        self.searches.extend(searches);
+        self.keep(searches);
         critical
     }
 
@@ -136,7 +146,7 @@ impl<'p> Kinds<'p> {
             // No branch begins there.
             Sequel::Irregular | Sequel::Undetermined(_) => {
                 let (critical, searches) = simulated(self.problem);
-                self.searches.extend(searches);
+                self.keep(searches);
                 Ok((critical, None))
             }
         }
@@ -265,7 +275,7 @@ impl<'p> Kinds<'p> {
             }
             _ => {
                 let critical = told(ramped, usual);
-                self.searches.push(search);
+                self.keep(vec![search]);
                 Err(critical)
             }
         }

@@ -87,10 +87,10 @@
 //! Simulation (`ramp`, `regime`) holds stick-slip at one v0 after the other until it is known what
 //! it comes to; v0 is raised by steps that are halved where it is lost, and its answer has to be
 //! confirmed by other steps (`confirmation`). Where these disagree, v_c is not decided; it lies
-//! between the lowest end that any of them came to and the highest (`bracket`). Along a line of delays the ends at the last delays
-//! predict the next one (`delay_step`, [`along_delay`]). By the other protocol, [`switch_on`],
-//! control is switched on at a phase of uncontrolled stick-slip. Coulomb friction under load
-//! control has a closed form as τ → 0: [`limit`], the letter's Fig. 4.
+//! between the lowest end that any of them came to and the highest (`bracket`). Along a line of
+//! delays the ends at the last delays predict the next one (`delay_step`, [`along_delay`]). By the
+//! other protocol, [`switch_on`], control is switched on at a phase of uncontrolled stick-slip.
+//! Coulomb friction under load control has a closed form as τ → 0: [`limit`], the letter's Fig. 4.
 //!
 //! Continuation by predictor and corrector with step control: Allgower and Georg, *Numerical
 //! Continuation Methods* (Springer 1990); Keller, *Lectures on Numerical Methods in Bifurcation
@@ -117,6 +117,7 @@ mod problem;
 mod ramp;
 mod regime;
 mod return_map;
+mod search;
 mod step_control;
 pub mod switch_on;
 #[cfg(test)]

@@ -5,59 +5,14 @@
 //! so it may have been the size of the step that lost it. It is come nearer to and tried once more
 //! from close by ([`StepControl`]), until the two v0 are as near as asked for.
 
-use super::bracket::Search;
 use super::continuation::times_jump;
 use super::event_functions::{Event, EventFunctions};
 use super::options::{ContinuationOptions, RampOptions};
 use super::problem::{NoStart, Problem};
 use super::regime::{Followed, Observation, Regime, Response, Simulated};
+use super::search::{Chance, Ramped, Search};
 use super::step_control::{Prediction, Retry, StepControl};
 use crate::slip::motion::{Accuracy, Motion};
-
-/// What part chance had in a search.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Chance {
-    /// None.
-    None,
-    /// Irregular stick-slip or a jump was on the way.
-    OnTheWay,
-    /// Stick-slip survived again and again where it had been lost: it is thrown off by chance.
-    AtEnd,
-}
-
-/// How a search by simulation ended.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Ramped {
-    /// The largest v0 at which stick-slip persists; none where it was not found anywhere.
-    pub last: Option<Response>,
-    /// The smallest v0, above it, at which it does not; none where it persists to the end of the
-    /// range.
-    pub lost: Option<Response>,
-    /// Whether the search came to its end: to the end of the range, or to two v0 as near as asked
-    /// for.
-    pub complete: bool,
-    /// What part chance had in it.
-    pub chance: Chance,
-    /// Whether sticks become shorter such that none is left just beyond the last v0.
-    pub vanish: bool,
-    /// The relative step beyond the last v0 at which the depth of the stops is predicted to vanish;
-    /// infinite where it is not.
-    pub graze_step: f64,
-}
-
-impl Ramped {
-    /// No v0 at which stick-slip persists.
-    fn none(lost: Option<Response>) -> Self {
-        Self {
-            last: None,
-            lost,
-            complete: true,
-            chance: Chance::None,
-            vanish: false,
-            graze_step: f64::INFINITY,
-        }
-    }
-}
 
 /// Follows stick-slip of `problem` from low v0 on.
 pub(super) fn from_low_velocity(

@@ -21,8 +21,8 @@ options! {
         /// has to be found by a slow search as well: the memory is so long that faster ones may
         /// pass an end.
         long_sticks: f64 = 2.0, in 1.0..=1e6;
-        /// Sticks shorter than this, at such an end, are none that is known: ramps by other programs
-        /// go on with still shorter ones.
+        /// Sticks shorter than this, at such an end, are none that is known: ramps by other
+        /// programs go on with still shorter ones.
         short_stick: f64 = 1e-5, in 1e-12..=1e-2;
         /// Where the slow search begins, over the lowest end that is known.
         slow_from: f64 = 0.2, in 1e-6..=1.0;

@@ -886,11 +886,12 @@ mod tests {
         assert_eq!(
             known_fields(),
             "n_unstable, outcome, method, class, windows, delay_margin, abscissa, abscissa_2 … \
-            abscissa_8, frequency, frequency_2 … frequency_8, relaxation_time, d_abscissa_d_tau, \
-            d_abscissa_d_alpha_v, d_abscissa_d_alpha_n, d_abscissa_d_mu_prime, certificate_margin, \
-            settle_time, n_min, peak_force, vc, v_liftoff, stick_time, slip_time, v_smooth, \
-            vc_over_vtilde, omega0_T, liftoff_over_vtilde, vc_weak_control, vc_strong_control, \
-            weak_control_error, strong_control_error"
+             abscissa_8, frequency, frequency_2 … frequency_8, relaxation_time, \
+             d_abscissa_d_tau, d_abscissa_d_alpha_v, d_abscissa_d_alpha_n, \
+             d_abscissa_d_mu_prime, certificate_margin, settle_time, n_min, peak_force, vc, \
+             vc_lower, vc_upper, v_liftoff, stick_time, slip_time, v_smooth, vc_over_vtilde, \
+             omega0_T, liftoff_over_vtilde, vc_weak_control, vc_strong_control, \
+             weak_control_error, strong_control_error"
         );
     }
 }

@@ -25,7 +25,7 @@ const CURVES_OF_A_DEGREE: u64 = 1 << 20;
 /// Pasts of motions that a thread has at once, where outcomes are looked for, and where critical
 /// velocities are.
 const PASTS_OF_OUTCOMES: u64 = 1;
-const PASTS_OF_CRITICAL: u64 = 16;
+const PASTS_OF_CRITICAL: u64 = 13;
 /// Steps in a unit of time √(M/κ), more than are ever seen on average; and those of a short delay.
 const STEPS_PER_TIME: f64 = 16.0;
 const STEPS_AT_LEAST: f64 = 4096.0;
