@@ -55,7 +55,13 @@ fn grown(folder: &Path) {
     for (place, names) in [
         (
             "benches",
-            &["critical", "motion", "roots", "throughput"][..],
+            &[
+                "critical",
+                "critical_options",
+                "motion",
+                "roots",
+                "throughput",
+            ][..],
         ),
         ("tests", &["readers", "static_page"]),
     ] {
