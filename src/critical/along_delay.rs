@@ -15,6 +15,7 @@ use super::problem::{CriticalVelocity, Method, Problem};
 
 /// Cells of a block; blocks start at multiples of it.
 pub const BLOCK: usize = 128;
+
 /// The critical velocities of a block of a line: problems that differ by their delay alone, which
 /// increases. `stopped` is asked before every visit to a cell; where it came first, some are none
 /// and the others are not to be used.

@@ -18,18 +18,18 @@ use super::transition::Transition;
 use crate::slip::motion::{Accuracy, Event, Motion};
 
 /// An answer, with its bounds: where it is decided, itself; else those that the `searches` give,
-/// and other `ends` that were come to.
+/// and `others`, the answers that were come to besides.
+///
+/// What chance had a part in, or what takes long to show, is decided where slow steps come to it as
+/// well.
 pub(super) fn bounded(
     problem: &Problem,
-    critical: CriticalVelocity,
+    mut critical: CriticalVelocity,
     mut searches: Vec<Search>,
     others: &[CriticalVelocity],
 ) -> CriticalVelocity {
     if critical.decided {
-        let v_max = problem.options.ramp.v_max * problem.law.mu_s();
-        let by_itself = critical.bounded_by_itself(v_max);
-        // What chance had a part in, or what takes long to show, is decided where slow steps come
-        // to it as well.
+        let by_itself = critical.bounded_by_itself(problem.v_max());
         let long = problem.slower() > problem.options.bracket.long_sticks;
         let doubtful = |search: &Search| search.ramped.chance != Chance::None || long;
         if others.is_empty() && !searches.iter().any(doubtful) {
@@ -42,17 +42,14 @@ pub(super) fn bounded(
         if agrees && !vanished {
             return by_itself;
         }
-        let open = CriticalVelocity {
-            decided: false,
-            ..critical
-        };
+        critical.decided = false;
         searches.push(slowly);
-        return between(problem, open, &searches, others);
+    } else {
+        if searches.is_empty() {
+            searches.extend(usual_and_gliding(problem, &critical));
+        }
+        searches.push(slow(problem, lowest(&searches, &critical, others)));
     }
-    if searches.is_empty() {
-        searches.extend(usual_and_gliding(problem, &critical));
-    }
-    searches.push(slow(problem, lowest(&searches, &critical, others)));
     between(problem, critical, &searches, others)
 }
 
@@ -79,10 +76,10 @@ fn between(
     let alike = answers().all(|answer| lifts_off(answer) == lifted)
         && searches.iter().all(|search| search.lifts_off() == lifted);
     // Large steps throw stick-slip beyond the end that it comes to while v0 is raised slowly.
-    let slow = problem.options.bracket.slow_step;
-    let slow = || searches.iter().filter(|search| search.step <= slow);
-    let farthest = slow().max_by(|a, b| a.persists().total_cmp(&b.persists()));
-    let highest = slow().map(Search::lost).fold(lowest, f64::max);
+    let step = problem.options.bracket.slow_step;
+    let by_slow_steps = || searches.iter().filter(|search| search.step <= step);
+    let farthest = by_slow_steps().max_by(|a, b| a.persists().total_cmp(&b.persists()));
+    let highest = by_slow_steps().map(Search::lost).fold(lowest, f64::max);
     let [least, of_spread] = problem.options.bracket.below;
     let spread = if lowest > 0.0 {
         highest / lowest - 1.0
@@ -143,7 +140,7 @@ fn from_low(problem: &Problem, options: &RampOptions) -> Search {
 /// `motion` is lost from every phase of its cycle; none up to the end of the range.
 fn lost_for_good(problem: &Problem, motion: &Motion, from: f64) -> Option<f64> {
     let options = &problem.options.bracket;
-    let v_max = problem.options.ramp.v_max * problem.law.mu_s();
+    let v_max = problem.v_max();
     let (mut base, mut v0, mut beyond) = (motion.clone(), from, options.above);
     for _ in 0..options.most_above {
         v0 *= 1.0 + beyond;

@@ -239,7 +239,8 @@ pub(super) fn is_jump(
     !same || times_jump(before.mean_times(), after.mean_times(), step, options)
 }
 
-/// The same, told from the durations of mean cycles and slips alone.
+/// Whether a relative `step` of v0 threw stick-slip from one kind to another, told from the
+/// durations of mean cycles and slips alone.
 pub(super) fn times_jump(
     before: [f64; 2],
     after: [f64; 2],

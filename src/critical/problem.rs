@@ -95,6 +95,11 @@ impl Problem {
         always + delays * self.tau + cycles * longest_cycle
     }
 
+    /// The largest v0 at which stick-slip is looked for.
+    pub(super) fn v_max(&self) -> f64 {
+        self.options.ramp.v_max * self.law.mu_s()
+    }
+
     /// The groups of linear stability at `v0`.
     #[must_use]
     pub fn groups(&self, v0: f64) -> Groups {
@@ -221,7 +226,7 @@ impl CriticalVelocity {
         }
     }
 
-    /// The same with its own bounds: the answer is decided, and v0 was looked at up to `v_max`.
+    /// A decided answer with itself for bounds, where v0 was looked at up to `v_max`.
     pub(super) fn bounded_by_itself(self, v_max: f64) -> Self {
         let end = match self.sustained || self.transition == Transition::Never {
             true => self.end_of_stick_slip(),

@@ -133,7 +133,7 @@ impl<'o> Observation<'o> {
         }
     }
 
-    /// As at the end of a search.
+    /// After a relative step of v0, for as long as at the end of a search.
     pub(super) fn at_length(options: &'o RampOptions, step: f64) -> Self {
         Self {
             waiting: Waiting::Long,

@@ -30,7 +30,7 @@ pub(super) struct Cycle {
 }
 
 impl Cycle {
-    /// None.
+    /// A cycle of which nothing is known.
     pub(super) const NONE: Self = Self {
         depth: f64::NAN,
         to_minimum: f64::NAN,

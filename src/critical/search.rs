@@ -6,7 +6,7 @@ use crate::slip::motion::Motion;
 /// What part chance had in a search.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Chance {
-    /// None.
+    /// Chance had no part.
     None,
     /// Irregular stick-slip or a jump was on the way.
     OnTheWay,

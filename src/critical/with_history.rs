@@ -130,7 +130,7 @@ impl<'o> WithHistory<'o, Motion> {
     /// Of stick-slip of `problem` that a `motion`, which is just released, is in.
     pub(super) fn in_stick_slip(problem: &'o Problem, motion: Motion, slips: usize) -> Self {
         let options = &problem.options;
-        let v_end = options.ramp.v_max * problem.law.mu_s();
+        let v_end = problem.v_max();
         Self::new(motion, slips, v_end, &options.continuation)
     }
 

@@ -6,8 +6,9 @@ options! {
     AlongDelayOptions {
         /// Cells from one that is found from scratch to the next.
         segment: usize = 64, in 2..=128;
-        /// The same where stick-slip of one kind followed another on the way: it may end earlier.
-        /// Where these kinds are other ones at its end a segment is halved whatever its length.
+        /// Cells of a segment where stick-slip of one kind followed another on the way: it may end
+        /// earlier. Where these kinds are other ones at its end a segment is halved whatever its
+        /// length.
         short_segment: usize = 16, in 2..=128;
         /// An end that surprises is looked for from scratch, unless one was so few cells before.
         surprises: usize = 2, in 1..=128;
@@ -18,7 +19,7 @@ options! {
         jump_of_slip: f64 = 0.05, in 1e-9..=0.5;
         /// How well a continuation has to meet what was found from scratch.
         meets: f64 = 3e-5, in 1e-9..=1e-3;
-        /// The same for the time in slip, which tells how many slips a period has.
+        /// How well the times in slip have to meet there: they tell how many slips a period has.
         meets_in_time: f64 = 1e-2, in 1e-9..=0.5;
 
         /// How far off an end is taken to be before anything is known.
@@ -26,15 +27,16 @@ options! {
         /// A cell starts so far below the predicted graze at first: the transient of a new start,
         /// whose size is not known yet, can bring about an end too early.
         graze_first: f64 = 3e-4, in 1e-9..=0.1;
-        /// And at least: event functions have their noise.
+        /// A cell starts at least so far below the predicted graze: event functions have their
+        /// noise.
         graze_least: f64 = 1e-5, in 1e-9..=0.1;
-        /// As [`Self::graze_first`], where a stick vanishes.
+        /// How far below the v0 at which a stick vanishes a cell starts at first.
         vanish_first: f64 = 3e-3, in 1e-9..=0.1;
-        /// As [`Self::graze_least`], where a stick vanishes.
+        /// How far below the v0 at which a stick vanishes it starts at least.
         vanish_least: f64 = 1e-3, in 1e-9..=0.1;
-        /// As [`Self::graze_first`], for lift-off.
+        /// How far below lift-off a cell starts at first.
         lift_off_first: f64 = 3e-3, in 1e-9..=0.1;
-        /// As [`Self::graze_least`], for lift-off.
+        /// How far below lift-off it starts at least.
         lift_off_least: f64 = 2e-5, in 1e-9..=0.1;
         /// The largest distance below the predicted end at which a cell starts.
         farthest: f64 = 0.1, in 1e-6..=0.9;
@@ -43,7 +45,7 @@ options! {
         off_by_change: f64 = 0.15, in 0.0..=1.0;
         /// Where a start comes to no period it is made farther off, by these factors.
         farther: [f64; 2] = [4.0, 30.0], in 1.0..=1_000.0;
-        /// And at last by so many times [`Self::farthest`].
+        /// Where that does not help it is made so many times [`Self::farthest`] off.
         farthest_of_all: f64 = 2.0, in 1.0..=9.0;
         /// A cell starts so many times further below its end than the transient of the cell before
         /// reached.

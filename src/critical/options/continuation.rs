@@ -63,8 +63,8 @@ options! {
         /// The share of the way to the predicted event that is taken at once. The rest keeps a
         /// predictor of the first order from stepping over the event.
         share: f64 = 0.97, in 0.5..=0.999;
-        /// The same where slopes are those of another delay: transients are of the first order
-        /// then.
+        /// The share of that way where slopes are those of another delay: transients are of the
+        /// first order then.
         first_share: f64 = 0.7, in 0.3..=0.999;
         /// After a step that failed the next is smaller by this factor.
         reduction: f64 = 0.5, in 0.1..=0.9;
@@ -125,8 +125,8 @@ options! {
         most_kinds: usize = 24, in 1..=1_000;
         /// The first step of v0 with another kind of stick-slip than the first.
         first_step: f64 = 0.02, in 1e-6..=1.0;
-        /// The same where one slip that was expected to graze goes on as it was: the next end may
-        /// be as near.
+        /// The first step of v0 where one slip that was expected to graze goes on as it was: the
+        /// next end may be as near.
         step_past_graze: f64 = 2e-5, in 1e-9..=1.0;
     }
 }

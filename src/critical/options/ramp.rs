@@ -71,11 +71,11 @@ options! {
         /// Stick-slip that does not repeat within so many cycles, and so many more for each unit of
         /// the delay, is irregular: while v0 glides.
         cycles_gliding: [f64; 2] = [4.0, 0.5], in 0.0..=1e4;
-        /// The same after usual steps.
+        /// Such cycles after usual steps of v0.
         cycles: [f64; 2] = [12.0, 1.0], in 0.0..=1e4;
-        /// The same where it is looked at for long.
+        /// Such cycles where stick-slip is looked at for long.
         cycles_at_length: [f64; 2] = [24.0, 1.0], in 0.0..=1e4;
-        /// The same near its end.
+        /// Such cycles near the end of stick-slip.
         cycles_near_end: [f64; 2] = [60.0, 4.0], in 0.0..=1e4;
         /// The time without a stop after which a slip is one that goes on, as a share of the time
         /// that was waited.
@@ -88,7 +88,7 @@ options! {
         /// Windows without a fall after which a slip goes on, where it is looked for shortly: a
         /// window is a delay and two periods of free oscillation.
         windows: u32 = 3, in 1..=1_000;
-        /// The same where it is looked at for long.
+        /// Such windows where a slip is looked at for long.
         windows_at_length: u32 = 10, in 1..=1_000;
         /// Windows without a fall at the end of a motion after which a slip goes on.
         windows_at_last: u32 = 6, in 1..=1_000;
