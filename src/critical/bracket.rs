@@ -1,56 +1,64 @@
-//! Bounds of the critical velocity where searches disagree, or none came to its end.
+//! The critical velocity where searches disagree, or none came to its end, and its bounds.
 //!
-//! Stick-slip was seen to persist up to the lowest end that any search came to, and was lost by all
-//! of them at the highest one. Where it ends by chance, another search would come to an end beyond
-//! these as often as not. So a slow search is added, that holds stick-slip for many cycles at every
-//! v0: it comes to a low end, and slower ones to one that is lower by about as much as the slow
-//! ones differ. The lower bound is that much lower: all of them came through it. The upper bound
-//! goes up from the highest end of slow searches, to a v0 at which stick-slip is lost from every
-//! phase of its cycle.
+//! Where stick-slip ends by chance it ends at a lower v0 the longer it is held at each. So two slow
+//! searches are added, one of which holds it for longer than the other. Where they agree, their end
+//! is v_c: that of v0 raised slowly. Else they bound it. The lower bound lies below the ends of all
+//! searches, by as much as the slow ones differ. The upper bound goes up from the highest end of
+//! the slow ones, to a v0 at which stick-slip is lost from every phase of its cycle.
 
 use super::confirmation::{gliding, told};
-use super::options::{BracketOptions, RampOptions};
+use super::options::{BracketOptions, Options, RampOptions};
 use super::problem::{CriticalVelocity, Problem};
 use super::ramp::{self, from_low_velocity};
-use super::regime::{Regime, response_at_length};
+use super::regime::{Followed, Observation, Regime, Simulated};
 use super::search::{Chance, Search};
-use super::transition::Transition;
-use crate::slip::motion::{Accuracy, Event, Motion};
+use crate::slip::motion::Accuracy;
 
-/// An answer, with its bounds: where it is decided, itself; else those that the `searches` give,
-/// and `others`, the answers that were come to besides.
+/// An answer, with its bounds: where it is decided, itself; else those that slow searches give,
+/// beside the `searches` and `others`, the answers that were come to besides.
 ///
 /// What chance had a part in, or what takes long to show, is decided where slow steps come to it as
 /// well.
 pub(super) fn bounded(
     problem: &Problem,
-    mut critical: CriticalVelocity,
+    critical: CriticalVelocity,
     mut searches: Vec<Search>,
     others: &[CriticalVelocity],
 ) -> CriticalVelocity {
     if critical.decided {
         let by_itself = critical.bounded_by_itself(problem.v_max());
-        let long = problem.slower() > problem.options.bracket.long_sticks;
+        let long = long_sticks(problem);
         let doubtful = |search: &Search| search.ramped.chance != Chance::None || long;
         if others.is_empty() && !searches.iter().any(doubtful) {
             return by_itself;
         }
-        let slowly = slow(problem, by_itself.vc_lower);
-        let agrees = critical.ends_like(&told(&slowly.ramped, &problem.options.ramp));
-        // Sticks that have become too short to be told from none may go on for long.
-        let vanished = long && critical.stick_time < problem.options.bracket.short_stick;
-        if agrees && !vanished {
+        let first = slow(problem, by_itself.vc_lower, Held::Long);
+        if critical.ends_like(&told_slowly(problem, &first)) && !vanished(problem, &critical) {
             return by_itself;
         }
-        critical.decided = false;
-        searches.push(slowly);
-    } else {
-        if searches.is_empty() {
-            searches.extend(usual_and_gliding(problem, &critical));
-        }
-        searches.push(slow(problem, lowest(&searches, &critical, others)));
+        return by_slow_searches(problem, critical, first, &searches, others);
     }
-    between(problem, critical, &searches, others)
+    if searches.is_empty() {
+        searches.extend(usual_and_gliding(problem, &critical));
+    }
+    let first = slow(problem, lowest(&searches, &critical, others), Held::Long);
+    by_slow_searches(problem, critical, first, &searches, others)
+}
+
+/// Whether velocity control makes sticks so long that searches may not wait for what they come to.
+fn long_sticks(problem: &Problem) -> bool {
+    problem.slower() > problem.options.bracket.long_sticks
+}
+
+/// Whether an end has sticks that have become too short to be told from none: where they are long
+/// before it, they may go on for long.
+fn vanished(problem: &Problem, end: &CriticalVelocity) -> bool {
+    long_sticks(problem) && end.stick_time < problem.options.bracket.short_stick
+}
+
+/// What a slow search tells.
+fn told_slowly(problem: &Problem, search: &Search) -> CriticalVelocity {
+    told(&search.ramped, &problem.options.ramp)
 }
 
 /// The lowest v0 to which any of the searches or answers came.
@@ -62,38 +70,62 @@ fn lowest(searches: &[Search], critical: &CriticalVelocity, others: &[CriticalVe
     ends.chain(persist).fold(f64::INFINITY, f64::min)
 }
 
-/// The bounds that searches and answers give.
-fn between(
+/// What the `first` slow search and a slower one tell of an answer that is not decided.
+fn by_slow_searches(
     problem: &Problem,
     critical: CriticalVelocity,
+    first: Search,
     searches: &[Search],
     others: &[CriticalVelocity],
 ) -> CriticalVelocity {
-    let answers = || others.iter().chain([&critical]);
-    let lowest = lowest(searches, &critical, others);
-    let lifts_off = |answer: &CriticalVelocity| answer.transition == Transition::LiftOff;
-    let lifted = lifts_off(&critical);
-    let alike = answers().all(|answer| lifts_off(answer) == lifted)
-        && searches.iter().all(|search| search.lifts_off() == lifted);
-    // Large steps throw stick-slip beyond the end that it comes to while v0 is raised slowly.
-    let step = problem.options.bracket.slow_step;
-    let by_slow_steps = || searches.iter().filter(|search| search.step <= step);
-    let farthest = by_slow_steps().max_by(|a, b| a.persists().total_cmp(&b.persists()));
-    let highest = by_slow_steps().map(Search::lost).fold(lowest, f64::max);
-    let [least, of_spread] = problem.options.bracket.below;
-    let spread = if lowest > 0.0 {
-        highest / lowest - 1.0
-    } else {
-        0.0
+    let lowest = lowest(searches, &critical, others).min(first.persists());
+    let slower = slow(problem, lowest, Held::Longer);
+    let [tells, again] = [&first, &slower].map(|search| told_slowly(problem, search));
+    let agree = tells.decided && again.decided && again.ends_like(&tells);
+    if agree && !vanished(problem, &again) {
+        return again.bounded_by_itself(problem.v_max());
+    }
+    let critical = CriticalVelocity {
+        decided: false,
+        ..match [&slower, &first].map(|search| search.ramped.complete) {
+            [true, _] => again,
+            [false, true] => tells,
+            [false, false] => critical,
+        }
     };
-    let below = (of_spread * spread).clamp(least, 0.5);
-    let vc_lower = lowest * (1.0 - below);
-    let vc_upper = farthest
-        .and_then(|search| search.motion.as_ref())
-        .filter(|_| alike)
-        .and_then(|motion| lost_for_good(problem, motion, highest));
+    between(problem, critical, [first, slower], searches, lowest)
+}
+
+/// The bounds that two slow searches give, beside others, the lowest of which came to `lowest`.
+fn between(
+    problem: &Problem,
+    critical: CriticalVelocity,
+    slow: [Search; 2],
+    searches: &[Search],
+    lowest: f64,
+) -> CriticalVelocity {
+    let low = slow[0].persists().min(slow[1].persists());
+    let high = slow[0].lost().max(slow[1].lost());
+    let lowest = lowest.min(low);
+    let spread = if low > 0.0 { high / low - 1.0 } else { 0.0 };
+    let [least, of_spread] = problem.options.bracket.below;
+    let below = (of_spread * spread).max(least);
+    let below = below.min(problem.options.bracket.farthest_below);
+    let alike = slow[0].lifts_off() == slow[1].lifts_off();
+    // Large steps throw stick-slip beyond the end that it comes to while v0 is raised slowly.
+    let small = problem.options.bracket.slow_steps[0];
+    let by_small_steps = searches.iter().filter(|search| search.step <= small);
+    let motions = slow.iter().chain(by_small_steps);
+    let motions = motions.filter_map(|search| search.motion.clone());
+    let mut blocks: Vec<_> = motions
+        .map(|motion| Simulated { problem, motion })
+        .collect();
+    let vc_upper = match alike {
+        true => lost_for_good(&mut blocks, high, problem.v_max(), &problem.options),
+        false => None,
+    };
     CriticalVelocity {
-        vc_lower,
+        vc_lower: lowest * (1.0 - below),
         vc_upper: vc_upper.unwrap_or(f64::NAN),
         ..critical
     }
@@ -105,26 +137,44 @@ fn usual_and_gliding(problem: &Problem, critical: &CriticalVelocity) -> [Search;
     [*usual, gliding(critical, usual)].map(|options| from_low(problem, &options))
 }
 
-/// A slow search, from some way below the `lowest` end of others on: below that it would take
-/// long, since sticks do.
-fn slow(problem: &Problem, lowest: f64) -> Search {
-    let usual = &problem.options.ramp;
-    let options = &problem.options.bracket;
-    let until = RampOptions {
-        v_max: options.slow_from * lowest / problem.law.mu_s(),
-        ..*usual
+/// How long a slow search holds stick-slip at each v0.
+#[derive(Clone, Copy)]
+enum Held {
+    Long,
+    Longer,
+}
+
+/// The options of a slow search.
+fn slow_options(options: &Options, held: Held) -> RampOptions {
+    let (usual, bracket) = (&options.ramp, &options.bracket);
+    let (step, longer) = match held {
+        Held::Long => (bracket.slow_steps[0], 1.0),
+        Held::Longer => (bracket.slow_steps[1], bracket.held_longer),
     };
-    let step = options.slow_step;
-    let slow = RampOptions {
+    let cycles = bracket.slow_cycles.map(|cycles| longer * cycles);
+    RampOptions {
         first: step,
         largest: step,
         unseen: step,
-        cycles: options.slow_cycles,
-        cycles_near_end: options.slow_cycles,
+        cycles,
+        cycles_near_end: cycles,
+        cycles_at_length: cycles,
+        patience: usual.patience.map(|time| longer * time),
+        steps: (longer * usual.steps as f64) as u64,
         trials: usual.glide_trials,
-        total_steps: options.slow_steps,
+        total_steps: bracket.steps,
         ..*usual
+    }
+}
+
+/// A slow search, from some way below the `lowest` end of others on: below that it would take
+/// long, since sticks do.
+fn slow(problem: &Problem, lowest: f64, held: Held) -> Search {
+    let until = RampOptions {
+        v_max: problem.options.bracket.slow_from * lowest / problem.law.mu_s(),
+        ..problem.options.ramp
     };
+    let slow = slow_options(&problem.options, held);
     let below = from_low(problem, &until);
     match below.motion.filter(|_| below.ramped.lost.is_none()) {
         Some(motion) => ramp::from(problem, motion, &slow),
@@ -136,52 +186,77 @@ fn from_low(problem: &Problem, options: &RampOptions) -> Search {
     from_low_velocity(problem, options, Accuracy::of(options.tolerance))
 }
 
-/// The smallest v0 that was tried, from above the end at `from` on, at which the stick-slip of a
-/// `motion` is lost from every phase of its cycle; none up to the end of the range.
-fn lost_for_good(problem: &Problem, motion: &Motion, from: f64) -> Option<f64> {
-    let options = &problem.options.bracket;
-    let v_max = problem.v_max();
-    let (mut base, mut v0, mut beyond) = (motion.clone(), from, options.above);
-    for _ in 0..options.most_above {
+/// The smallest v0 that was tried, from above the end at `from` on, at which the stick-slip of some
+/// blocks is lost from every phase of its cycle; none up to the end of the range, or where there is
+/// no block. They are left where they come to.
+fn lost_for_good<F: Followed>(
+    blocks: &mut [F],
+    from: f64,
+    v_max: f64,
+    options: &Options,
+) -> Option<f64> {
+    if blocks.is_empty() {
+        return None;
+    }
+    let bracket = &options.bracket;
+    let held = slow_options(options, Held::Long);
+    let (mut v0, mut beyond) = (from, bracket.above);
+    for _ in 0..bracket.most_above {
         v0 *= 1.0 + beyond;
         if v0 > v_max {
             return None;
         }
-        match from_every_phase(problem, &base, v0, options) {
-            Beyond::Lost => return Some(v0),
-            Beyond::Persists(there) => base = *there,
-            Beyond::Unknown => {}
+        let mut lost = true;
+        for block in &mut *blocks {
+            match from_every_phase(block, v0, &held, bracket) {
+                Beyond::Lost => {}
+                Beyond::Persists(there) => {
+                    *block = *there;
+                    lost = false;
+                    break;
+                }
+                Beyond::Unknown => lost = false,
+            }
         }
-        beyond = (2.0 * beyond).min(options.largest_above);
+        if lost {
+            return Some(v0);
+        }
+        beyond = (2.0 * beyond).min(bracket.largest_above);
     }
     None
 }
 
 /// What becomes of stick-slip at a v0.
-enum Beyond {
+enum Beyond<F> {
     /// It is lost from every phase.
     Lost,
     /// It persists from one.
-    Persists(Box<Motion>),
+    Persists(Box<F>),
     /// One is not known.
     Unknown,
 }
 
-/// What becomes of the stick-slip of `base` at `v0`, from some phases of its cycle.
-fn from_every_phase(problem: &Problem, base: &Motion, v0: f64, options: &BracketOptions) -> Beyond {
-    let mut start = base.clone();
-    let mut trial = base.clone();
+/// What becomes of the stick-slip of a block at `v0`, from some phases of its cycle.
+fn from_every_phase<F: Followed>(
+    block: &F,
+    v0: f64,
+    held: &RampOptions,
+    options: &BracketOptions,
+) -> Beyond<F> {
+    let mut start = block.clone();
+    let mut trial = block.clone();
     let mut known = true;
     for phase in 0..options.phases {
         trial.copy_from(&start);
-        trial.set_v0(v0);
-        let regime = response_at_length(problem, &mut trial).regime;
+        let regime = trial
+            .response_at(v0, &Observation::at_length(held, 0.0))
+            .regime;
         if regime.persists() {
             return Beyond::Persists(Box::new(trial));
         }
         known &= regime != Regime::Undecided;
         // By chance it may end at its own v0.
-        if phase + 1 == options.phases || !part_of_cycle(&mut start, options) {
+        if phase + 1 == options.phases || !start.next_phase(options.steps_of_cycle) {
             break;
         }
     }
@@ -191,23 +266,11 @@ fn from_every_phase(problem: &Problem, base: &Motion, v0: f64, options: &Bracket
     }
 }
 
-/// Follows a motion to its next release or stop; false where it does not come to one.
-fn part_of_cycle(motion: &mut Motion, options: &BracketOptions) -> bool {
-    for _ in 0..options.steps_of_cycle {
-        match motion.advance(f64::INFINITY) {
-            Some(Event::Release | Event::Stick) => return true,
-            Some(Event::LiftOff) => return false,
-            _ if !motion.u.is_finite() => return false,
-            _ => {}
-        }
-    }
-    false
-}
-
 #[cfg(test)]
 mod tests {
     use super::super::problem::Method;
-    use super::super::synthetic::letters;
+    use super::super::synthetic::{Family, LOGISTIC, Synthetic, letters, problem};
+    use super::super::transition::Transition;
     use super::*;
     use crate::model::FrictionLaw;
 
@@ -232,44 +295,97 @@ mod tests {
         assert!(told(at_once).iter().all(|bound| bound.is_nan()));
     }
 
-    /// An end that is known to be at 0.344467, told as if it were not decided.
+    /// Chaos of the logistic map is lost at v0 = 4, from every phase of it; the orbit of the
+    /// saddle-node at v0 = 1.
     #[test]
-    fn bounds_are_on_both_sides_of_an_end() {
+    fn what_is_lost_for_good_is_so_just_beyond_its_end() {
+        let options = Options {
+            bracket: BracketOptions {
+                above: 1e-3,
+                ..BracketOptions::default()
+            },
+            ..Options::default()
+        };
+        let lost = |blocks: &mut [Synthetic], from: f64, v_max: f64| {
+            lost_for_good(blocks, from, v_max, &options)
+        };
+        let chaos = Synthetic::new(LOGISTIC, 3.9, 0.4);
+        // By steps of 1e-3, 2e-3, …: the first beyond 4 is 3.9 · 1.001 · 1.002 · … · 1.016.
+        let steps = [1.0, 2.0, 4.0, 8.0, 16.0].map(|step| 1.0 + 1e-3 * step);
+        let expected: f64 = steps.iter().product::<f64>() * 3.9;
+        let found = lost(&mut [chaos.clone()], 3.9, 10.0).unwrap();
+        assert!((found / expected - 1.0).abs() < 1e-12 && found > 4.0);
+        assert_eq!(lost(&mut [chaos.clone()], 3.9, 3.95), None);
+        assert_eq!(lost(&mut [], 3.9, 10.0), None);
+        // What goes on from any one of the blocks is not lost.
+        let fold = Synthetic::new(Family::SaddleNode, 0.99, 0.1);
+        let alone = lost(&mut [fold.clone()], 0.999, 10.0).unwrap();
+        assert!(alone > 1.0 && alone < 1.003, "{alone}");
+        let both = lost(&mut [fold, chaos], 0.999, 10.0).unwrap();
+        assert!(both > 4.0 && both < 5.3, "{both}");
+    }
+
+    /// Two slow searches that agree tell v_c, whatever fast ones said.
+    #[test]
+    fn slow_searches_that_agree_decide() {
         let problem = letters(-0.33, 0.0, 4.15);
+        let open = CriticalVelocity {
+            decided: false,
+            ..CriticalVelocity::nothing(0.5, Transition::Irregular, Method::Simulation)
+        };
+        let found = bounded(&problem, open, Vec::new(), &[]);
+        assert!(
+            found.decided && (found.vc / 0.344467 - 1.0).abs() < 1e-5,
+            "{found:?}"
+        );
+        assert_eq!([found.vc_lower, found.vc_upper], [found.vc; 2]);
+        assert_eq!(found.transition, Transition::Grazing);
+    }
+
+    /// Where they differ they bound it: with the spread of their ends, and others, below.
+    #[test]
+    fn slow_searches_that_differ_bound() {
+        let problem = letters(-0.33, 0.0, 4.15);
+        let [near, far] = [Held::Long, Held::Longer].map(|held| slow(&problem, 0.3, held));
         let open = CriticalVelocity {
             decided: false,
             ..CriticalVelocity::nothing(0.344467, Transition::Grazing, Method::Simulation)
         };
-        let found = bounded(&problem, open, Vec::new(), &[]);
+        let bounds = |lowest: f64, first: f64| {
+            let mut first_search = near.clone();
+            let last = first_search.ramped.last.as_mut().unwrap();
+            last.v0 = first;
+            between(&problem, open, [first_search, far.clone()], &[], lowest)
+        };
+        let alike = bounds(1.0, near.persists());
+        assert!((alike.vc_lower / 0.344467 - 0.97).abs() < 1e-4, "{alike:?}");
         assert!(
-            found.vc_lower < 0.344467 && found.vc_lower > 0.33,
-            "{found:?}"
+            (alike.vc_upper / 0.344467 - 1.025).abs() < 1e-3,
+            "{alike:?}"
         );
+        // An end that is lower by a tenth lowers the bound by as much again.
+        let spread = bounds(1.0, 0.9 * near.persists());
+        let below = 0.9 * (2.0 - 1.0 / 0.9);
         assert!(
-            found.vc_upper > 0.344467 && found.vc_upper < 0.36,
-            "{found:?}"
+            (spread.vc_lower / 0.344467 - below).abs() < 1e-4,
+            "{spread:?}"
         );
-        // Another answer, below, counts as well; one by another kind of end leaves it open above.
-        let other = CriticalVelocity { vc: 0.3, ..open };
-        let both = bounded(&problem, open, Vec::new(), &[other]);
-        assert!(both.vc_lower < 0.3 && both.vc_upper > 0.344467, "{both:?}");
-        let lifted = CriticalVelocity::of_lift_off(0.34, Method::Simulation);
-        assert!(
-            bounded(&problem, open, Vec::new(), &[lifted])
-                .vc_upper
-                .is_nan()
-        );
+        let other = bounds(0.2, near.persists());
+        assert!((other.vc_lower / 0.2 - 0.97).abs() < 1e-12, "{other:?}");
     }
 
     #[test]
-    fn where_there_is_no_stick_slip_there_is_no_upper_bound() {
+    fn where_there_is_no_stick_slip_there_are_no_bounds_but_0() {
         let law = FrictionLaw::coulomb(0.5, 1.0).unwrap();
-        let problem = super::super::synthetic::problem(law, 0.0, -100.0, 0.05);
+        let problem = problem(law, 0.0, -100.0, 0.05);
         let open = CriticalVelocity {
             decided: false,
             ..CriticalVelocity::nothing(0.0, Transition::Never, Method::Simulation)
         };
-        let found = bounded(&problem, open, Vec::new(), &[]);
+        let never = bounded(&problem, open, Vec::new(), &[]);
+        assert!(never.decided && [never.vc_lower, never.vc_upper] == [0.0; 2]);
+        let [first, slower] = [Held::Long, Held::Longer].map(|held| slow(&problem, 0.0, held));
+        let found = between(&problem, open, [first, slower], &[], 0.0);
         assert!(found.vc_lower == 0.0 && found.vc_upper.is_nan());
     }
 }

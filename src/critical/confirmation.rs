@@ -47,8 +47,8 @@ pub(super) fn gliding(found: &CriticalVelocity, options: &RampOptions) -> RampOp
 }
 
 /// What the `first` search with these options tells, and all that were made. v0 is raised slowly:
-/// an end that is another one with other steps of v0, a finer integration, or while v0 glides, is
-/// not decided. What ends by chance is where all of these tell the same. `usual` are the options
+/// an end that is another one with other steps of v0 and a finer integration, or while v0 glides,
+/// is not decided. What ends by chance is where all of these tell the same. `usual` are the options
 /// without what is special to this search.
 pub(super) fn confirmed(
     first: Search,

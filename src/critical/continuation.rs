@@ -3,8 +3,8 @@
 //! The event functions g(v0) of the last two orbits predict the event ([`Prediction`]). A step
 //! takes a share of the way there. The corrector is the return map itself, iterated until periods
 //! repeat ([`Branch::orbit_at`]); a step from which it does not lead back to an orbit of the same
-//! kind is undone and made smaller. Step size rules stand in [`StepControl`], all numbers in
-//! [`ContinuationOptions`].
+//! kind is undone and made smaller. The rules for step sizes are listed in [`super::step_control`],
+//! all numbers in [`ContinuationOptions`].
 
 use crate::model::elementary::power;
 use crate::slip::motion::Accuracy;
@@ -209,14 +209,9 @@ pub(super) fn continue_to_event(
 /// The event that vanishes next at the last point, if it is near.
 fn locate(at: &Point, options: &ContinuationOptions) -> Result<Located, Undetermined> {
     let Prediction { step, event } = at.predict();
-    // The load of periods that have not quite come to rest says less than the depth of their stops.
-    let (near_graze, near_other) = match at.agrees(options) {
-        true => (options.quite_near, options.quite_near),
-        false => (options.near_graze * options.near, options.near),
-    };
-    let near = match event {
-        Event::LiftOff | Event::StickVanishes => near_other,
-        Event::Graze(_) | Event::Reversal | Event::NewStop => near_graze,
+    let near = match at.agrees(options) {
+        true => options.quite_near,
+        false => options.near,
     };
     if step < near {
         let v0 = at.v0 * (1.0 + step);

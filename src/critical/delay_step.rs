@@ -3,7 +3,7 @@
 //!
 //! The ends at the last four delays predict the next one; the pasts at the last two, both taken
 //! just below their ends, predict the orbit just below that. From there v0 is raised by the same
-//! continuation as in a search from scratch.
+//! continuation as in a search from scratch, but for its check by a finer integration.
 
 use super::continuation::{Point, continue_to_event, is_jump};
 use super::end_of_branch::{approach, verify};

@@ -79,7 +79,8 @@ fn approach_stick<M: ReturnMap>(
     Ok(Ending::new(located, orbit.period))
 }
 
-/// What follows the end of a branch, from the motion that is tried last in `branch`.
+/// What follows the end of a branch. The motion that it was told from is left as the one that
+/// `branch` tried last.
 pub(super) fn verify(
     problem: &Problem,
     branch: &mut WithHistory<'_, Motion>,

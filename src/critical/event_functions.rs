@@ -12,9 +12,13 @@
 //! dip            the lowest minimum of ẋ before a stop      g = 0: a new stop              (E5)
 //! ```
 //!
-//! (E1) is known on both sides of zero: the Taylor polynomial of the last step of a slip goes on
-//! beyond the stop as if friction had not changed its sign there. So it is smooth in v0, where the
-//! slip time has a square root.
+//! (E1) is smooth in v0 up to its zero, where the slip time has a square root: the Taylor polynomial
+//! of the last step of a slip goes on beyond the stop as if friction had not changed its sign there.
+//!
+//! A new event function needs a variant and a field here, its value in each cycle and period
+//! (`return_map`), what a branch does at its zero (`continuation`, `end_of_branch`, `memoryless`),
+//! a row in the table of [`super`], and, if simulation shall see it, a line in
+//! `regime::Response::event_functions`. The compiler asks for the rest.
 
 /// The most slips in a period that is followed by continuation.
 pub(super) const MOST_SLIPS: usize = 4;
@@ -90,14 +94,16 @@ impl EventFunctions {
 
     /// Each with its event: (E1) to (E5) in order.
     pub(super) fn each(&self) -> [(Event, f64); EVENTS] {
-        let mut all = [(Event::LiftOff, self.load); EVENTS];
-        for (slip, (one, depth)) in all.iter_mut().zip(self.depth).enumerate() {
-            *one = (Event::Graze(slip), depth);
-        }
-        all[MOST_SLIPS + 1] = (Event::StickVanishes, self.stick_time);
-        all[MOST_SLIPS + 2] = (Event::Reversal, self.missing_force);
-        all[MOST_SLIPS + 3] = (Event::NewStop, self.dip);
-        all
+        let others = [
+            (Event::LiftOff, self.load),
+            (Event::StickVanishes, self.stick_time),
+            (Event::Reversal, self.missing_force),
+            (Event::NewStop, self.dip),
+        ];
+        std::array::from_fn(|i| match i.checked_sub(MOST_SLIPS) {
+            None => (Event::Graze(i), self.depth[i]),
+            Some(other) => others[other],
+        })
     }
 
     /// The one that vanishes at `event`.

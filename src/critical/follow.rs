@@ -81,15 +81,17 @@ fn from_start(problem: &Problem, v0: f64) -> Result<Found<'_>, NoStart> {
         critical.decided = critical.ends_like(&again) && critical.ends_like(&glided);
         others = vec![again, glided];
     }
-    let critical = bounded(problem, critical, kinds.searches, &others);
+    let bounded = bounded(problem, critical, kinds.searches, &others);
     if let Some(neighbour) = &mut neighbour {
-        neighbour.decided = critical.decided;
+        // Slow searches may have come to another end.
+        neighbour.decided = bounded.decided && bounded.ends_like(&critical);
     }
-    Ok((critical, neighbour))
+    Ok((bounded, neighbour))
 }
 
-/// Stick-slip from which simulation has to go on, by this relative step of v0 at first. Motions at
-/// less and less high v0, each for the case that the one before is not sustained.
+/// Stick-slip from which simulation has to go on: motions at less and less high v0, each for the
+/// case that the one before is not sustained. The first relative steps of v0 are `step` times those
+/// of a search from low v0.
 struct Handover {
     motions: Vec<Motion>,
     step: f64,
@@ -125,7 +127,7 @@ impl<'p> Kinds<'p> {
 
     /// Keeps what searches tell, of their motions those of slow ones.
     fn keep(&mut self, searches: Vec<Search>) {
-        let slow = self.problem.options.bracket.slow_step;
+        let slow = self.problem.options.bracket.slow_steps[0];
         self.searches.extend(searches.into_iter().map(|search| {
             let motion = search.motion.filter(|_| search.step <= slow);
             Search { motion, ..search }

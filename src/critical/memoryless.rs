@@ -62,7 +62,7 @@ impl<'p> Memoryless<'p> {
     }
 
     /// The graze at `v0` next to the last point, if stick-slip ends there. Where it does not, the
-    /// orbit with its history is followed from there on.
+    /// search starts again, with history.
     fn graze(&mut self, v0: f64, at: &Point) -> Option<Ending> {
         let problem = self.problem;
         let options = &problem.options.transition;

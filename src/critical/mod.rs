@@ -86,9 +86,8 @@
 //!
 //! Simulation (`ramp`, `regime`) holds stick-slip at one v0 after the other until it is known what
 //! it comes to; v0 is raised by steps that are halved where it is lost, and its answer has to be
-//! confirmed by other steps (`confirmation`). Where these disagree, v_c is not decided; it lies
-//! between the lowest end that any of them came to and the highest (`bracket`). Along a line of
-//! delays the ends at the last delays predict the next one (`delay_step`, [`along_delay`]). By the
+//! confirmed by other steps (`confirmation`). Where these disagree, two slow searches decide. If
+//! they disagree as well, v_c is not decided, and bounded (`bracket`). Along a line of delays the ends at the last delays predict the next one (`delay_step`, [`along_delay`]). By the
 //! other protocol, [`switch_on`], control is switched on at a phase of uncontrolled stick-slip.
 //! Coulomb friction under load control has a closed form as τ → 0: [`limit`], the letter's Fig. 4.
 //!
@@ -96,8 +95,8 @@
 //! Continuation Methods* (Springer 1990); Keller, *Lectures on Numerical Methods in Bifurcation
 //! Problems* (Tata Institute 1987); Doedel, *Lecture notes on numerical analysis of nonlinear
 //! equations* (in Krauskopf, Osinga and Galán-Vioque, Springer 2007). All numbers that tune it
-//! stand in [`options`], with their reasons; the predictor and the rule for step sizes in
-//! `step_control`.
+//! stand in [`options`], with their reasons; the predictor in `step_control`, with a list of all
+//! rules for step sizes.
 
 mod after_event;
 pub mod along_delay;

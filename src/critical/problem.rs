@@ -1,7 +1,7 @@
 //! What is asked, the controlled oscillator whose critical velocity is looked for, and what is
 //! told.
 
-use super::options::Options;
+use super::options::{Options, RampOptions};
 use super::transition::Transition;
 use crate::linear::rightmost::Rightmost;
 use crate::linear::{Count, Crossings, MarginalTolerance};
@@ -87,11 +87,11 @@ impl Problem {
         (1.0 - self.alpha_v * self.tau).max(1.0)
     }
 
-    /// How long to wait for a motion's outcome at `v0`: transients, many delays, and many of
-    /// the longest cycles.
-    pub(super) fn patience(&self, v0: f64) -> f64 {
+    /// How long to wait for a motion's outcome at `v0`, by these options: transients, many delays,
+    /// and many of the longest cycles.
+    pub(super) fn patience(&self, v0: f64, options: &RampOptions) -> f64 {
         let longest_cycle = 2.0 * self.law.mu_s() * self.slower() / v0 + 10.0;
-        let [always, delays, cycles] = self.options.ramp.patience;
+        let [always, delays, cycles] = options.patience;
         always + delays * self.tau + cycles * longest_cycle
     }
 
@@ -181,12 +181,15 @@ impl Method {
 pub struct CriticalVelocity {
     /// The largest v0 at which stick-slip persists; 0 where it never does.
     pub vc: f64,
-    /// The largest v0 at which stick-slip was seen to persist by every step size that was tried:
-    /// v_c where that is decided, `v_liftoff` where the model ends, the end of the range where
-    /// stick-slip persists. NaN where lift-off comes before any stick-slip.
+    /// A lower bound of v_c: stick-slip was seen to persist up to beyond it by every step size that
+    /// was tried, and it lies lower by a margin for still slower ones. v_c itself where that is
+    /// decided, `v_liftoff` where the model ends, the end of the range where stick-slip persists.
+    /// NaN where lift-off comes before any stick-slip.
     pub vc_lower: f64,
-    /// The smallest v0, above v_c, at which stick-slip was lost for good or ended by lift-off; v_c
-    /// or `v_liftoff` where it is decided. NaN where neither was seen up to the end of the range.
+    /// An upper bound: the smallest v0 of those tried above the ends of slow searches at which
+    /// stick-slip was lost from every phase of its cycle, or ended by lift-off; v_c or `v_liftoff`
+    /// where it is decided. NaN where neither was seen up to the end of the range, and where slow
+    /// searches disagree whether it lifts off.
     pub vc_upper: f64,
     /// How it ends there.
     pub transition: Transition,
@@ -202,7 +205,8 @@ pub struct CriticalVelocity {
     pub n_min: f64,
     /// Whether stick-slip was sustained at any v0 that was tried.
     pub sustained: bool,
-    /// Whether it is known what becomes of the motion beyond v_c.
+    /// Whether it is known what becomes of the motion beyond v_c, and all searches that were asked
+    /// agree on it.
     pub decided: bool,
 }
 
@@ -300,7 +304,8 @@ pub struct CriticalWindows {
     pub windows: Vec<[f64; 2]>,
 }
 
-/// v_c by a graze is known to about this, relative.
+/// Two answers for v_c are the same within this, relative: it is known to about this, whatever the
+/// method.
 pub const GRAZE_PRECISION: f64 = 1e-4;
 
 #[cfg(test)]
@@ -344,7 +349,11 @@ mod tests {
     fn low_velocities_are_waited_for_longer() {
         let problem = letters(-0.33, 0.0, 4.0);
         // 600 and 20 delays, and 30 cycles of 2 μ_S/v0 (1 − α_v τ) and 10.
-        assert!((problem.patience(0.1) - (680.0 + 30.0 * (20.0 * 2.32 + 10.0))).abs() < 1e-9);
+        assert!(
+            (problem.patience(0.1, &problem.options.ramp) - (680.0 + 30.0 * (20.0 * 2.32 + 10.0)))
+                .abs()
+                < 1e-9
+        );
     }
 
     /// While a block sticks for long its spring is pulled at v0/(1 − α_v τ).

@@ -127,7 +127,7 @@ struct Ramp<'o, F> {
     share: f64,
     /// From where on, and how often since, stick-slip survived where it had been lost.
     passed: (f64, u32),
-    /// Whether the last steps shortened the sticks as if none were left soon.
+    /// Whether any step shortened the sticks as if none were left soon.
     vanish: bool,
     /// Whether irregular stick-slip or a jump was on the way.
     chance: bool,
@@ -135,8 +135,8 @@ struct Ramp<'o, F> {
 }
 
 impl<F: Followed> Ramp<'_, F> {
-    /// Raises v0 until two v0 as near as asked for differ in their regime; false where that takes
-    /// too long.
+    /// Raises v0 until stick-slip persists at one of two v0 as near as asked for, and does not at
+    /// the other; false where that takes too long.
     fn run(&mut self) -> bool {
         let end = self.options.v_max * self.block.unit();
         for _ in 0..self.options.trials {

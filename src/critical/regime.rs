@@ -4,7 +4,7 @@ use super::event_functions::{EventFunctions, MOST_SLIPS};
 use super::observers::{Stops, Waiting};
 use super::options::RampOptions;
 use super::problem::Problem;
-use crate::slip::motion::Motion;
+use crate::slip::motion::{Event, Motion};
 use crate::slip::outcome::{Limits, Outcome, Summary};
 use crate::slip::watch::follow;
 
@@ -156,6 +156,10 @@ pub(super) trait Followed: Clone {
 
     /// Follows stick-slip at `v0` until its regime is known.
     fn response_at(&mut self, v0: f64, how: &Observation) -> Response;
+
+    /// Goes on at the v0 it has to the next phase of its cycle, a release or a stop; false where it
+    /// does not come to one within so many steps.
+    fn next_phase(&mut self, steps: u32) -> bool;
 }
 
 /// A motion of a problem.
@@ -181,6 +185,18 @@ impl Followed for Simulated<'_> {
     fn response_at(&mut self, v0: f64, how: &Observation) -> Response {
         response_at(self.problem, &mut self.motion, v0, how)
     }
+
+    fn next_phase(&mut self, steps: u32) -> bool {
+        for _ in 0..steps {
+            match self.motion.advance(f64::INFINITY) {
+                Some(Event::Release | Event::Stick) => return true,
+                Some(Event::LiftOff) => return false,
+                _ if !self.motion.u.is_finite() => return false,
+                _ => {}
+            }
+        }
+        false
+    }
 }
 
 /// Follows a motion at the v0 it has, waited for as long as at the end of a search.
@@ -198,7 +214,7 @@ fn response_at(problem: &Problem, motion: &mut Motion, v0: f64, how: &Observatio
     }
     let start = motion.t;
     let limits = Limits {
-        horizon: start + problem.patience(v0),
+        horizon: start + problem.patience(v0, options),
         steps: (options.steps as f64 * problem.slower()) as u64,
         stable_abscissa: match how.waiting {
             Waiting::Patient => problem.stable_abscissa(v0),

@@ -304,7 +304,7 @@ fn misses(motion: &Motion, since: f64, expected: Stop, options: &ContinuationOpt
     let step = motion.last_step();
     let slip = expected.slip;
     let latest = slip + expected.to_minimum + options.same_minimum * slip;
-    let at_stop = |t: f64| t > (1.0 - options.early_minimum) * slip && t < latest;
+    let at_stop = |t: f64| t > (1.0 - options.same_minimum) * slip && t < latest;
     if expected.to_minimum < slip
         && at_stop(since + step.length)
         && let Some((s, u)) = step.speed_minimum()

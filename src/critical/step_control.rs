@@ -1,4 +1,16 @@
 //! The predictor of events and the control of steps in v0, of continuation and of simulation alike.
+//!
+//! All rules for step sizes, and where they stand:
+//!
+//! ```text
+//! where the next event is          Prediction; slopes: continuation::Point, ramp::secants
+//! the share of the way there       continuation::continue_to_event; ramp::next_step
+//! after a failure and a success    StepControl
+//! which steps fail                 continuation::is_jump; ramp::largest_step
+//! the last steps                   continuation::continue_to_event; ramp::precision
+//! the first steps                  follow, for each kind of stick-slip
+//! steps of the delay               delay_step::approach, set_out; along_delay::segment
+//! ```
 
 use super::event_functions::{Event, EventFunctions};
 use super::options::ContinuationOptions;
@@ -32,7 +44,8 @@ impl Prediction {
 
 /// How far the next step in v0 may go. All steps are relative.
 ///
-/// A step that failed halves the next one, one that succeeded doubles it, up to a largest one. A v0
+/// A step that failed makes the next one half as long, one that succeeded doubles the largest that
+/// is allowed, up to a limit. A v0
 /// that failed is no bound: it may have been the size of the step. So it is come nearer to by half
 /// of the way, and [`Retry`] says what is tried from much nearer than the step that failed there.
 #[derive(Debug, Clone, Copy)]
@@ -44,7 +57,7 @@ pub(super) struct StepControl<'o> {
     largest: f64,
     limit: f64,
     /// A v0 that failed, unless one beyond it has not, and the step that led there: the lowest
-    /// one where that is tried once more, else the last one.
+    /// one, but where steps beyond it are tried the last one.
     failed: Option<(f64, f64)>,
 }
 

@@ -164,7 +164,7 @@ impl<'p> Trials<'p> {
             Err(NoCycle::NoStickSlip) => return (Regime::NoStickSlip, f64::NAN),
             Err(NoCycle::LongDelay) => return (Regime::Undecided, f64::NAN),
         };
-        let patience = cycle.period() + self.problem.patience(v0);
+        let patience = cycle.period() + self.problem.patience(v0, &self.problem.options.ramp);
         let limits = Limits {
             horizon: longest * patience,
             steps: self.steps,

@@ -231,4 +231,8 @@ impl Followed for Synthetic {
             depth: depth.fold(f64::INFINITY, f64::min),
         }
     }
+
+    fn next_phase(&mut self, _: u32) -> bool {
+        self.next().map(|x| self.x = x).is_some()
+    }
 }

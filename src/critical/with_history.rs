@@ -48,7 +48,7 @@ impl<M: ReturnMap> Released<M> {
         let stretches = &stretches[..2 * one.len()];
         let alike = |s: &Stretch| {
             let [next, last, before] = s.lengths;
-            next > options.shortest_stretch * last && last.min(before) > 0.0
+            next > 0.0 && last.min(before) > 0.0
         };
         if !stretches.iter().all(alike) {
             return false;

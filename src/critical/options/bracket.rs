@@ -6,6 +6,8 @@ options! {
         /// How far the lower bound lies below the lowest end: at least, and as a share of the
         /// spread of the ends of slow searches. Still slower ones end up to that much lower.
         below: [f64; 2] = [0.03, 1.0], in 0.0..=10.0;
+        /// The farthest that it lies below.
+        farthest_below: f64 = 0.5, in 0.0..=0.99;
         /// How far above the highest end it is seen whether stick-slip is lost, at first. Twice as
         /// far every time that it is not.
         above: f64 = 0.025, in 1e-6..=1.0;
@@ -24,15 +26,18 @@ options! {
         /// Sticks shorter than this, at such an end, are none that is known: ramps by other
         /// programs go on with still shorter ones.
         short_stick: f64 = 1e-5, in 1e-12..=1e-2;
-        /// Where the slow search begins, over the lowest end that is known.
+        /// Where slow searches begin, over the lowest end that is known.
         slow_from: f64 = 0.2, in 1e-6..=1.0;
-        /// The largest step of v0 in it.
-        slow_step: f64 = 0.05, in 1e-4..=1.0;
-        /// The cycles after which stick-slip that does not repeat is irregular in it, and so many
-        /// more for each unit of the delay. What ends by chance ends at a lower v0 the longer it
-        /// is held at each.
+        /// The largest steps of v0 in the two of them.
+        slow_steps: [f64; 2] = [0.05, 0.03], in 1e-4..=1.0;
+        /// The cycles after which stick-slip that does not repeat is irregular in the first of
+        /// them, and so many more for each unit of the delay. What ends by chance ends at a lower
+        /// v0 the longer it is held at each.
         slow_cycles: [f64; 2] = [60.0, 2.0], in 0.0..=1e5;
-        /// The most steps of the integrator in it: some seconds.
-        slow_steps: u64 = 10_000_000, in 100..=1_000_000_000_000;
+        /// So many times as long the second one holds it: ends by chance hardly come lower by
+        /// holding it longer still.
+        held_longer: f64 = 5.0, in 1.0..=1e3;
+        /// The most steps of the integrator in each of them: some seconds.
+        steps: u64 = 10_000_000, in 100..=1_000_000_000_000;
     }
 }

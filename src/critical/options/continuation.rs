@@ -16,9 +16,7 @@ options! {
         longest_slip: f64 = 60.0, in 10.0..=10_000.0;
         /// A minimum of ẋ no farther than this from where the stop is expected, as a share of the
         /// slip, is the one that the stop cuts off.
-        same_minimum: f64 = 0.25, in 0.0..=1.0;
-        /// A minimum of ẋ that comes by this share of the slip before its stop is another one.
-        early_minimum: f64 = 0.1, in 0.0..=0.5;
+        same_minimum: f64 = 0.1, in 0.0..=0.5;
         /// A slip that takes so many times as long as the one before has missed its stop.
         missed_stop: f64 = 1.6, in 1.05..=10.0;
 
@@ -54,9 +52,6 @@ options! {
         aitken_ratio: f64 = 0.7, in 0.0..=0.95;
         /// The farthest that two pasts are extrapolated, in units of what lies between them.
         farthest_extrapolation: f64 = 3.0, in 0.0..=20.0;
-        /// Slips and sticks do not become shorter than this by one extrapolation, as a share of
-        /// what they were.
-        shortest_stretch: f64 = 5e-3, in 0.0..=0.5;
 
         /// The largest step of v0, and the first one.
         largest_step: f64 = 1.0, in 1e-3..=10.0;
@@ -94,9 +89,6 @@ options! {
 
         /// Nearer than this to the event the rest of the way is told from the last two orbits.
         near: f64 = 1e-4, in 1e-9..=1e-2;
-        /// A depth need not be as near, by this factor: it is better known than other event
-        /// functions of orbits that have not quite come to rest.
-        near_graze: f64 = 10.0, in 1.0..=100.0;
         /// Within this of the event the last two orbits tell it if both predict it alike.
         quite_near: f64 = 3e-3, in 1e-9..=0.1;
         /// How well two predictions of the event agree.

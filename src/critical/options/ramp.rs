@@ -10,7 +10,7 @@ options! {
         largest: f64 = 0.6, in 1e-6..=10.0;
         /// The largest one where cycles do not show whether stick-slip is of the same kind.
         unseen: f64 = 0.1, in 1e-6..=10.0;
-        /// The last step: v_c is known to it.
+        /// The last step. v_c by simulation is told to this, and agreed on to `GRAZE_PRECISION`.
         last: f64 = 1e-6, in 1e-12..=1e-2;
         /// Up to this v0, in the units of a motion, v0 glides: it is held for a few cycles only,
         /// and what stick-slip comes to there is not waited for. 0 where every v0 is held.

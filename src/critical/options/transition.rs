@@ -4,7 +4,7 @@ options! {
     /// How the end of a branch of orbits is checked, and how it is found what follows. Distances in
     /// v0 are relative, times in units of √(M/κ).
     TransitionOptions {
-        /// The last orbits are this far below and above an event: v_c is known to it.
+        /// The last orbits are this far below and above an event.
         precision: f64 = 1e-5, in 1e-9..=1e-3;
         /// An orbit this near below an event, over [`Self::precision`], is as good as one at it.
         at_event: f64 = 2.0, in 1.0..=100.0;
