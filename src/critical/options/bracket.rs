@@ -5,7 +5,7 @@ options! {
     BracketOptions {
         /// How far the lower bound lies below the lowest end: at least, and as a share of the
         /// spread of the ends of slow searches. Still slower ones end up to that much lower.
-        below: [f64; 2] = [0.03, 1.0], in 0.0..=10.0;
+        below: [f64; 2] = [0.05, 1.0], in 0.0..=10.0;
         /// The farthest that it lies below.
         farthest_below: f64 = 0.5, in 0.0..=0.99;
         /// How far above the highest end it is seen whether stick-slip is lost, at first. Twice as
