@@ -12,7 +12,7 @@ use slipmap::slip::motion::Accuracy;
 use slipmap::slip::outcome::{Outcome, Summary};
 use slipmap::slip::stop::Stop;
 use slipmap::sweep::cells::vc;
-use slipmap::sweep::input::class::Class;
+use slipmap::sweep::input::regime_at_v0::RegimeAtV0;
 use slipmap::sweep::input::search::Protocol;
 use slipmap::sweep::{Parameter, Plan, SweepSpec};
 
@@ -153,8 +153,8 @@ fn share(text: &str, v0: f64, points: u32) -> f64 {
         }
         let found = asked.find(Protocol::Follow);
         let tolerance = MarginalTolerance::default();
-        let class = asked.class_at(v0, Protocol::Follow, &found, tolerance);
-        if class == Class::Stable {
+        let class = asked.regime_at(v0, Protocol::Follow, &found, tolerance);
+        if class == RegimeAtV0::Stable {
             stable += 1.0;
         }
     }

@@ -263,6 +263,49 @@ fn a_map_of_the_second_version_is_read() {
     }
 }
 
+/// A map that was written while the regime was called `class`, and integers had a `_FillValue`:
+/// `n_unstable`, `vc` and `class` over alpha_n [-10, -3], v0 [0.01, 1], tau [0.5, 1, 2]. Sweeps that
+/// ask for `class` make the same plan, with the new name.
+#[test]
+fn a_map_of_the_fourth_version_has_a_regime() {
+    let path = Path::new("tests/reference/format_version_4.h5");
+    let map = MapFile::open(path).unwrap();
+    assert_eq!(map.fields(), [Field::NUnstable, Field::Regime, Field::Vc]);
+    let counts = map.kind_counts(Field::Regime).unwrap();
+    assert_eq!(counts.iter().sum::<u64>(), 12);
+    assert_eq!(map.summary(Field::Regime).unwrap().missing, 0);
+    let text = map.root_text("sweep").unwrap();
+    let plan = plan(&text);
+    assert_eq!(map.root_text("plan_hash").unwrap(), plan.hash());
+    let folder = tempfile::tempdir().unwrap();
+    let again = folder.path().join("again.h5");
+    write(&plan, 1, &again);
+    let new = MapFile::open(&again).unwrap();
+    for index in [[0, 0], [0, 1], [1, 0], [1, 1]] {
+        let cells = |map: &MapFile| {
+            let plane = map.plane(Field::Regime, &[index[0], index[1], 0], (1, 2), 100);
+            plane.unwrap().cells
+        };
+        assert_eq!(cells(&map), cells(&new));
+    }
+    let file = hdf5::File::open(&again).unwrap();
+    assert!(file.link_exists("regime") && !file.link_exists("class"));
+}
+
+/// Integers have a `_FillValue` where cells are missing alone: readers turn those into floats.
+#[test]
+fn integers_of_a_complete_map_have_no_fill_value() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("map.h5");
+    write(&plan(SWEEPS[1]), 1, &path);
+    let file = hdf5::File::open(&path).unwrap();
+    let has = |name: &str, attribute: &str| file.dataset(name).unwrap().attr(attribute).is_ok();
+    for name in ["n_unstable", "status"] {
+        assert!(!has(name, "_FillValue") && has(name, "valid_max"), "{name}");
+    }
+    assert!(has("delay_margin", "_FillValue"));
+}
+
 #[test]
 fn maps_of_the_first_version_are_read() {
     let folder = tempfile::tempdir().unwrap();
@@ -291,10 +334,10 @@ fn maps_of_the_first_version_are_read() {
         found
     );
     assert!(!found.is_empty() && found.iter().all(|c| c.degree_of_stability == 0.0));
-    for version in [0, 5] {
+    for version in [0, 6] {
         edit(&path, |file| set_version(file, version));
         let error = MapFile::open(&path).unwrap_err().to_string();
-        assert!(error.contains("this program reads 1 to 4"), "{error}");
+        assert!(error.contains("this program reads 1 to 5"), "{error}");
     }
 }
 
@@ -345,9 +388,11 @@ fn best_settings_are_those_of_the_library() {
         for name in [plan.spec.axes[gain].parameter.name(), "tau", "abscissa", "frequency", "relaxation_time", "kind", "certified", "regions"] {
             let dataset = group.dataset(name).unwrap();
             assert_eq!(dataset.shape(), shape, "{name}");
-            for attribute in ["_FillValue", "long_name", "units"] {
+            for attribute in ["long_name", "units"] {
                 assert!(dataset.attr(attribute).is_ok(), "{name} {attribute}");
             }
+            let real = !["kind", "certified", "regions"].contains(&name);
+            assert_eq!(dataset.attr("_FillValue").is_ok(), real, "{name}");
             assert_eq!(dataset.attr("DIMENSION_LIST").is_ok(), !shape.is_empty());
         }
     }

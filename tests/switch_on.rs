@@ -282,13 +282,13 @@ fn a_block_that_slides_back_is_in_stick_slip() {
     expected[4..].copy_from_slice(&["sliding", "sliding", "no-cycle"]);
     assert_eq!(kinds(&path, Field::Outcome), expected);
     let velocities = format!(
-        "fields = [\"vc\", \"outcome\", \"class\", \"v_smooth\", \"windows\"]\nprotocol = \"switch-on\"\n\
+        "fields = [\"vc\", \"outcome\", \"regime\", \"v_smooth\", \"windows\"]\nprotocol = \"switch-on\"\n\
          [axes]\nv0 = [0.96, 1.5, 2.0917, 2.0918, 5.0]\ntau = [2.5]\n{}",
         SLIDES_BACK.replace("tau = 2.5\n", "")
     );
     write(&Plan::new(velocities.parse().unwrap()).unwrap(), 1, &path);
     let expected = ["unstable", "bistable", "bistable", "stable", "stable"];
-    assert_eq!(kinds(&path, Field::Class), expected);
+    assert_eq!(kinds(&path, Field::Regime), expected);
     assert_eq!(kinds(&path, Field::Outcome), ["lost"; 5]);
     let file = hdf5::File::open(&path).unwrap();
     let windows = file.dataset("windows").unwrap().read_raw::<u8>().unwrap();

@@ -1,4 +1,4 @@
-//! Maps of the critical velocity: cells against `vc`, classes, the slope at rest, threads and
+//! Maps of the critical velocity: cells against `vc`, regimes, the slope at rest, threads and
 //! tiles, the sample, mistakes.
 
 #[path = "common/program.rs"]
@@ -38,7 +38,7 @@ fn alone() -> MutexGuard<'static, ()> {
 fn sweeps() -> [String; 3] {
     [
         format!(
-            "fields = [\"n_unstable\", \"class\", \"v_smooth\", {VC}]\nverify = 0.5\n[axes]\nalpha_n = [-10, -3, 2]\n\
+            "fields = [\"n_unstable\", \"regime\", \"v_smooth\", {VC}]\nverify = 0.5\n[axes]\nalpha_n = [-10, -3, 2]\n\
              v0 = [0.02, 0.3]\ntau = [0.3, 0.5, 2]\n[fixed]\nmass = 1\n{LAW}"
         ),
         format!(
@@ -183,7 +183,7 @@ fn maps_do_not_depend_on_threads_or_tiles() {
 /// Classes follow from the count, v_c and v0; every other cell or so was recomputed, to the same
 /// answer.
 #[test]
-fn classes_and_samples() {
+fn regimes_and_samples() {
     let _alone = alone();
     let folder = tempfile::tempdir().unwrap();
     let map = folder.path().join("map.h5");
@@ -191,10 +191,10 @@ fn classes_and_samples() {
     write(&plan, 2, &map);
     let (vc, smooth) = (values(&map, "vc"), values(&map, "v_smooth"));
     let lift_off = values(&map, "v_liftoff");
-    let (counts, classes) = (bits(&map, "n_unstable"), names(&map, Field::Class));
+    let (counts, classes) = (bits(&map, "n_unstable"), names(&map, Field::Regime));
     let outcomes = names(&map, Field::Outcome);
     let mut seen = std::collections::HashSet::new();
-    for (cell, class) in classes.into_iter().enumerate() {
+    for (cell, regime) in classes.into_iter().enumerate() {
         let v0 = [0.02, 0.3][cell / 3 % 2];
         let expected = match outcomes[cell] {
             _ if counts[cell] > 0 => "unstable",
@@ -203,12 +203,12 @@ fn classes_and_samples() {
             _ if v0 > vc[cell] => "stable",
             _ => "bistable",
         };
-        assert_eq!(class, expected, "{cell}");
+        assert_eq!(regime, expected, "{cell}");
         assert!(smooth[cell].is_nan() || smooth[cell] >= vc[cell], "{cell}");
-        if class == "stable" && !smooth[cell].is_nan() {
+        if regime == "stable" && !smooth[cell].is_nan() {
             assert!(smooth[cell] < v0 || smooth[cell] > vc[cell], "{cell}");
         }
-        seen.insert(class);
+        seen.insert(regime);
     }
     assert!(seen.len() >= 3, "{seen:?}");
     // The letter's Fig. 3(b): α_N = −10, τ = 0.5.
@@ -296,11 +296,11 @@ fn the_slope_at_rest_stands_for_v_s_or_mu0() {
         ("mu_prime_rest = [-0.5, -1]", "v_s = 0.5"),
     ] {
         let text = format!(
-            "fields = [\"vc\", \"n_unstable\", \"class\"]\nboundaries = false\n[axes]\n{axis}\ntau = [0.5, 1]\n\
+            "fields = [\"vc\", \"n_unstable\", \"regime\"]\nboundaries = false\n[axes]\n{axis}\ntau = [0.5, 1]\n\
              [fixed]\nalpha_n = -8\nv0 = 0.3\n[friction]\nlaw = \"weakening\"\n{fixed}\n"
         );
         write(&plan(&text), 1, &map);
-        found.push(["vc", "n_unstable", "class"].map(|name| bits(&map, name)));
+        found.push(["vc", "n_unstable", "regime"].map(|name| bits(&map, name)));
     }
     assert_eq!(found[0], found[1]);
     assert_eq!(found[2], found[3]);
@@ -374,7 +374,7 @@ fn mistakes_are_shown_in_place() {
         "fields = [\"vc\"]\n[axes]\ntau = [1]\n[fixed]\nmu_prime = -1\n".to_owned(),
         format!("fields = [\"vc\", \"n_min\"]\n{tail}{LAW}"),
         format!("fields = [\"vc\"]\n{tail}v0 = 0.1\n{LAW}"),
-        format!("fields = [\"vc\", \"class\"]\n{tail}{LAW}"),
+        format!("fields = [\"vc\", \"regime\"]\n{tail}{LAW}"),
         format!("fields = [\"vc\"]\n{tail}x_dot0 = 0.1\n{LAW}"),
         format!("fields = [\"vc\"]\n{tail}{LAW}[simulation]\nsteps = 10\n"),
         format!("fields = [\"vc\"]\n{tail}switch_on_phase = 1.0\n{LAW}"),

@@ -23,7 +23,7 @@ pub(super) struct Args {
     /// The picture to write, .png or .svg [default: the map's name with .png, beside it]
     #[arg(short, long, value_name = "PICTURE")]
     output: Option<PathBuf>,
-    /// What to show, a field of the map [default: the first held of class, vc, outcome, abscissa,
+    /// What to show, a field of the map [default: the first held of regime, vc, outcome, abscissa,
     /// n_unstable]
     #[arg(long, value_name = "NAME", value_parser = parse_field)]
     field: Option<Field>,

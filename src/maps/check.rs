@@ -178,7 +178,12 @@ fn compute_tiles(map: &MapFile, plan: &Plan, program: Program, tiles: u64, repor
             continue;
         };
         let mut equal = true;
-        let held = plan.spec.fields.iter().map(|f| f.name()).chain([STATUS]);
+        let held = plan
+            .spec
+            .fields
+            .iter()
+            .map(|&f| map.name_of(f))
+            .chain([STATUS]);
         for (name, chunk) in held.zip(chunks) {
             match map.stored_chunk(name, &tile.offset) {
                 Ok(Some(stored)) if stored == chunk => {}

@@ -19,7 +19,7 @@ const COLOURS: [u8; 5] = [37, 230, 180, 136, 250];
 const SHADES: [char; 5] = ['█', ' ', '░', '▒', '?'];
 
 /// What the map looks like, in text of at most 19 lines and `width` columns; none where the map
-/// tells neither classes, outcomes nor what is stable, or has fewer than two axes with more than
+/// tells neither regimes, outcomes nor what is stable, or has fewer than two axes with more than
 /// one value. `colour`: with ANSI escapes, two rows of cells in each line.
 ///
 /// Axes outside the plane are held at their middle value.
@@ -31,7 +31,7 @@ pub fn preview(map: &MapFile, width: usize, colour: bool) -> Result<Option<Strin
     // How stick-slip ends is no matter of so few kinds.
     let of_motions =
         Some(Field::Outcome).filter(|f| held(f) && !map.fields().iter().any(|f| f.of_vc()));
-    let kinds = Some(Field::Class).filter(held).or(of_motions);
+    let kinds = Some(Field::Regime).filter(held).or(of_motions);
     let shown = kinds.or_else(|| map.stability_field());
     let (Some((x, y)), Some(field)) = (plane_axes(map), shown) else {
         return Ok(None);
@@ -60,7 +60,7 @@ pub fn preview(map: &MapFile, width: usize, colour: bool) -> Result<Option<Strin
     Ok(Some(captions.around(&picture, columns, colour)))
 }
 
-/// The least number of unstable roots that goes with a value. Outcomes and classes are shown like
+/// The least number of unstable roots that goes with a value. Outcomes and regimes are shown like
 /// 0, 2, 4 and 6 roots.
 fn as_count(field: Field, value: f64) -> f64 {
     if field.storage() == Storage::Kind {
@@ -168,7 +168,7 @@ impl Captions {
             bottom,
             kinds: match field.storage() {
                 Storage::Count => &["stable", "2", "4", "6 or more unstable roots"],
-                Storage::Kind if field == Field::Class => {
+                Storage::Kind if field == Field::Regime => {
                     &["stable", "bistable", "unstable", "lift-off", "others"]
                 }
                 Storage::Kind => &["sliding", "stick-slip", "oscillation", "lift-off", "others"],

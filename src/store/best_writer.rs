@@ -13,6 +13,7 @@ use super::boundary_writer::put_flags;
 use super::describe::describe_parameter;
 use super::netcdf::{DimensionId, Dimensions, named};
 use super::schema::{BEST, BEST_FLAG_FILL, PLANE, best as names};
+use super::variables::FILL_VALUE;
 use crate::linear::best::Kind;
 use crate::sweep::cells::best::BestSettings;
 use crate::sweep::{Parameter, Plan};
@@ -57,11 +58,19 @@ impl BestRow {
 /// A variable with the values of the planes so far.
 struct Variable<T> {
     dataset: Dataset,
+    fill: T,
     values: Vec<T>,
 }
 
-impl<T: H5Type + Copy> Variable<T> {
+impl<T: H5Type + Copy + PartialEq> Variable<T> {
+    /// Integers of which none is missing have no `_FillValue`, by which readers would turn them
+    /// into floats.
     fn write(&self) -> hdf5::Result<()> {
+        let missing = |value: &T| *value == self.fill;
+        let real = !missing(&self.fill);
+        if real || self.values.iter().any(missing) {
+            put_numbers(&self.dataset, FILL_VALUE, &[self.fill])?;
+        }
         match self.values[..] {
             [value] if self.dataset.ndim() == 0 => self.dataset.write_scalar(&value),
             _ => self.dataset.write_raw(&self.values),
@@ -104,11 +113,11 @@ impl Variables<'_> {
             self.dimensions.attach(&dataset, self.outer)?;
             dataset
         };
-        put_numbers(&dataset, "_FillValue", &[fill])?;
         put_text(&dataset, "long_name", long_name)?;
         put_text(&dataset, "units", unit)?;
         Ok(Variable {
             dataset,
+            fill,
             values: Vec::new(),
         })
     }

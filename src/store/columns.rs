@@ -23,7 +23,7 @@ impl FileColumns {
     /// When one is not stored as slipmap stores columns.
     pub fn of(map: MapFile) -> Result<Self, StoreError> {
         let fields = map.fields().iter();
-        let columns = fields.map(|field| (field.name(), field.storage()));
+        let columns = fields.map(|&field| (map.name_of(field), field.storage()));
         let open = |(name, storage): (&str, Storage)| {
             let dataset = map.dataset(name)?;
             let kind = dataset.dtype();

@@ -71,7 +71,7 @@ impl MapFile {
         let axes = read_axes(&file, path)?;
         let fields = Field::ALL
             .into_iter()
-            .filter(|field| file.link_exists(field.name()))
+            .filter(|field| file.link_exists(held_name(&file, *field)))
             .collect();
         let map = Self {
             path: path.to_owned(),
@@ -86,8 +86,7 @@ impl MapFile {
 
     fn check_shapes(&self) -> Result<(), StoreError> {
         let shape: Vec<usize> = self.axes.iter().map(|a| a.values.len()).collect();
-        let names = self.fields.iter().map(|f| f.name()).chain([STATUS]);
-        for name in names {
+        for name in self.names() {
             let dataset = self.dataset(name)?;
             let found = dataset.shape();
             if found != shape {
@@ -153,12 +152,7 @@ impl MapFile {
 
     /// The hash of everything besides the cells, as it is now.
     pub(super) fn contents_hash(&self, stop: &AtomicBool) -> hdf5::Result<String> {
-        let fields = self.fields.iter().map(|field| field.name());
-        contents_hash(
-            &self.file,
-            &fields.chain([STATUS]).collect::<Vec<_>>(),
-            stop,
-        )
+        contents_hash(&self.file, &self.names().collect::<Vec<_>>(), stop)
     }
 
     /// Version of the layout that it has.
@@ -182,9 +176,26 @@ impl MapFile {
     /// The unit of a field.
     #[must_use]
     pub fn field_unit(&self, field: Field) -> String {
-        open::dataset(&self.file, field.name())
+        open::dataset(&self.file, self.name_of(field))
             .and_then(|d| text(&d, "units"))
             .unwrap_or_else(|_| "1".into())
+    }
+
+    /// The names of the datasets of cells, as this file has them: the fields' in order, and the
+    /// status.
+    pub(crate) fn names(&self) -> impl Iterator<Item = &'static str> {
+        let fields = self.fields.iter().map(|&f| self.name_of(f));
+        fields.chain([STATUS])
+    }
+
+    /// The name of a field's dataset in this file.
+    pub(crate) fn name_of(&self, field: Field) -> &'static str {
+        held_name(&self.file, field)
+    }
+
+    /// The dataset of a field.
+    pub(super) fn of_field(&self, field: Field) -> Result<Dataset, StoreError> {
+        self.dataset(self.name_of(field))
     }
 
     /// Values of the parameters that are no axes.
@@ -207,8 +218,7 @@ impl MapFile {
     /// # Errors
     /// When a dataset cannot be opened.
     pub fn sizes(&self) -> Result<Vec<(&'static str, u64, u64)>, StoreError> {
-        let names = self.fields.iter().map(|f| f.name()).chain([STATUS]);
-        names
+        self.names()
             .map(|name| {
                 let dataset = self.dataset(name)?;
                 let element = dataset.dtype().map_or(0, |t| t.size()) as u64;
@@ -267,7 +277,7 @@ impl MapFile {
             true => self.axes[row_axis].values[..1].to_vec(),
             false => thinned(row_axis),
         };
-        let dataset = self.dataset(field.name())?;
+        let dataset = self.of_field(field)?;
         let cells = self.read_field(field, &dataset, &slab)?;
         let cells = if row_axis > column_axis {
             transposed(&cells, columns.len(), rows.len())
@@ -298,7 +308,7 @@ impl MapFile {
 
     /// One cell of a field as a number: NaN where it has no value.
     pub(crate) fn cell(&self, field: Field, index: &[usize]) -> Result<f64, StoreError> {
-        let cells = self.read_field(field, &self.dataset(field.name())?, &at(index))?;
+        let cells = self.read_field(field, &self.of_field(field)?, &at(index))?;
         Ok(cells.first().copied().unwrap_or(f64::NAN))
     }
 
@@ -420,4 +430,12 @@ fn transposed(cells: &[f64], rows: usize, columns: usize) -> Vec<f64> {
     (0..columns)
         .flat_map(|c| (0..rows).map(move |r| cells[r * columns + c]))
         .collect()
+}
+
+/// The name that a field has in `file`: that of old maps where there is no other.
+fn held_name(file: &Group, field: Field) -> &'static str {
+    match file.link_exists(field.name()) {
+        true => field.name(),
+        false => field.first_name(),
+    }
 }

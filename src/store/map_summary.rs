@@ -69,7 +69,7 @@ impl MapFile {
     /// # Errors
     /// When the file is damaged.
     pub fn summary(&self, field: Field) -> Result<FieldSummary, StoreError> {
-        let dataset = self.dataset(field.name())?;
+        let dataset = self.of_field(field)?;
         let mut summary = FieldSummary::default();
         for_each_chunk(&dataset, |slab| {
             summary.add(&self.read_field(field, &dataset, slab)?);
@@ -84,7 +84,7 @@ impl MapFile {
     /// # Errors
     /// When the map does not hold the field, or is damaged.
     pub fn kind_counts(&self, field: Field) -> Result<Vec<u64>, StoreError> {
-        let dataset = self.dataset(field.name())?;
+        let dataset = self.of_field(field)?;
         let mut counts = vec![0; field.kinds().map_or(0, |kinds| kinds.len())];
         if counts.is_empty() {
             return Ok(counts);

@@ -22,8 +22,9 @@ use super::output::Output;
 use super::schema::{self, STATUS, root};
 use super::seal;
 use super::soundness::as_written;
-use super::variables::Variables;
+use super::variables::{Variables, put_fill};
 use crate::sweep::Plan;
+use crate::sweep::input::field::Storage;
 use crate::sweep::plan::in_hexadecimal;
 use crate::sweep::plan::tile::Tile;
 
@@ -120,10 +121,19 @@ impl<'p> MapWriter<'p> {
         self.cells.len()
     }
 
-    /// Says how many cells the map lacks.
+    /// Says how many cells the map lacks, and what stands in their place.
     pub(crate) fn put_missing(&self, cells: u64) -> Result<(), StoreError> {
-        put_numbers(&self.file, root::CELLS_MISSING, &[cells])
-            .map_err(StoreError::hdf5("write", self.output.path()))
+        let put = || -> hdf5::Result<()> {
+            put_numbers(&self.file, root::CELLS_MISSING, &[cells])?;
+            let fields = self.plan.spec.fields.iter().map(|field| field.storage());
+            // Those of the status are those of a kind.
+            let storages = fields.chain([Storage::Kind]);
+            for (variable, storage) in self.cells.iter().zip(storages) {
+                put_fill(&variable.dataset, storage)?;
+            }
+            Ok(())
+        };
+        put().map_err(StoreError::hdf5("write", self.output.path()))
     }
 
     /// Closes the file, reads it back to see that it holds what was written, makes it durable and

@@ -25,7 +25,7 @@ pub(crate) fn sample(map: &MapFile, plan: &Plan, count: u64) -> Result<Vec<u64>,
         .iter()
         .filter(|field| plan.spec.fields.contains(field));
     let datasets = told
-        .map(|field| map.dataset(field.name()))
+        .map(|field| map.of_field(*field))
         .collect::<Result<Vec<_>, _>>()?;
     if datasets.is_empty() {
         let place = |sample| (spread(sample) * plan.cells() as f64) as u64;

@@ -11,7 +11,7 @@ use sha2::{Digest, Sha256};
 use super::attributes::text;
 use super::error::StoreError;
 use super::map_file::MapFile;
-use super::schema::{self, STATUS};
+use super::schema;
 use super::seal::{self, Seal};
 use super::values::Chunks;
 use crate::sweep::cells::second_look::Question;
@@ -49,7 +49,7 @@ pub(super) fn as_written(path: &Path, plan: &Plan, stop: &AtomicBool) -> Result<
     check_checksums(&map, plan, &mut report, stop);
     // What is a remark on an old map is a fault of a new one.
     let wrong = report.faults.into_iter().chain(report.remarks).next();
-    let all = names(&map).count() as u64 + 1;
+    let all = map.names().count() as u64 + 1;
     match wrong {
         Some(fault) => Err(fault),
         None if report.checksums < all => Err("some of its checksums are missing".into()),
@@ -106,7 +106,7 @@ pub(crate) fn check_schema(map: &MapFile, plan: &Plan, report: &mut Report, stop
     {
         faults.push(format!("the field {} is missing", field.name()));
     }
-    for name in names(map) {
+    for name in map.names() {
         if stop.load(Ordering::Relaxed) {
             return;
         }
@@ -142,11 +142,6 @@ fn has_dimensions(map: &MapFile, name: &str) -> bool {
     list.is_some_and(|list| list.size() == map.axes().len())
 }
 
-/// The datasets of cells.
-pub(crate) fn names(map: &MapFile) -> impl Iterator<Item = &'static str> {
-    map.fields().iter().map(|f| f.name()).chain([STATUS])
-}
-
 /// Whether all bytes are those that were sealed; after `stop` is set the answer means nothing.
 pub(crate) fn check_seal(map: &MapFile, report: &mut Report, stop: &AtomicBool) {
     match seal::check(map.path(), stop) {
@@ -167,7 +162,7 @@ pub(crate) fn check_seal(map: &MapFile, report: &mut Report, stop: &AtomicBool) 
 
 pub(crate) fn check_checksums(map: &MapFile, plan: &Plan, report: &mut Report, stop: &AtomicBool) {
     let mut without = 0;
-    for name in names(map) {
+    for name in map.names() {
         if stop.load(Ordering::Relaxed) {
             return;
         }

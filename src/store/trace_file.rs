@@ -16,6 +16,7 @@ use super::netcdf::{DimensionId, Dimensions, named};
 use super::open;
 use super::output::Output;
 use super::schema::{self, trace};
+use super::variables::FILL_VALUE;
 use crate::sweep::cells::trace::{EVENTS, MODES, Sample, TraceEvent};
 use crate::sweep::input::units::Units;
 use crate::sweep::{CaseSpec, Trace};
@@ -233,7 +234,7 @@ impl Columns<'_> {
             // the system refuses it.
             self.group.file()?.flush()?;
         }
-        put_numbers(&dataset, "_FillValue", &[fill])?;
+        put_numbers(&dataset, FILL_VALUE, &[fill])?;
         if !self.coordinates.is_empty() {
             put_text(&dataset, "coordinates", self.coordinates)?;
         }

@@ -12,6 +12,18 @@ use crate::sweep::engine::{FEW_FILL, N_UNSTABLE_FILL, STATUS_FILL};
 use crate::sweep::input::field::Storage;
 use crate::sweep::{Field, Plan};
 
+/// The attribute by which netCDF readers know cells that have no value.
+pub(super) const FILL_VALUE: &str = "_FillValue";
+
+/// Says of a dataset of integers what stands in its missing cells; none of reals, which always do.
+pub(super) fn put_fill(dataset: &Dataset, storage: Storage) -> hdf5::Result<()> {
+    match storage {
+        Storage::Count => put_numbers(dataset, FILL_VALUE, &[N_UNSTABLE_FILL]),
+        Storage::Kind | Storage::Few => put_numbers(dataset, FILL_VALUE, &[FEW_FILL]),
+        Storage::Real => Ok(()),
+    }
+}
+
 /// Creates the datasets of the cells.
 pub(super) struct Variables<'a> {
     pub file: &'a Group,
@@ -24,9 +36,13 @@ pub(super) struct Variables<'a> {
 impl Variables<'_> {
     pub(super) fn field(&mut self, field: Field) -> hdf5::Result<Dataset> {
         let dataset = match field.storage() {
-            Storage::Count => self.variable(field.name(), N_UNSTABLE_FILL)?,
-            Storage::Kind | Storage::Few => self.variable(field.name(), FEW_FILL)?,
-            Storage::Real => self.variable(field.name(), f64::NAN)?,
+            Storage::Count => self.integers(field.name(), N_UNSTABLE_FILL, N_UNSTABLE_FILL - 1)?,
+            Storage::Kind | Storage::Few => self.integers(field.name(), FEW_FILL, FEW_FILL - 1)?,
+            Storage::Real => {
+                let dataset = self.variable(field.name(), f64::NAN)?;
+                put_numbers(&dataset, FILL_VALUE, &[f64::NAN])?;
+                dataset
+            }
         };
         let spec = &self.plan.spec;
         let (long_name, comment) = match spec.critical {
@@ -49,7 +65,7 @@ impl Variables<'_> {
     }
 
     pub(super) fn status(&mut self) -> hdf5::Result<Dataset> {
-        let dataset = self.variable(STATUS, STATUS_FILL)?;
+        let dataset = self.integers(STATUS, STATUS_FILL, STATUS_FILL - 1)?;
         put_text(&dataset, "long_name", "status of the cell")?;
         put_text(&dataset, "units", "1")?;
         put_numbers(&dataset, "flag_masks", &FLAGS.map(|(mask, _)| mask))?;
@@ -58,6 +74,17 @@ impl Variables<'_> {
             "flag_meanings",
             &FLAGS.map(|(_, name)| name).join(" "),
         )?;
+        Ok(dataset)
+    }
+
+    /// Integers up to `largest`; `fill` stands where there is no value. They have no `_FillValue`,
+    /// by which readers would turn them into floats, unless cells are missing.
+    fn integers<T>(&mut self, name: &str, fill: T, largest: T) -> hdf5::Result<Dataset>
+    where
+        T: H5Type + Copy + Into<hdf5::types::OwnedDynValue>,
+    {
+        let dataset = self.variable(name, fill)?;
+        put_numbers(&dataset, "valid_max", &[largest])?;
         Ok(dataset)
     }
 
@@ -76,7 +103,6 @@ impl Variables<'_> {
             .shape(self.plan.shape())
             .chunk(self.plan.tiles.tile_shape())
             .create(name)?;
-        put_numbers(&dataset, "_FillValue", &[fill])?;
         if !self.scalars.is_empty() {
             put_text(&dataset, "coordinates", &self.scalars)?;
         }

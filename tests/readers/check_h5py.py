@@ -19,10 +19,14 @@ def check_variable(file, name):
         e.equal(f"scale {place} of {name}", scale.name, f"/{axis}")
         assert np.array_equal(scale[...], values), f"values of the scale {axis} of {name}"
     fill = e.FILL[name]
-    for what, found in [("fill value", data.fillvalue), ("_FillValue", data.attrs["_FillValue"])]:
+    real = data.dtype.kind == "f"
+    e.equal(f"_FillValue of {name}", "_FillValue" in data.attrs, real)
+    for what, found in [("fill value", data.fillvalue), *([("_FillValue", data.attrs["_FillValue"])] if real else [])]:
         found = np.ravel(found)[0]
         assert found == fill or (np.isnan(fill) and np.isnan(found)), f"{what} of {name} is {found}"
-    e.equal(f"type of _FillValue of {name}", np.asarray(data.attrs["_FillValue"]).dtype, data.dtype)
+    limit = np.asarray(data.attrs["_FillValue" if real else "valid_max"])
+    e.equal(f"type of the limit of {name}", limit.dtype, data.dtype)
+    assert real or np.ravel(limit)[0] == fill - 1, f"valid_max of {name} is {limit}"
     e.equal(f"compression of {name}", data.compression, "gzip")
     e.equal(f"shuffling of {name}", data.shuffle, data.dtype.itemsize > 1)
     assert text(data.attrs["long_name"]), f"{name} has no long_name"
@@ -46,7 +50,7 @@ with h5py.File(e.MAP, "r") as file:
     e.equal("flag_meanings", text(file["status"].attrs["flag_meanings"]).split(), e.FLAG_NAMES)
     e.equal("axes", text(file.attrs["axes"]).split(), list(e.AXES))
     e.equal("sweep", text(file.attrs["sweep"]), e.SWEEP)
-    e.equal("format version", int(np.ravel(file.attrs["slipmap_format_version"])[0]), 4)
+    e.equal("format version", int(np.ravel(file.attrs["slipmap_format_version"])[0]), 5)
     e.equal("length of the plan hash", len(text(file.attrs["plan_hash"])), 64)
     group = file["boundaries"]
     e.equal("scale of omega", group["omega"].dims[0][0].name, "/boundaries/vertex")

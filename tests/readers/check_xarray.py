@@ -37,7 +37,9 @@ def check_cells(engine):
 def check_as_opened_by_default(engine):
     """Fill values become NaN: there is none in a complete map."""
     with xr.open_dataset(e.MAP, engine=engine) as ds:
-        assert not ds.n_unstable.isnull().any(), "cells without a count"
+        e.equal("type of counts", str(ds.n_unstable.dtype), "uint16")
+        e.equal("type of the status", str(ds.status.dtype), "uint8")
+        e.equal("cells with the first flag", int((ds.status & 1).sum()), int((e.CELLS["status"] & 1).sum()))
         assert not ds.delay_margin.isnull().any(), "cells without a delay margin"
         assert np.array_equal(ds.n_unstable.values, e.CELLS["n_unstable"])
         along_tau = ds.n_unstable.isel({name: 0 for name in e.DIMS if name != "tau"})

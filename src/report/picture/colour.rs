@@ -47,7 +47,7 @@ const OUTCOMES: [Rgb; 14] = [
 ];
 
 /// Working velocities that are stable, bistable, unstable, beyond a lift-off; undecided ones.
-const CLASSES: [Rgb; 5] = [
+const REGIMES: [Rgb; 5] = [
     STABLE,
     Rgb(0xc2, 0xe3, 0xf2),
     Rgb(0xdf, 0xc2, 0x7d),
@@ -124,7 +124,7 @@ pub(super) fn of_count(n: f64) -> Rgb {
 pub(super) fn of_kind(field: Field, number: f64) -> Rgb {
     let colours: &[Rgb] = match field {
         Field::Outcome => &OUTCOMES,
-        Field::Class => &CLASSES,
+        Field::Regime => &REGIMES,
         _ => &FEW,
     };
     match number {

@@ -69,7 +69,7 @@ pub enum PictureKind {
 /// How a map is drawn.
 #[derive(Debug, Clone, PartialEq)]
 pub struct PictureOptions {
-    /// The field to show; by default the class of v0 where the map holds it, else the critical
+    /// The field to show; by default the regime of v0 where the map holds it, else the critical
     /// velocity, the outcome, the spectral abscissa, the number of unstable roots.
     pub field: Option<Field>,
     /// The kind; by default boundaries where the map holds them for 2 to 12 values of one axis
@@ -269,7 +269,7 @@ fn compose(map: &MapFile, options: &PictureOptions, most: usize) -> Result<Scene
 /// A field of the map that says more than where sliding is stable: what v0 is good for, the
 /// critical velocity, what becomes of motions, or the rate at which disturbances decay.
 fn says_more(map: &MapFile) -> Option<Field> {
-    let more = [Field::Class, Field::Vc, Field::Outcome, Field::Abscissa];
+    let more = [Field::Regime, Field::Vc, Field::Outcome, Field::Abscissa];
     more.into_iter().find(|field| map.fields().contains(field))
 }
 

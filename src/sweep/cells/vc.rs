@@ -12,8 +12,8 @@ use crate::model::elementary::pow;
 use crate::slip::case::CaseUnits;
 use crate::slip::motion::{Accuracy, Integrator};
 use crate::slip::stop::Stop;
-use crate::sweep::input::class::Class;
 use crate::sweep::input::parameter::Parameter;
+use crate::sweep::input::regime_at_v0::RegimeAtV0;
 use crate::sweep::input::search::Protocol;
 use crate::sweep::input::setting::Setting;
 
@@ -157,24 +157,24 @@ impl Asked {
         differs(&others).then_some(false)
     }
 
-    /// The class of `v0`, in units of the setting, where the critical velocity is `found` by
+    /// The regime of `v0`, in units of the setting, where the critical velocity is `found` by
     /// `protocol`.
     #[must_use]
-    pub fn class_at(
+    pub fn regime_at(
         &self,
         v0: f64,
         protocol: Protocol,
         found: &CriticalWindows,
         tolerance: MarginalTolerance,
-    ) -> Class {
+    ) -> RegimeAtV0 {
         let Self { problem, units } = self;
         let speed = v0 / units.velocity;
         let count = Crossings::of(problem.groups(speed)).count(problem.tau, tolerance);
         if count.marginal {
-            return Class::Undecided;
+            return RegimeAtV0::Undecided;
         }
         if !count.stable() {
-            return Class::Unstable;
+            return RegimeAtV0::Unstable;
         }
         match protocol {
             Protocol::Follow => beside_sliding(v0, &found.critical),
@@ -183,10 +183,10 @@ impl Asked {
                 let accuracy = Accuracy::of(SWITCH_ON_ACCURACY);
                 let steps = Scan::default().steps;
                 match Trials::new(problem, phase, accuracy, steps).at(speed) {
-                    Regime::Periodic | Regime::Irregular => Class::Bistable,
-                    Regime::Ended | Regime::Slips | Regime::NoStickSlip => Class::Stable,
-                    Regime::LiftOff => Class::LiftOff,
-                    Regime::Undecided => Class::Undecided,
+                    Regime::Periodic | Regime::Irregular => RegimeAtV0::Bistable,
+                    Regime::Ended | Regime::Slips | Regime::NoStickSlip => RegimeAtV0::Stable,
+                    Regime::LiftOff => RegimeAtV0::LiftOff,
+                    Regime::Undecided => RegimeAtV0::Undecided,
                 }
             }
         }
@@ -335,26 +335,26 @@ fn tells(again: &CriticalVelocity) -> bool {
     again.decided || !matches!(again.transition, Transition::Persists | Transition::Never)
 }
 
-/// The class of `v0` by the protocol `follow`, where sliding at `v0` is linearly stable: below both
+/// The regime of `v0` by the protocol `follow`, where sliding at `v0` is linearly stable: below both
 /// bounds of the critical velocity, above both, or not known.
-fn beside_sliding(v0: f64, critical: &CriticalVelocity) -> Class {
+fn beside_sliding(v0: f64, critical: &CriticalVelocity) -> RegimeAtV0 {
     let lifts_off = critical.transition == Transition::LiftOff;
     if lifts_off && !critical.sustained {
         // Without bounds: there is no stick-slip below.
         return match v0 >= critical.v_liftoff {
-            _ if !critical.decided => Class::Undecided,
-            true => Class::LiftOff,
-            false => Class::Stable,
+            _ if !critical.decided => RegimeAtV0::Undecided,
+            true => RegimeAtV0::LiftOff,
+            false => RegimeAtV0::Stable,
         };
     }
     if lifts_off && v0 >= critical.vc_upper {
-        Class::LiftOff
+        RegimeAtV0::LiftOff
     } else if v0 <= critical.vc_lower {
-        Class::Bistable
+        RegimeAtV0::Bistable
     } else if v0 > critical.vc_upper {
-        Class::Stable
+        RegimeAtV0::Stable
     } else {
-        Class::Undecided
+        RegimeAtV0::Undecided
     }
 }
 
@@ -389,20 +389,26 @@ mod tests {
     #[test]
     fn stick_slip_beside_stable_sliding() {
         let none = f64::NAN;
-        for (transition, vc, v_liftoff, at, class) in [
-            (Transition::Grazing, 0.3, none, 0.29, Class::Bistable),
-            (Transition::Grazing, 0.3, none, 0.31, Class::Stable),
-            (Transition::Never, 0.0, none, 1e-9, Class::Stable),
-            (Transition::LiftOff, none, 0.2, 0.1, Class::Bistable),
-            (Transition::LiftOff, none, 0.2, 0.2, Class::LiftOff),
-            (Transition::Persists, none, none, 5.0, Class::Bistable),
-            (Transition::Persists, none, none, 101.0, Class::Undecided),
+        for (transition, vc, v_liftoff, at, regime) in [
+            (Transition::Grazing, 0.3, none, 0.29, RegimeAtV0::Bistable),
+            (Transition::Grazing, 0.3, none, 0.31, RegimeAtV0::Stable),
+            (Transition::Never, 0.0, none, 1e-9, RegimeAtV0::Stable),
+            (Transition::LiftOff, none, 0.2, 0.1, RegimeAtV0::Bistable),
+            (Transition::LiftOff, none, 0.2, 0.2, RegimeAtV0::LiftOff),
+            (Transition::Persists, none, none, 5.0, RegimeAtV0::Bistable),
+            (
+                Transition::Persists,
+                none,
+                none,
+                101.0,
+                RegimeAtV0::Undecided,
+            ),
         ] {
             let mut critical = critical(transition, vc, v_liftoff);
-            assert_eq!(beside_sliding(at, &critical), class, "{transition:?} {at}");
+            assert_eq!(beside_sliding(at, &critical), regime, "{transition:?} {at}");
             critical.decided = false;
             (critical.vc_lower, critical.vc_upper) = (0.0, none);
-            assert_eq!(beside_sliding(at, &critical), Class::Undecided);
+            assert_eq!(beside_sliding(at, &critical), RegimeAtV0::Undecided);
         }
     }
 
@@ -413,12 +419,20 @@ mod tests {
             (
                 Transition::Irregular,
                 f64::NAN,
-                [Class::Bistable, Class::Undecided, Class::Stable],
+                [
+                    RegimeAtV0::Bistable,
+                    RegimeAtV0::Undecided,
+                    RegimeAtV0::Stable,
+                ],
             ),
             (
                 Transition::LiftOff,
                 0.3,
-                [Class::Bistable, Class::Undecided, Class::LiftOff],
+                [
+                    RegimeAtV0::Bistable,
+                    RegimeAtV0::Undecided,
+                    RegimeAtV0::LiftOff,
+                ],
             ),
         ] {
             let critical = CriticalVelocity {
@@ -438,8 +452,8 @@ mod tests {
     fn lift_off_without_stick_slip_below() {
         let mut lifted = critical(Transition::LiftOff, f64::NAN, 0.2);
         lifted.sustained = false;
-        for (v0, class) in [(0.1, Class::Stable), (0.2, Class::LiftOff)] {
-            assert_eq!(beside_sliding(v0, &lifted), class);
+        for (v0, regime) in [(0.1, RegimeAtV0::Stable), (0.2, RegimeAtV0::LiftOff)] {
+            assert_eq!(beside_sliding(v0, &lifted), regime);
         }
     }
 

@@ -24,7 +24,7 @@ use crate::sweep::plan::pieces::mixed;
 pub(super) struct VcColumns {
     search: Search,
     tolerance: MarginalTolerance,
-    classed: bool,
+    with_regime: bool,
     smooth: bool,
     /// The answers of the line looked at last. Lines that differ in nothing but v0 share them.
     known: Vec<Option<Known>>,
@@ -51,7 +51,7 @@ impl VcColumns {
         Some(Self {
             search: spec.critical?,
             tolerance: spec.tolerance,
-            classed: spec.fields.contains(&Field::Class),
+            with_regime: spec.fields.contains(&Field::Regime),
             smooth: spec.fields.contains(&Field::VSmooth),
             known: Vec::new(),
         })
@@ -118,7 +118,7 @@ impl VcColumns {
         let asked = vc::asked(here.setting)?;
         let protocol = self.search.protocol.at(here.setting);
         let v0 = here.setting.get(Parameter::V0);
-        let (tolerance, classed, smooth) = (self.tolerance, self.classed, self.smooth);
+        let (tolerance, with_regime, smooth) = (self.tolerance, self.with_regime, self.smooth);
         let sampled = is_sampled(here.number, self.search.verify);
         let phase = here.setting.get(Parameter::SwitchOnPhase);
         let found = self.found(&asked, protocol, phase, here.i);
@@ -136,7 +136,7 @@ impl VcColumns {
             }
         }
         let cell = VcCell {
-            class: classed.then(|| asked.class_at(v0, protocol, found, tolerance)),
+            regime: with_regime.then(|| asked.regime_at(v0, protocol, found, tolerance)),
             v_smooth: match smooth {
                 true => asked.v_smooth(free, protocol.v_max()),
                 false => f64::NAN,

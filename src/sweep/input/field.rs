@@ -3,7 +3,7 @@
 //! Longer than most files: it is a table, with a row for each field.
 
 use super::catalogue::catalogue;
-use super::class::Class;
+use super::regime_at_v0::RegimeAtV0;
 use super::source::{OfRoots, Slope, Source};
 use super::units::Units;
 use crate::critical::{CriticalVelocity, Method, Transition};
@@ -105,6 +105,8 @@ const RATE: Measure = Measure::Powers([0, 0, -1]);
 struct Row {
     /// The name in sweep files and maps.
     name: &'static str,
+    /// The name that it had before, which sweep files may still use, and which old maps hold.
+    former: Option<&'static str>,
     /// What it is, for `long_name` in maps and notes in pictures.
     long_name: &'static str,
     /// What it is in a few words, for titles of axes and colour bars.
@@ -126,6 +128,7 @@ struct Row {
 /// What most rows have in common.
 const ROW: Row = Row {
     name: "",
+    former: None,
     long_name: "",
     short_name: "",
     comment: None,
@@ -242,13 +245,14 @@ catalogue! {
             ..ROW
         };
         /// Number of the [`Class`] of v0.
-        Class = Row {
-            name: "class",
+        Regime = Row {
+            name: "regime",
+            former: Some("class"),
             long_name: "what the working velocity v0 is good for",
             short_name: "at v0",
             storage: Storage::Kind,
-            kinds: Some(|| Class::ALL.map(Class::name).to_vec()),
-            source: Source::Critical(|cell| cell.class.map_or(f64::NAN, |of| f64::from(of as u8))),
+            kinds: Some(|| RegimeAtV0::ALL.map(RegimeAtV0::name).to_vec()),
+            source: Source::Critical(|cell| cell.regime.map_or(f64::NAN, |of| f64::from(of as u8))),
             comment: Some(
                 "stable: sliding is linearly stable, without stick-slip beside it; bistable: \
                  stick-slip persists beside it; lift-off: linearly stable, but stick-slip leads to \
@@ -643,10 +647,20 @@ impl Field {
         self.row().name
     }
 
-    /// The field of that name.
+    /// The name that it had first: plans are compared by it, so that those of old maps stay equal.
+    #[must_use]
+    pub const fn first_name(self) -> &'static str {
+        match self.row().former {
+            Some(former) => former,
+            None => self.row().name,
+        }
+    }
+
+    /// The field of that name, or of one that it had before.
     #[must_use]
     pub fn from_name(name: &str) -> Option<Self> {
-        Self::ALL.into_iter().find(|f| f.name() == name)
+        let named = |f: &Self| f.name() == name || f.first_name() == name;
+        Self::ALL.into_iter().find(named)
     }
 
     /// What it is, for `long_name` in maps and notes in pictures.
@@ -885,7 +899,7 @@ mod tests {
     fn numbered_names_are_listed_as_ranges() {
         assert_eq!(
             known_fields(),
-            "n_unstable, outcome, method, class, windows, delay_margin, abscissa, abscissa_2 … \
+            "n_unstable, outcome, method, regime, windows, delay_margin, abscissa, abscissa_2 … \
              abscissa_8, frequency, frequency_2 … frequency_8, relaxation_time, \
              d_abscissa_d_tau, d_abscissa_d_alpha_v, d_abscissa_d_alpha_n, \
              d_abscissa_d_mu_prime, certificate_margin, settle_time, n_min, peak_force, vc, \

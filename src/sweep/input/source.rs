@@ -1,7 +1,7 @@
 //! Where the values of a field come from.
 
-use super::class::Class;
 use super::parameter::Parameter;
+use super::regime_at_v0::RegimeAtV0;
 use crate::critical::CriticalWindows;
 use crate::critical::limit::LimitCell;
 use crate::slip::outcome::Summary;
@@ -82,7 +82,7 @@ pub struct VcCell<'a> {
     /// Where stick-slip survives, and how it ends.
     pub found: &'a CriticalWindows,
     /// What v0 is good for; none where no field asks.
-    pub class: Option<Class>,
+    pub regime: Option<RegimeAtV0>,
     /// The velocity above which sliding is linearly stable and free of stick-slip; NaN where no
     /// field asks.
     pub v_smooth: f64,

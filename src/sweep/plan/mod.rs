@@ -252,7 +252,7 @@ impl Plan {
                 facts.push((parameter.name(), one(fixed.get(parameter))));
             }
         }
-        facts.extend(spec.fields.iter().map(|f| (f.name(), none())));
+        facts.extend(spec.fields.iter().map(|f| (f.first_name(), none())));
         facts.push(("marginal", one(spec.tolerance.0)));
         facts.push(("boundaries", one(f64::from(self.boundary_plane.is_some()))));
         // Absent where there are none: maps of earlier versions stay equal.

@@ -168,7 +168,7 @@ impl Draft {
     fn needs_v0(&self) -> bool {
         let fields = self.fields.iter().flatten();
         let curves = self.boundaries == Some(true) || !self.degrees.is_empty();
-        let about_v0 = |f: &Field| f.of_sliding() || *f == Field::Class;
+        let about_v0 = |f: &Field| f.of_sliding() || *f == Field::Regime;
         self.vc_place.is_none()
             || self.best.is_some()
             || curves
@@ -199,7 +199,7 @@ impl Draft {
         let simulation = self.simulation_place.as_ref().map(|s| ("simulation", s));
         let help = match v0 {
             Some(_) => {
-                "v0 is what is looked for; the field class, fields of linear stability and \
+                "v0 is what is looked for; the field regime, fields of linear stability and \
                 boundaries = true are about one"
             }
             None => {

@@ -2,7 +2,7 @@
 
 /// What a working velocity v0 is good for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub enum Class {
+pub enum RegimeAtV0 {
     /// Sliding is linearly stable, and there is no stick-slip beside it.
     Stable,
     /// Sliding is linearly stable, and stick-slip persists beside it.
@@ -15,7 +15,7 @@ pub enum Class {
     Undecided,
 }
 
-impl Class {
+impl RegimeAtV0 {
     /// All, in the order of their numbers in a map.
     pub const ALL: [Self; 5] = [
         Self::Stable,
