@@ -12,6 +12,7 @@ use slipmap::sweep::{Parameter, Setting};
 
 use super::failure::Failure;
 use super::parameters::ParameterArgs;
+use super::say;
 
 #[derive(Debug, clap::Args)]
 #[command(after_help = "Example: slipmap best --mu-prime -0.3 --control velocity
@@ -143,14 +144,11 @@ pub(super) fn main(args: &Args) -> Result<(), Failure> {
     setting.sliding_point()?;
     let ranges = ranges(args, &default_ranges(&setting, gain)?)?;
     let found = best_settings(&setting, gain, &ranges)?;
-    let mut out = std::io::stdout().lock();
     if args.json {
-        let text = serde_json::to_string(&json(args, &setting, &ranges, &found)?);
-        writeln!(out, "{}", text.map_err(std::io::Error::from)?)?;
-    } else {
-        print(&mut out, args, &setting, &ranges, &found)?;
+        return say::json(&json(args, &setting, &ranges, &found)?);
     }
-    Ok(())
+    let mut out = std::io::stdout().lock();
+    print(&mut out, args, &setting, &ranges, &found)
 }
 
 /// The ranges that the flags give, over those searched by default.

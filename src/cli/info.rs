@@ -4,16 +4,17 @@ use std::io::{IsTerminal, Write};
 use std::ops::ControlFlow;
 use std::path::PathBuf;
 
+use serde::{Serialize, Serializer};
 use slipmap::linear::curves::StableSide;
 use slipmap::linear::status::FLAGS;
 use slipmap::report::numbers::{bytes, grouped, short};
-use slipmap::store::MapFile;
 use slipmap::store::schema::root;
+use slipmap::store::{MapAxis, MapFile};
 use slipmap::sweep::Field;
 
 use super::failure::Failure;
 use super::open::open;
-use super::say::{Rows, visible};
+use super::say::{self, Rows, visible};
 use super::signals::Signals;
 
 /// What a signal leaves.
@@ -27,6 +28,9 @@ pub(super) struct Args {
     /// Print the sweep file that made the map, and nothing else
     #[arg(long)]
     sweep: bool,
+    /// One JSON object on standard output
+    #[arg(long, conflicts_with = "sweep")]
+    json: bool,
 }
 
 pub(super) fn main(args: &Args) -> Result<(), Failure> {
@@ -39,12 +43,18 @@ fn tell(map: &MapFile, args: &Args) -> Result<(), Failure> {
     if args.sweep {
         return tell_sweep(map);
     }
+    let facts = Facts::of(map)?;
+    if args.json {
+        return say::json(&facts);
+    }
     let mut rows = Rows::begin();
-    tell_origin(map, &mut rows)?;
-    tell_parameters(map, &mut rows)?;
-    tell_cells(map, &mut rows)?;
-    tell_curves(map, &mut rows)?;
-    tell_best(map, &mut rows)
+    for (name, text) in &facts.origin {
+        rows.row(name, text)?;
+    }
+    facts.tell_parameters(&mut rows)?;
+    facts.tell_cells(&mut rows)?;
+    facts.tell_curves(&mut rows)?;
+    facts.tell_best(&mut rows)
 }
 
 fn tell_sweep(map: &MapFile) -> Result<(), Failure> {
@@ -58,8 +68,181 @@ fn tell_sweep(map: &MapFile) -> Result<(), Failure> {
     Ok(())
 }
 
-fn tell_origin(map: &MapFile, rows: &mut Rows) -> Result<(), Failure> {
-    for (name, attribute) in [
+/// What there is to say of a map.
+#[derive(Serialize)]
+struct Facts {
+    /// What the map says of where it comes from, by name.
+    #[serde(serialize_with = "as_object")]
+    origin: Vec<(&'static str, String)>,
+    axes: Vec<AxisFacts>,
+    /// Parameters that are no axes, by name.
+    #[serde(serialize_with = "as_object")]
+    fixed: Vec<(&'static str, f64)>,
+    cells: u64,
+    cells_missing: u64,
+    fields: Vec<FieldFacts>,
+    /// Cells with each flag that any has, by its name.
+    #[serde(serialize_with = "as_object")]
+    status: Vec<(&'static str, u64)>,
+    curves: Option<CurveFacts>,
+    best: Option<BestFacts>,
+}
+
+#[derive(Serialize)]
+struct AxisFacts {
+    name: &'static str,
+    points: u64,
+    first: f64,
+    last: f64,
+}
+
+#[derive(Serialize)]
+struct FieldFacts {
+    name: &'static str,
+    bytes: u64,
+    bytes_on_disk: u64,
+    /// The smallest and largest finite value, and how many others there are; of numbers.
+    range: Option<(f64, f64)>,
+    infinite: u64,
+    without_value: u64,
+    /// Cells of each kind that any has, by its name.
+    #[serde(serialize_with = "as_object")]
+    kinds: Vec<(&'static str, u64)>,
+}
+
+#[derive(Serialize)]
+struct CurveFacts {
+    crossing: u64,
+    /// Crossing curves that bound a stable region.
+    bounding: u64,
+    degrees_of_stability: u64,
+}
+
+#[derive(Serialize)]
+struct BestFacts {
+    planes: u64,
+    shortest_relaxation_time: Option<f64>,
+}
+
+/// Pairs of a name and a value as an object, in their order; names of several words are joined.
+fn as_object<S: Serializer, T: Serialize>(
+    pairs: &[(&'static str, T)],
+    to: S,
+) -> Result<S::Ok, S::Error> {
+    to.collect_map(
+        pairs
+            .iter()
+            .map(|(name, value)| (name.replace(' ', "_"), value)),
+    )
+}
+
+impl Facts {
+    fn of(map: &MapFile) -> Result<Self, Failure> {
+        let axis = |axis: &MapAxis| AxisFacts {
+            name: axis.parameter.name(),
+            points: axis.values.len() as u64,
+            first: axis.values[0],
+            last: axis.values[axis.values.len() - 1],
+        };
+        let flags = FLAGS.iter().map(|(_, name)| *name);
+        let flagged = flags.zip(map.status_counts()?.flagged);
+        let scalars = map.scalars().into_iter();
+        Ok(Self {
+            origin: origin(map),
+            axes: map.axes().iter().map(axis).collect(),
+            fixed: scalars.map(|(p, value)| (p.name(), value)).collect(),
+            cells: map.cells(),
+            cells_missing: map.cells_missing(),
+            fields: fields(map)?,
+            status: flagged.filter(|(_, cells)| *cells > 0).collect(),
+            curves: curves(map)?,
+            best: best(map)?,
+        })
+    }
+
+    fn tell_parameters(&self, rows: &mut Rows) -> Result<(), Failure> {
+        for axis in &self.axes {
+            let (name, points) = (axis.name, grouped(axis.points));
+            let (first, last) = (axis.first, axis.last);
+            let text = format!("{name:<12} {points:>10} points, {first} to {last}");
+            rows.row("axis", text)?;
+        }
+        for (name, value) in &self.fixed {
+            rows.row("fixed", format!("{name:<12} {value}"))?;
+        }
+        Ok(())
+    }
+
+    fn tell_cells(&self, rows: &mut Rows) -> Result<(), Failure> {
+        rows.row("cells", grouped(self.cells))?;
+        if self.cells_missing > 0 {
+            rows.row("missing", format!("{} cells", grouped(self.cells_missing)))?;
+        }
+        for field in &self.fields {
+            rows.row("field", field.text())?;
+        }
+        for (name, cells) in &self.status {
+            rows.row("status", format!("{name:<14} {} cells", grouped(*cells)))?;
+        }
+        Ok(())
+    }
+
+    fn tell_curves(&self, rows: &mut Rows) -> Result<(), Failure> {
+        let Some(curves) = &self.curves else {
+            return Ok(());
+        };
+        let (crossing, bounding) = (curves.crossing, curves.bounding);
+        let text = format!("{crossing} crossing curves, {bounding} of them bound a stable region");
+        rows.row("boundaries", text)?;
+        if curves.degrees_of_stability > 0 {
+            let decaying = curves.degrees_of_stability;
+            rows.row("", format!("{decaying} curves of degrees of stability"))?;
+        }
+        Ok(())
+    }
+
+    fn tell_best(&self, rows: &mut Rows) -> Result<(), Failure> {
+        let Some(best) = &self.best else {
+            return Ok(());
+        };
+        let fastest = match best.shortest_relaxation_time {
+            Some(fastest) => format!("the shortest relaxation time is {fastest:.4}"),
+            None => "none of them stable".to_owned(),
+        };
+        let planes = grouped(best.planes);
+        rows.row("best", format!("settings of {planes} planes, {fastest}"))
+    }
+}
+
+impl FieldFacts {
+    /// "vc  8 kB, 2 kB on disk, −0.3 to 1.2, 12 infinite, 3 without a value", or with its kinds.
+    fn text(&self) -> String {
+        let sizes = format!(
+            "{}, {} on disk",
+            bytes(self.bytes),
+            bytes(self.bytes_on_disk)
+        );
+        let mut text = format!("{:<22} {sizes}", self.name);
+        for (kind, cells) in &self.kinds {
+            text += &format!(", {} {kind}", grouped(*cells));
+        }
+        if let Some((low, high)) = self.range {
+            text += &format!(", {} to {}", short(low), short(high));
+        }
+        for (cells, what) in [
+            (self.infinite, "infinite"),
+            (self.without_value, "without a value"),
+        ] {
+            if cells > 0 {
+                text += &format!(", {} {what}", grouped(cells));
+            }
+        }
+        text
+    }
+}
+
+fn origin(map: &MapFile) -> Vec<(&'static str, String)> {
+    let attributes = [
         ("title", root::TITLE),
         ("made by", root::SOURCE),
         ("revision", root::GIT_REVISION),
@@ -67,106 +250,70 @@ fn tell_origin(map: &MapFile, rows: &mut Rows) -> Result<(), Failure> {
         ("plan", root::PLAN_HASH),
         ("protocol", root::PROTOCOL),
         ("friction", root::FRICTION_LAW),
-    ] {
-        if let Some(text) = map.root_text(attribute).filter(|t| !t.is_empty()) {
-            rows.row(name, text)?;
-        }
-    }
-    Ok(())
+    ];
+    let told = attributes.into_iter().filter_map(|(name, attribute)| {
+        let text = map.root_text(attribute).filter(|text| !text.is_empty())?;
+        Some((name, text))
+    });
+    told.collect()
 }
 
-fn tell_parameters(map: &MapFile, rows: &mut Rows) -> Result<(), Failure> {
-    for axis in map.axes() {
-        let (first, last) = (axis.values[0], axis.values[axis.values.len() - 1]);
-        let (name, points) = (axis.parameter.name(), grouped(axis.values.len() as u64));
-        let text = format!("{name:<12} {points:>10} points, {first} to {last}");
-        rows.row("axis", text)?;
-    }
-    for (parameter, value) in map.scalars() {
-        rows.row("fixed", format!("{:<12} {value}", parameter.name()))?;
-    }
-    Ok(())
-}
-
-fn tell_cells(map: &MapFile, rows: &mut Rows) -> Result<(), Failure> {
-    rows.row("cells", grouped(map.cells()))?;
-    if map.is_partial() {
-        rows.row("missing", format!("{} cells", grouped(map.cells_missing())))?;
-    }
-    for (name, size, on_disk) in map.sizes()? {
-        let values = match Field::from_name(name) {
-            Some(field) => values(map, field)?,
-            None => String::new(),
+fn fields(map: &MapFile) -> Result<Vec<FieldFacts>, Failure> {
+    let mut fields = Vec::new();
+    for (name, bytes, bytes_on_disk) in map.sizes()? {
+        let mut facts = FieldFacts {
+            name,
+            bytes,
+            bytes_on_disk,
+            range: None,
+            infinite: 0,
+            without_value: 0,
+            kinds: Vec::new(),
         };
-        let sizes = format!("{}, {} on disk", bytes(size), bytes(on_disk));
-        rows.row("field", format!("{name:<22} {sizes}{values}"))?;
-    }
-    for ((_, name), count) in FLAGS.iter().zip(map.status_counts()?.flagged) {
-        if count > 0 {
-            rows.row("status", format!("{name:<14} {} cells", grouped(count)))?;
+        let field = Field::from_name(name);
+        if let Some((field, kinds)) = field.and_then(|field| Some((field, field.kinds()?))) {
+            let counts = kinds.into_iter().zip(map.kind_counts(field)?);
+            facts.kinds = counts.filter(|(_, cells)| *cells > 0).collect();
+        } else if let Some(field) = field {
+            let summary = map.summary(field)?;
+            (facts.range, facts.infinite) = (summary.range, summary.infinite);
+            facts.without_value = summary.missing;
         }
+        fields.push(facts);
     }
-    Ok(())
+    Ok(fields)
 }
 
-fn tell_curves(map: &MapFile, rows: &mut Rows) -> Result<(), Failure> {
+fn curves(map: &MapFile) -> Result<Option<CurveFacts>, Failure> {
     if map.boundary_plane().is_none() {
-        return Ok(());
+        return Ok(None);
     }
-    let (mut crossing, mut bounding, mut decaying) = (0, 0, 0);
+    let mut facts = CurveFacts {
+        crossing: 0,
+        bounding: 0,
+        degrees_of_stability: 0,
+    };
     map.for_each_curve(|curve| {
         match curve.degree_of_stability {
             0.0 => {
-                crossing += 1;
-                bounding += u64::from(curve.piece.stable_side != StableSide::Neither);
+                facts.crossing += 1;
+                facts.bounding += u64::from(curve.piece.stable_side != StableSide::Neither);
             }
-            _ => decaying += 1,
+            _ => facts.degrees_of_stability += 1,
         }
         ControlFlow::Continue(())
     })?;
-    let text = format!("{crossing} crossing curves, {bounding} of them bound a stable region");
-    rows.row("boundaries", text)?;
-    if decaying > 0 {
-        rows.row("", format!("{decaying} curves of degrees of stability"))?;
-    }
-    Ok(())
+    Ok(Some(facts))
 }
 
-fn tell_best(map: &MapFile, rows: &mut Rows) -> Result<(), Failure> {
+fn best(map: &MapFile) -> Result<Option<BestFacts>, Failure> {
     if map.best_plane().is_none() {
-        return Ok(());
+        return Ok(None);
     }
     let best = map.best()?;
     let times = best.iter().filter_map(|b| b.relaxation_time);
-    let fastest = match times.min_by(f64::total_cmp) {
-        Some(fastest) => format!("the shortest relaxation time is {fastest:.4}"),
-        None => "none of them stable".to_owned(),
-    };
-    let planes = grouped(best.len() as u64);
-    rows.row("best", format!("settings of {planes} planes, {fastest}"))
-}
-
-/// ", −0.3 to 1.2, 12 infinite, 3 without a value", or ", 12 sliding, 3 lift-off".
-fn values(map: &MapFile, field: Field) -> Result<String, Failure> {
-    let mut text = String::new();
-    if let Some(kinds) = field.kinds() {
-        let counts = kinds.into_iter().zip(map.kind_counts(field)?);
-        for (kind, cells) in counts.filter(|(_, cells)| *cells > 0) {
-            text += &format!(", {} {kind}", grouped(cells));
-        }
-        return Ok(text);
-    }
-    let summary = map.summary(field)?;
-    if let Some((low, high)) = summary.range {
-        text += &format!(", {} to {}", short(low), short(high));
-    }
-    for (cells, what) in [
-        (summary.infinite, "infinite"),
-        (summary.missing, "without a value"),
-    ] {
-        if cells > 0 {
-            text += &format!(", {} {what}", grouped(cells));
-        }
-    }
-    Ok(text)
+    Ok(Some(BestFacts {
+        planes: best.len() as u64,
+        shortest_relaxation_time: times.min_by(f64::total_cmp),
+    }))
 }

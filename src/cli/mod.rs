@@ -25,20 +25,67 @@ mod verify;
 use std::process::ExitCode;
 use std::sync::Arc;
 
-use clap::{Parser, Subcommand};
+use clap::{ColorChoice, CommandFactory, FromArgMatches, Parser, Subcommand, ValueEnum};
 
 /// Exact stability maps of delayed-feedback control of dry friction.
 #[derive(Parser)]
 #[command(
-    version,
-    long_version = concat!(env!("CARGO_PKG_VERSION"), " (", env!("SLIPMAP_GIT_REVISION"), ")")
+    version = concat!(env!("CARGO_PKG_VERSION"), " (", env!("SLIPMAP_GIT_REVISION"), ")")
 )]
 #[command(
     after_help = "Exit codes: 0 done, 1 failed, 2 bad input or usage, 129, 130 or 143 interrupted."
 )]
 struct Cli {
+    /// Colours in help, errors and warnings
+    #[arg(long, global = true, value_enum, default_value_t = Colours::Auto, value_name = "WHEN")]
+    color: Colours,
     #[command(subcommand)]
     command: Command,
+}
+
+/// When text has colours.
+#[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum Colours {
+    /// On a terminal, unless NO_COLOR is set
+    Auto,
+    /// Always
+    Always,
+    /// Never
+    Never,
+}
+
+impl Colours {
+    /// What the arguments ask for, before they are understood: an error in them is told in the
+    /// same colours.
+    fn asked() -> Self {
+        let args: Vec<_> = std::env::args_os().skip(1).collect();
+        let named = |name: &std::ffi::OsStr| Self::from_str(name.to_str()?, true).ok();
+        let of = |i: usize| match args[i].to_str()?.strip_prefix("--color")? {
+            "" => named(args.get(i + 1)?),
+            joined => named(joined.strip_prefix('=')?.as_ref()),
+        };
+        (0..args.len()).find_map(of).unwrap_or(Self::Auto)
+    }
+
+    const fn choice(self) -> ColorChoice {
+        match self {
+            Self::Auto => ColorChoice::Auto,
+            Self::Always => ColorChoice::Always,
+            Self::Never => ColorChoice::Never,
+        }
+    }
+
+    /// Errors and warnings follow it.
+    fn apply(self) {
+        if self == Self::Auto {
+            return;
+        }
+        let colour = self == Self::Always;
+        // Refused where there is a hook already, of which there is none.
+        let _ = miette::set_hook(Box::new(move |_| {
+            Box::new(miette::MietteHandlerOpts::new().color(colour).build())
+        }));
+    }
 }
 
 #[derive(Subcommand)]
@@ -88,7 +135,10 @@ fn say_usage(error: &clap::Error) -> ExitCode {
 
 /// Runs the command line of this process.
 pub(crate) fn main() -> ExitCode {
-    let command = match Cli::try_parse() {
+    let colours = Colours::asked();
+    colours.apply();
+    let parsed = Cli::command().color(colours.choice()).try_get_matches();
+    let command = match parsed.and_then(|matches| Cli::from_arg_matches(&matches)) {
         Ok(cli) => cli.command,
         Err(error) => return say_usage(&error),
     };

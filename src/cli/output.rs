@@ -9,6 +9,16 @@ use slipmap::store::describe::Provenance;
 
 use super::failure::Failure;
 use super::say;
+use super::sweep_file::STANDARD_INPUT;
+
+/// The format that the name of a file promises, if that is neither HDF5 nor netCDF.
+fn other_format(path: &Path) -> Option<String> {
+    const OTHERS: [&str; 12] = [
+        "csv", "gif", "jpeg", "jpg", "json", "mat", "npy", "pdf", "png", "svg", "toml", "txt",
+    ];
+    let extension = path.extension()?.to_str()?.to_lowercase();
+    OTHERS.contains(&extension.as_str()).then_some(extension)
+}
 
 /// The file to write: `given`, or the name of `input` with .h5 in the current folder. `kind`: map
 /// or trace.
@@ -19,6 +29,11 @@ pub(super) fn output_path(
 ) -> Result<PathBuf, Failure> {
     let path = if let Some(path) = given {
         path.to_owned()
+    } else if input == Path::new(STANDARD_INPUT) {
+        return Err(Failure::bad_input_with_help(
+            "--output is not given, and standard input has no name",
+            format!("for example: -o {kind}.h5"),
+        ));
     } else {
         let stem = input.file_stem().unwrap_or(input.as_os_str());
         let mut name = stem.to_owned();
@@ -31,6 +46,15 @@ pub(super) fn output_path(
             "--output {} does not name a file",
             path.display()
         )));
+    }
+    if let Some(other) = other_format(&path) {
+        return Err(Failure::bad_input_with_help(
+            format!(
+                "--output {}: a {kind} is written as HDF5, not as {other}",
+                path.display()
+            ),
+            "name it like NAME.h5, or NAME.nc for readers of netCDF",
+        ));
     }
     if path.to_str().is_none() {
         return Err(Failure::bad_input(format!(

@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use clap::builder::{PossibleValue, PossibleValuesParser};
-use clap::{Arg, ArgMatches, Args, Command, FromArgMatches, value_parser};
+use clap::{Arg, ArgMatches, Args, Command, FromArgMatches};
 use slipmap::model::{ModelError, Shown};
 use slipmap::sweep::Parameter;
 use slipmap::sweep::input::law_kind::{Formula, LawKind};
@@ -29,7 +29,7 @@ impl Values {
                 .long(parameter.long_flag()?)
                 .value_name(flag.value)
                 .help(flag.help)
-                .value_parser(value_parser!(f64))
+                .value_parser(parse_number)
                 .allow_hyphen_values(true);
             Some(arg)
         })
@@ -46,6 +46,12 @@ impl Values {
     fn get(&self, parameter: Parameter) -> Option<f64> {
         self.0[parameter as usize]
     }
+}
+
+/// A number of a flag; its range is that of its parameter.
+fn parse_number(text: &str) -> Result<f64, String> {
+    let number = text.trim().parse().ok();
+    number.ok_or_else(|| "expected a number, such as -0.3 or 1e-2".to_owned())
 }
 
 /// The flags of a friction law besides its parameters.

@@ -1,19 +1,22 @@
 //! `slipmap plan`: what a sweep would cost, from a timed sample of its own pieces.
 
-use std::io::Write;
 use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
+use serde::Serialize;
 use slipmap::report::numbers::{bytes, grouped, seconds};
+use slipmap::store::schema::STATUS;
 use slipmap::store::tiles::RecordEncoder;
 use slipmap::sweep::cells::best::{best_of_plane, best_plane};
 use slipmap::sweep::cells::boundaries::{plane, trace_plane};
 use slipmap::sweep::engine::{Computed, Encode, Worker};
+use slipmap::sweep::input::axis::Axis;
 use slipmap::sweep::plan::pieces::spread;
 use slipmap::sweep::{Memory, Piece, Plan};
 
 use super::failure::Failure;
 use super::run::{MEMORY, default_threads, parse_memory, parse_threads, threads_within};
+use super::say::{self, Rows};
 use super::sweep_file::read_plan;
 
 /// A sample ends after so long, once it has this many pieces; or after the longest time, whatever
@@ -22,9 +25,16 @@ const SAMPLE: Duration = Duration::from_millis(500);
 const ENOUGH: usize = 12;
 const LONGEST_SAMPLE: Duration = Duration::from_secs(6);
 
+/// Bytes of a map besides its numbers, as measured on maps: the whole, each dataset of cells and
+/// axis, each chunk in an index, and the group of curves.
+const WITHOUT_CELLS: f64 = 8e3;
+const OF_A_DATASET: f64 = 1.2e3;
+const OF_A_CHUNK: f64 = 40.0;
+const WITHOUT_CURVES: f64 = 25e3;
+
 #[derive(Debug, clap::Args)]
 pub(super) struct Args {
-    /// The sweep file
+    /// The sweep file; - for standard input
     #[arg(value_name = "SWEEP.toml")]
     sweep: PathBuf,
     /// Threads to plan for [default: as many as the machine offers]
@@ -34,62 +44,114 @@ pub(super) struct Args {
     /// would take more
     #[arg(long, value_name = "SIZE", default_value = MEMORY, value_parser = parse_memory)]
     memory: u64,
+    /// One JSON object on standard output; bytes and seconds
+    #[arg(long)]
+    json: bool,
 }
 
 pub(super) fn main(args: &Args) -> Result<(), Failure> {
     let plan = read_plan(&args.sweep)?;
     let asked = args.threads.unwrap_or_else(default_threads);
     let threads = threads_within(&plan, args.memory, asked)?;
-    let costs = Costs::of(&plan)?;
-    let mut out = std::io::stdout().lock();
-    for axis in &plan.spec.axes {
-        let (first, last) = (axis.values[0], axis.values[axis.len() - 1]);
-        let (name, points) = (axis.parameter.name(), grouped(axis.len() as u64));
-        writeln!(
-            out,
-            "axis        {name:<12} {points:>10} points, {first} to {last}"
+    let facts = Facts::of(&plan, threads)?;
+    match args.json {
+        true => say::json(&facts),
+        false => facts.tell(),
+    }
+}
+
+/// What there is to say of a plan.
+#[derive(Serialize)]
+struct Facts {
+    axes: Vec<AxisFacts>,
+    fields: Vec<&'static str>,
+    cells: u64,
+    tiles: u64,
+    cells_of_a_tile: u64,
+    boundary_planes: u64,
+    /// None where no best settings are asked for.
+    best_planes: Option<u64>,
+    /// Bytes of all cells in memory, and about those of the map on disk.
+    bytes: u64,
+    bytes_on_disk: u64,
+    /// The most memory on so many threads, in bytes.
+    memory: u64,
+    threads: usize,
+    /// Seconds on so many threads, at least, about and at most, by the tiles that were timed.
+    seconds: [f64; 3],
+    tiles_timed: usize,
+}
+
+#[derive(Serialize)]
+struct AxisFacts {
+    name: &'static str,
+    points: u64,
+    first: f64,
+    last: f64,
+}
+
+impl Facts {
+    fn of(plan: &Plan, threads: usize) -> Result<Self, Failure> {
+        let costs = Costs::of(plan)?;
+        let axis = |axis: &Axis| AxisFacts {
+            name: axis.parameter.name(),
+            points: axis.len() as u64,
+            first: axis.values[0],
+            last: axis.values[axis.len() - 1],
+        };
+        let (total, spread) = costs.seconds();
+        let seconds = [(total - spread).max(0.0), total, total + spread];
+        let fields = plan.spec.fields.iter().map(|field| field.name());
+        Ok(Self {
+            axes: plan.spec.axes.iter().map(axis).collect(),
+            fields: fields.chain([STATUS]).collect(),
+            cells: plan.cells(),
+            tiles: plan.tiles.len() as u64,
+            cells_of_a_tile: plan.tiles.tile_cells() as u64,
+            boundary_planes: plan.boundary_planes(),
+            best_planes: plan.best_plane().map(|_| plan.best_planes()),
+            bytes: plan.cells() * plan.bytes_per_cell(),
+            bytes_on_disk: costs.bytes_on_disk(plan),
+            memory: Memory::of(plan).on(threads),
+            threads,
+            seconds: seconds.map(|seconds| seconds / threads as f64),
+            tiles_timed: costs.tiles.values.len(),
+        })
+    }
+
+    fn tell(&self) -> Result<(), Failure> {
+        let mut rows = Rows::begin();
+        for axis in &self.axes {
+            let (name, points) = (axis.name, grouped(axis.points));
+            let (first, last) = (axis.first, axis.last);
+            let text = format!("{name:<12} {points:>10} points, {first} to {last}");
+            rows.row("axis", text)?;
+        }
+        rows.row("fields", self.fields.join(", "))?;
+        rows.row("cells", grouped(self.cells))?;
+        let (tiles, cells) = (grouped(self.tiles), grouped(self.cells_of_a_tile));
+        rows.row("tiles", format!("{tiles} of {cells} cells"))?;
+        rows.row(
+            "boundaries",
+            format!("in {} planes", grouped(self.boundary_planes)),
         )?;
+        if let Some(planes) = self.best_planes {
+            rows.row("best", format!("in {} planes", grouped(planes)))?;
+        }
+        let (size, stored) = (bytes(self.bytes), bytes(self.bytes_on_disk));
+        let text = format!(
+            "{size} before compression, about {stored} on disk, twice that for a moment at the end"
+        );
+        rows.row("bytes", text)?;
+        let (memory, threads) = (bytes(self.memory), self.threads);
+        rows.row("memory", format!("up to {memory} on {threads} threads"))?;
+        let [least, about, most] = self.seconds.map(seconds);
+        let timed = self.tiles_timed;
+        let text = format!(
+            "about {about} on {threads} threads, {least} to {most}: {timed} of {tiles} tiles timed"
+        );
+        rows.row("time", text)
     }
-    let fields: Vec<&str> = plan.spec.fields.iter().map(|f| f.name()).collect();
-    writeln!(out, "fields      {}, status", fields.join(", "))?;
-    writeln!(out, "cells       {}", grouped(plan.cells()))?;
-    let (cells, tiles) = (plan.tiles.tile_cells() as u64, plan.tiles.len() as u64);
-    writeln!(
-        out,
-        "tiles       {} of {} cells",
-        grouped(tiles),
-        grouped(cells)
-    )?;
-    writeln!(
-        out,
-        "boundaries  in {} planes",
-        grouped(plan.boundary_planes())
-    )?;
-    if plan.best_plane().is_some() {
-        writeln!(out, "best        in {} planes", grouped(plan.best_planes()))?;
-    }
-    let size = plan.cells() * plan.bytes_per_cell();
-    let stored = costs.bytes.total();
-    writeln!(
-        out,
-        "bytes       {} before compression, about {} on disk, twice that for a moment at the end",
-        bytes(size),
-        bytes(stored as u64),
-    )?;
-    let memory = bytes(Memory::of(&plan).on(threads));
-    writeln!(out, "memory      up to {memory} on {threads} threads")?;
-    let (total, spread) = costs.seconds();
-    let threads_told = threads as f64;
-    writeln!(
-        out,
-        "time        about {} on {threads} threads, {} to {}: {} of {} tiles timed",
-        seconds(total / threads_told),
-        seconds((total - spread).max(0.0) / threads_told),
-        seconds((total + spread) / threads_told),
-        costs.tiles.values.len(),
-        grouped(tiles),
-    )?;
-    Ok(())
 }
 
 /// What was measured of some pieces of a kind, and how many there are of it.
@@ -147,13 +209,14 @@ struct Costs {
     curves: Sample,
     best: Sample,
     bytes: Sample,
+    bytes_of_curves: Sample,
 }
 
 impl Costs {
     fn of(plan: &Plan) -> Result<Self, Failure> {
         let mut worker = Worker::new(plan);
         let mut encoder = RecordEncoder::default();
-        let mut stored = Vec::new();
+        let (mut stored, mut of_curves) = (Vec::new(), Vec::new());
         let tiles = Sample::take(plan.tiles.len(), |number| {
             let start = Instant::now();
             worker.compute(&plan.tiles.tile(number));
@@ -164,8 +227,12 @@ impl Costs {
         })?;
         let curves = Sample::take(plan.boundary_planes() as usize, |number| {
             let start = Instant::now();
-            std::hint::black_box(trace_plane(plan, &plane(plan, number as u64))?);
-            Ok(start.elapsed().as_secs_f64())
+            let traced = trace_plane(plan, &plane(plan, number as u64))?;
+            let taken = start.elapsed().as_secs_f64();
+            let piece = Piece::Curves(number as u64);
+            let record = encoder.encode(piece, Computed::Curves(&traced));
+            of_curves.push(record.payload.len() as f64);
+            Ok(taken)
         })?;
         let best = Sample::take(plan.best_planes() as usize, |number| {
             let start = Instant::now();
@@ -176,12 +243,29 @@ impl Costs {
             values: stored,
             of: plan.tiles.len(),
         };
+        let bytes_of_curves = Sample {
+            values: of_curves,
+            of: plan.boundary_planes() as usize,
+        };
         Ok(Self {
             tiles,
             curves,
             best,
             bytes,
+            bytes_of_curves,
         })
+    }
+
+    /// Bytes of the map, about: its cells, curves, and what describes them.
+    fn bytes_on_disk(&self, plan: &Plan) -> u64 {
+        let datasets = (plan.spec.fields.len() + plan.spec.axes.len() + 1) as f64;
+        let chunks = plan.tiles.len() as f64 * (plan.spec.fields.len() + 1) as f64;
+        let described = WITHOUT_CELLS + datasets * OF_A_DATASET + chunks * OF_A_CHUNK;
+        let curves = match plan.boundary_planes() {
+            0 => 0.0,
+            _ => WITHOUT_CURVES + self.bytes_of_curves.total(),
+        };
+        (described + curves + self.bytes.total()) as u64
     }
 
     /// Seconds of all pieces on one thread, and how far off that may be.

@@ -4,7 +4,8 @@ use std::path::{Path, PathBuf};
 
 use clap::ValueEnum;
 use slipmap::report::picture::{self, Picture, PictureError, PictureKind, PictureOptions};
-use slipmap::sweep::input::field::known_fields;
+use slipmap::sweep::input::field::fields_meant;
+use slipmap::sweep::input::nearest::did_you_mean;
 use slipmap::sweep::{Field, Parameter};
 
 use super::failure::Failure;
@@ -47,7 +48,7 @@ enum Kind {
 }
 
 fn parse_field(name: &str) -> Result<Field, String> {
-    Field::from_name(name).ok_or_else(|| format!("known fields: {}", known_fields()))
+    Field::from_name(name).ok_or_else(|| fields_meant(name))
 }
 
 fn parse_at(text: &str) -> Result<(Parameter, f64), String> {
@@ -56,8 +57,12 @@ fn parse_at(text: &str) -> Result<(Parameter, f64), String> {
         .ok_or("expected AXIS=VALUE, for example mu_prime=-0.3")?;
     let name = name.trim().replace('-', "_");
     let parameter = Parameter::from_name(&name).ok_or_else(|| {
-        let names = Parameter::ALL.map(Parameter::name).join(", ");
-        format!("unknown axis \"{name}\"; known: {names}")
+        let names = Parameter::ALL.map(Parameter::name);
+        let meant = did_you_mean(&name, names);
+        format!(
+            "unknown axis \"{name}\"; {meant}known: {}",
+            names.join(", ")
+        )
     })?;
     let value = value.trim().parse::<f64>().ok().filter(|v| v.is_finite());
     let value = value.ok_or("the value after = must be a finite number")?;

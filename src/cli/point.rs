@@ -18,12 +18,17 @@ pub(super) struct Args {
     #[command(flatten)]
     parameters: ParameterArgs,
     /// How many characteristic roots to list, from the right; pairs count once
-    #[arg(long, value_name = "K", default_value_t = 4,
-          value_parser = clap::value_parser!(u8).range(1..=64))]
+    #[arg(long, value_name = "K", default_value_t = 4, allow_hyphen_values = true,
+          value_parser = parse_roots)]
     roots: u8,
     /// One JSON object on standard output; infinities are null
     #[arg(long)]
     json: bool,
+}
+
+fn parse_roots(text: &str) -> Result<u8, String> {
+    let count = text.parse().ok().filter(|count| (1..=64).contains(count));
+    count.ok_or_else(|| "expected a whole number from 1 to 64".to_owned())
 }
 
 /// A number with about twelve digits, for a table.
@@ -72,14 +77,10 @@ pub(super) fn main(args: &Args) -> Result<(), Failure> {
     if let Some(why) = spectrum.fewer.as_ref().filter(|_| spectrum.incomplete) {
         say::remark(format_args!("warning: {why}"));
     }
-    let mut out = std::io::stdout().lock();
     if args.json {
-        let text = serde_json::to_string(&point).map_err(std::io::Error::from)?;
-        writeln!(out, "{text}")?;
-    } else {
-        print(&mut out, &point)?;
+        return say::json(&point);
     }
-    Ok(())
+    Ok(print(&mut std::io::stdout().lock(), &point)?)
 }
 
 fn print(out: &mut impl Write, point: &Point) -> std::io::Result<()> {

@@ -33,7 +33,7 @@ const PREVIEW_WIDTH: usize = 78;
 
 #[derive(Debug, clap::Args)]
 pub(super) struct Args {
-    /// The sweep file
+    /// The sweep file; - for standard input
     #[arg(value_name = "SWEEP.toml")]
     sweep: PathBuf,
     /// The map to write [default: the sweep file's name with .h5, in the current folder]

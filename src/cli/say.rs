@@ -34,9 +34,26 @@ impl Rows<'_> {
     }
 }
 
-/// One JSON object on standard output.
+/// Version of the keys of the JSON output of all commands: larger where a key is gone or means
+/// something else; new keys may come without that.
+const SCHEMA_VERSION: u32 = 1;
+
+/// An object with the version of its keys.
+#[derive(Serialize)]
+struct Versioned<'v, T> {
+    schema_version: u32,
+    #[serde(flatten)]
+    value: &'v T,
+}
+
+/// One JSON object on standard output, with the version of its keys.
 pub(super) fn json(value: &impl Serialize) -> Result<(), Failure> {
-    let text = serde_json::to_string(value).map_err(std::io::Error::from)?;
+    let schema_version = SCHEMA_VERSION;
+    let value = Versioned {
+        schema_version,
+        value,
+    };
+    let text = serde_json::to_string(&value).map_err(std::io::Error::from)?;
     let text = slipmap::report::visible::visible_json(&text);
     Ok(writeln!(std::io::stdout(), "{text}")?)
 }

@@ -12,6 +12,7 @@ use slipmap::sweep::input::search::{self, PHASES};
 
 use super::failure::Failure;
 use super::parameters::{LimitArgs, ParameterArgs, flag};
+use super::say;
 
 #[derive(Debug, clap::Args)]
 #[command(after_help = "Examples:
@@ -50,9 +51,8 @@ enum ProtocolName {
 /// Runs the subcommand.
 pub(super) fn main(args: &Args) -> Result<(), Failure> {
     args.check()?;
-    let mut out = std::io::stdout().lock();
     match args.protocol {
-        ProtocolName::Limit => print(&mut out, args.json, &args.limit()?),
+        ProtocolName::Limit => print(args.json, &args.limit()?, None),
         protocol => {
             let setting = args.parameters.setting_without_v0()?;
             let protocol = match protocol {
@@ -61,23 +61,37 @@ pub(super) fn main(args: &Args) -> Result<(), Failure> {
             };
             let found = CriticalVelocity::of(&setting, protocol, &Stop::default());
             let found = found.map_err(|e| args.parameters.refused(&e))?;
-            print(&mut out, args.json, &found)
+            print(args.json, &found, not_known(&found))
         }
     }
 }
 
-/// The object as one line of JSON, or its entries one below the other.
-fn print(out: &mut impl Write, json: bool, found: &impl Serialize) -> Result<(), Failure> {
-    let value = serde_json::to_value(found).map_err(std::io::Error::from)?;
+/// What is said of v_c where it is not decided: between what it lies.
+fn not_known(found: &CriticalVelocity) -> Option<String> {
+    let ends = match (found.vc_lower, found.vc_upper) {
+        (None, None) => String::new(),
+        (None, Some(upper)) => format!(", below {upper}"),
+        (Some(lower), None) => format!(", above {lower}"),
+        (Some(lower), Some(upper)) => format!(", between {lower} and {upper}"),
+    };
+    (!found.decided).then(|| format!("not known{ends}"))
+}
+
+/// The object as one line of JSON, or its entries one below the other. Where v_c is `not_known`
+/// neither it, the velocity of lift-off nor a window is shown to people.
+fn print(json: bool, found: &impl Serialize, not_known: Option<String>) -> Result<(), Failure> {
     if json {
-        writeln!(out, "{value}")?;
-        return Ok(());
+        return say::json(found);
     }
+    let mut out = std::io::stdout().lock();
+    let value = serde_json::to_value(found).map_err(std::io::Error::from)?;
     for (key, value) in value.as_object().into_iter().flatten() {
-        let shown = match value {
-            serde_json::Value::String(text) => text.clone(),
-            serde_json::Value::Null => "none".into(),
-            other => other.to_string(),
+        let shown = match (value, &not_known) {
+            (_, Some(text)) if key == "vc" => text.clone(),
+            (_, Some(_)) if key == "v_liftoff" || key == "windows" => continue,
+            (serde_json::Value::String(text), _) => text.clone(),
+            (serde_json::Value::Null, _) => "none".into(),
+            (other, _) => other.to_string(),
         };
         writeln!(out, "{key:<20} {shown}")?;
     }

@@ -90,6 +90,15 @@ pub enum StoreError {
         /// Which one.
         piece: Piece,
     },
+    /// A file that begins as HDF5 does and cannot be opened.
+    #[error(
+        "{} is a damaged HDF5 file: it was cut off, or changed, or not closed",
+        path.display()
+    )]
+    DamagedFile {
+        /// The file.
+        path: PathBuf,
+    },
     /// A map that was just written does not hold what was written.
     #[error("{} was not written as it should have been: {why}", path.display())]
     Unsound {

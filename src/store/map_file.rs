@@ -60,7 +60,12 @@ impl MapFile {
     pub fn open(path: &Path) -> Result<Self, StoreError> {
         let file = open::to_read(path, StoreError::not_a_map)?;
         let version: i32 = one_number(&file, root::FORMAT_VERSION).ok_or_else(|| {
-            StoreError::not_a_map(path, format!("it has no {}", root::FORMAT_VERSION))
+            let of_trace = one_number::<i32>(&file, schema::trace::FORMAT_VERSION);
+            let why = match of_trace {
+                Some(_) => "it is a trace of one motion, made by `slipmap simulate`".to_owned(),
+                None => format!("it has no {}", root::FORMAT_VERSION),
+            };
+            StoreError::not_a_map(path, why)
         })?;
         let (oldest, newest) = (schema::OLDEST_FORMAT_VERSION, schema::FORMAT_VERSION);
         if !(oldest..=newest).contains(&version) {

@@ -41,7 +41,7 @@ mod variables;
 
 pub use best_reader::MapBest;
 pub use error::StoreError;
-pub use map_file::MapFile;
+pub use map_file::{MapAxis, MapFile};
 pub use map_summary::{FieldSummary, StatusCounts};
 pub use map_writer::MapWriter;
 pub use output::Output;

@@ -2,6 +2,7 @@
 //! loads no code, and asks for no more memory than slipmap's own files do.
 
 use std::ffi::{CStr, CString, c_char, c_int, c_uint, c_void};
+use std::io::Read;
 use std::mem::MaybeUninit;
 use std::path::Path;
 use std::ptr::null_mut;
@@ -43,6 +44,13 @@ static CONFINED: LazyLock<bool> = LazyLock::new(|| {
     })
 });
 
+/// Whether the file begins with the signature of HDF5.
+fn begins_as_hdf5(path: &Path) -> bool {
+    let mut signature = [0; 8];
+    let read = std::fs::File::open(path).and_then(|mut file| file.read_exact(&mut signature));
+    read.is_ok() && signature == *b"\x89HDF\r\n\x1a\n"
+}
+
 /// Opens the file at `path`; `refuse` says that it is not what is looked for, and why.
 pub(super) fn to_read(
     path: &Path,
@@ -71,7 +79,12 @@ pub(super) fn to_read(
                 path: path.to_owned(),
             };
         }
-        refuse(path, "it is no HDF5 file, or a damaged one".into())
+        match begins_as_hdf5(path) {
+            true => StoreError::DamagedFile {
+                path: path.to_owned(),
+            },
+            false => refuse(path, "it is no HDF5 file".into()),
+        }
     })?;
     let root = file.group("/").and_then(|root| vet_group(&root));
     root.map_err(|why| refuse(path, why.to_string()))?;

@@ -335,8 +335,8 @@ fn tells(again: &CriticalVelocity) -> bool {
     again.decided || !matches!(again.transition, Transition::Persists | Transition::Never)
 }
 
-/// The regime of `v0` by the protocol `follow`, where sliding at `v0` is linearly stable: below both
-/// bounds of the critical velocity, above both, or not known.
+/// The regime of `v0` by the protocol `follow`, where sliding at `v0` is linearly stable: below
+/// both bounds of the critical velocity, above both, or not known.
 fn beside_sliding(v0: f64, critical: &CriticalVelocity) -> RegimeAtV0 {
     let lifts_off = critical.transition == Transition::LiftOff;
     if lifts_off && !critical.sustained {

@@ -97,6 +97,11 @@ impl std::str::FromStr for CaseSpec {
                 "trace" => draft.read_trace(&entry)?,
                 "units" => draft.units = read_units(&entry)?,
                 _ if draft.simulation.read(&entry)? => {}
+                "fields" | "axes" | "boundaries" | "best" | "protocol" => {
+                    return Err(entry.elsewhere(
+                        "it is a key of a sweep file, of a map: `slipmap run` takes it",
+                    ));
+                }
                 _ => {
                     return Err(entry.unknown(&[
                         "title",

@@ -61,6 +61,12 @@ impl SweepSpec {
                 "units" => draft.units = read_units(&entry)?,
                 "tolerance" => draft.tolerance = read_tolerance(&entry)?,
                 _ if draft.vc.read(&entry)? => {}
+                "switch_on" | "horizon" | "trace" | "steps" => {
+                    return Err(entry.elsewhere(
+                        "it is a key of a case file, of one motion: `slipmap simulate` takes it; \
+                         in a sweep, [simulation] has the horizon and the steps",
+                    ));
+                }
                 _ => return Err(entry.unknown(&KEYS)),
             }
         }

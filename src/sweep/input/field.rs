@@ -3,6 +3,7 @@
 //! Longer than most files: it is a table, with a row for each field.
 
 use super::catalogue::catalogue;
+use super::nearest::did_you_mean;
 use super::regime_at_v0::RegimeAtV0;
 use super::source::{OfRoots, Slope, Source};
 use super::units::Units;
@@ -796,6 +797,13 @@ pub fn known_fields() -> String {
         field => Some(field.name().to_owned()),
     });
     names.collect::<Vec<_>>().join(", ")
+}
+
+/// Which field may be meant by a name that is none, and all that there are.
+#[must_use]
+pub fn fields_meant(name: &str) -> String {
+    let meant = did_you_mean(name, Field::ALL.map(Field::name));
+    format!("{meant}known: {}", known_fields())
 }
 
 fn range(first: Field, last: Field) -> String {

@@ -42,7 +42,13 @@ impl GivenParameters {
             let parameter = known
                 .into_iter()
                 .find(|p| p.name() == entry.key)
-                .ok_or_else(|| entry.unknown(&names))?;
+                .ok_or_else(|| match Parameter::from_name(entry.key) {
+                    Some(of_law) => entry.elsewhere(&format!(
+                        "{} belongs in [friction], with a law",
+                        of_law.name()
+                    )),
+                    None => entry.unknown(&names),
+                })?;
             self.read_value(&entry, parameter)?;
         }
         Ok(())

@@ -116,6 +116,17 @@ impl LawKind {
         formulas.chain([Self::TABLE]).collect::<Vec<_>>().join(", ")
     }
 
+    /// The names of the laws that a parameter describes: of all for μ_S.
+    #[must_use]
+    pub fn with(parameter: Parameter) -> String {
+        if parameter == Parameter::MuS {
+            return Self::names();
+        }
+        let described = |law: &Formula| law.row().parameters.contains(&parameter);
+        let laws = Formula::ALL.into_iter().filter(described);
+        laws.map(Formula::name).collect::<Vec<_>>().join(", ")
+    }
+
     /// The parameters that describe the law, besides μ_S.
     #[must_use]
     pub const fn parameters(&self) -> &'static [Parameter] {

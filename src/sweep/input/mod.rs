@@ -11,6 +11,7 @@ pub mod friction_table;
 mod given;
 pub mod law_kind;
 mod limit_spec;
+pub mod nearest;
 pub mod parameter;
 pub mod point_file;
 pub mod regime_at_v0;

@@ -70,6 +70,9 @@ impl GivenError {
                 let slope = name(MuPrimeRest);
                 format!("{slope} is the slope -mu0/v_s of the weakening law at rest")
             }
+            Self::Unused(p) if p.of_friction_law() => {
+                format!("{} is for the laws {}", name(p), LawKind::with(p))
+            }
             Self::Unused(_) => {
                 let [mu_prime, mu_k, v0] = [MuPrime, MuK, V0].map(name);
                 format!(

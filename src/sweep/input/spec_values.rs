@@ -1,7 +1,7 @@
 //! The values of a sweep file's keys.
 
 use super::axis::{Spacing, spaced};
-use super::field::{Field, known_fields};
+use super::field::{Field, fields_meant, known_fields};
 use super::parameter::Parameter;
 use super::toml_reader::{Entry, SpecError};
 use crate::linear::MarginalTolerance;
@@ -92,7 +92,7 @@ pub(super) fn read_fields(entry: &Entry) -> Result<Vec<Field>, SpecError> {
         let field = Field::from_name(name).ok_or_else(|| {
             element
                 .error(format!("unknown field \"{name}\""))
-                .help(format!("known: {}", known_fields()))
+                .help(fields_meant(name))
         })?;
         if fields.contains(&field) {
             return Err(element.error(format!("\"{name}\" is listed twice")));

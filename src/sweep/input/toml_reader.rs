@@ -5,6 +5,7 @@ use std::ops::{Range, RangeInclusive};
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
+use super::nearest::did_you_mean;
 use crate::model::Shown;
 
 /// The most characters of a text for people.
@@ -100,7 +101,14 @@ impl<'t> Entry<'t> {
             self.key_span.clone(),
             format!("unknown key `{}`", self.path),
         );
-        error.help(format!("known here: {}", known.join(", ")))
+        let meant = did_you_mean(self.key, known.iter().copied());
+        error.help(format!("{meant}known here: {}", known.join(", ")))
+    }
+
+    /// An error that says the key is known, but not here; `help` says where it belongs.
+    pub(super) fn elsewhere(&self, help: &str) -> SpecError {
+        let message = format!("`{}` does not belong here", self.path);
+        SpecError::at(self.key_span.clone(), message).help(help)
     }
 
     fn expected(&self, what: &str) -> SpecError {
