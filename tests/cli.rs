@@ -253,10 +253,12 @@ fn files_that_are_no_maps_are_answered() {
     let bare = folder.path().join("bare.h5");
     hdf5::File::create(&bare).unwrap().close().unwrap();
     settle(&bare);
-    for name in ["text.h5", "empty.h5", "half.h5", "bare.h5"] {
-        for command in ["info", "plot"] {
+    for command in ["info", "plot", "verify"] {
+        for name in ["text.h5", "empty.h5", "bare.h5"] {
             expect(&folder.run(&[command, name]), 2, "is not a slipmap map");
         }
+        let damaged = "half.h5 is a damaged HDF5 file";
+        expect(&folder.run(&[command, "half.h5"]), 1, damaged);
     }
     for name in ["missing.h5", "."] {
         assert_eq!(folder.run(&["info", name]).status.code(), Some(2), "{name}");

@@ -11,6 +11,7 @@ use slipmap::slip::motion::MOST_KEPT;
 use slipmap::slip::outcome::{Outcome, Summary};
 use slipmap::store::{Output, StoreError, trace_file};
 use slipmap::sweep::cells::trace::TraceError;
+use slipmap::sweep::input::case_file::DISTURBED;
 use slipmap::sweep::{CaseSpec, Trace};
 
 use super::failure::Failure;
@@ -54,6 +55,14 @@ struct MotionOut {
 pub(super) fn main(args: &Args) -> Result<(), Failure> {
     let signals = Signals::catch()?;
     let spec = read_case(&args.case)?;
+    if spec.start_assumed {
+        say::remark(format_args!(
+            "the case has no [start]: the block begins with x_dot0 = {}, {} % faster than it is \
+             pulled",
+            spec.case.initial_state().0,
+            100.0 * DISTURBED,
+        ));
+    }
     let path = output_path(args.output.as_deref(), &args.case, "trace")?;
     check_picture(args, &path)?;
     check_replaced(&path, &spec, args.fresh)?;

@@ -65,6 +65,9 @@ pub struct CaseSpec {
     pub setting: Setting,
     /// The motion.
     pub case: Case,
+    /// Whether the file does not say where it starts: then it slides faster by [`DISTURBED`], since
+    /// exactly at its equilibrium a block stays, stable or not.
+    pub start_assumed: bool,
     /// End of the trace, in time; none: when the outcome is known.
     pub until: Option<f64>,
     /// How densely to sample.
@@ -74,6 +77,9 @@ pub struct CaseSpec {
     /// The text of the file.
     pub text: String,
 }
+
+/// A block whose start is not given slides faster than it is pulled by this share.
+pub const DISTURBED: f64 = 0.01;
 
 impl std::str::FromStr for CaseSpec {
     type Err = SpecError;
@@ -177,12 +183,18 @@ impl Draft {
         if setting.get(Parameter::Tau).is_nan() {
             setting.set(Parameter::Tau, 0.0);
         }
+        let start_assumed = !self.given.has_start();
+        if start_assumed {
+            let v0 = setting.get(Parameter::V0);
+            setting.set(Parameter::XDot0, (1.0 + DISTURBED) * v0);
+        }
         let case = self.case(&setting, &law_place)?;
         case.motion().map_err(|error| self.refused(&error))?;
         Ok(CaseSpec {
             title: std::mem::take(&mut self.title),
             setting,
             case,
+            start_assumed,
             until: self.until,
             sampling: self.sampling.unwrap_or(Sampling::PerStep(SAMPLES)),
             units: self.units,
@@ -249,7 +261,11 @@ mod tests {
     fn what_is_left_out_has_its_default() {
         let spec: CaseSpec = PLAIN.parse().unwrap();
         let case = &spec.case;
-        assert_eq!(case.initial_state(), (0.1, 0.4));
+        assert_eq!(case.initial_state(), (1.01 * 0.1, 0.4));
+        assert!(spec.start_assumed);
+        let said: CaseSpec = format!("{PLAIN}[start]\nx_dot0 = 0.1\n").parse().unwrap();
+        assert_eq!(said.case.initial_state(), (0.1, 0.4));
+        assert!(!said.start_assumed);
         assert_eq!(case.switch_on, f64::INFINITY, "nothing to switch on");
         assert_eq!((case.tau, case.horizon), (0.0, 1000.0));
         assert_eq!(case.accuracy, Accuracy::default());

@@ -68,6 +68,12 @@ impl GivenParameters {
         Ok(())
     }
 
+    /// Whether it is said where a motion starts.
+    pub(super) fn has_start(&self) -> bool {
+        let mut of_start = Parameter::ALL.into_iter().filter(|p| p.of_start());
+        of_start.any(|p| self.place(p).is_some())
+    }
+
     /// A motion starts in a state or at a phase, not both.
     pub(super) fn check_start(&self) -> Result<(), SpecError> {
         let state = [Parameter::XDot0, Parameter::A0];

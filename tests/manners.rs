@@ -1,0 +1,245 @@
+//! What a newcomer runs into: names that are nearly right, files of another kind, formats that a
+//! name promises, and facts for other programs.
+
+use std::io::Write;
+use std::process::Stdio;
+
+use serde_json::Value;
+
+#[path = "common/program.rs"]
+mod program;
+
+use program::{Folder, err, expect, out};
+
+const SMALL: &str =
+    "title = \"small\"\n[axes]\nalpha_v = [-1, -0.5]\ntau = [1, 2, 3]\n[fixed]\nmu_prime = -0.3\n";
+const CASE: &str = "[friction]\nlaw = \"weakening\"\nmu0 = 0.5\nv_s = 0.5\n[fixed]\nv0 = 0.35\n\
+                    alpha_v = -0.33\ntau = 4.15\n";
+
+/// Every message but its frame, on one line.
+fn said(folder: &Folder, args: &[&str]) -> String {
+    let output = folder.run(args);
+    assert_eq!(output.status.code(), Some(2), "{args:?} {}", err(&output));
+    err(&output)
+        .split_whitespace()
+        .collect::<Vec<_>>()
+        .join(" ")
+}
+
+#[test]
+fn names_that_are_nearly_right_are_understood() {
+    let folder = Folder::with(&[
+        ("key.toml", &SMALL.replace("tau", "taw")),
+        ("field.toml", &format!("fields = [\"abscisa\"]\n{SMALL}")),
+        ("law.toml", &format!("{SMALL}mu_s = 1\n")),
+        ("small.toml", SMALL),
+    ]);
+    expect(&folder.run(&["run", "small.toml"]), 0, "6 cells");
+    for (args, says) in [
+        (&["run", "key.toml"][..], "did you mean `tau`?"),
+        (&["run", "field.toml"], "did you mean `abscissa`?"),
+        (
+            &["run", "law.toml"],
+            "mu_s belongs in [friction], with a law",
+        ),
+        (
+            &["plot", "small.h5", "--field", "n-unstabel"],
+            "did you mean `n_unstable`?",
+        ),
+        (
+            &["plot", "small.h5", "--at", "alphav=1"],
+            "did you mean `alpha_v`?",
+        ),
+        (&["point", "--mu_prime", "1"], "'--mu-prime'"),
+        (&["pont"], "'point'"),
+        (
+            &["point", "--mu-prime", "x", "--tau", "1"],
+            "expected a number, such as -0.3 or 1e-2",
+        ),
+        (
+            &["point", "--mu-prime", "1", "--tau", "1", "--roots", "-3"],
+            "expected a whole number from 1 to 64",
+        ),
+        (
+            &["vc", "--friction", "coulomb", "--mu0", "0.5", "--v-s", "1"],
+            "--v-s is for the laws weakening, stribeck",
+        ),
+    ] {
+        let text = said(&folder, args);
+        assert!(text.contains(says), "{args:?}: {text}");
+    }
+}
+
+#[test]
+fn files_of_another_kind_are_recognised() {
+    let folder = Folder::with(&[
+        ("small.toml", SMALL),
+        ("case.toml", &format!("switch_on = 70.0\n{CASE}")),
+    ]);
+    expect(&folder.run(&["simulate", "case.toml"]), 0, "slide");
+    for (args, says) in [
+        (&["run", "case.toml"][..], "`slipmap simulate` takes it"),
+        (&["plan", "case.toml"], "`slipmap simulate` takes it"),
+        (&["simulate", "small.toml"], "`slipmap run` takes it"),
+        (&["info", "case.h5"], "a trace of one motion"),
+        (&["plot", "case.h5"], "a trace of one motion"),
+        (&["verify", "case.h5"], "a trace of one motion"),
+        (&["info", "small.toml"], "it is no HDF5 file"),
+    ] {
+        let text = said(&folder, args);
+        assert!(text.contains(says), "{args:?}: {text}");
+    }
+}
+
+#[test]
+fn the_format_that_a_name_promises_is_kept_or_refused() {
+    let folder = Folder::with(&[("small.toml", SMALL), ("case.toml", CASE)]);
+    for args in [
+        ["run", "small.toml", "-o", "small.csv"],
+        ["simulate", "case.toml", "-o", "case.json"],
+    ] {
+        let text = said(&folder, &args);
+        assert!(text.contains("is written as HDF5, not as"), "{text}");
+    }
+    assert_eq!(folder.files(), ["case.toml", "small.toml"]);
+    expect(
+        &folder.run(&["run", "small.toml", "-o", "small.nc"]),
+        0,
+        "small.nc: 6 cells",
+    );
+}
+
+/// Exactly at its equilibrium a block stays there, stable or not: that says nothing of control.
+#[test]
+fn a_case_without_a_start_is_disturbed_and_says_so() {
+    let folder = Folder::with(&[
+        ("stable.toml", CASE),
+        ("unstable.toml", &CASE.replace("4.15", "1.0")),
+    ]);
+    let stable = folder.run(&["simulate", "stable.toml", "--json"]);
+    let said = "begins with x_dot0 = 0.3535, 1 % faster than it is pulled";
+    expect(&stable, 0, said);
+    let told: Value = serde_json::from_str(&out(&stable)).unwrap();
+    assert_eq!(told["outcome"], "sliding");
+    assert!(told["settle_time"].as_f64().unwrap() >= 0.0, "{told}");
+    let unstable = folder.run(&["simulate", "unstable.toml", "--json"]);
+    let told: Value = serde_json::from_str(&out(&unstable)).unwrap();
+    assert_ne!(told["outcome"], "undecided");
+    assert_ne!(told["outcome"], "sliding");
+}
+
+#[test]
+fn a_sweep_may_come_from_standard_input() {
+    let folder = Folder::new();
+    let given = |args: &[&str], text: &str| {
+        let mut command = folder.command(args);
+        command.stdin(Stdio::piped());
+        command.stdout(Stdio::piped()).stderr(Stdio::piped());
+        let mut child = command.spawn().unwrap();
+        child
+            .stdin
+            .take()
+            .unwrap()
+            .write_all(text.as_bytes())
+            .unwrap();
+        child.wait_with_output().unwrap()
+    };
+    expect(&given(&["run", "-", "-o", "map.h5"], SMALL), 0, "6 cells");
+    expect(&given(&["plan", "-"], SMALL), 0, "cells        6");
+    let nameless = "--output is not given, and standard input has no name";
+    expect(&given(&["run", "-"], SMALL), 2, nameless);
+    let wrong = SMALL.replace("tau", "taw");
+    expect(&given(&["plan", "-"], &wrong), 2, "standard input:4:1");
+    assert_eq!(folder.files(), ["map.h5", "map.h5.log", "map.png"]);
+}
+
+#[test]
+fn facts_come_as_json_with_a_version() {
+    let folder = Folder::with(&[("small.toml", SMALL), ("case.toml", CASE)]);
+    expect(&folder.run(&["run", "small.toml"]), 0, "6 cells");
+    let json = |args: &[&str]| -> Value {
+        let output = folder.run(args);
+        assert_eq!(output.status.code(), Some(0), "{args:?} {}", err(&output));
+        serde_json::from_str(&out(&output)).unwrap()
+    };
+    let law = ["--friction", "weakening", "--mu0", "0.5", "--v-s", "0.5"];
+    let point = ["--mu-prime", "-0.3", "--tau", "2", "--json"];
+    let all = [
+        json(&["plan", "small.toml", "--json"]),
+        json(&["info", "small.h5", "--json"]),
+        json(&["verify", "small.h5", "--json"]),
+        json(&["status", "small.h5", "--json"]),
+        json(&["simulate", "case.toml", "--json"]),
+        json(&[&["point"], &point[..]].concat()),
+        json(&["best", "--mu-prime", "-0.3", "--control", "load", "--json"]),
+        json(
+            &[
+                &["vc", "--alpha-v=-0.33", "--tau", "4.15", "--json"],
+                &law[..],
+            ]
+            .concat(),
+        ),
+    ];
+    assert!(
+        all.iter().all(|told| told["schema_version"] == 1),
+        "{all:?}"
+    );
+    let [plan, info, ..] = &all;
+    assert_eq!((&plan["cells"], &info["cells"]), (&6.into(), &6.into()));
+    assert_eq!(plan["axes"], info["axes"]);
+    assert_eq!(info["fixed"]["mu_prime"], -0.3);
+    assert_eq!(info["fields"][0]["name"], "n_unstable");
+    assert_eq!(info["cells_missing"], 0);
+    let size = std::fs::metadata(folder.path().join("small.h5"))
+        .unwrap()
+        .len() as f64;
+    let told = plan["bytes_on_disk"].as_f64().unwrap();
+    assert!(told < 2.0 * size && size < 2.0 * told, "{told} for {size}");
+}
+
+/// Load control so strong that stick-slip lifts off by chance: no number stands as v_c.
+#[test]
+fn what_is_not_known_is_not_told_as_a_number() {
+    let folder = Folder::new();
+    let args = [
+        "vc",
+        "--friction",
+        "coulomb",
+        "--mu0",
+        "0.5",
+        "--alpha-n=-1888.095718047965",
+    ];
+    let output = folder.run(&[&args[..], &["--tau", "0.08933671843919264"]].concat());
+    let text = out(&output);
+    let vc = text.lines().find(|line| line.starts_with("vc ")).unwrap();
+    assert!(vc.contains("not known, between 0.00"), "{text}");
+    assert!(
+        !text.contains("v_liftoff") && !text.contains("windows"),
+        "{text}"
+    );
+}
+
+#[test]
+fn colours_are_as_asked_for() {
+    let folder = Folder::new();
+    let coloured = |args: &[&str]| {
+        let output = folder.command(args).env_remove("NO_COLOR").output();
+        err(&output.unwrap()).contains('\u{1b}')
+    };
+    assert!(!coloured(&["info", "none.h5"]));
+    assert!(coloured(&["--color", "always", "info", "none.h5"]));
+    assert!(!coloured(&["info", "none.h5", "--color=never"]));
+    assert!(coloured(&["--color=always", "sprint"]));
+    assert!(!coloured(&["--color=never", "sprint"]));
+}
+
+#[test]
+fn the_version_has_the_revision() {
+    let folder = Folder::new();
+    let [short, long] = ["-V", "--version"].map(|flag| out(&folder.run(&[flag])));
+    assert_eq!(short, long);
+    assert!(
+        short.starts_with("slipmap ") && short.contains(" ("),
+        "{short}"
+    );
+}
