@@ -243,3 +243,80 @@ fn the_version_has_the_revision() {
         "{short}"
     );
 }
+
+/// A cell of a map in the place of flags and of a case file: the same numbers, the motion from the
+/// cell's start.
+#[test]
+fn a_cell_of_a_map_is_asked_for_by_its_place() {
+    let sweep = "title = \"cells\"\nfields = [\"n_unstable\", \"vc\", \"abscissa\"]\n[axes]\n\
+                 alpha_v = [-0.5, -0.33]\ntau = [1, 4.15]\n[fixed]\nv0 = 0.35\n[friction]\n\
+                 law = \"weakening\"\nmu0 = 0.5\nv_s = 0.5\n";
+    let folder = Folder::with(&[("cells.toml", sweep)]);
+    expect(&folder.run(&["run", "cells.toml"]), 0, "4 cells");
+    let cell = [
+        "--map",
+        "cells.h5",
+        "--at",
+        "alpha_v=-0.34",
+        "--at",
+        "tau=4.1",
+    ];
+    let flags = [
+        "--friction",
+        "weakening",
+        "--mu0",
+        "0.5",
+        "--v-s",
+        "0.5",
+        "--alpha-v=-0.33",
+        "--tau",
+        "4.15",
+    ];
+    let same = |command: &str, more: &[&str]| {
+        let by_cell = folder.run(&[&[command], &cell[..], &["--json"]].concat());
+        expect(&by_cell, 0, "the cell at alpha_v = -0.33, tau = 4.15");
+        let by_flags = folder.run(&[&[command], &flags[..], more, &["--json"]].concat());
+        assert_eq!(out(&by_cell), out(&by_flags));
+    };
+    same("point", &["--v0", "0.35"]);
+    same("vc", &[]);
+    let motion = folder.run(&[&["simulate"], &cell[..]].concat());
+    expect(&motion, 0, "cells-motion.h5");
+    assert!(
+        err(&motion).contains("the case has no [start]"),
+        "{}",
+        err(&motion)
+    );
+    for (args, says) in [
+        (
+            &["point", "--map", "cells.h5"][..],
+            "--at alpha_v=VALUE is not given",
+        ),
+        (&["point", "--at", "tau=1"], "--map"),
+        (
+            &[
+                "vc",
+                "--map",
+                "cells.h5",
+                "--at",
+                "alpha_v=-0.5",
+                "--at",
+                "tau=9",
+            ],
+            "--at tau=9 is outside the axis",
+        ),
+        (
+            &["point", "--map", "cells.h5", "--at", "mass=1"],
+            "mass is no axis of this map",
+        ),
+        (&["simulate"], "<CASE.toml>"),
+    ] {
+        let text = said(&folder, args);
+        assert!(text.contains(says), "{args:?}: {text}");
+    }
+    let both = said(&folder, &[&["point"], &cell[..], &["--tau", "1"]].concat());
+    assert!(
+        both.contains("the map says everything but the cell"),
+        "{both}"
+    );
+}

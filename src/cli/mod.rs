@@ -1,6 +1,7 @@
 //! The command line: one file per subcommand, each thin.
 
 mod best;
+mod cell;
 mod failure;
 mod info;
 mod merge;

@@ -5,9 +5,9 @@ use std::path::{Path, PathBuf};
 use clap::ValueEnum;
 use slipmap::report::picture::{self, Picture, PictureError, PictureKind, PictureOptions};
 use slipmap::sweep::input::field::fields_meant;
-use slipmap::sweep::input::nearest::did_you_mean;
 use slipmap::sweep::{Field, Parameter};
 
+use super::cell::parse_at;
 use super::failure::Failure;
 use super::open::open;
 use super::say;
@@ -49,24 +49,6 @@ enum Kind {
 
 fn parse_field(name: &str) -> Result<Field, String> {
     Field::from_name(name).ok_or_else(|| fields_meant(name))
-}
-
-fn parse_at(text: &str) -> Result<(Parameter, f64), String> {
-    let (name, value) = text
-        .split_once('=')
-        .ok_or("expected AXIS=VALUE, for example mu_prime=-0.3")?;
-    let name = name.trim().replace('-', "_");
-    let parameter = Parameter::from_name(&name).ok_or_else(|| {
-        let names = Parameter::ALL.map(Parameter::name);
-        let meant = did_you_mean(&name, names);
-        format!(
-            "unknown axis \"{name}\"; {meant}known: {}",
-            names.join(", ")
-        )
-    })?;
-    let value = value.trim().parse::<f64>().ok().filter(|v| v.is_finite());
-    let value = value.ok_or("the value after = must be a finite number")?;
-    Ok((parameter, value))
 }
 
 pub(super) fn main(args: &Args) -> Result<(), Failure> {
@@ -140,25 +122,5 @@ fn failure(error: PictureError, args: &Args) -> Failure {
             bad("", error, help.into())
         }
         PictureError::Size { .. } => Failure::bad_input(error.to_string()),
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn places_on_axes_are_read() {
-        assert_eq!(parse_at("mu_prime=-0.3"), Ok((Parameter::MuPrime, -0.3)));
-        assert_eq!(parse_at("mu-prime = 1e-2"), Ok((Parameter::MuPrime, 0.01)));
-        for (text, says) in [
-            ("tau", "AXIS=VALUE"),
-            ("delay=3", "unknown axis \"delay\""),
-            ("tau=", "finite number"),
-            ("tau=inf", "finite number"),
-        ] {
-            let error = parse_at(text).unwrap_err();
-            assert!(error.contains(says), "{error}");
-        }
     }
 }

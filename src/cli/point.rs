@@ -3,8 +3,10 @@
 use std::io::Write;
 
 use slipmap::explore::point::{Point, Spectrum};
+use slipmap::sweep::input::point_file::PointOf;
 use slipmap::sweep::relaxation_time;
 
+use super::cell::{CellArgs, alone};
 use super::failure::Failure;
 use super::parameters::ParameterArgs;
 use super::say;
@@ -17,6 +19,8 @@ const INTERVALS_SHOWN: usize = 12;
 pub(super) struct Args {
     #[command(flatten)]
     parameters: ParameterArgs,
+    #[command(flatten)]
+    cell: CellArgs,
     /// How many characteristic roots to list, from the right; pairs count once
     #[arg(long, value_name = "K", default_value_t = 4, allow_hyphen_values = true,
           value_parser = parse_roots)]
@@ -71,7 +75,13 @@ fn print_spectrum(
 }
 
 pub(super) fn main(args: &Args) -> Result<(), Failure> {
-    let setting = args.parameters.setting()?;
+    let setting = match args.cell.point(PointOf::Sliding)? {
+        Some(point) => {
+            alone(args.parameters.any_given())?;
+            point.setting
+        }
+        None => args.parameters.setting()?,
+    };
     let point = Point::at(&setting, args.roots)?;
     let spectrum = &point.spectrum;
     if let Some(why) = spectrum.fewer.as_ref().filter(|_| spectrum.incomplete) {

@@ -14,6 +14,7 @@ use slipmap::sweep::cells::trace::TraceError;
 use slipmap::sweep::input::case_file::DISTURBED;
 use slipmap::sweep::{CaseSpec, Trace};
 
+use super::cell::CellArgs;
 use super::failure::Failure;
 use super::output::{output_path, provenance};
 use super::plot;
@@ -28,9 +29,16 @@ const EVENTS_SHOWN: usize = 12;
 #[command(after_help = "Example: slipmap simulate sweeps/fig3a.toml")]
 pub(super) struct Args {
     /// The case file
-    #[arg(value_name = "CASE.toml")]
-    case: PathBuf,
-    /// The trace to write [default: the case file's name with .h5, in the current folder]
+    #[arg(
+        value_name = "CASE.toml",
+        required_unless_present = "map",
+        conflicts_with = "map"
+    )]
+    case: Option<PathBuf>,
+    #[command(flatten)]
+    cell: CellArgs,
+    /// The trace to write [default: the case file's name with .h5, in the current folder; with
+    /// --map the map's name with -motion.h5]
     #[arg(short, long, value_name = "TRACE.h5")]
     output: Option<PathBuf>,
     /// The picture to draw, .png or .svg [default: the trace's name with .png, beside it]
@@ -54,7 +62,7 @@ struct MotionOut {
 
 pub(super) fn main(args: &Args) -> Result<(), Failure> {
     let signals = Signals::catch()?;
-    let spec = read_case(&args.case)?;
+    let (spec, input) = args.read()?;
     if spec.start_assumed {
         say::remark(format_args!(
             "the case has no [start]: the block begins with x_dot0 = {}, {} % faster than it is \
@@ -63,13 +71,13 @@ pub(super) fn main(args: &Args) -> Result<(), Failure> {
             100.0 * DISTURBED,
         ));
     }
-    let path = output_path(args.output.as_deref(), &args.case, "trace")?;
+    let path = output_path(args.output.as_deref(), &input, "trace")?;
     check_picture(args, &path)?;
     check_replaced(&path, &spec, args.fresh)?;
     let trace = signals.or_end("there is no trace", || Trace::of(&spec));
     let trace = trace.map_err(failure)?;
     let output = Output::claim(&path)?;
-    trace_file::write(&spec, &trace, output, &provenance("simulate", &args.case))?;
+    trace_file::write(&spec, &trace, output, &provenance("simulate", &input))?;
     if args.json {
         say::json(&MotionOut {
             summary: MotionSummary::of(&trace),
@@ -84,6 +92,22 @@ pub(super) fn main(args: &Args) -> Result<(), Failure> {
     match drawn.filter(|_| !args.json) {
         Some(picture) => say::result(picture.display()),
         None => Ok(()),
+    }
+}
+
+impl Args {
+    /// The case, and the file whose name the trace has.
+    fn read(&self) -> Result<(CaseSpec, PathBuf), Failure> {
+        if let Some(case) = &self.case {
+            return Ok((read_case(case)?, case.clone()));
+        }
+        let text = self.cell.case()?.unwrap_or_default();
+        let spec = text.parse();
+        let spec = spec.map_err(|error| Failure::in_file(error, "the cell", &text))?;
+        let map = self.cell.map.as_deref().and_then(Path::file_stem);
+        let mut name = map.unwrap_or_default().to_owned();
+        name.push("-motion");
+        Ok((spec, name.into()))
     }
 }
 

@@ -8,8 +8,10 @@ use slipmap::critical::switch_on::Phase;
 use slipmap::explore::vc::{CriticalVelocity, ShortDelay};
 use slipmap::slip::stop::Stop;
 use slipmap::sweep::Parameter;
+use slipmap::sweep::input::point_file::PointOf;
 use slipmap::sweep::input::search::{self, PHASES};
 
+use super::cell::{CellArgs, alone};
 use super::failure::Failure;
 use super::parameters::{LimitArgs, ParameterArgs, flag};
 use super::say;
@@ -23,6 +25,8 @@ use super::say;
 pub(super) struct Args {
     #[command(flatten)]
     parameters: ParameterArgs,
+    #[command(flatten)]
+    cell: CellArgs,
     /// Which question is asked
     #[arg(long, value_enum, default_value_t = ProtocolName::Follow)]
     protocol: ProtocolName,
@@ -51,6 +55,12 @@ enum ProtocolName {
 /// Runs the subcommand.
 pub(super) fn main(args: &Args) -> Result<(), Failure> {
     args.check()?;
+    if let Some(point) = args.cell.point(PointOf::CriticalVelocity)? {
+        let by_flags = args.protocol != ProtocolName::Follow || args.phase.is_some();
+        alone(by_flags || args.parameters.any_given())?;
+        let found = CriticalVelocity::of(&point.setting, point.protocol, &Stop::default())?;
+        return print(args.json, &found, not_known(&found));
+    }
     match args.protocol {
         ProtocolName::Limit => print(args.json, &args.limit()?, None),
         protocol => {

@@ -1,0 +1,183 @@
+//! A cell of a map in the place of flags and case files: `--map MAP.h5 --at AXIS=VALUE`.
+
+use std::path::{Path, PathBuf};
+
+use slipmap::maps::look::as_text::CellTexts;
+use slipmap::store::MapFile;
+use slipmap::store::schema::root;
+use slipmap::sweep::input::axis::Axis;
+use slipmap::sweep::input::nearest::did_you_mean;
+use slipmap::sweep::input::point_file::{PointOf, PointSpec};
+use slipmap::sweep::{Parameter, Plan, SweepSpec};
+
+use super::failure::Failure;
+use super::say;
+
+#[derive(Debug, clap::Args)]
+pub(super) struct CellArgs {
+    /// Take everything from a cell of this map
+    #[arg(long, value_name = "MAP.h5")]
+    pub map: Option<PathBuf>,
+    /// With --map: the cell at the value nearest to this; once for each axis of several values
+    #[arg(long, value_name = "AXIS=VALUE", value_parser = parse_at, requires = "map")]
+    at: Vec<(Parameter, f64)>,
+}
+
+/// A parameter and its value, as flags say where on an axis.
+pub(super) fn parse_at(text: &str) -> Result<(Parameter, f64), String> {
+    let (name, value) = text
+        .split_once('=')
+        .ok_or("expected AXIS=VALUE, for example mu_prime=-0.3")?;
+    let name = name.trim().replace('-', "_");
+    let parameter = Parameter::from_name(&name).ok_or_else(|| {
+        let names = Parameter::ALL.map(Parameter::name);
+        let meant = did_you_mean(&name, names);
+        format!(
+            "unknown axis \"{name}\"; {meant}known: {}",
+            names.join(", ")
+        )
+    })?;
+    let value = value.trim().parse::<f64>().ok().filter(|v| v.is_finite());
+    let value = value.ok_or("the value after = must be a finite number")?;
+    Ok((parameter, value))
+}
+
+impl CellArgs {
+    /// What can be asked at the cell; none where no map is given. Says which cell it is.
+    pub(super) fn texts(&self) -> Result<Option<CellTexts>, Failure> {
+        let Some(path) = &self.map else {
+            return Ok(None);
+        };
+        let plan = plan_of(path)?;
+        self.check_axes(&plan)?;
+        let mut index = Vec::new();
+        let mut there = Vec::new();
+        for axis in &plan.spec.axes {
+            let place = self.place(axis)?;
+            there.push(format!(
+                "{} = {}",
+                axis.parameter.name(),
+                axis.values[place]
+            ));
+            index.push(place);
+        }
+        say::remark(format_args!("the cell at {}", there.join(", ")));
+        Ok(Some(CellTexts::of(&plan, &index)))
+    }
+
+    /// The point of sliding at the cell, or its critical velocity.
+    pub(super) fn point(&self, of: PointOf) -> Result<Option<PointSpec>, Failure> {
+        let Some(texts) = self.texts()? else {
+            return Ok(None);
+        };
+        let (text, lacks) = match of {
+            PointOf::CriticalVelocity => (texts.vc, "its friction law or its delay"),
+            _ => (texts.point, "its v0 or its delay"),
+        };
+        let text = text.ok_or_else(|| without(lacks))?;
+        let read = PointSpec::read(&text, of);
+        read.map(Some)
+            .map_err(|error| Failure::in_file(error, "the cell", &text))
+    }
+
+    /// The case of the motion at the cell.
+    pub(super) fn case(&self) -> Result<Option<String>, Failure> {
+        let texts = self.texts()?;
+        let text = texts.map(|texts| {
+            texts
+                .motion
+                .ok_or_else(|| without("its friction law or its v0"))
+        });
+        text.transpose()
+    }
+
+    /// Values are given on axes alone.
+    fn check_axes(&self, plan: &Plan) -> Result<(), Failure> {
+        let axes = || plan.spec.axes.iter().map(|axis| axis.parameter);
+        match self
+            .at
+            .iter()
+            .find(|(at, _)| !axes().any(|axis| axis == *at))
+        {
+            None => Ok(()),
+            Some((at, _)) => Err(Failure::bad_input_with_help(
+                format!("--at: {} is no axis of this map", at.name()),
+                format!(
+                    "its axes: {}",
+                    axes().map(Parameter::name).collect::<Vec<_>>().join(", ")
+                ),
+            )),
+        }
+    }
+
+    /// Where on an axis: at the value nearest to the one given.
+    fn place(&self, axis: &Axis) -> Result<usize, Failure> {
+        let name = axis.parameter.name();
+        let values = &axis.values;
+        let (first, last) = (values[0], values[values.len() - 1]);
+        let (low, high) = (first.min(last), first.max(last));
+        let given = self.at.iter().filter(|(at, _)| *at == axis.parameter);
+        let value = match given.map(|(_, value)| *value).collect::<Vec<_>>()[..] {
+            [] if values.len() == 1 => return Ok(0),
+            [value] => value,
+            [] => {
+                let help = format!("for example --at {name}={first}; from {low} to {high}");
+                let message = format!("--at {name}=VALUE is not given");
+                return Err(Failure::bad_input_with_help(message, help));
+            }
+            _ => return Err(Failure::bad_input(format!("--at {name} is given twice"))),
+        };
+        let room = 1e-9 * (high - low).max(high.abs());
+        if !(low - room..=high + room).contains(&value) {
+            let message = format!("--at {name}={value} is outside the axis");
+            let help = format!("it goes from {low} to {high}");
+            return Err(Failure::bad_input_with_help(message, help));
+        }
+        let off = |i: &usize| (values[*i] - value).abs();
+        let nearest = (0..values.len()).min_by(|a, b| off(a).total_cmp(&off(b)));
+        Ok(nearest.unwrap_or(0))
+    }
+}
+
+/// Nothing else says what is asked where a cell does.
+pub(super) fn alone(given: bool) -> Result<(), Failure> {
+    match given {
+        false => Ok(()),
+        true => Err(Failure::bad_input_with_help(
+            "--map is given with other flags of the point",
+            "the map says everything but the cell, which --at says",
+        )),
+    }
+}
+
+fn without(lacks: &str) -> Failure {
+    Failure::bad_input(format!("a cell of this map does not say {lacks}"))
+}
+
+/// The plan of a map.
+fn plan_of(path: &Path) -> Result<Plan, Failure> {
+    let map = MapFile::open(path)?;
+    let text = map.root_text(root::SWEEP).unwrap_or_default();
+    let spec = text.parse::<SweepSpec>().and_then(Plan::new);
+    spec.map_err(|error| Failure::in_file(error, &path.display().to_string(), &text))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn places_on_axes_are_read() {
+        assert_eq!(parse_at("mu_prime=-0.3"), Ok((Parameter::MuPrime, -0.3)));
+        assert_eq!(parse_at("mu-prime = 1e-2"), Ok((Parameter::MuPrime, 0.01)));
+        for (text, says) in [
+            ("tau", "AXIS=VALUE"),
+            ("delay=3", "unknown axis \"delay\""),
+            ("tau=", "finite number"),
+            ("tau=inf", "finite number"),
+        ] {
+            let error = parse_at(text).unwrap_err();
+            assert!(error.contains(says), "{error}");
+        }
+    }
+}
