@@ -9,7 +9,7 @@
 use crate::model::elementary::power;
 use crate::slip::motion::Accuracy;
 
-use super::event_functions::{Event, EventFunctions};
+use super::event_functions::EventFunctions;
 use super::options::ContinuationOptions;
 use super::return_map::{NoReturn, Period};
 use super::step_control::{Prediction, Retry, StepControl};
@@ -315,6 +315,7 @@ fn is_same_event(branch: &mut impl Branch, at: &Point, options: &ContinuationOpt
 
 #[cfg(test)]
 mod tests {
+    use super::super::event_functions::Event;
     use super::super::synthetic::{Family, LOGISTIC, Synthetic, logistic_pair};
     use super::super::with_history::WithHistory;
     use super::*;

@@ -5,7 +5,7 @@
 //!     → [scene] marks in pixels → [render] PNG or SVG
 //! ```
 //!
-//! - `key`: which colour a value of a field has in a heat map
+//! - `key`: which colour a value of a field has in a heat map; `hatch`: cells that show none
 //! - `page`, `panels`, `legend`: where things stand; `scale`, `ticks`: from values to places
 //! - `stable_area`, `curve_labels`: the region between curves, and free places on curves
 //! - `trace`, `stack`: a motion over time, in panels above one another
@@ -18,12 +18,14 @@ mod curve_labels;
 mod degrees;
 mod error;
 mod font;
+mod hatch;
 mod heat;
 mod key;
 mod legend;
 mod line;
 mod page;
 mod panels;
+mod rectangles;
 mod render;
 mod scale;
 mod scene;
