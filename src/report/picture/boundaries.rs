@@ -2,7 +2,7 @@
 
 use super::PictureError;
 use super::colour::{self, INK, PAPER, Rgb};
-use super::curve_labels::{Curves, places};
+use super::curve_labels::{Curves, Place, places};
 use super::degrees::Degrees;
 use super::legend::{Legend, Swatch};
 use super::page::{self, SMALL};
@@ -180,7 +180,13 @@ fn label(families: &[Family], panel: &Panel, scene: &mut Scene) {
         })
         .collect();
     for ((family, text), place) in labelled.iter().zip(places(&sets, panel.area)) {
-        let Some((x, y)) = place else { continue };
+        let Some(Place { at: (x, y), from }) = place else {
+            continue;
+        };
+        let colour = colour::darker(family.colour);
+        if let Some(from) = from {
+            scene.path(vec![from, (x, y)], colour, THIN * u);
+        }
         let (half, height) = (0.5 * text.width(size) + 4.0 * u, 0.55 * size);
         scene.marks.push(Mark::Rect {
             from: (x - half, y - height),
@@ -188,7 +194,6 @@ fn label(families: &[Family], panel: &Panel, scene: &mut Scene) {
             colour: PAPER,
             opacity: 0.85,
         });
-        let colour = colour::darker(family.colour);
         scene.text((x, y + 0.34 * size), Align::Middle, text, size, colour);
     }
 }

@@ -95,8 +95,15 @@ const VIRIDIS: [Rgb; 9] = [
     Rgb(253, 231, 37),
 ];
 
-/// Part of viridis used for lines: its yellow end is too light on white.
-const DARK_PART: f64 = 0.84;
+/// Plasma up to its orange, for lines: what follows is too light on white.
+const PLASMA: [Rgb; 6] = [
+    Rgb(13, 8, 135),
+    Rgb(92, 1, 166),
+    Rgb(156, 23, 158),
+    Rgb(203, 70, 121),
+    Rgb(229, 107, 93),
+    Rgb(244, 136, 73),
+];
 
 /// ColorBrewer's BrBG: brown, white, teal.
 const BROWN_TEAL: [Rgb; 9] = [
@@ -127,7 +134,7 @@ pub(super) fn of_line(i: usize, n: usize) -> Rgb {
     } else {
         0.3
     };
-    sample(&VIRIDIS, DARK_PART * part)
+    sample(&PLASMA, part)
 }
 
 /// The colour of a number of unstable roots.

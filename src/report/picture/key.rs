@@ -28,6 +28,8 @@ const LONGEST_RELAXATION: f64 = 100.0;
 /// The largest ratio of velocities, or of stick times, that are told apart.
 const LARGEST_RATIO: f64 = 1000.0;
 
+/// A largest velocity no more than this many times those told apart is within the scale.
+const FEW_TIMES: f64 = 5.0;
 /// Ends of a scale are rounded.
 const ROUNDED: f64 = 1e-9;
 
@@ -85,7 +87,11 @@ impl Paint {
             Spread::Magnitudes => {
                 let positive = || finite().filter(|v| *v > 0.0);
                 let smallest = positive().fold(f64::INFINITY, f64::min);
-                let most = rounded_up(quantile(positive(), TOLD_APART));
+                let most = match quantile(positive(), TOLD_APART) {
+                    most if largest <= FEW_TIMES * most => largest,
+                    most => most,
+                };
+                let most = rounded_up(most);
                 Self::from_above_zero(match smallest.max(most / LARGEST_RATIO) {
                     least if least < 0.1 * most => Scale::logarithmic(least, most),
                     _ => Scale::linear(0.0, most),
@@ -364,7 +370,9 @@ fn rounded_up(value: f64) -> f64 {
 mod tests {
     use super::*;
     use crate::report::picture::hatch;
+    use crate::slip::outcome::Outcome;
     use crate::store::map_file::Plane;
+    use crate::sweep::input::class::Class;
 
     fn plane(cells: &[f64]) -> Known {
         let gap = |value: &f64| value.is_nan().then_some(Gap::NoValue);
@@ -420,7 +428,14 @@ mod tests {
         cells.extend(wide);
         for field in Field::ALL {
             let kinds = field.kinds().map_or(7, |kinds| kinds.len());
-            let numbers = || (0..kinds).map(|n| n as f64).collect::<Vec<_>>();
+            // Undecided ones are hatched.
+            let undecided = match field {
+                Field::Outcome => Some(Outcome::Undecided as usize),
+                Field::Class => Some(Class::Undecided as usize),
+                _ => None,
+            };
+            let kinds = || (0..kinds).filter(|n| Some(*n) != undecided);
+            let numbers = || kinds().map(|n| n as f64).collect::<Vec<_>>();
             let cells = match field.storage() {
                 Storage::Real => cells.clone(),
                 Storage::Kind | Storage::Few => numbers(),

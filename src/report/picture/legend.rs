@@ -23,6 +23,8 @@ pub(super) enum Swatch {
     Dashed(Rgb, f64, (f64, f64)),
     /// A box.
     Box(Rgb),
+    /// Nothing: the words say all.
+    None,
     /// A box as cells with this gap are.
     Gap(Gap),
 }
@@ -67,6 +69,7 @@ impl Legend {
                     scene.rect(from, to, colour);
                     scene.outline(from, to, SOFT_INK, u);
                 }
+                Swatch::None => {}
                 Swatch::Gap(gap) => {
                     scene.rect(from, to, hatch::ground(gap));
                     hatch::fill(from, to, gap, scene);

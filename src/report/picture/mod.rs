@@ -71,12 +71,13 @@ pub enum PictureKind {
 /// How a map is drawn.
 #[derive(Debug, Clone, PartialEq)]
 pub struct PictureOptions {
-    /// The field to show; by default the class of v0 where the map holds it, else the critical
+    /// The field to show; by default the one that the sweep names for pictures, else the first
+    /// held of the class of v0, the velocity above which sliding is smooth, the critical
     /// velocity, the outcome, the spectral abscissa, the number of unstable roots.
     pub field: Option<Field>,
     /// The kind; by default boundaries where the map holds them for 2 to 12 values of one axis
-    /// outside their plane, holds none of the first four and no field is asked for, otherwise a
-    /// heat map.
+    /// outside their plane, holds none of the first five and no field is asked for or named,
+    /// otherwise a heat map.
     pub kind: Option<PictureKind>,
     /// Values at which axes are held: the nearest on the axis. Several for one axis make as many
     /// panels or colours.
@@ -225,7 +226,8 @@ fn compose(map: &MapFile, options: &PictureOptions, most: usize) -> Result<Scene
             allowed: format!("{} to {} pixels", SIZES.start(), SIZES.end()),
         });
     }
-    let field = options.field.unwrap_or_else(|| default_field(map));
+    let chosen = options.field.or_else(|| of_sweep(map));
+    let field = chosen.unwrap_or_else(|| default_field(map));
     if !map.fields().contains(&field) {
         let held: Vec<&str> = map.fields().iter().map(|f| f.name()).collect();
         return Err(PictureError::NoSuchField {
@@ -239,7 +241,7 @@ fn compose(map: &MapFile, options: &PictureOptions, most: usize) -> Result<Scene
         if options.kind == Some(PictureKind::Boundaries) {
             return Err(no_curves("only one axis is left to draw along"));
         }
-        let fields = match options.field {
+        let fields = match chosen {
             Some(field) => vec![field],
             None => shown_together(map, &view, field),
         };
@@ -252,8 +254,7 @@ fn compose(map: &MapFile, options: &PictureOptions, most: usize) -> Result<Scene
         false => Vec::new(),
     };
     let fits = view.along.is_some() && view.of <= MOST_PANELS && view.outer_axes(map) == 1;
-    let by_default =
-        fits && options.field.is_none() && says_more(map).is_none() && !curves.is_empty();
+    let by_default = fits && chosen.is_none() && says_more(map).is_none() && !curves.is_empty();
     match options.kind {
         Some(PictureKind::Boundaries) if !in_plane => {
             return Err(no_curves(match map.boundary_plane() {
@@ -268,10 +269,23 @@ fn compose(map: &MapFile, options: &PictureOptions, most: usize) -> Result<Scene
     Ok(scene)
 }
 
-/// A field of the map that says more than where sliding is stable: what v0 is good for, the
-/// critical velocity, what becomes of motions, or the rate at which disturbances decay.
+/// The field that the map's sweep names for its pictures.
+fn of_sweep(map: &MapFile) -> Option<Field> {
+    let named = view::sweep(map)?.picture;
+    named.filter(|field| map.fields().contains(field))
+}
+
+/// A field of the map that says more than where sliding is stable: what v0 is good for,
+/// from where sliding is smooth, the critical velocity, what becomes of motions, or the rate at
+/// which disturbances decay.
 fn says_more(map: &MapFile) -> Option<Field> {
-    let more = [Field::Class, Field::Vc, Field::Outcome, Field::Abscissa];
+    let more = [
+        Field::Class,
+        Field::VSmooth,
+        Field::Vc,
+        Field::Outcome,
+        Field::Abscissa,
+    ];
     more.into_iter().find(|field| map.fields().contains(field))
 }
 
