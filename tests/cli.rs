@@ -131,13 +131,25 @@ fn pictures_show_what_they_say_and_replace_no_other() {
     let args = ["plot", "small.h5", "--field", "n_unstable"];
     expect(&folder.run(&args), 2, "is there and not drawn by slipmap");
     assert_eq!(read("small.n_unstable.png"), b"a photograph");
+    let wide = [
+        "plot", "small.h5", "-o", "wide.svg", "--size", "2000x700", "--title", "Mine",
+    ];
+    expect(&folder.run(&wide), 0, "wide.svg");
+    let text = String::from_utf8(read("wide.svg")).unwrap();
+    assert!(text.starts_with("<svg width=\"2000\" height=\"700\"") && text.contains("Mine"));
+    let large = folder.run(&["plot", "small.h5", "-o", "x.png", "--size", "9000x10"]);
+    expect(
+        &large,
+        2,
+        "--size: a picture of 9000 × 10 pixels is outside the range",
+    );
     let svg = || {
         let args = ["plot", "small.h5", "--field", "n_unstable", "-o", "x.svg"];
         expect(&folder.run(&args), 0, "x.svg");
         String::from_utf8(read("x.svg")).unwrap()
     };
     let clean = svg();
-    assert!(clean.contains("n_unstable: number of") && clean.contains("dimensionless"));
+    assert!(clean.contains("Number of characteristic roots") && clean.contains("dimensionless"));
     assert!(!clean.contains("marginal") && !clean.contains("not computed"));
     edit(&folder.path().join("small.h5"), |file| {
         let status = file.dataset("status").unwrap();

@@ -36,6 +36,23 @@ pub(super) struct Args {
     /// it
     #[arg(long, value_name = "AXIS=VALUE", value_parser = parse_at)]
     at: Vec<(Parameter, f64)>,
+    /// Width and height in pixels
+    #[arg(long, value_name = "WIDTHxHEIGHT", default_value = SIZE, value_parser = parse_size)]
+    size: (u32, u32),
+    /// The title [default: the sweep's, or what the field is where the sweep shows another]
+    #[arg(long, value_name = "TEXT")]
+    title: Option<String>,
+}
+
+/// The size of a picture where none is asked for.
+const SIZE: &str = "1600x1100";
+
+fn parse_size(text: &str) -> Result<(u32, u32), String> {
+    let sides = text.split_once('x').and_then(|(width, height)| {
+        let side = |text: &str| text.trim().parse().ok();
+        Some((side(width)?, side(height)?))
+    });
+    sides.ok_or_else(|| format!("expected WIDTHxHEIGHT, for example {SIZE}"))
 }
 
 /// Kinds of pictures by name.
@@ -79,7 +96,8 @@ pub(super) fn main(args: &Args) -> Result<(), Failure> {
             Kind::Heat => PictureKind::Heat,
         }),
         at: args.at.clone(),
-        ..PictureOptions::default()
+        size: args.size,
+        title: args.title.clone(),
     };
     let drawn = signals.or_end(NOT_DRAWN, || picture::draw(&map, &path, &options));
     drawn
@@ -110,6 +128,10 @@ fn shown(args: &Args) -> Vec<String> {
     words.extend(kind.map(|kind| kind.get_name().to_owned()));
     let at = args.at.iter();
     words.extend(at.map(|(parameter, value)| format!("{}={value}", parameter.name())));
+    if args.size != PictureOptions::default().size {
+        words.push(format!("{}x{}", args.size.0, args.size.1));
+    }
+    words.extend(args.title.iter().map(|_| "titled".to_owned()));
     words
 }
 
@@ -169,7 +191,7 @@ fn failure(error: PictureError, args: &Args) -> Failure {
             let help = "slipmap point says everything about one point";
             bad("", error, help.into())
         }
-        PictureError::Size { .. } => Failure::bad_input(error.to_string()),
+        PictureError::Size { .. } => Failure::bad_input(format!("--size: {error}")),
     }
 }
 
@@ -190,6 +212,14 @@ mod tests {
             of(&["vc", "heat", "tau=0.5"]),
             Path::new("a/map.vc.heat.tau=0.5.png")
         );
+    }
+
+    #[test]
+    fn sizes_are_read() {
+        assert_eq!(parse_size(SIZE), Ok(PictureOptions::default().size));
+        for text in ["", "800", "800x", "axb", "-1x5", "1.5x2"] {
+            assert!(parse_size(text).unwrap_err().contains("WIDTHxHEIGHT"));
+        }
     }
 
     #[test]

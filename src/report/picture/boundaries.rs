@@ -1,6 +1,5 @@
 //! The boundaries of stability in one plane, a colour for each value of the axis outside it.
 
-use super::PictureError;
 use super::colour::{self, INK, PAPER, Rgb};
 use super::curve_labels::{Curves, Place, places};
 use super::degrees::Degrees;
@@ -12,6 +11,7 @@ use super::scene::{Align, Mark, Point, Scene};
 use super::stable_area::regions;
 use super::text::{Rich, axis_title, number, suffix};
 use super::view::View;
+use super::{PictureError, PictureOptions};
 use crate::linear::curves::{CurvePiece, StableSide};
 use crate::store::MapFile;
 use crate::store::map_file::{MapCurve, Plane};
@@ -40,10 +40,12 @@ pub(super) fn draw(
     view: &View,
     y: usize,
     curves: &[MapCurve],
+    options: &PictureOptions,
     scene: &mut Scene,
 ) -> Result<(), PictureError> {
     let families = families(map, view, curves);
-    let title = super::title(map, "Boundaries of stable sliding");
+    let title = super::title(map, options);
+    let title = title.unwrap_or_else(|| "Boundaries of stable sliding".into());
     let mut body = page::head(scene, &title, &view.notes(map));
     let u = scene.unit();
     let degrees = Degrees::of(map, curves);

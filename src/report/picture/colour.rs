@@ -164,8 +164,8 @@ pub(super) fn last_of_few() -> usize {
     FEW.len() - 1
 }
 
-/// The colour of `value` where ±`range` are the ends: brown below zero, teal above, colours of their
-/// own beyond the ends and at infinity.
+/// The colour of `value` where ±`range` are the ends: brown below zero, teal above, colours of
+/// their own beyond the ends and at infinity.
 ///
 /// Colours go with the square root, and both sides begin with a tint: stable cells with little to
 /// spare are the most common ones, and must not look like unstable ones.

@@ -34,6 +34,9 @@ const DIRECTIONS: u32 = 16;
 const MOST_ANCHORS: usize = 24;
 /// What a pixel of a curve below a text costs, in pixels of distance.
 const HIDING: f64 = 1.5;
+/// Side of the square around a point from which a line leads: curves in it make unclear which one
+/// is meant.
+const CLEAR: f64 = 24.0;
 
 /// Where a text stands.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -123,7 +126,8 @@ fn led_away(
                 from.0 + distance * angle.cos(),
                 from.1 + distance * angle.sin(),
             );
-            let cost = distance + HIDING * points.hidden(at, size);
+            let unclear = points.hidden(from, (CLEAR, CLEAR));
+            let cost = distance + HIDING * points.hidden(at, size) + unclear;
             let better = best.is_none_or(|(least, _)| cost < least);
             if better && free(at) && clear(from, at) {
                 let from = Some(from);

@@ -1,6 +1,5 @@
 //! Heat maps of a field: a panel for each value of the axis outside the plane.
 
-use super::PictureError;
 use super::colour::INK;
 use super::degrees::Degrees;
 use super::hatch;
@@ -9,8 +8,9 @@ use super::page::{self, Area};
 use super::panels::{Panel, Panels, Words};
 use super::scale::Scale;
 use super::scene::{Mark, Scene};
-use super::text::{axis_title, field_note};
+use super::text::axis_title;
 use super::view::View;
+use super::{PictureError, PictureOptions};
 use crate::linear::curves::StableSide;
 use crate::report::known::Known;
 use crate::store::MapFile;
@@ -20,20 +20,20 @@ use crate::sweep::Field;
 /// Space for the colours' meanings, to begin with.
 const GAP: f64 = 34.0;
 
-/// Draws a heat map of `field` with at most `most` cells each way in all panels together, and the
-/// curves of `curves` that bound the stable region.
+/// Draws a heat map of `field` with at most as many cells each way in all panels together as stand
+/// beside the options, and the curves of `curves` that bound the stable region.
 pub(super) fn draw(
     map: &MapFile,
     view: &View,
     y: usize,
     field: Field,
     curves: &[MapCurve],
-    most: usize,
+    options: (&PictureOptions, usize),
     scene: &mut Scene,
 ) -> Result<(), PictureError> {
+    let (options, most) = options;
     let unit = map.field_unit(field);
-    let title = super::title(map, super::untitled(field));
-    let mut notes = vec![field_note(field, &unit)];
+    let (title, mut notes) = super::head(map, field, options);
     notes.extend(view.notes(map));
     let mut body = page::head(scene, &title, &notes);
     let across = (view.panels.len() as f64).sqrt().ceil() as usize;

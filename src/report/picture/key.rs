@@ -454,10 +454,12 @@ mod tests {
             };
             let mut said: Vec<Rgb> = key.legend.entries.iter().map(|e| colour(&e.0)).collect();
             if let Some(scale) = key.paint.scale() {
-                let mut bar: Vec<Rgb> = (0..=256)
-                    .map(|i| key.colour(scale.value(f64::from(i) / 256.0)))
-                    .filter(|colour| *colour != ZERO)
-                    .collect();
+                // Colours of scales with two sides go with the square root.
+                let parts = (-128..=128).map(|i| f64::from(i) / 128.0);
+                let parts = parts.flat_map(|t| [0.5 + 0.5 * t, 0.5 + 0.5 * t * t.abs()]);
+                let bar = parts.map(|part| key.colour(scale.value(part)));
+                let mut bar: Vec<Rgb> = bar.filter(|colour| *colour != ZERO).collect();
+                bar.sort_unstable();
                 bar.dedup();
                 said.extend(bar);
             }

@@ -1,6 +1,5 @@
 //! Fields along the one axis that is left.
 
-use super::PictureError;
 use super::colour::{self, PAPER, Rgb, SOFT_INK, STABLE};
 use super::hatch;
 use super::key::DECADES;
@@ -10,8 +9,9 @@ use super::panels::{Panel, Panels, Words};
 use super::rectangles::{Rectangle, rectangles};
 use super::scale::Scale;
 use super::scene::{Mark, Point, Scene};
-use super::text::{Rich, axis_title, field_name, field_note, field_title, number, suffix};
+use super::text::{Rich, axis_title, field_name, field_title, number, suffix};
 use super::view::View;
+use super::{PictureError, PictureOptions};
 use crate::report::known::{Gap, Known};
 use crate::store::map_file::MapAxis;
 use crate::store::{MapFile, StoreError};
@@ -22,6 +22,8 @@ const WIDTH: f64 = 3.2;
 /// Dashes of approximations, (length, gap).
 const DASH: (f64, f64) = (9.0, 7.0);
 const SHADE: f64 = 0.25;
+/// Half the length of a line of one point.
+const LONE: f64 = 5.0;
 /// Relative errors beyond this are not told apart.
 const LARGEST_ERROR: f64 = 1.0;
 
@@ -43,6 +45,7 @@ pub(super) fn draw(
     map: &MapFile,
     view: &View,
     fields: &[Field],
+    options: &PictureOptions,
     most: usize,
     scene: &mut Scene,
 ) -> Result<(), PictureError> {
@@ -50,10 +53,9 @@ pub(super) fn draw(
         return Ok(());
     };
     let lines = read_lines(map, view, fields, most)?;
-    let title = super::title(map, super::untitled(field));
-    let mut notes = Vec::new();
-    if fields.len() == 1 {
-        notes.push(field_note(field, &map.field_unit(field)));
+    let (title, mut notes) = super::head(map, field, options);
+    if fields.len() > 1 {
+        notes.clear();
     }
     notes.extend(view.notes(map));
     let mut body = page::head(scene, &title, &notes);
@@ -184,7 +186,11 @@ fn value_scale(field: Field, lines: &[Graph]) -> Scale {
 
 fn draw_line(panel: &Panel, line: &Graph, scene: &mut Scene) {
     let u = scene.unit();
-    for stretch in stretches(panel, line) {
+    for mut stretch in stretches(panel, line) {
+        // A value alone between others that are not there is a point.
+        if let [(x, y)] = stretch[..] {
+            stretch = vec![(x - LONE * u, y), (x + LONE * u, y)];
+        }
         for points in between(&stretch, panel.area.top, panel.area.bottom) {
             match line.swatch {
                 Swatch::Dashed(colour, width, dash) => {

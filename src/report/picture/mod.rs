@@ -47,6 +47,7 @@ use crate::store::{MapFile, Output, StoreError};
 use crate::sweep::{CaseSpec, Field, Parameter, Trace};
 pub use error::PictureError;
 use scene::Scene;
+use text::Rich;
 use view::{MOST_PANELS, View};
 
 /// Widths and heights that make a picture, in pixels.
@@ -84,6 +85,9 @@ pub struct PictureOptions {
     pub at: Vec<(Parameter, f64)>,
     /// Width and height in pixels, 300 to 5000 each.
     pub size: (u32, u32),
+    /// The title; by default the sweep's in pictures of the field that it shows, else what the
+    /// field is.
+    pub title: Option<String>,
 }
 
 impl Default for PictureOptions {
@@ -93,6 +97,7 @@ impl Default for PictureOptions {
             kind: None,
             at: Vec::new(),
             size: (1600, 1100),
+            title: None,
         }
     }
 }
@@ -245,7 +250,7 @@ fn compose(map: &MapFile, options: &PictureOptions, most: usize) -> Result<Scene
             Some(field) => vec![field],
             None => shown_together(map, &view, field),
         };
-        line::draw(map, &view, &fields, most, &mut scene)?;
+        line::draw(map, &view, &fields, options, most, &mut scene)?;
         return Ok(scene);
     };
     let in_plane = view.is_boundary_plane(map);
@@ -262,9 +267,11 @@ fn compose(map: &MapFile, options: &PictureOptions, most: usize) -> Result<Scene
                 Some(_) => "they lie in another plane, of whose axes one is held",
             }));
         }
-        None if by_default => boundaries::draw(map, &view, y, &curves, &mut scene)?,
-        Some(PictureKind::Boundaries) => boundaries::draw(map, &view, y, &curves, &mut scene)?,
-        _ => heat::draw(map, &view, y, field, &curves, most, &mut scene)?,
+        None if by_default => boundaries::draw(map, &view, y, &curves, options, &mut scene)?,
+        Some(PictureKind::Boundaries) => {
+            boundaries::draw(map, &view, y, &curves, options, &mut scene)?
+        }
+        _ => heat::draw(map, &view, y, field, &curves, (options, most), &mut scene)?,
     }
     Ok(scene)
 }
@@ -325,11 +332,35 @@ fn untitled(field: Field) -> &'static str {
     }
 }
 
-/// The title of the map's sweep, or `otherwise`.
-fn title(map: &MapFile, otherwise: &str) -> String {
-    let title = map.root_text(root::TITLE).filter(|t| !t.trim().is_empty());
-    let cut = |title: String| title.chars().take(LONGEST_TITLE).collect::<String>();
-    title.map_or_else(|| otherwise.to_owned(), |title| visible_line(&cut(title)))
+/// The title asked for, or that of the map's sweep.
+fn title(map: &MapFile, options: &PictureOptions) -> Option<String> {
+    let of_sweep = || map.root_text(root::TITLE);
+    let title = options.title.clone().or_else(of_sweep);
+    let title = title.filter(|title| !title.trim().is_empty())?;
+    let cut: String = title.chars().take(LONGEST_TITLE).collect();
+    Some(visible_line(&cut))
+}
+
+/// The title of a picture of `field`, and notes that name it. The title of a sweep is about the
+/// field that it shows unasked: a picture of another one is headed by that.
+fn head(map: &MapFile, field: Field, options: &PictureOptions) -> (String, Vec<Rich>) {
+    let unit = map.field_unit(field);
+    let shown = of_sweep(map).unwrap_or_else(|| default_field(map));
+    let note = text::field_note(field, &unit);
+    match title(map, options) {
+        Some(title) if field != shown && options.title.is_none() => {
+            let name = Rich::plain(field.name()).and(&text::suffix(&unit, "  (", ")"));
+            let of = Rich::plain(&format!("from: {title}"));
+            (capitalised(field.long_name()), vec![name, of])
+        }
+        title => (title.unwrap_or_else(|| untitled(field).into()), vec![note]),
+    }
+}
+
+fn capitalised(text: &str) -> String {
+    let mut characters = text.chars();
+    let first = characters.next().into_iter().flat_map(char::to_uppercase);
+    first.chain(characters).collect()
 }
 
 #[cfg(test)]
@@ -448,6 +479,31 @@ mod tests {
         assert!(text.len() < 1_000_000);
     }
 
+    /// The title of a sweep is about the field that it shows.
+    #[test]
+    fn titles_tell_the_field() {
+        let named = FIG2.replace("boundaries = true", "picture = \"delay_margin\"");
+        let case = Case::new(&named);
+        let text = |field, title: Option<&str>| {
+            let options = PictureOptions {
+                field,
+                title: title.map(str::to_owned),
+                ..PictureOptions::default()
+            };
+            String::from_utf8(case.draw("map.svg", &options).unwrap()).unwrap()
+        };
+        let unasked = text(None, None);
+        assert_eq!(unasked, text(Some(Field::DelayMargin), None));
+        assert!(unasked.contains("Velocity control"));
+        assert!(unasked.contains("delay_margin: distance in delay"));
+        let other = text(Some(Field::NUnstable), None);
+        assert!(other.contains("Number of characteristic roots"));
+        assert!(other.contains("from: Velocity control"));
+        let given = text(Some(Field::NUnstable), Some("My title"));
+        assert!(given.contains("My title") && given.contains("n_unstable: number of"));
+        assert!(!given.contains("Velocity control"));
+    }
+
     #[test]
     fn every_shape_of_map_is_drawn() {
         for axes in [
@@ -487,7 +543,7 @@ mod tests {
                     field: Some(field),
                     at,
                     size: (300, 300),
-                    kind: None,
+                    ..PictureOptions::default()
                 };
                 pictures.insert(case.draw("map.png", &options).unwrap());
             }
