@@ -267,9 +267,8 @@ fn compose(map: &MapFile, options: &PictureOptions, most: usize) -> Result<Scene
                 Some(_) => "they lie in another plane, of whose axes one is held",
             }));
         }
-        None if by_default => boundaries::draw(map, &view, y, &curves, options, &mut scene)?,
-        Some(PictureKind::Boundaries) => {
-            boundaries::draw(map, &view, y, &curves, options, &mut scene)?
+        kind if kind == Some(PictureKind::Boundaries) || (kind.is_none() && by_default) => {
+            boundaries::draw(map, &view, y, &curves, options, &mut scene)?;
         }
         _ => heat::draw(map, &view, y, field, &curves, (options, most), &mut scene)?,
     }
