@@ -100,6 +100,70 @@ fn run_makes_a_map_and_a_picture_and_goes_on_from_there() {
     );
 }
 
+/// What a picture shows: the field that the sweep names, what is not known hatched and in words,
+/// beside the picture of the run and not over it.
+#[test]
+fn pictures_show_what_they_say_and_replace_no_other() {
+    let sweep =
+        format!("picture = \"delay_margin\"\nfields = [\"n_unstable\", \"delay_margin\"]\n{SMALL}");
+    let folder = Folder::with(&[("small.toml", &sweep)]);
+    expect(&folder.run(&["run", "small.toml"]), 0, "small.png");
+    let read = |name: &str| std::fs::read(folder.path().join(name)).unwrap();
+    let of_run = read("small.png");
+    let draw = |args: &[&str], name: &str| {
+        expect(
+            &folder.run(&[&["plot", "small.h5"], args].concat()),
+            0,
+            name,
+        );
+        read(name)
+    };
+    let named = draw(&["--field", "delay_margin"], "small.delay_margin.png");
+    assert!(named == of_run, "the field that the sweep names");
+    let counts = draw(&["--field", "n_unstable"], "small.n_unstable.png");
+    assert!(counts != of_run && read("small.png") == of_run);
+    draw(
+        &["--kind", "heat", "--at", "mu_prime=-0.1"],
+        "small.heat.mu_prime=-0.1.png",
+    );
+    assert!(read("small.png") == of_run);
+    std::fs::write(folder.path().join("small.n_unstable.png"), "a photograph").unwrap();
+    let args = ["plot", "small.h5", "--field", "n_unstable"];
+    expect(&folder.run(&args), 2, "is there and not drawn by slipmap");
+    assert_eq!(read("small.n_unstable.png"), b"a photograph");
+    let wide = [
+        "plot", "small.h5", "-o", "wide.svg", "--size", "2000x700", "--title", "Mine",
+    ];
+    expect(&folder.run(&wide), 0, "wide.svg");
+    let text = String::from_utf8(read("wide.svg")).unwrap();
+    assert!(text.starts_with("<svg width=\"2000\" height=\"700\"") && text.contains("Mine"));
+    let large = folder.run(&["plot", "small.h5", "-o", "x.png", "--size", "9000x10"]);
+    expect(
+        &large,
+        2,
+        "--size: a picture of 9000 × 10 pixels is outside the range",
+    );
+    let svg = || {
+        let args = ["plot", "small.h5", "--field", "n_unstable", "-o", "x.svg"];
+        expect(&folder.run(&args), 0, "x.svg");
+        String::from_utf8(read("x.svg")).unwrap()
+    };
+    let clean = svg();
+    assert!(clean.contains("Number of characteristic roots") && clean.contains("dimensionless"));
+    assert!(!clean.contains("marginal") && !clean.contains("not computed"));
+    edit(&folder.path().join("small.h5"), |file| {
+        let status = file.dataset("status").unwrap();
+        let mut cells = status.read_raw::<u8>().unwrap();
+        cells[..500].fill(slipmap::linear::status::MARGINAL);
+        cells[500..900].fill(u8::MAX);
+        status.write_raw(&cells).unwrap();
+    });
+    let text = svg();
+    assert!(text.contains("marginal") && text.contains("not computed"));
+    let lines = |text: &str| text.matches("<polyline").count();
+    assert!(lines(&text) > lines(&clean) + 10, "hatched");
+}
+
 #[test]
 fn an_output_that_is_no_map_is_not_touched() {
     let folder = Folder::with(&[("small.toml", SMALL), ("thesis.h5", "years of work")]);

@@ -33,6 +33,18 @@ time = \"s\"
 marginal = 1e-12
 ";
 
+/// What pictures show is no matter of the cells: the same plan.
+#[test]
+fn the_picture_is_no_part_of_the_plan() {
+    let plain: SweepSpec = GOOD.parse().unwrap();
+    assert_eq!(plain.picture, None);
+    let named = format!("picture = \"delay_margin\"\n{GOOD}");
+    let named: SweepSpec = named.parse().unwrap();
+    assert_eq!(named.picture, Some(Field::DelayMargin));
+    let hash = |spec| Plan::new(spec).unwrap().hash();
+    assert_eq!(hash(plain), hash(named));
+}
+
 #[test]
 fn everything_is_understood() {
     let spec: SweepSpec = GOOD.parse().unwrap();
@@ -220,6 +232,21 @@ const BAD: &[(&str, &str, &str)] = &[
         "fields = [\"n_stable\"]\n[axes]\ntau = [1]",
         "\"n_stable\"",
         "unknown field",
+    ),
+    (
+        "picture = \"v_smoth\"\n[axes]\ntau = [1]",
+        "\"v_smoth\"",
+        "unknown field \"v_smoth\"",
+    ),
+    (
+        "picture = \"abscissa\"\nfields = [\"n_unstable\"]\n[axes]\ntau = [1]\nmu_prime = [1]",
+        "\"abscissa\"",
+        "picture: abscissa is not among the fields",
+    ),
+    (
+        "picture = true\n[axes]\ntau = [1]",
+        "true",
+        "expected a string, found true or false",
     ),
     (
         "fields = [\"abscissa_9\"]\n[axes]\ntau = [1]",

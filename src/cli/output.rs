@@ -13,8 +13,8 @@ use super::sweep_file::STANDARD_INPUT;
 
 /// The format that the name of a file promises, if that is neither HDF5 nor netCDF.
 fn other_format(path: &Path) -> Option<String> {
-    const OTHERS: [&str; 10] = [
-        "csv", "gif", "jpeg", "jpg", "json", "mat", "npy", "pdf", "toml", "txt",
+    const OTHERS: [&str; 9] = [
+        "csv", "gif", "jpeg", "jpg", "json", "mat", "npy", "pdf", "txt",
     ];
     let extension = path.extension()?.to_str()?.to_lowercase();
     OTHERS.contains(&extension.as_str()).then_some(extension)

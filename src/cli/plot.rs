@@ -21,21 +21,39 @@ pub(super) struct Args {
     /// The map
     #[arg(value_name = "MAP.h5")]
     map: PathBuf,
-    /// The picture to write, .png or .svg [default: the map's name with .png, beside it]
+    /// The picture to write, .png or .svg [default: beside the map, MAP.png or, with --field,
+    /// --kind or --at, their values between, as in MAP.vc.png]
     #[arg(short, long, value_name = "PICTURE")]
     output: Option<PathBuf>,
-    /// What to show, a field of the map [default: the first held of regime, vc, outcome, abscissa,
-    /// n_unstable]
+    /// What to show, a field of the map [default: the `picture` of its sweep file, else the first
+    /// held of regime, v_smooth, vc, outcome, abscissa, n_unstable]
     #[arg(long, value_name = "NAME", value_parser = parse_field)]
     field: Option<Field>,
     /// Curves or cells [default: curves where the map holds them for a few values of one axis and
-    /// no abscissa, and no --field is given]
+    /// no abscissa, and no field is named]
     #[arg(long)]
     kind: Option<Kind>,
     /// Hold an axis at the value nearest to this; again for the same axis: show several values of
     /// it
     #[arg(long, value_name = "AXIS=VALUE", value_parser = parse_at)]
     at: Vec<(Parameter, f64)>,
+    /// Width and height in pixels
+    #[arg(long, value_name = "WIDTHxHEIGHT", default_value = SIZE, value_parser = parse_size)]
+    size: (u32, u32),
+    /// The title [default: the sweep's, or what the field is where the sweep shows another]
+    #[arg(long, value_name = "TEXT")]
+    title: Option<String>,
+}
+
+/// The size of a picture where none is asked for.
+const SIZE: &str = "1600x1100";
+
+fn parse_size(text: &str) -> Result<(u32, u32), String> {
+    let sides = text.split_once('x').and_then(|(width, height)| {
+        let side = |text: &str| text.trim().parse().ok();
+        Some((side(width)?, side(height)?))
+    });
+    sides.ok_or_else(|| format!("expected WIDTHxHEIGHT, for example {SIZE}"))
 }
 
 /// Kinds of pictures by name.
@@ -56,7 +74,7 @@ pub(super) fn main(args: &Args) -> Result<(), Failure> {
     let map = open(&args.map, &signals, NOT_DRAWN)?;
     let path = match &args.output {
         Some(path) => path.clone(),
-        None => beside(&args.map),
+        None => unasked(args)?,
     };
     let options = PictureOptions {
         field: args.field,
@@ -65,7 +83,8 @@ pub(super) fn main(args: &Args) -> Result<(), Failure> {
             Kind::Heat => PictureKind::Heat,
         }),
         at: args.at.clone(),
-        ..PictureOptions::default()
+        size: args.size,
+        title: args.title.clone(),
     };
     let drawn = signals.or_end(NOT_DRAWN, || picture::draw(&map, &path, &options));
     drawn
@@ -73,6 +92,44 @@ pub(super) fn main(args: &Args) -> Result<(), Failure> {
         .map_err(|error| failure(error, args))?;
     say::result(path.display())?;
     Ok(())
+}
+
+/// Where a picture goes that no `--output` names: the one that a run draws keeps its name, others
+/// are named by what they show, and what slipmap did not draw is not replaced.
+fn unasked(args: &Args) -> Result<PathBuf, Failure> {
+    let path = named_after(&args.map, &shown(args));
+    if picture::may_replace(&path) {
+        return Ok(path);
+    }
+    let message = format!("{} is there and not drawn by slipmap", path.display());
+    Err(Failure::bad_input_with_help(
+        message,
+        "-o draws elsewhere, or replaces it",
+    ))
+}
+
+/// What tells the picture asked for from the one that a run draws, in words for its name.
+fn shown(args: &Args) -> Vec<String> {
+    let kind = args.kind.and_then(|kind| kind.to_possible_value());
+    let mut words: Vec<String> = args.field.iter().map(|f| f.name().to_owned()).collect();
+    words.extend(kind.map(|kind| kind.get_name().to_owned()));
+    let at = args.at.iter();
+    words.extend(at.map(|(parameter, value)| format!("{}={value}", parameter.name())));
+    if args.size != PictureOptions::default().size {
+        words.push(format!("{}x{}", args.size.0, args.size.1));
+    }
+    words.extend(args.title.iter().map(|_| "titled".to_owned()));
+    words
+}
+
+fn named_after(map: &Path, words: &[String]) -> PathBuf {
+    let mut name = map.file_stem().unwrap_or_default().to_owned();
+    for word in words {
+        name.push(".");
+        name.push(word);
+    }
+    name.push(".png");
+    map.with_file_name(name)
 }
 
 /// The name of the picture beside a map.
@@ -121,6 +178,34 @@ fn failure(error: PictureError, args: &Args) -> Failure {
             let help = "slipmap point says everything about one point";
             bad("", error, help.into())
         }
-        PictureError::Size { .. } => Failure::bad_input(error.to_string()),
+        PictureError::Size { .. } => Failure::bad_input(format!("--size: {error}")),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn pictures_are_named_by_what_they_show() {
+        let of = |words: &[&str]| {
+            let words: Vec<String> = words.iter().map(ToString::to_string).collect();
+            named_after(Path::new("a/map.h5"), &words)
+        };
+        assert_eq!(of(&[]), Path::new("a/map.png"));
+        assert_eq!(of(&[]), beside(Path::new("a/map.h5")));
+        assert_eq!(of(&["vc"]), Path::new("a/map.vc.png"));
+        assert_eq!(
+            of(&["vc", "heat", "tau=0.5"]),
+            Path::new("a/map.vc.heat.tau=0.5.png")
+        );
+    }
+
+    #[test]
+    fn sizes_are_read() {
+        assert_eq!(parse_size(SIZE), Ok(PictureOptions::default().size));
+        for text in ["", "800", "800x", "axb", "-1x5", "1.5x2"] {
+            assert!(parse_size(text).unwrap_err().contains("WIDTHxHEIGHT"));
+        }
     }
 }

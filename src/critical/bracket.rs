@@ -93,14 +93,14 @@ fn by_slow_searches(
             [false, false] => critical,
         }
     };
-    between(problem, critical, [first, slower], searches, lowest)
+    between(problem, critical, &[first, slower], searches, lowest)
 }
 
 /// The bounds that two slow searches give, beside others, the lowest of which came to `lowest`.
 fn between(
     problem: &Problem,
     critical: CriticalVelocity,
-    slow: [Search; 2],
+    slow: &[Search; 2],
     searches: &[Search],
     lowest: f64,
 ) -> CriticalVelocity {
@@ -355,7 +355,7 @@ mod tests {
             let mut first_search = near.clone();
             let last = first_search.ramped.last.as_mut().unwrap();
             last.v0 = first;
-            between(&problem, open, [first_search, far.clone()], &[], lowest)
+            between(&problem, open, &[first_search, far.clone()], &[], lowest)
         };
         let alike = bounds(1.0, near.persists());
         assert!((alike.vc_lower / 0.344467 - 0.95).abs() < 1e-4, "{alike:?}");
@@ -385,7 +385,7 @@ mod tests {
         let never = bounded(&problem, open, Vec::new(), &[]);
         assert!(never.decided && [never.vc_lower, never.vc_upper] == [0.0; 2]);
         let [first, slower] = [Held::Long, Held::Longer].map(|held| slow(&problem, 0.0, held));
-        let found = between(&problem, open, [first, slower], &[], 0.0);
+        let found = between(&problem, open, &[first, slower], &[], 0.0);
         assert!(found.vc_lower == 0.0 && found.vc_upper.is_nan());
     }
 }

@@ -43,10 +43,10 @@ impl Iterates {
     }
 }
 
-/// Whether the last two of three numbers differ by no more than `settled`, relative, and by less than
-/// the first two: else the orbit that they seem to reach may be unstable. That they come nearer is
-/// not asked where a rough orbit is enough. Or whether they differ by no more than `noise`. What a
-/// period does not have is at rest.
+/// Whether the last two of three numbers differ by no more than `settled`, relative, and by less
+/// than the first two: else the orbit that they seem to reach may be unstable. That they come
+/// nearer is not asked where a rough orbit is enough. Or whether they differ by no more than
+/// `noise`. What a period does not have is at rest.
 fn at_rest(
     [first, second, third]: [f64; 3],
     settled: f64,

@@ -87,9 +87,10 @@
 //! Simulation (`ramp`, `regime`) holds stick-slip at one v0 after the other until it is known what
 //! it comes to; v0 is raised by steps that are halved where it is lost, and its answer has to be
 //! confirmed by other steps (`confirmation`). Where these disagree, two slow searches decide. If
-//! they disagree as well, v_c is not decided, and bounded (`bracket`). Along a line of delays the ends at the last delays predict the next one (`delay_step`, [`along_delay`]). By the
-//! other protocol, [`switch_on`], control is switched on at a phase of uncontrolled stick-slip.
-//! Coulomb friction under load control has a closed form as τ → 0: [`limit`], the letter's Fig. 4.
+//! they disagree as well, v_c is not decided, and bounded (`bracket`). Along a line of delays the
+//! ends at the last delays predict the next one (`delay_step`, [`along_delay`]). By the other
+//! protocol, [`switch_on`], control is switched on at a phase of uncontrolled stick-slip. Coulomb
+//! friction under load control has a closed form as τ → 0: [`limit`], the letter's Fig. 4.
 //!
 //! Continuation by predictor and corrector with step control: Allgower and Georg, *Numerical
 //! Continuation Methods* (Springer 1990); Keller, *Lectures on Numerical Methods in Bifurcation

@@ -11,8 +11,8 @@ use super::return_map::Period;
 pub enum Transition {
     /// The slip grazes ẋ = ẍ = 0 at its end.
     Grazing,
-    /// The orbit vanishes, as where its stick does, or loses its stability, while its stops are still
-    /// crossings of ẋ = 0.
+    /// The orbit vanishes, as where its stick does, or loses its stability, while its stops are
+    /// still crossings of ẋ = 0.
     Fold,
     /// The last stick-slip has more than one slip in a period: one period has doubled before.
     PeriodDoubling,

@@ -1,5 +1,6 @@
 //! What a person sees: progress, summaries, pictures.
 
+mod known;
 #[cfg(feature = "cli")]
 pub mod log;
 pub mod numbers;

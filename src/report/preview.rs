@@ -1,7 +1,8 @@
 //! A small picture of a map for the terminal.
 
+use super::known::{Gap, Known};
 use super::numbers::short;
-use crate::store::map_file::{MapAxis, Plane};
+use crate::store::map_file::MapAxis;
 use crate::store::{MapFile, StoreError};
 use crate::sweep::input::field::Storage;
 use crate::sweep::{Field, Parameter};
@@ -13,10 +14,17 @@ const COLUMNS: std::ops::RangeInclusive<usize> = 10..=160;
 /// Cells are read at most this finely, and shown by the one nearest to each place.
 const MOST_CELLS: usize = 640;
 
-/// Stable, 2, 4 and more unstable roots, no value: colours of the 256-colour palette.
-const COLOURS: [u8; 5] = [37, 230, 180, 136, 250];
+/// Stable, 2, 4 and more unstable roots, other kinds or no value, not known, not computed: colours
+/// of the 256-colour palette.
+const COLOURS: [u8; 7] = [37, 230, 180, 136, 250, 255, 16];
 /// The characters of a preview without colours.
-const SHADES: [char; 5] = ['█', ' ', '░', '▒', '?'];
+const SHADES: [char; 7] = ['█', ' ', '░', '▒', '?', '/', '.'];
+/// Places in both: what is no value.
+const OTHERS: usize = 4;
+const UNKNOWN: usize = 5;
+const NOT_COMPUTED: usize = 6;
+/// The colour of the hatching.
+const HATCH: u8 = 240;
 
 /// What the map looks like, in text of at most 19 lines and `width` columns; none where the map
 /// tells neither regimes, outcomes nor what is stable, or has fewer than two axes with more than
@@ -37,12 +45,10 @@ pub fn preview(map: &MapFile, width: usize, colour: bool) -> Result<Option<Strin
         return Ok(None);
     };
     let index: Vec<usize> = map.axes().iter().map(|a| a.values.len() / 2).collect();
-    let mut plane = map.plane(field, &index, (y, x), MOST_CELLS)?;
+    let mut known = Known::read(map, field, &index, (y, x), MOST_CELLS)?;
     if field.storage() != Storage::Count {
-        plane
-            .cells
-            .iter_mut()
-            .for_each(|v| *v = as_count(field, *v));
+        let cells = known.plane.cells.iter_mut();
+        cells.for_each(|v| *v = as_count(field, *v));
     }
     let captions = Captions::new(map, (x, y), &index, field);
     let Some(columns) = width.checked_sub(captions.margin + 2) else {
@@ -53,9 +59,15 @@ pub fn preview(map: &MapFile, width: usize, colour: bool) -> Result<Option<Strin
     }
     let columns = columns.min(*COLUMNS.end());
     let picture = if colour {
-        coloured(&plane, columns)
+        coloured(&known, columns)
     } else {
-        shaded(&plane, columns)
+        shaded(&known, columns)
+    };
+    let there = |of: fn(&Gap) -> bool| known.gaps.iter().flatten().any(of);
+    let captions = Captions {
+        unknown: there(|gap| gap.is_unknown()),
+        not_computed: there(|gap| *gap == Gap::NotComputed),
+        ..captions
     };
     Ok(Some(captions.around(&picture, columns, colour)))
 }
@@ -86,14 +98,21 @@ fn plane_axes(map: &MapFile) -> Option<(usize, usize)> {
 
 /// The kind of the cell at parts of the way from left to right and from bottom to top: an index of
 /// [`COLOURS`].
-fn kind(plane: &Plane, across: f64, up: f64) -> usize {
+fn kind(known: &Known, across: f64, up: f64) -> usize {
+    let plane = &known.plane;
     let (column, row) = (place(&plane.columns, across), place(&plane.rows, up));
-    match plane.cells.get(row * plane.columns.len() + column) {
+    let cell = row * plane.columns.len() + column;
+    match known.gaps.get(cell) {
+        Some(Some(Gap::NotComputed)) => return NOT_COMPUTED,
+        Some(Some(gap)) if gap.is_unknown() => return UNKNOWN,
+        _ => {}
+    }
+    match plane.cells.get(cell) {
         Some(0.0) => 0,
         Some(&n) if n <= 2.0 => 1,
         Some(&n) if n <= 4.0 => 2,
         Some(n) if n.is_finite() => 3,
-        _ => 4,
+        _ => OTHERS,
     }
 }
 
@@ -108,28 +127,31 @@ fn part(i: usize, n: usize) -> f64 {
     (i as f64 + 0.5) / n as f64
 }
 
-fn coloured(plane: &Plane, columns: usize) -> Vec<String> {
+fn coloured(known: &Known, columns: usize) -> Vec<String> {
     let rows = 2 * MOST_LINES;
     let line = |line: usize| {
         let mut text = String::new();
         let mut last = None;
         for column in 0..columns {
-            let at = |row: usize| kind(plane, part(column, columns), 1.0 - part(row, rows));
-            let pair = (COLOURS[at(2 * line)], COLOURS[at(2 * line + 1)]);
+            let at = |row: usize| kind(known, part(column, columns), 1.0 - part(row, rows));
+            let kinds = (at(2 * line), at(2 * line + 1));
+            let hatched = kinds == (UNKNOWN, UNKNOWN);
+            let above = if hatched { HATCH } else { COLOURS[kinds.0] };
+            let pair = (above, COLOURS[kinds.1]);
             if last.replace(pair) != Some(pair) {
                 text += &format!("\x1b[38;5;{};48;5;{}m", pair.0, pair.1);
             }
-            text.push('▀');
+            text.push(if hatched { '/' } else { '▀' });
         }
         text + "\x1b[0m"
     };
     (0..MOST_LINES).map(line).collect()
 }
 
-fn shaded(plane: &Plane, columns: usize) -> Vec<String> {
+fn shaded(known: &Known, columns: usize) -> Vec<String> {
     let line = |line: usize| {
         let up = 1.0 - part(line, MOST_LINES);
-        let cell = |column| SHADES[kind(plane, part(column, columns), up)];
+        let cell = |column| SHADES[kind(known, part(column, columns), up)];
         (0..columns).map(cell).collect()
     };
     (0..MOST_LINES).map(line).collect()
@@ -142,8 +164,11 @@ struct Captions {
     x: String,
     ends: (String, String),
     margin: usize,
-    /// What the shades mean.
+    /// What the first shades mean.
     kinds: &'static [&'static str],
+    /// Whether there are cells that are not known, or not computed.
+    unknown: bool,
+    not_computed: bool,
 }
 
 impl Captions {
@@ -166,6 +191,8 @@ impl Captions {
             margin: margin.into_iter().max().unwrap_or(0),
             top,
             bottom,
+            unknown: false,
+            not_computed: false,
             kinds: match field.storage() {
                 Storage::Count => &["stable", "2", "4", "6 or more unstable roots"],
                 Storage::Kind if field == Field::Regime => {
@@ -191,7 +218,21 @@ impl Captions {
         let (left, right) = &self.ends;
         let middle = columns.saturating_sub(left.chars().count() + right.chars().count());
         text += &format!("{:margin$} {left}{:^middle$}{right}\n", "", self.x);
-        text + &format!("{:margin$} {}\n", "", key(self.kinds, colour))
+        text + &format!("{:margin$} {}\n", "", self.key(colour))
+    }
+
+    fn key(&self, colour: bool) -> String {
+        let mut names: Vec<(usize, &str)> = self.kinds.iter().copied().enumerate().collect();
+        names.extend(self.unknown.then_some((UNKNOWN, "not known")));
+        names.extend(self.not_computed.then_some((NOT_COMPUTED, "not computed")));
+        let entry = |(place, name): (usize, &str)| match (colour, COLOURS[place]) {
+            (true, code) if place == UNKNOWN => {
+                format!("\x1b[38;5;{HATCH};48;5;{code}m//\x1b[0m {name}")
+            }
+            (true, code) => format!("\x1b[38;5;{code}m██\x1b[0m {name}"),
+            (false, _) => format!("[{}] {name}", SHADES[place]),
+        };
+        names.into_iter().map(entry).collect::<Vec<_>>().join("   ")
     }
 }
 
@@ -205,27 +246,22 @@ fn ends(axis: &MapAxis) -> (String, String) {
     (short(low), short(high))
 }
 
-fn key(names: &[&str], colour: bool) -> String {
-    let entries = names.iter().zip(COLOURS).zip(SHADES);
-    let entry = |((name, code), shade): ((&&str, u8), char)| match colour {
-        true => format!("\x1b[38;5;{code}m██\x1b[0m {name}"),
-        false => format!("[{shade}] {name}"),
-    };
-    entries.map(entry).collect::<Vec<_>>().join("   ")
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::store::map_file::Plane;
 
-    fn plane() -> Plane {
+    fn plane() -> Known {
         // Stable above the diagonal; the columns run downwards, as mu_prime often does.
         let values: Vec<f64> = (0..100).map(f64::from).collect();
         let cell = |i: usize| if i / 100 > 99 - i % 100 { 0.0 } else { 4.0 };
-        Plane {
-            rows: values.clone(),
-            columns: values.iter().rev().copied().collect(),
-            cells: (0..10_000).map(cell).collect(),
+        Known {
+            plane: Plane {
+                rows: values.clone(),
+                columns: values.iter().rev().copied().collect(),
+                cells: (0..10_000).map(cell).collect(),
+            },
+            gaps: vec![None; 10_000],
         }
     }
 
@@ -244,6 +280,21 @@ mod tests {
         assert_eq!(corner(0, false), Some('█'));
         assert_eq!(corner(MOST_LINES - 1, true), Some('░'));
         assert!(lines.iter().all(|l| l.chars().count() == 40));
+    }
+
+    /// Whatever number stands in such a cell.
+    #[test]
+    fn the_unknown_is_hatched() {
+        let mut known = plane();
+        let upper = 5_000..10_000;
+        known.gaps[upper].fill(Some(Gap::NotConverged));
+        known.gaps[..1_000].fill(Some(Gap::NotComputed));
+        let lines = shaded(&known, 40);
+        assert_eq!(lines[0], "/".repeat(40));
+        assert_eq!(lines[MOST_LINES - 1], ".".repeat(40));
+        let line = &coloured(&known, 40)[0];
+        assert_eq!(line.matches('/').count(), 40);
+        assert!(!line.contains('▀'));
     }
 
     #[test]

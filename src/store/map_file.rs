@@ -254,27 +254,13 @@ impl MapFile {
         (row_axis, column_axis): (usize, usize),
         most: usize,
     ) -> Result<Plane, StoreError> {
-        let step = |axis: usize| self.axes[axis].values.len().div_ceil(most).max(1);
-        let slab: Vec<SliceOrIndex> = (0..self.axes.len())
-            .map(|axis| {
-                if axis != row_axis && axis != column_axis {
-                    return SliceOrIndex::Index(index[axis]);
-                }
-                let step = step(axis);
-                SliceOrIndex::SliceCount {
-                    start: 0,
-                    step,
-                    count: self.axes[axis].values.len().div_ceil(step),
-                    block: 1,
-                }
-            })
-            .collect();
+        let slab = self.plane_slab(index, (row_axis, column_axis), most);
         let thinned = |axis: usize| {
             let values = &self.axes[axis].values;
             values
                 .iter()
                 .copied()
-                .step_by(step(axis))
+                .step_by(self.step(axis, most))
                 .collect::<Vec<_>>()
         };
         let columns = thinned(column_axis);
@@ -294,6 +280,51 @@ impl MapFile {
             columns,
             cells,
         })
+    }
+
+    /// The statuses of the cells that [`MapFile::plane`] gives.
+    ///
+    /// # Errors
+    /// When the file is damaged there.
+    pub fn status_plane(
+        &self,
+        index: &[usize],
+        (row_axis, column_axis): (usize, usize),
+        most: usize,
+    ) -> Result<Vec<u8>, StoreError> {
+        let slab = self.plane_slab(index, (row_axis, column_axis), most);
+        let cells = self.read::<u8>(&self.dataset(STATUS)?, &slab)?;
+        let count = |axis: usize| self.axes[axis].values.len().div_ceil(self.step(axis, most));
+        Ok(match row_axis > column_axis {
+            true => transposed(&cells, count(column_axis), count(row_axis)),
+            false => cells,
+        })
+    }
+
+    /// How many cells of an axis stand for one, where at most `most` are read.
+    fn step(&self, axis: usize, most: usize) -> usize {
+        self.axes[axis].values.len().div_ceil(most).max(1)
+    }
+
+    fn plane_slab(
+        &self,
+        index: &[usize],
+        (row_axis, column_axis): (usize, usize),
+        most: usize,
+    ) -> Vec<SliceOrIndex> {
+        let along = |axis: usize| {
+            if axis != row_axis && axis != column_axis {
+                return SliceOrIndex::Index(index[axis]);
+            }
+            let step = self.step(axis, most);
+            SliceOrIndex::SliceCount {
+                start: 0,
+                step,
+                count: self.axes[axis].values.len().div_ceil(step),
+                block: 1,
+            }
+        };
+        (0..self.axes.len()).map(along).collect()
     }
 
     /// The bytes of a dataset's chunk whose first cell is at `offset`, as they stand in the file;
@@ -431,7 +462,7 @@ fn numbers<T: Copy + PartialEq + Into<f64>>(cells: Vec<T>, fill: T) -> Vec<f64> 
     cells.into_iter().map(number).collect()
 }
 
-fn transposed(cells: &[f64], rows: usize, columns: usize) -> Vec<f64> {
+fn transposed<T: Copy>(cells: &[T], rows: usize, columns: usize) -> Vec<T> {
     (0..columns)
         .flat_map(|c| (0..rows).map(move |r| cells[r * columns + c]))
         .collect()

@@ -38,8 +38,8 @@ options! {
         lift_off_first: f64 = 3e-3, in 1e-9..=0.1;
         /// How far below lift-off it starts at least.
         lift_off_least: f64 = 2e-5, in 1e-9..=0.1;
-        /// The largest distance below the predicted end at which a cell starts at first, and its first
-        /// step of v0.
+        /// The largest distance below the predicted end at which a cell starts at first, and its
+        /// first step of v0.
         farthest: f64 = 0.1, in 1e-6..=0.9;
         /// An orbit without a second past starts below by this share of the change of the end at
         /// least.

@@ -1,8 +1,7 @@
 //! The boundaries of stability in one plane, a colour for each value of the axis outside it.
 
-use super::PictureError;
 use super::colour::{self, INK, PAPER, Rgb};
-use super::curve_labels::{Curves, places};
+use super::curve_labels::{Curves, Place, places};
 use super::degrees::Degrees;
 use super::legend::{Legend, Swatch};
 use super::page::{self, SMALL};
@@ -12,6 +11,7 @@ use super::scene::{Align, Mark, Point, Scene};
 use super::stable_area::regions;
 use super::text::{Rich, axis_title, number, suffix};
 use super::view::View;
+use super::{PictureError, PictureOptions};
 use crate::linear::curves::{CurvePiece, StableSide};
 use crate::store::MapFile;
 use crate::store::map_file::{MapCurve, Plane};
@@ -40,10 +40,12 @@ pub(super) fn draw(
     view: &View,
     y: usize,
     curves: &[MapCurve],
+    options: &PictureOptions,
     scene: &mut Scene,
 ) -> Result<(), PictureError> {
     let families = families(map, view, curves);
-    let title = super::title(map, "Boundaries of stable sliding");
+    let title = super::title(map, options);
+    let title = title.unwrap_or_else(|| "Boundaries of stable sliding".into());
     let mut body = page::head(scene, &title, &view.notes(map));
     let u = scene.unit();
     let degrees = Degrees::of(map, curves);
@@ -180,7 +182,13 @@ fn label(families: &[Family], panel: &Panel, scene: &mut Scene) {
         })
         .collect();
     for ((family, text), place) in labelled.iter().zip(places(&sets, panel.area)) {
-        let Some((x, y)) = place else { continue };
+        let Some(Place { at: (x, y), from }) = place else {
+            continue;
+        };
+        let colour = colour::darker(family.colour);
+        if let Some(from) = from {
+            scene.path(vec![from, (x, y)], colour, THIN * u);
+        }
         let (half, height) = (0.5 * text.width(size) + 4.0 * u, 0.55 * size);
         scene.marks.push(Mark::Rect {
             from: (x - half, y - height),
@@ -188,7 +196,6 @@ fn label(families: &[Family], panel: &Panel, scene: &mut Scene) {
             colour: PAPER,
             opacity: 0.85,
         });
-        let colour = colour::darker(family.colour);
         scene.text((x, y + 0.34 * size), Align::Middle, text, size, colour);
     }
 }

@@ -16,6 +16,25 @@ pub(super) const GRID: Rgb = Rgb(0xe6, 0xe6, 0xe6);
 pub(super) const PAPER: Rgb = Rgb(0xff, 0xff, 0xff);
 /// Cells without a value.
 pub(super) const NO_VALUE: Rgb = Rgb(0xb9, 0xb9, 0xb9);
+/// Cells whose value is not known, below the lines over them.
+pub(super) const UNKNOWN: Rgb = Rgb(0xf2, 0xf2, 0xf2);
+/// Those lines.
+pub(super) const HATCH: Rgb = Rgb(0x5a, 0x5a, 0x5a);
+/// Cells without a value because the block lifts off.
+pub(super) const LIFTS_OFF: Rgb = Rgb(0xc9, 0x94, 0xc7);
+/// Cells without a value because stick-slip persists.
+pub(super) const PERSISTS: Rgb = Rgb(0xd6, 0x60, 0x4d);
+/// Sizes that are 0, above and below a scale that has no place for them.
+pub(super) const ZERO: Rgb = Rgb(0xbf, 0xe3, 0xff);
+pub(super) const ABOVE: Rgb = Rgb(0xff, 0xf9, 0xc4);
+pub(super) const BELOW: Rgb = Rgb(0x00, 0x00, 0x00);
+/// Sizes that are infinite.
+pub(super) const INFINITE: Rgb = Rgb(0xfd, 0xae, 0x61);
+pub(super) const MINUS_INFINITE: Rgb = Rgb(0x7f, 0x3b, 0x08);
+/// Values beyond the ends of a scale with two sides: (worse, better).
+const BEYOND: (Rgb, Rgb) = (Rgb(0x4a, 0x2a, 0x04), Rgb(0x00, 0x30, 0x2c));
+/// Infinite ones.
+const ENDLESS: (Rgb, Rgb) = (Rgb(0xb2, 0x18, 0x2b), Rgb(0x21, 0x66, 0xac));
 /// Stable cells.
 pub(super) const STABLE: Rgb = Rgb(0x5f, 0xb9, 0xae);
 /// Cells with 2, 4, 6 and at least 8 unstable roots.
@@ -76,8 +95,15 @@ const VIRIDIS: [Rgb; 9] = [
     Rgb(253, 231, 37),
 ];
 
-/// Part of viridis used for lines: its yellow end is too light on white.
-const DARK_PART: f64 = 0.84;
+/// Plasma up to its orange, for lines: what follows is too light on white.
+const PLASMA: [Rgb; 6] = [
+    Rgb(13, 8, 135),
+    Rgb(92, 1, 166),
+    Rgb(156, 23, 158),
+    Rgb(203, 70, 121),
+    Rgb(229, 107, 93),
+    Rgb(244, 136, 73),
+];
 
 /// ColorBrewer's BrBG: brown, white, teal.
 const BROWN_TEAL: [Rgb; 9] = [
@@ -108,7 +134,7 @@ pub(super) fn of_line(i: usize, n: usize) -> Rgb {
     } else {
         0.3
     };
-    sample(&VIRIDIS, DARK_PART * part)
+    sample(&PLASMA, part)
 }
 
 /// The colour of a number of unstable roots.
@@ -133,13 +159,23 @@ pub(super) fn of_kind(field: Field, number: f64) -> Rgb {
     }
 }
 
-/// The colour of `value` where ±`range` are the ends: brown below zero, teal above.
+/// The largest small count with a colour of its own.
+pub(super) fn last_of_few() -> usize {
+    FEW.len() - 1
+}
+
+/// The colour of `value` where ±`range` are the ends: brown below zero, teal above, colours of
+/// their own beyond the ends and at infinity.
 ///
 /// Colours go with the square root, and both sides begin with a tint: stable cells with little to
 /// spare are the most common ones, and must not look like unstable ones.
 pub(super) fn diverging(value: f64, range: f64) -> Rgb {
-    if value.is_nan() {
-        return NO_VALUE;
+    let side = |(worse, better): (Rgb, Rgb)| if value < 0.0 { worse } else { better };
+    match value {
+        v if v.is_nan() => return NO_VALUE,
+        v if v.is_infinite() => return side(ENDLESS),
+        v if v.abs() > range * (1.0 + 1e-9) => return side(BEYOND),
+        _ => {}
     }
     let part = (value / range).clamp(-1.0, 1.0);
     if part == 0.0 {
@@ -213,7 +249,10 @@ mod tests {
         let [brown, zero, teal] = [-1e-9, 0.0, 1e-9].map(|m| diverging(m, 1.0));
         assert!(brown.0 > brown.2 && teal.2 > teal.0);
         assert_eq!(zero, Rgb(0xf7, 0xf7, 0xf7));
-        assert_eq!(diverging(f64::INFINITY, 1.0), diverging(1.0, 1.0));
-        assert_eq!(diverging(f64::NEG_INFINITY, 1.0), diverging(-5.0, 1.0));
+        let ends = [f64::NEG_INFINITY, -5.0, -1.0, 1.0, 5.0, f64::INFINITY];
+        let mut colours = ends.map(|v| diverging(v, 1.0)).to_vec();
+        colours.sort_unstable();
+        colours.dedup();
+        assert_eq!(colours.len(), ends.len());
     }
 }

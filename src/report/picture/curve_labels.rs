@@ -1,4 +1,5 @@
-//! Places for labels on curves, where they touch no other curve.
+//! Places for labels on curves, where they touch no other curve; where there is none, away from it,
+//! with a line that leads there.
 
 use std::collections::HashMap;
 
@@ -25,9 +26,30 @@ const LONG_CURVE: f64 = 50.0;
 /// A text nearer to another curve than this could be taken for that one's.
 const APART: f64 = 3.0;
 
-/// For each set of curves a place on one of them, or beside it, for the middle of a text of this
-/// size; none where there is no room.
-pub(super) fn places(sets: &[(Curves, (f64, f64))], area: Area) -> Vec<Option<Point>> {
+/// How far away from its curve a text may stand.
+const AWAY: [f64; 6] = [50.0, 75.0, 100.0, 130.0, 170.0, 220.0];
+/// In how many directions.
+const DIRECTIONS: u32 = 16;
+/// Points of a curve from which a text is led away, at most.
+const MOST_ANCHORS: usize = 24;
+/// What a pixel of a curve below a text costs, in pixels of distance.
+const HIDING: f64 = 1.5;
+/// Side of the square around a point from which a line leads: curves in it make unclear which one
+/// is meant.
+const CLEAR: f64 = 24.0;
+
+/// Where a text stands.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Place {
+    /// Its middle.
+    pub at: Point,
+    /// The point of its curve from which a line leads there, if it stands away from it.
+    pub from: Option<Point>,
+}
+
+/// For each set of curves a place on one of them, beside it or away from it, for the middle of a
+/// text of this size; none where there is no room at all.
+pub(super) fn places(sets: &[(Curves, (f64, f64))], area: Area) -> Vec<Option<Place>> {
     let points = Points::of(sets);
     let mut taken: Vec<(Point, (f64, f64))> = Vec::new();
     // Short curves have the fewest places: they choose first.
@@ -54,10 +76,66 @@ pub(super) fn places(sets: &[(Curves, (f64, f64))], area: Area) -> Vec<Option<Po
             });
         if let Some((at, _)) = best {
             taken.push((at, *size));
-            places[i] = Some(at);
+            places[i] = Some(Place { at, from: None });
+        }
+    }
+    for (i, (curves, size)) in sets.iter().enumerate() {
+        if places[i].is_none() {
+            places[i] = led_away(&points, curves, *size, area, &taken);
+            taken.extend(places[i].map(|place| (place.at, *size)));
         }
     }
     places
+}
+
+/// The place nearest to a set of curves, beside which others leave no room, where a text hides
+/// little.
+fn led_away(
+    points: &Points,
+    curves: &Curves,
+    size: (f64, f64),
+    area: Area,
+    taken: &[(Point, (f64, f64))],
+) -> Option<Place> {
+    let all: Vec<Point> = curves.iter().flat_map(|curve| stepped(curve)).collect();
+    let seen = |&(x, y): &Point| {
+        (area.left..=area.right).contains(&x) && (area.top..=area.bottom).contains(&y)
+    };
+    let anchors = all.iter().copied().filter(seen);
+    let anchors = anchors.step_by(all.len().div_ceil(MOST_ANCHORS).max(1));
+    let free = |at: Point| {
+        inside(at, size, area) && !taken.iter().any(|other| overlap((at, size), *other))
+    };
+    let clear = |from: Point, to: Point| {
+        (1..8).map(|i| f64::from(i) / 8.0).all(|part| {
+            let on = (
+                from.0 + part * (to.0 - from.0),
+                from.1 + part * (to.1 - from.1),
+            );
+            !taken.iter().any(|other| overlap((on, (0.0, 0.0)), *other))
+        })
+    };
+    let mut best: Option<(f64, Place)> = None;
+    for from in anchors {
+        for (distance, turn) in AWAY
+            .iter()
+            .flat_map(|d| (0..DIRECTIONS).map(move |t| (d, t)))
+        {
+            let angle = f64::from(turn) * std::f64::consts::TAU / f64::from(DIRECTIONS);
+            let at = (
+                from.0 + distance * angle.cos(),
+                from.1 + distance * angle.sin(),
+            );
+            let unclear = points.hidden(from, (CLEAR, CLEAR));
+            let cost = distance + HIDING * points.hidden(at, size) + unclear;
+            let better = best.is_none_or(|(least, _)| cost < least);
+            if better && free(at) && clear(from, at) {
+                let from = Some(from);
+                best = Some((cost, Place { at, from }));
+            }
+        }
+    }
+    best.map(|(_, place)| place)
 }
 
 fn inside((x, y): Point, (width, height): (f64, f64), area: Area) -> bool {
@@ -142,6 +220,21 @@ impl Points {
     }
 }
 
+impl Points {
+    /// The length of all curves below a text.
+    fn hidden(&self, at: Point, (width, height): (f64, f64)) -> f64 {
+        let half = (0.5 * width + APART, 0.5 * height + APART);
+        let (low, high) = (
+            square((at.0 - half.0, at.1 - half.1)),
+            square((at.0 + half.0, at.1 + half.1)),
+        );
+        let squares = (low.0..=high.0).flat_map(|x| (low.1..=high.1).map(move |y| (x, y)));
+        let there = squares.filter_map(|key| self.0.get(&key)).flatten();
+        let below = |(x, y): &Point| (x - at.0).abs() <= half.0 && (y - at.1).abs() <= half.1;
+        STEP * there.filter(|(_, point)| below(point)).count() as f64
+    }
+}
+
 fn square((x, y): Point) -> (i64, i64) {
     ((x / SQUARE).floor() as i64, (y / SQUARE).floor() as i64)
 }
@@ -165,7 +258,7 @@ mod tests {
             (vec![vec![(0.0, 400.0), (400.0, 0.0)]], size),
         ];
         let places = places(&crossing, AREA);
-        let (a, b) = (places[0].unwrap(), places[1].unwrap());
+        let (a, b) = (places[0].unwrap().at, places[1].unwrap().at);
         assert!((a.0 - a.1).abs() < 1e-9 && (b.0 + b.1 - 400.0).abs() < 1e-9);
         for place in [a, b] {
             assert!(inside(place, size, AREA));
@@ -174,10 +267,25 @@ mod tests {
     }
 
     #[test]
-    fn no_room_no_label() {
+    fn without_room_a_line_leads_to_the_label() {
         let size = (60.0, 20.0);
         let close = |y: f64| (vec![vec![(0.0, y), (400.0, y)]], size);
         let places = places(&[close(100.0), close(105.0)], AREA);
-        assert_eq!(places, [None, None]);
+        let [Some(a), Some(b)] = places[..] else {
+            panic!("{places:?}");
+        };
+        for (place, y) in [(a, 100.0), (b, 105.0)] {
+            assert_eq!(place.from.map(|from| from.1), Some(y));
+            assert!(inside(place.at, size, AREA) && (place.at.1 - y).abs() > 10.0);
+        }
+        assert!(!overlap((a.at, size), (b.at, size)));
+        let nowhere = Area {
+            right: 50.0,
+            ..AREA
+        };
+        assert_eq!(
+            super::places(&[close(100.0), close(105.0)], nowhere),
+            [None, None]
+        );
     }
 }

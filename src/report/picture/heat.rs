@@ -1,45 +1,47 @@
 //! Heat maps of a field: a panel for each value of the axis outside the plane.
 
-use super::PictureError;
-use super::colour::{INK, Rgb};
+use super::colour::INK;
 use super::degrees::Degrees;
+use super::hatch;
 use super::key::{BOUNDARY_WIDTH, Key};
 use super::page::{self, Area};
 use super::panels::{Panel, Panels, Words};
 use super::scale::Scale;
 use super::scene::{Mark, Scene};
-use super::text::{axis_title, field_note};
+use super::text::axis_title;
 use super::view::View;
+use super::{PictureError, PictureOptions};
 use crate::linear::curves::StableSide;
+use crate::report::known::Known;
 use crate::store::MapFile;
-use crate::store::map_file::{MapCurve, Plane};
+use crate::store::map_file::MapCurve;
 use crate::sweep::Field;
 
 /// Space for the colours' meanings, to begin with.
 const GAP: f64 = 34.0;
 
-/// Draws a heat map of `field` with at most `most` cells each way in all panels together, and the
-/// curves of `curves` that bound the stable region.
+/// Draws a heat map of `field` with at most as many cells each way in all panels together as stand
+/// beside the options, and the curves of `curves` that bound the stable region.
 pub(super) fn draw(
     map: &MapFile,
     view: &View,
     y: usize,
     field: Field,
     curves: &[MapCurve],
-    most: usize,
+    options: (&PictureOptions, usize),
     scene: &mut Scene,
 ) -> Result<(), PictureError> {
+    let (options, most) = options;
     let unit = map.field_unit(field);
-    let title = super::title(map, super::untitled(field));
-    let mut notes = vec![field_note(field, &unit)];
+    let (title, mut notes) = super::head(map, field, options);
     notes.extend(view.notes(map));
     let mut body = page::head(scene, &title, &notes);
     let across = (view.panels.len() as f64).sqrt().ceil() as usize;
     let most = (most / across).max(100);
-    let planes: Vec<Plane> = view
+    let planes: Vec<Known> = view
         .panels
         .iter()
-        .map(|panel| map.plane(field, panel, (y, view.x), most))
+        .map(|panel| Known::read(map, field, panel, (y, view.x), most))
         .collect::<Result<_, _>>()?;
     let degrees = Degrees::of(map, curves);
     let key = Key::new(field, &unit, &planes, !curves.is_empty()).with(degrees.entries(INK));
@@ -53,9 +55,7 @@ pub(super) fn draw(
     };
     let panels = Panels::new(scene, body, scales, words);
     for ((panel, plane), index) in panels.list.iter().zip(&planes).zip(&view.panels) {
-        scene
-            .marks
-            .push(cells(panel, plane, |value| key.colour(value)));
+        draw_cells(panel, plane, &key, scene);
         let outer = view.outer_values(map, index);
         for curve in curves.iter().filter(|c| c.outer == outer) {
             draw_curve(panel, curve, &degrees, scene);
@@ -88,12 +88,17 @@ fn draw_curve(panel: &Panel, curve: &MapCurve, degrees: &Degrees, scene: &mut Sc
     }
 }
 
-fn cells(panel: &Panel, plane: &Plane, colour: impl Fn(f64) -> Rgb) -> Mark {
-    let columns = panel.x.filling_edges(&plane.columns);
-    let rows = panel.y.filling_edges(&plane.rows);
-    Mark::Cells {
-        columns: columns.into_iter().map(|x| panel.across(x)).collect(),
-        rows: rows.into_iter().map(|y| panel.up(y)).collect(),
-        colours: plane.cells.iter().map(|&value| colour(value)).collect(),
-    }
+fn draw_cells(panel: &Panel, known: &Known, key: &Key, scene: &mut Scene) {
+    let columns = panel.x.filling_edges(&known.plane.columns).into_iter();
+    let rows = panel.y.filling_edges(&known.plane.rows).into_iter();
+    let columns: Vec<f64> = columns.map(|x| panel.across(x)).collect();
+    let rows: Vec<f64> = rows.map(|y| panel.up(y)).collect();
+    let cells = known.plane.cells.iter().zip(&known.gaps);
+    let colours = cells.map(|(value, gap)| gap.map_or_else(|| key.colour(*value), hatch::ground));
+    scene.marks.push(Mark::Cells {
+        columns: columns.clone(),
+        rows: rows.clone(),
+        colours: colours.collect(),
+    });
+    hatch::draw(&columns, &rows, &known.gaps, scene);
 }

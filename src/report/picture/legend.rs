@@ -1,10 +1,12 @@
 //! What colours mean, beside the panels.
 
 use super::colour::{INK, Rgb, SOFT_INK};
+use super::hatch;
 use super::page::{Area, SMALL};
 use super::scale::Scale;
 use super::scene::{Align, Scene};
 use super::text::Rich;
+use crate::report::known::Gap;
 
 const SWATCH: f64 = 44.0;
 const GAP: f64 = 14.0;
@@ -21,6 +23,10 @@ pub(super) enum Swatch {
     Dashed(Rgb, f64, (f64, f64)),
     /// A box.
     Box(Rgb),
+    /// Nothing: the words say all.
+    None,
+    /// A box as cells with this gap are.
+    Gap(Gap),
 }
 
 /// A list of colours with their meanings.
@@ -61,6 +67,12 @@ impl Legend {
             match *swatch {
                 Swatch::Box(colour) => {
                     scene.rect(from, to, colour);
+                    scene.outline(from, to, SOFT_INK, u);
+                }
+                Swatch::None => {}
+                Swatch::Gap(gap) => {
+                    scene.rect(from, to, hatch::ground(gap));
+                    hatch::fill(from, to, gap, scene);
                     scene.outline(from, to, SOFT_INK, u);
                 }
                 Swatch::Dashed(colour, width, dash) => {

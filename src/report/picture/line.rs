@@ -1,15 +1,18 @@
 //! Fields along the one axis that is left.
 
-use super::PictureError;
 use super::colour::{self, PAPER, Rgb, SOFT_INK, STABLE};
+use super::hatch;
 use super::key::DECADES;
 use super::legend::{Legend, Swatch};
 use super::page;
 use super::panels::{Panel, Panels, Words};
+use super::rectangles::{Rectangle, rectangles};
 use super::scale::Scale;
 use super::scene::{Mark, Point, Scene};
 use super::text::{Rich, axis_title, field_name, field_title, number, suffix};
 use super::view::View;
+use super::{PictureError, PictureOptions};
+use crate::report::known::{Gap, Known};
 use crate::store::map_file::MapAxis;
 use crate::store::{MapFile, StoreError};
 use crate::sweep::Field;
@@ -19,6 +22,8 @@ const WIDTH: f64 = 3.2;
 /// Dashes of approximations, (length, gap).
 const DASH: (f64, f64) = (9.0, 7.0);
 const SHADE: f64 = 0.25;
+/// Half the length of a line of one point.
+const LONE: f64 = 5.0;
 /// Relative errors beyond this are not told apart.
 const LARGEST_ERROR: f64 = 1.0;
 
@@ -27,6 +32,8 @@ struct Graph {
     field: Field,
     at: Vec<f64>,
     values: Vec<f64>,
+    /// Why a cell shows no value.
+    gaps: Vec<Option<Gap>>,
     swatch: Swatch,
     /// What tells the line from the others.
     name: Rich,
@@ -38,6 +45,7 @@ pub(super) fn draw(
     map: &MapFile,
     view: &View,
     fields: &[Field],
+    options: &PictureOptions,
     most: usize,
     scene: &mut Scene,
 ) -> Result<(), PictureError> {
@@ -45,8 +53,12 @@ pub(super) fn draw(
         return Ok(());
     };
     let lines = read_lines(map, view, fields, most)?;
-    let title = super::title(map, super::untitled(field));
-    let mut body = page::head(scene, &title, &view.notes(map));
+    let (title, mut notes) = super::head(map, field, options);
+    if fields.len() > 1 {
+        notes.clear();
+    }
+    notes.extend(view.notes(map));
+    let mut body = page::head(scene, &title, &notes);
     let u = scene.unit();
     let legend = legend(map, view, &lines);
     let column = body.cut_right(legend.width(u), 30.0 * u);
@@ -66,6 +78,9 @@ pub(super) fn draw(
         for line in read_lines(map, view, &[stable], most)? {
             shade(panel, &line, scene);
         }
+    }
+    if let [line] = &lines[..] {
+        draw_gaps(panel, line, scene);
     }
     panels.draw_grid(scene);
     if panel.y.holds(0.0) {
@@ -98,11 +113,12 @@ fn read_lines(
     let mut lines = Vec::with_capacity(n);
     for &field in fields {
         for index in view.panels.iter().take(panels) {
-            let cells = map.plane(field, index, (view.x, view.x), most)?;
+            let known = Known::read(map, field, index, (view.x, view.x), most)?;
             lines.push(Graph {
                 field,
-                at: cells.columns,
-                values: cells.cells,
+                at: known.plane.columns,
+                values: known.plane.cells,
+                gaps: known.gaps,
                 swatch: swatch(field, colour::of_line(lines.len(), n)),
                 name: match view.along {
                     Some(axis) if !several => {
@@ -137,8 +153,9 @@ fn ordinate(map: &MapFile, fields: &[Field]) -> Rich {
 
 fn value_scale(field: Field, lines: &[Graph]) -> Scale {
     let finite = || {
-        let values = lines.iter().flat_map(|l| &l.values).copied();
-        values.filter(|v| v.is_finite())
+        let cells = lines.iter().flat_map(|l| l.values.iter().zip(&l.gaps));
+        let shown = cells.filter(|(value, gap)| value.is_finite() && gap.is_none());
+        shown.map(|(value, _)| *value)
     };
     let (mut low, mut high) = (finite().fold(0.0, f64::min), finite().fold(0.0, f64::max));
     match field.spread() {
@@ -169,14 +186,18 @@ fn value_scale(field: Field, lines: &[Graph]) -> Scale {
 
 fn draw_line(panel: &Panel, line: &Graph, scene: &mut Scene) {
     let u = scene.unit();
-    for stretch in stretches(panel, line) {
+    for mut stretch in stretches(panel, line) {
+        // A value alone between others that are not there is a point.
+        if let [(x, y)] = stretch[..] {
+            stretch = vec![(x - LONE * u, y), (x + LONE * u, y)];
+        }
         for points in between(&stretch, panel.area.top, panel.area.bottom) {
             match line.swatch {
                 Swatch::Dashed(colour, width, dash) => {
                     scene.dashed(&points, colour, width * u, dash);
                 }
                 Swatch::Line(colour, width, _) => scene.path(points, colour, width * u),
-                Swatch::Box(_) => {}
+                Swatch::Box(_) | Swatch::Gap(_) | Swatch::None => {}
             }
         }
     }
@@ -189,7 +210,7 @@ fn stretches(panel: &Panel, line: &Graph) -> Vec<Vec<Point>> {
     let mut done = Vec::new();
     let mut open: Vec<Point> = Vec::new();
     for (i, (&x, &value)) in line.at.iter().zip(&line.values).enumerate() {
-        if !panel.y.part(value).is_finite() {
+        if line.gaps[i].is_some() || !panel.y.part(value).is_finite() {
             done.push(std::mem::take(&mut open));
             continue;
         }
@@ -235,18 +256,31 @@ fn between(points: &[Point], top: f64, bottom: f64) -> Vec<Vec<Point>> {
     done
 }
 
+/// Marks the cells along a line that show no value, over the height of the panel.
+fn draw_gaps(panel: &Panel, line: &Graph, scene: &mut Scene) {
+    let edges = panel.x.filling_edges(&line.at);
+    for Rectangle { columns, key, .. } in rectangles(&line.gaps, line.gaps.len()) {
+        let Some(gap) = key else { continue };
+        let from = (panel.across(edges[columns.0]), panel.area.top);
+        let to = (panel.across(edges[columns.1]), panel.area.bottom);
+        let (from, to) = ((from.0.min(to.0), from.1), (from.0.max(to.0), to.1));
+        scene.rect(from, to, hatch::ground(gap));
+        hatch::fill(from, to, gap, scene);
+    }
+}
+
 /// Shades the cells in which sliding is stable.
 fn shade(panel: &Panel, line: &Graph, scene: &mut Scene) {
     let tint = colour::pale(STABLE, 2.0 * SHADE);
-    let colour = |&value: &f64| match line.field.tells_stable(value) {
-        Some(true) => tint,
+    let colour = |(&value, gap): (&f64, &Option<Gap>)| match line.field.tells_stable(value) {
+        Some(true) if gap.is_none() => tint,
         _ => PAPER,
     };
     let edges = panel.x.filling_edges(&line.at);
     scene.marks.push(Mark::Cells {
         columns: edges.into_iter().map(|x| panel.across(x)).collect(),
         rows: vec![panel.area.bottom, panel.area.top],
-        colours: line.values.iter().map(colour).collect(),
+        colours: line.values.iter().zip(&line.gaps).map(colour).collect(),
     });
 }
 
@@ -271,12 +305,65 @@ fn legend(map: &MapFile, view: &View, lines: &[Graph]) -> Legend {
         let tint = colour::pale(STABLE, 2.0 * SHADE);
         legend.entries = vec![(Swatch::Box(tint), Rich::plain("stable"))];
     }
+    add_gaps(&mut legend, lines);
     legend
+}
+
+/// What of a single line is no value, or what several ones are broken for.
+fn add_gaps(legend: &mut Legend, lines: &[Graph]) {
+    for gap in Gap::ALL {
+        let mut there = lines.iter().filter(|line| line.gaps.contains(&Some(gap)));
+        let Some(line) = there.next() else { continue };
+        let words = gap.words(line.field);
+        let entry = match lines {
+            [_] => (Swatch::Gap(gap), Rich::plain(words)),
+            _ => (Swatch::None, Rich::plain(&format!("broken: {words}"))),
+        };
+        legend.entries.push(entry);
+    }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// A number that is not known is no point of a line.
+    #[test]
+    fn a_line_is_broken_where_it_is_not_known() {
+        let line = Graph {
+            field: Field::Vc,
+            at: vec![0.0, 1.0, 2.0, 3.0, 4.0],
+            values: vec![1.0, 1.0, 0.0, 2.0, 2.0],
+            gaps: vec![None, None, Some(Gap::NotConverged), None, None],
+            swatch: swatch(Field::Vc, PAPER),
+            name: Rich::default(),
+        };
+        let panel = Panel {
+            area: page::Area {
+                left: 0.0,
+                top: 0.0,
+                right: 5.0,
+                bottom: 10.0,
+            },
+            x: Scale::around(&line.at),
+            y: value_scale(Field::VLiftoff, std::slice::from_ref(&line)),
+        };
+        let parts = stretches(&panel, &line);
+        assert_eq!(parts.iter().map(Vec::len).collect::<Vec<_>>(), [2, 2]);
+        let mut scene = Scene::new((1600, 1100));
+        draw_gaps(&panel, &line, &mut scene);
+        let band = Mark::Rect {
+            from: (2.0, 0.0),
+            to: (3.0, 10.0),
+            colour: colour::UNKNOWN,
+            opacity: 1.0,
+        };
+        assert_eq!(scene.marks[0], band);
+        let mut legend = Legend::default();
+        add_gaps(&mut legend, &[line]);
+        let expected = (Swatch::Gap(Gap::NotConverged), Rich::plain("not converged"));
+        assert_eq!(legend.entries, [expected]);
+    }
 
     #[test]
     fn a_line_ends_at_the_frame() {

@@ -5,7 +5,7 @@
 //!     → [scene] marks in pixels → [render] PNG or SVG
 //! ```
 //!
-//! - `key`: which colour a value of a field has in a heat map
+//! - `key`: which colour a value of a field has in a heat map; `hatch`: cells that show none
 //! - `page`, `panels`, `legend`: where things stand; `scale`, `ticks`: from values to places
 //! - `stable_area`, `curve_labels`: the region between curves, and free places on curves
 //! - `trace`, `stack`: a motion over time, in panels above one another
@@ -18,12 +18,14 @@ mod curve_labels;
 mod degrees;
 mod error;
 mod font;
+mod hatch;
 mod heat;
 mod key;
 mod legend;
 mod line;
 mod page;
 mod panels;
+mod rectangles;
 mod render;
 mod scale;
 mod scene;
@@ -45,6 +47,7 @@ use crate::store::{MapFile, Output, StoreError};
 use crate::sweep::{CaseSpec, Field, Parameter, Trace};
 pub use error::PictureError;
 use scene::Scene;
+use text::Rich;
 use view::{MOST_PANELS, View};
 
 /// Widths and heights that make a picture, in pixels.
@@ -69,18 +72,22 @@ pub enum PictureKind {
 /// How a map is drawn.
 #[derive(Debug, Clone, PartialEq)]
 pub struct PictureOptions {
-    /// The field to show; by default the regime of v0 where the map holds it, else the critical
+    /// The field to show; by default the one that the sweep names for pictures, else the first
+    /// held of the regime of v0, the velocity above which sliding is smooth, the critical
     /// velocity, the outcome, the spectral abscissa, the number of unstable roots.
     pub field: Option<Field>,
     /// The kind; by default boundaries where the map holds them for 2 to 12 values of one axis
-    /// outside their plane, holds none of the first four and no field is asked for, otherwise a
-    /// heat map.
+    /// outside their plane, holds none of the first five and no field is asked for or named,
+    /// otherwise a heat map.
     pub kind: Option<PictureKind>,
     /// Values at which axes are held: the nearest on the axis. Several for one axis make as many
     /// panels or colours.
     pub at: Vec<(Parameter, f64)>,
     /// Width and height in pixels, 300 to 5000 each.
     pub size: (u32, u32),
+    /// The title; by default the sweep's in pictures of the field that it shows, else what the
+    /// field is.
+    pub title: Option<String>,
 }
 
 impl Default for PictureOptions {
@@ -90,6 +97,7 @@ impl Default for PictureOptions {
             kind: None,
             at: Vec::new(),
             size: (1600, 1100),
+            title: None,
         }
     }
 }
@@ -223,7 +231,8 @@ fn compose(map: &MapFile, options: &PictureOptions, most: usize) -> Result<Scene
             allowed: format!("{} to {} pixels", SIZES.start(), SIZES.end()),
         });
     }
-    let field = options.field.unwrap_or_else(|| default_field(map));
+    let chosen = options.field.or_else(|| of_sweep(map));
+    let field = chosen.unwrap_or_else(|| default_field(map));
     if !map.fields().contains(&field) {
         let held: Vec<&str> = map.fields().iter().map(|f| f.name()).collect();
         return Err(PictureError::NoSuchField {
@@ -237,11 +246,11 @@ fn compose(map: &MapFile, options: &PictureOptions, most: usize) -> Result<Scene
         if options.kind == Some(PictureKind::Boundaries) {
             return Err(no_curves("only one axis is left to draw along"));
         }
-        let fields = match options.field {
+        let fields = match chosen {
             Some(field) => vec![field],
             None => shown_together(map, &view, field),
         };
-        line::draw(map, &view, &fields, most, &mut scene)?;
+        line::draw(map, &view, &fields, options, most, &mut scene)?;
         return Ok(scene);
     };
     let in_plane = view.is_boundary_plane(map);
@@ -250,8 +259,7 @@ fn compose(map: &MapFile, options: &PictureOptions, most: usize) -> Result<Scene
         false => Vec::new(),
     };
     let fits = view.along.is_some() && view.of <= MOST_PANELS && view.outer_axes(map) == 1;
-    let by_default =
-        fits && options.field.is_none() && says_more(map).is_none() && !curves.is_empty();
+    let by_default = fits && chosen.is_none() && says_more(map).is_none() && !curves.is_empty();
     match options.kind {
         Some(PictureKind::Boundaries) if !in_plane => {
             return Err(no_curves(match map.boundary_plane() {
@@ -259,17 +267,31 @@ fn compose(map: &MapFile, options: &PictureOptions, most: usize) -> Result<Scene
                 Some(_) => "they lie in another plane, of whose axes one is held",
             }));
         }
-        None if by_default => boundaries::draw(map, &view, y, &curves, &mut scene)?,
-        Some(PictureKind::Boundaries) => boundaries::draw(map, &view, y, &curves, &mut scene)?,
-        _ => heat::draw(map, &view, y, field, &curves, most, &mut scene)?,
+        kind if kind == Some(PictureKind::Boundaries) || (kind.is_none() && by_default) => {
+            boundaries::draw(map, &view, y, &curves, options, &mut scene)?;
+        }
+        _ => heat::draw(map, &view, y, field, &curves, (options, most), &mut scene)?,
     }
     Ok(scene)
 }
 
-/// A field of the map that says more than where sliding is stable: what v0 is good for, the
-/// critical velocity, what becomes of motions, or the rate at which disturbances decay.
+/// The field that the map's sweep names for its pictures.
+fn of_sweep(map: &MapFile) -> Option<Field> {
+    let named = view::sweep(map)?.picture;
+    named.filter(|field| map.fields().contains(field))
+}
+
+/// A field of the map that says more than where sliding is stable: what v0 is good for,
+/// from where sliding is smooth, the critical velocity, what becomes of motions, or the rate at
+/// which disturbances decay.
 fn says_more(map: &MapFile) -> Option<Field> {
-    let more = [Field::Regime, Field::Vc, Field::Outcome, Field::Abscissa];
+    let more = [
+        Field::Regime,
+        Field::VSmooth,
+        Field::Vc,
+        Field::Outcome,
+        Field::Abscissa,
+    ];
     more.into_iter().find(|field| map.fields().contains(field))
 }
 
@@ -309,11 +331,35 @@ fn untitled(field: Field) -> &'static str {
     }
 }
 
-/// The title of the map's sweep, or `otherwise`.
-fn title(map: &MapFile, otherwise: &str) -> String {
-    let title = map.root_text(root::TITLE).filter(|t| !t.trim().is_empty());
-    let cut = |title: String| title.chars().take(LONGEST_TITLE).collect::<String>();
-    title.map_or_else(|| otherwise.to_owned(), |title| visible_line(&cut(title)))
+/// The title asked for, or that of the map's sweep.
+fn title(map: &MapFile, options: &PictureOptions) -> Option<String> {
+    let of_sweep = || map.root_text(root::TITLE);
+    let title = options.title.clone().or_else(of_sweep);
+    let title = title.filter(|title| !title.trim().is_empty())?;
+    let cut: String = title.chars().take(LONGEST_TITLE).collect();
+    Some(visible_line(&cut))
+}
+
+/// The title of a picture of `field`, and notes that name it. The title of a sweep is about the
+/// field that it shows unasked: a picture of another one is headed by that.
+fn head(map: &MapFile, field: Field, options: &PictureOptions) -> (String, Vec<Rich>) {
+    let unit = map.field_unit(field);
+    let shown = of_sweep(map).unwrap_or_else(|| default_field(map));
+    let note = text::field_note(field, &unit);
+    match title(map, options) {
+        Some(title) if field != shown && options.title.is_none() => {
+            let name = Rich::plain(field.name()).and(&text::suffix(&unit, "  (", ")"));
+            let of = Rich::plain(&format!("from: {title}"));
+            (capitalised(field.long_name()), vec![name, of])
+        }
+        title => (title.unwrap_or_else(|| untitled(field).into()), vec![note]),
+    }
+}
+
+fn capitalised(text: &str) -> String {
+    let mut characters = text.chars();
+    let first = characters.next().into_iter().flat_map(char::to_uppercase);
+    first.chain(characters).collect()
 }
 
 #[cfg(test)]
@@ -432,6 +478,31 @@ mod tests {
         assert!(text.len() < 1_000_000);
     }
 
+    /// The title of a sweep is about the field that it shows.
+    #[test]
+    fn titles_tell_the_field() {
+        let named = FIG2.replace("boundaries = true", "picture = \"delay_margin\"");
+        let case = Case::new(&named);
+        let text = |field, title: Option<&str>| {
+            let options = PictureOptions {
+                field,
+                title: title.map(str::to_owned),
+                ..PictureOptions::default()
+            };
+            String::from_utf8(case.draw("map.svg", &options).unwrap()).unwrap()
+        };
+        let unasked = text(None, None);
+        assert_eq!(unasked, text(Some(Field::DelayMargin), None));
+        assert!(unasked.contains("Velocity control"));
+        assert!(unasked.contains("delay_margin: distance in delay"));
+        let other = text(Some(Field::NUnstable), None);
+        assert!(other.contains("Number of characteristic roots"));
+        assert!(other.contains("from: Velocity control"));
+        let given = text(Some(Field::NUnstable), Some("My title"));
+        assert!(given.contains("My title") && given.contains("n_unstable: number of"));
+        assert!(!given.contains("Velocity control"));
+    }
+
     #[test]
     fn every_shape_of_map_is_drawn() {
         for axes in [
@@ -471,7 +542,7 @@ mod tests {
                     field: Some(field),
                     at,
                     size: (300, 300),
-                    kind: None,
+                    ..PictureOptions::default()
                 };
                 pictures.insert(case.draw("map.png", &options).unwrap());
             }

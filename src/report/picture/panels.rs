@@ -12,6 +12,8 @@ const MINOR_TICK: f64 = 4.0;
 const FRAME_WIDTH: f64 = 1.6;
 /// Width over height that panels should have.
 const SHAPE: f64 = 1.25;
+/// What an empty place counts, as a part of all panels, against the logarithm of their shape.
+const EMPTY: f64 = 3.0;
 const MOST_TICKS: usize = 10;
 
 /// One panel: where it is, and its scales.
@@ -238,7 +240,7 @@ fn shape(n: usize, area: f64) -> (usize, usize) {
         let rows = n.div_ceil(columns);
         let panel = area * rows as f64 / columns as f64;
         let empty = (columns * rows - n) as f64 / n as f64;
-        (panel / SHAPE).ln().abs() + empty
+        (panel / SHAPE).ln().abs() + EMPTY * empty
     };
     let columns = (1..=n)
         .min_by(|&a, &b| mismatch(a).total_cmp(&mismatch(b)))
@@ -291,6 +293,8 @@ mod tests {
             assert!(columns * rows >= n && columns * (rows - 1) < n);
         }
         assert_eq!(shape(1, 1.4), (1, 1));
+        // Three beside one another, not three of four.
+        assert_eq!(shape(3, 1.4), (3, 1));
         assert_eq!(shape(9, 1.3), (3, 3));
         assert_eq!(shape(12, 1.4), (4, 3));
     }

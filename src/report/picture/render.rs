@@ -1,8 +1,6 @@
 //! From a scene to the bytes of a PNG or SVG file. With [`super::font`] the only place that knows
 //! plotters.
 
-use std::collections::HashMap;
-
 use plotters::backend::{BitMapBackend, DrawingBackend, RGBPixel, SVGBackend};
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 use plotters::style::{Color, FontTransform, RGBAColor, RGBColor, TextStyle};
@@ -10,6 +8,7 @@ use plotters::style::{Color, FontTransform, RGBAColor, RGBColor, TextStyle};
 use super::PictureError;
 use super::colour::Rgb;
 use super::font;
+use super::rectangles::{Rectangle, rectangles};
 use super::scene::{Mark, Point, Scene};
 
 /// Bitmaps are drawn this much larger and averaged: smooth edges.
@@ -249,26 +248,15 @@ impl<B: DrawingBackend> Pen<B> {
         Ok(())
     }
 
-    /// Cells as few rectangles: neighbours of one colour are joined along rows, then equal
-    /// stretches of rows.
+    /// Cells as few rectangles.
     fn cells(&mut self, columns: &[f64], rows: &[f64], colours: &[Rgb]) -> Drawn {
-        let width = columns.len().saturating_sub(1).max(1);
-        let mut open: HashMap<(usize, usize, Rgb), usize> = HashMap::new();
-        let mut done = Vec::new();
-        for (r, row) in colours.chunks_exact(width).enumerate() {
-            let mut here = HashMap::new();
-            for (from, to) in stretches(row) {
-                let key = (from, to, row[from]);
-                here.insert(key, open.remove(&key).unwrap_or(r));
-            }
-            done.extend(open.drain().map(|(key, start)| (start, r, key)));
-            open = here;
-        }
-        let height = colours.len() / width;
-        done.extend(open.drain().map(|(key, start)| (start, height, key)));
-        // The order of a hash map is not the same twice.
-        done.sort_unstable();
-        for (top, bottom, (from, to, colour)) in done {
+        let width = columns.len().saturating_sub(1);
+        for Rectangle {
+            rows: (top, bottom),
+            columns: (from, to),
+            key: colour,
+        } in rectangles(colours, width)
+        {
             let [(x0, y0), (x1, y1)] =
                 [(from, top), (to, bottom)].map(|(c, r)| self.units((columns[c], rows[r])));
             // In SVG, where neighbours only touch, viewers let the paper shine through: each
@@ -343,19 +331,6 @@ fn with_kept_spaces(text: &str) -> String {
         if dropped { '\u{a0}' } else { c }
     };
     characters.iter().enumerate().map(kept).collect()
-}
-
-/// Stretches of equal colours as (start, end).
-fn stretches(row: &[Rgb]) -> Vec<(usize, usize)> {
-    let mut stretches = Vec::new();
-    let mut from = 0;
-    for to in 1..=row.len() {
-        if row.get(to) != Some(&row[from]) {
-            stretches.push((from, to));
-            from = to;
-        }
-    }
-    stretches
 }
 
 #[cfg(test)]

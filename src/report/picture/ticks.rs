@@ -63,14 +63,14 @@ fn round_step(rough: f64) -> f64 {
 }
 
 /// Ticks at 1 to 9 times powers of ten; labels at the powers, and at 2 and 5 times them over a
-/// short range.
+/// short range, if `most` leaves room for them.
 pub(super) fn logarithmic(from: f64, to: f64, most: usize) -> Vec<Tick> {
     let (low, high) = (from.log10().floor() as i32, to.log10().ceil() as i32);
     let decades = (to / from).log10();
     let every = (decades / most.max(1) as f64).ceil().max(1.0) as i32;
     let labelled = |digit: i32, exponent: i32| match digit {
         1 => exponent.rem_euclid(every) == 0,
-        2 | 5 => decades < 2.5,
+        2 | 5 => decades < 2.5 && 3.0 * decades <= most as f64,
         _ => false,
     };
     let plain = PLAIN.contains(&low) && PLAIN.contains(&high);

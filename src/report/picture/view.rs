@@ -133,7 +133,7 @@ impl View {
                 notes.push(assignment(axis.parameter, axis.values[value], &axis.unit));
             }
         }
-        let units = units(map);
+        let units = sweep(map).map(|spec| spec.units).unwrap_or_default();
         // Only what differs from the default, and the gains, since a gain of 0 means no such
         // control.
         for (parameter, value) in map.scalars() {
@@ -142,15 +142,16 @@ impl View {
                 notes.push(assignment(parameter, value, &units.of_parameter(parameter)));
             }
         }
+        if units == Units::default() {
+            notes.push(Rich::plain("dimensionless"));
+        }
         notes
     }
 }
 
-/// The units in which the map's sweep was written.
-fn units(map: &MapFile) -> Units {
-    let sweep = map.root_text(root::SWEEP);
-    let spec = sweep.and_then(|text| text.parse::<SweepSpec>().ok());
-    spec.map(|spec| spec.units).unwrap_or_default()
+/// The map's sweep, if it can be read.
+pub(super) fn sweep(map: &MapFile) -> Option<SweepSpec> {
+    map.root_text(root::SWEEP)?.parse().ok()
 }
 
 fn asked(map: &MapFile, at: &[(Parameter, f64)]) -> Result<Vec<Asked>, PictureError> {

@@ -12,7 +12,9 @@ use super::parameter::Parameter;
 use super::search::LIMIT;
 use super::simulation::Simulation;
 use super::spec::SweepSpec;
-use super::spec_values::{read_degrees, read_fields, read_list, read_range, read_tolerance};
+use super::spec_values::{
+    read_degrees, read_field, read_fields, read_list, read_range, read_tolerance,
+};
 use super::toml_reader::{Entry, SpecError, entries, parse};
 use super::units::Units;
 use super::vc_keys::VcKeys;
@@ -49,6 +51,7 @@ impl SweepSpec {
                 "protocol" if entry.string()? == LIMIT => {
                     draft.is_limit = true;
                 }
+                "picture" => draft.picture = Some((read_field(&entry)?, entry.span.clone())),
                 "fields" => draft.read_fields(&entry)?,
                 "boundaries" => draft.boundaries = Some(entry.boolean()?),
                 "degree_of_stability" => draft.read_degrees(&entry)?,
@@ -75,8 +78,9 @@ impl SweepSpec {
 }
 
 /// The keys of a sweep file.
-const KEYS: [&str; 15] = [
+const KEYS: [&str; 16] = [
     "title",
+    "picture",
     "fields",
     "boundaries",
     "degree_of_stability",
@@ -97,6 +101,8 @@ const KEYS: [&str; 15] = [
 #[derive(Default)]
 struct Draft {
     title: String,
+    /// The field that pictures show, and where it is named.
+    picture: Option<(Field, Range<usize>)>,
     is_limit: bool,
     limit: LimitDraft,
     fields: Option<Vec<Field>>,
@@ -199,12 +205,14 @@ impl Draft {
             let (fixed, critical) = self.check()?;
             (fixed, critical, vec![Field::NUnstable])
         };
+        let fields = self.fields.unwrap_or(default_fields);
         Ok(SweepSpec {
             title: self.title,
+            picture: picture(self.picture, &fields)?,
             limit: self.is_limit,
             axes: self.axes,
             fixed,
-            fields: self.fields.unwrap_or(default_fields),
+            fields,
             boundaries: self.boundaries,
             degrees_of_stability: self.degrees,
             best: self.best.is_some(),
@@ -214,5 +222,20 @@ impl Draft {
             units: self.units,
             text: text.to_owned(),
         })
+    }
+}
+
+/// The field that pictures show must be one of the sweep's.
+fn picture(
+    asked: Option<(Field, Range<usize>)>,
+    fields: &[Field],
+) -> Result<Option<Field>, SpecError> {
+    match asked {
+        Some((field, place)) if !fields.contains(&field) => {
+            let held: Vec<&str> = fields.iter().map(|field| field.name()).collect();
+            let message = format!("picture: {} is not among the fields", field.name());
+            Err(SpecError::at(place, message).help(format!("fields: {}", held.join(", "))))
+        }
+        asked => Ok(asked.map(|(field, _)| field)),
     }
 }

@@ -10,7 +10,7 @@ use super::setting::{GivenError, Setting};
 use super::toml_reader::{Entry, SpecError};
 
 /// Keys at the top of a sweep file that have a meaning in the limit.
-const KEYS: [&str; 5] = ["title", "protocol", "fields", "axes", "fixed"];
+const KEYS: [&str; 6] = ["title", "picture", "protocol", "fields", "axes", "fixed"];
 
 /// Where the file gives what has a meaning in the limit only, or everywhere else only.
 #[derive(Default)]

@@ -6,6 +6,7 @@
 //! protocol = "limit"
 //! # optional, n_unstable by default; status is always there
 //! fields = ["n_unstable", "abscissa"]
+//! picture = "abscissa"                    # optional: the one of them that pictures show
 //! boundaries = true                       # optional: the exact crossing curves as polylines
 //! # optional: also the curves max Re λ = −σ for these σ, in 1/time
 //! degree_of_stability = [0.05, 0.1]
@@ -65,6 +66,8 @@ use crate::linear::MarginalTolerance;
 pub struct SweepSpec {
     /// Title for pictures and the map; may be empty.
     pub title: String,
+    /// The field that pictures show unless another is asked for; no part of the plan.
+    pub picture: Option<Field>,
     /// Whether it is one of the limit of a short delay, [`crate::critical::limit`].
     pub limit: bool,
     /// Axes in the order of the file: the dimensions of the map.

@@ -85,17 +85,21 @@ pub(super) fn read_degrees(entry: &Entry) -> Result<Vec<f64>, SpecError> {
     Ok(degrees)
 }
 
+pub(super) fn read_field(entry: &Entry) -> Result<Field, SpecError> {
+    let name = entry.string()?;
+    Field::from_name(name).ok_or_else(|| {
+        entry
+            .error(format!("unknown field \"{name}\""))
+            .help(fields_meant(name))
+    })
+}
+
 pub(super) fn read_fields(entry: &Entry) -> Result<Vec<Field>, SpecError> {
     let mut fields = Vec::new();
     for element in entry.array()? {
-        let name = element.string()?;
-        let field = Field::from_name(name).ok_or_else(|| {
-            element
-                .error(format!("unknown field \"{name}\""))
-                .help(fields_meant(name))
-        })?;
+        let field = read_field(&element)?;
         if fields.contains(&field) {
-            return Err(element.error(format!("\"{name}\" is listed twice")));
+            return Err(element.error(format!("\"{}\" is listed twice", field.name())));
         }
         fields.push(field);
     }

@@ -1,0 +1,151 @@
+//! Cells that show no value: their colours, and the lines over those that are not known.
+
+use super::colour::{self, Rgb};
+use super::rectangles::{Rectangle, rectangles};
+use super::scene::{Point, Scene};
+use crate::report::known::Gap;
+
+/// Distance of the lines from one another, and their width, in units of the picture.
+const SPACING: f64 = 12.0;
+const WIDTH: f64 = 1.8;
+
+/// How lines run.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+enum Run {
+    Rising,
+    Falling,
+    Upright,
+}
+
+/// The lines over cells with a gap; none where its colour says all.
+fn runs(gap: Gap) -> &'static [Run] {
+    match gap {
+        Gap::NotConverged => &[Run::Rising],
+        Gap::Marginal => &[Run::Falling],
+        Gap::Disagree => &[Run::Rising, Run::Falling],
+        Gap::Undecided => &[Run::Upright],
+        Gap::LiftsOff | Gap::Persists | Gap::NoValue | Gap::NotComputed => &[],
+    }
+}
+
+/// The colour of cells with a gap, below the lines.
+pub(super) fn ground(gap: Gap) -> Rgb {
+    match gap {
+        Gap::LiftsOff => colour::LIFTS_OFF,
+        Gap::Persists => colour::PERSISTS,
+        Gap::NoValue => colour::NO_VALUE,
+        Gap::NotComputed => colour::PAPER,
+        Gap::NotConverged | Gap::Disagree | Gap::Marginal | Gap::Undecided => colour::UNKNOWN,
+    }
+}
+
+/// Draws the lines over cells between these edges.
+pub(super) fn draw(columns: &[f64], rows: &[f64], gaps: &[Option<Gap>], scene: &mut Scene) {
+    let hatched = |gap: &Option<Gap>| gap.filter(|gap| gap.is_unknown());
+    if !gaps.iter().any(|gap| hatched(gap).is_some()) {
+        return;
+    }
+    let keys: Vec<Option<Gap>> = gaps.iter().map(hatched).collect();
+    for Rectangle {
+        rows: (top, bottom),
+        columns: (from, to),
+        key,
+    } in rectangles(&keys, columns.len().saturating_sub(1))
+    {
+        if let Some(gap) = key {
+            fill(
+                (columns[from], rows[top]),
+                (columns[to], rows[bottom]),
+                gap,
+                scene,
+            );
+        }
+    }
+}
+
+/// Draws the lines over a rectangle between two of its corners: at least one of each kind, however
+/// small it is.
+pub(super) fn fill(a: Point, b: Point, gap: Gap, scene: &mut Scene) {
+    let (near, far) = ((a.0.min(b.0), a.1.min(b.1)), (a.0.max(b.0), a.1.max(b.1)));
+    let u = scene.unit();
+    for &run in runs(gap) {
+        for line in lines(near, far, run, SPACING * u) {
+            scene.path(line.to_vec(), colour::HATCH, WIDTH * u);
+        }
+    }
+}
+
+/// The lines of one kind in a rectangle. Those of neighbours meet.
+fn lines(near: Point, far: Point, run: Run, spacing: f64) -> Vec<[Point; 2]> {
+    // What is the same along a line, and where it crosses the rectangle.
+    let (least, most) = match run {
+        Run::Rising => (near.0 + near.1, far.0 + far.1),
+        Run::Falling => (near.0 - far.1, far.0 - near.1),
+        Run::Upright => (near.0, far.0),
+    };
+    let line = |c: f64| match run {
+        Run::Rising => {
+            let (from, to) = (near.0.max(c - far.1), far.0.min(c - near.1));
+            [(from, c - from), (to, c - to)]
+        }
+        Run::Falling => {
+            let (from, to) = (near.0.max(c + near.1), far.0.min(c + far.1));
+            [(from, from - c), (to, to - c)]
+        }
+        Run::Upright => [(c, near.1), (c, far.1)],
+    };
+    let (first, last) = ((least / spacing).ceil(), (most / spacing).floor());
+    if first > last {
+        return vec![line(0.5 * (least + most))];
+    }
+    let count = (last - first) as usize;
+    (0..=count)
+        .map(|i| line((first + i as f64) * spacing))
+        .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::report::picture::scene::Mark;
+
+    #[test]
+    fn lines_stay_within_and_meet_those_of_the_neighbour() {
+        for run in [Run::Rising, Run::Falling, Run::Upright] {
+            let (near, middle, far) = ((3.0, 5.0), (40.0, 50.0), (77.0, 50.0));
+            let left = lines(near, middle, run, 12.0);
+            let right = lines((40.0, 5.0), far, run, 12.0);
+            assert!(left.len() >= 3, "{run:?}");
+            for [a, b] in left.iter().chain(&right) {
+                for (x, y) in [a, b] {
+                    assert!((3.0..=77.0).contains(x) && (5.0..=50.0).contains(y));
+                }
+            }
+            let leaves = left.iter().filter(|[_, b]| b.0 == 40.0);
+            for [_, b] in leaves.filter(|_| run != Run::Upright) {
+                let met = right.iter().any(|[a, _]| (a.1 - b.1).abs() < 1e-9);
+                assert!(met, "{run:?} {b:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn the_smallest_cell_has_a_line() {
+        let mut scene = Scene::new((1600, 1100));
+        let gaps = [None, Some(Gap::NotConverged), Some(Gap::NoValue)];
+        draw(&[10.0, 10.1, 10.2, 10.3], &[20.0, 20.1], &gaps, &mut scene);
+        assert!(matches!(scene.marks[..], [Mark::Path { .. }]));
+    }
+
+    #[test]
+    fn no_two_gaps_look_alike() {
+        for (i, a) in Gap::ALL.into_iter().enumerate() {
+            for b in &Gap::ALL[..i] {
+                assert!(
+                    ground(a) != ground(*b) || runs(a) != runs(*b),
+                    "{a:?} {b:?}"
+                );
+            }
+        }
+    }
+}
