@@ -287,6 +287,11 @@ fn a_cell_of_a_map_is_asked_for_by_its_place() {
         "{}",
         err(&motion)
     );
+    places_that_are_none_are_answered(&folder, &cell);
+}
+
+/// In the map `cells.h5`.
+fn places_that_are_none_are_answered(folder: &Folder, cell: &[&str]) {
     for (args, says) in [
         (
             &["point", "--map", "cells.h5"][..],
@@ -311,10 +316,10 @@ fn a_cell_of_a_map_is_asked_for_by_its_place() {
         ),
         (&["simulate"], "<CASE.toml>"),
     ] {
-        let text = said(&folder, args);
+        let text = said(folder, args);
         assert!(text.contains(says), "{args:?}: {text}");
     }
-    let both = said(&folder, &[&["point"], &cell[..], &["--tau", "1"]].concat());
+    let both = said(folder, &[&["point"], cell, &["--tau", "1"]].concat());
     assert!(
         both.contains("the map says everything but the cell"),
         "{both}"

@@ -132,7 +132,7 @@ fn mistakes_in_case_files_are_shown_in_place() {
             &format!("{PLAIN}[trace]\ninterval = 1e-9\n"),
             "more than 2000000 samples",
         ),
-        ("[axes]\ntau = [1]\n", "unknown key `axes`"),
+        ("[axes]\ntau = [1]\n", "`slipmap run` takes it"),
     ] {
         std::fs::write(folder.path().join("case.toml"), text).unwrap();
         expect(&folder.run(&["simulate", "case.toml"]), 2, says);

@@ -59,7 +59,7 @@ pub(super) fn main(args: &Args) -> Result<(), Failure> {
         let by_flags = args.protocol != ProtocolName::Follow || args.phase.is_some();
         alone(by_flags || args.parameters.any_given())?;
         let found = CriticalVelocity::of(&point.setting, point.protocol, &Stop::default())?;
-        return print(args.json, &found, not_known(&found));
+        return print(args.json, &found, not_known(&found).as_deref());
     }
     match args.protocol {
         ProtocolName::Limit => print(args.json, &args.limit()?, None),
@@ -71,7 +71,7 @@ pub(super) fn main(args: &Args) -> Result<(), Failure> {
             };
             let found = CriticalVelocity::of(&setting, protocol, &Stop::default());
             let found = found.map_err(|e| args.parameters.refused(&e))?;
-            print(args.json, &found, not_known(&found))
+            print(args.json, &found, not_known(&found).as_deref())
         }
     }
 }
@@ -89,7 +89,7 @@ fn not_known(found: &CriticalVelocity) -> Option<String> {
 
 /// The object as one line of JSON, or its entries one below the other. Where v_c is `not_known`
 /// neither it, the velocity of lift-off nor a window is shown to people.
-fn print(json: bool, found: &impl Serialize, not_known: Option<String>) -> Result<(), Failure> {
+fn print(json: bool, found: &impl Serialize, not_known: Option<&str>) -> Result<(), Failure> {
     if json {
         return say::json(found);
     }
@@ -97,7 +97,7 @@ fn print(json: bool, found: &impl Serialize, not_known: Option<String>) -> Resul
     let value = serde_json::to_value(found).map_err(std::io::Error::from)?;
     for (key, value) in value.as_object().into_iter().flatten() {
         let shown = match (value, &not_known) {
-            (_, Some(text)) if key == "vc" => text.clone(),
+            (_, Some(text)) if key == "vc" => (*text).to_owned(),
             (_, Some(_)) if key == "v_liftoff" || key == "windows" => continue,
             (serde_json::Value::String(text), _) => text.clone(),
             (serde_json::Value::Null, _) => "none".into(),

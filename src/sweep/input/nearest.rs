@@ -3,8 +3,8 @@
 /// Two names are near where so much of them is alike, 1 where all is.
 const NEAR: f64 = 0.6;
 
-/// The name of those `known` that is nearest to `name`, if one is near. Capitals are not told from
-/// small letters, nor `-` from `_`.
+/// The name of those `known` that is nearest to `name`, the first of equals, if one is near.
+/// Capitals are not told from small letters, nor `-` from `_`.
 #[must_use]
 pub fn nearest<'k>(name: &str, known: impl IntoIterator<Item = &'k str>) -> Option<&'k str> {
     let plain = |name: &str| name.to_lowercase().replace('-', "_");
@@ -12,8 +12,8 @@ pub fn nearest<'k>(name: &str, known: impl IntoIterator<Item = &'k str>) -> Opti
     let alike = |known: &str| strsim::normalized_damerau_levenshtein(&name, &plain(known));
     let all = known.into_iter().map(|known| (alike(known), known));
     let near = all.filter(|(alike, _)| *alike >= NEAR);
-    near.max_by(|a, b| a.0.total_cmp(&b.0))
-        .map(|(_, name)| name)
+    let nearer = |a: (f64, _), b: (f64, _)| if b.0 > a.0 { b } else { a };
+    near.reduce(nearer).map(|(_, name)| name)
 }
 
 /// "did you mean `tau`? ", or nothing.
@@ -42,6 +42,7 @@ mod tests {
             ("abscisa", Some("abscissa")),
             ("Alpha-V", Some("alpha_v")),
             ("alphan", Some("alpha_n")),
+            ("alpha_w", Some("alpha_v")),
             ("mass", None),
             ("", None),
         ] {
