@@ -325,3 +325,28 @@ fn places_that_are_none_are_answered(folder: &Folder, cell: &[&str]) {
         "{both}"
     );
 }
+
+/// `units = "SI"` in the place of a table; another name is answered with those that there are.
+#[test]
+fn units_have_presets() {
+    let folder = Folder::with(&[
+        ("si.toml", &format!("units = \"SI\"\n{SMALL}")),
+        ("si_units.toml", &format!("units = \"S.I.\"\n{SMALL}")),
+    ]);
+    expect(&folder.run(&["run", "si.toml"]), 0, "6 cells");
+    let file = hdf5::File::open(folder.path().join("si.h5")).unwrap();
+    let unit = file.dataset("mass").unwrap().attr("units").unwrap();
+    let unit: hdf5::types::FixedUnicode<8> = unit.read_scalar().unwrap();
+    assert_eq!(unit.as_str(), "kg");
+    let info = out(&folder.run(&["info", "si.h5"]));
+    for says in [
+        "stiffness    1 N m-1",
+        "3 points, 1 to 3 s",
+        "mass         1 kg",
+    ] {
+        assert!(info.contains(says), "{info}");
+    }
+    let text = said(&folder, &["run", "si_units.toml"]);
+    assert!(text.contains("unknown units \"S.I.\""), "{text}");
+    assert!(text.contains("known: SI, dimensionless"), "{text}");
+}

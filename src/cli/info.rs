@@ -10,7 +10,8 @@ use slipmap::linear::status::FLAGS;
 use slipmap::report::numbers::{bytes, grouped, short};
 use slipmap::store::schema::root;
 use slipmap::store::{MapAxis, MapFile};
-use slipmap::sweep::Field;
+use slipmap::sweep::input::units::Units;
+use slipmap::sweep::{Field, SweepSpec};
 
 use super::failure::Failure;
 use super::open::open;
@@ -78,6 +79,9 @@ struct Facts {
     /// Parameters that are no axes, by name.
     #[serde(serialize_with = "as_object")]
     fixed: Vec<(&'static str, f64)>,
+    /// Units of axes, fixed parameters and fields, by name; `1` where there is none.
+    #[serde(serialize_with = "as_object")]
+    units: Vec<(&'static str, String)>,
     cells: u64,
     cells_missing: u64,
     fields: Vec<FieldFacts>,
@@ -153,6 +157,7 @@ impl Facts {
             fixed: scalars.map(|(p, value)| (p.name(), value)).collect(),
             cells: map.cells(),
             cells_missing: map.cells_missing(),
+            units: units(map),
             fields: fields(map)?,
             status: flagged.filter(|(_, cells)| *cells > 0).collect(),
             curves: curves(map)?,
@@ -164,13 +169,22 @@ impl Facts {
         for axis in &self.axes {
             let (name, points) = (axis.name, grouped(axis.points));
             let (first, last) = (axis.first, axis.last);
-            let text = format!("{name:<12} {points:>10} points, {first} to {last}");
+            let unit = self.unit(name);
+            let text = format!("{name:<12} {points:>10} points, {first} to {last}{unit}");
             rows.row("axis", text)?;
         }
         for (name, value) in &self.fixed {
-            rows.row("fixed", format!("{name:<12} {value}"))?;
+            let unit = self.unit(name);
+            rows.row("fixed", format!("{name:<12} {value}{unit}"))?;
         }
         Ok(())
+    }
+
+    /// The unit of a name, after a space; nothing where it has none.
+    fn unit(&self, name: &str) -> String {
+        let of = self.units.iter().find(|(of, _)| *of == name);
+        let unit = of.filter(|(_, unit)| unit != "1");
+        unit.map_or_else(String::new, |(_, unit)| format!(" {unit}"))
     }
 
     fn tell_cells(&self, rows: &mut Rows) -> Result<(), Failure> {
@@ -179,7 +193,7 @@ impl Facts {
             rows.row("missing", format!("{} cells", grouped(self.cells_missing)))?;
         }
         for field in &self.fields {
-            rows.row("field", field.text())?;
+            rows.row("field", field.text(&self.unit(field.name)))?;
         }
         for (name, cells) in &self.status {
             rows.row("status", format!("{name:<14} {} cells", grouped(*cells)))?;
@@ -216,7 +230,7 @@ impl Facts {
 
 impl FieldFacts {
     /// "vc  8 kB, 2 kB on disk, −0.3 to 1.2, 12 infinite, 3 without a value", or with its kinds.
-    fn text(&self) -> String {
+    fn text(&self, unit: &str) -> String {
         let sizes = format!(
             "{}, {} on disk",
             bytes(self.bytes),
@@ -227,7 +241,7 @@ impl FieldFacts {
             text += &format!(", {} {kind}", grouped(*cells));
         }
         if let Some((low, high)) = self.range {
-            text += &format!(", {} to {}", short(low), short(high));
+            text += &format!(", {} to {}{unit}", short(low), short(high));
         }
         for (cells, what) in [
             (self.infinite, "infinite"),
@@ -256,6 +270,23 @@ fn origin(map: &MapFile) -> Vec<(&'static str, String)> {
         Some((name, text))
     });
     told.collect()
+}
+
+/// Units of parameters are those of the sweep.
+fn units(map: &MapFile) -> Vec<(&'static str, String)> {
+    let sweep = map.root_text(root::SWEEP).unwrap_or_default();
+    let of_sweep = sweep
+        .parse::<SweepSpec>()
+        .map_or_else(|_| Units::default(), |s| s.units);
+    let axes = map.axes().iter().map(|axis| axis.parameter);
+    let scalars = map.scalars().into_iter().map(|(parameter, _)| parameter);
+    let parameters = axes.chain(scalars);
+    let of_parameters = parameters.map(|p| (p.name(), of_sweep.of_parameter(p)));
+    let fields = map
+        .fields()
+        .iter()
+        .map(|&field| (field.name(), map.field_unit(field)));
+    of_parameters.chain(fields).collect()
 }
 
 fn fields(map: &MapFile) -> Result<Vec<FieldFacts>, Failure> {

@@ -5,6 +5,7 @@ use std::ops::Range;
 
 use super::friction_table::GivenTable;
 use super::law_kind::{Formula, LawKind};
+use super::nearest::did_you_mean;
 use super::parameter::Parameter;
 use super::setting::{GivenError, Setting};
 use super::toml_reader::{Entry, SpecError};
@@ -202,6 +203,18 @@ impl GivenParameters {
 
 /// Reads the table `[units]`.
 pub(super) fn read_units(units: &Entry) -> Result<Units, SpecError> {
+    if !units.is_table() {
+        let name = units.string()?;
+        return Units::preset(name).ok_or_else(|| {
+            let meant = did_you_mean(name, Units::PRESETS);
+            let known = Units::PRESETS.join(", ");
+            units
+                .error(format!("unknown units \"{name}\""))
+                .help(format!(
+                    "{meant}known: {known}; or a table of force, length and time"
+                ))
+        });
+    }
     let [mut force, mut length, mut time] = [None, None, None];
     for entry in units.table()? {
         let slot = match entry.key {

@@ -9,13 +9,36 @@ pub struct Units {
     pub force_length_time: Option<[String; 3]>,
 }
 
+/// The units of force, length and time in the SI.
+const SI: [&str; 3] = ["N", "m", "s"];
+/// The powers of force, length and time in a mass.
+const MASS: [i32; 3] = [1, -1, 2];
+
 impl Units {
+    /// The names of [`Units::preset`].
+    pub const PRESETS: [&str; 2] = ["SI", "dimensionless"];
+
+    /// Units by one name: `SI` (N, m, s) or `dimensionless`.
+    #[must_use]
+    pub fn preset(name: &str) -> Option<Self> {
+        match name {
+            "SI" => Some(Self {
+                force_length_time: Some(SI.map(String::from)),
+            }),
+            "dimensionless" => Some(Self::default()),
+            _ => None,
+        }
+    }
+
     /// The unit of a quantity with these powers of force, length and time; "1" where it has none.
     #[must_use]
     pub fn of(&self, dimension: [i32; 3]) -> String {
         let Some(names) = &self.force_length_time else {
             return "1".into();
         };
+        if dimension == MASS && *names == SI {
+            return "kg".into();
+        }
         let factors: Vec<String> = names
             .iter()
             .zip(dimension)
@@ -57,5 +80,25 @@ impl Units {
             Some([_, _, time]) => format!("rad {time}-1"),
             None => "1".into(),
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn presets_have_units() {
+        let [si, without] = Units::PRESETS.map(|name| Units::preset(name).unwrap());
+        let of = |units: &Units| {
+            [Parameter::Mass, Parameter::Stiffness, Parameter::Tau].map(|p| units.of_parameter(p))
+        };
+        assert_eq!(of(&si), ["kg", "N m-1", "s"]);
+        assert_eq!(of(&without), ["1"; 3]);
+        assert_eq!(Units::preset("si"), None);
+        let mm = Units {
+            force_length_time: Some(["N", "mm", "s"].map(String::from)),
+        };
+        assert_eq!(of(&mm), ["N mm-1 s2", "N mm-1", "s"]);
     }
 }
