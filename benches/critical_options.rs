@@ -54,7 +54,12 @@ fn with(problem: &Problem, options: &Options) -> Problem {
 impl Search {
     fn answers(&self, options: &Options) -> Vec<Answer> {
         match self {
-            Self::Cell(problem) => vec![of_cell(&critical_velocity(&with(problem, options)))],
+            Self::Cell(problem) => {
+                let found = critical_velocity(&with(problem, options));
+                let bounds = [found.vc_lower, found.vc_upper];
+                let bounds = bounds.map(|bound| (bound, None, found.decided));
+                [&[of_cell(&found)], &bounds[..]].concat()
+            }
             Self::Line(line) => {
                 let line: Vec<Problem> = line.iter().map(|one| with(one, options)).collect();
                 let found = critical_velocities(&line, || false);
