@@ -329,7 +329,7 @@ const BAD: &[(&str, &str, &str)] = &[
     (
         "[axes]\ntau = [1]\n[fixed]\nmu_prime = 1\nmu_s = 2\n",
         "mu_s",
-        "unknown key `fixed.mu_s`",
+        "`fixed.mu_s` does not belong here",
     ),
     (
         "[axes]\ntau = [1]\n[fixed]\nmass = \"heavy\"\n",

@@ -3,8 +3,8 @@
 
 /// Version of the layout described here, which is written. 2: [`DEGREE_OF_STABILITY`] of every
 /// curve. 3: indexes with checksums, and a seal behind the file. 4: the fields `vc_lower` and
-/// `vc_upper`, by which the regime and `v_smooth` decide. 5: the field `regime`, `class` before, and
-/// integers without `_FillValue` where no cell is missing.
+/// `vc_upper`, by which the regime and `v_smooth` decide. 5: the field `regime`, `class` before,
+/// and integers without `_FillValue` where no cell is missing.
 pub const FORMAT_VERSION: i32 = 5;
 /// The first version with a seal.
 pub const SEALED_SINCE: i32 = 3;

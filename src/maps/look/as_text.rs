@@ -260,7 +260,7 @@ mod tests {
             // Where nothing says where it starts the case disturbs sliding.
             let but = if read.start_assumed { &START[..] } else { &[] };
             assert_same(&read.setting, setting, but);
-            let motion = plan.spec.simulation.case(setting, 0.0).unwrap();
+            let motion = plan.spec.simulation.case(&read.setting, 0.0).unwrap();
             assert_eq!(Some(read.case), motion);
         }
     }
