@@ -33,6 +33,7 @@ pub(super) enum Gap {
 
 impl Gap {
     /// All.
+    #[cfg(feature = "picture")]
     pub(super) const ALL: [Self; 8] = [
         Self::NotConverged,
         Self::Disagree,
@@ -53,6 +54,7 @@ impl Gap {
     }
 
     /// What a legend says of it in a picture of `field`.
+    #[cfg(feature = "picture")]
     pub(super) fn words(self, field: Field) -> &'static str {
         match self {
             Self::NotConverged => "not converged",
@@ -121,6 +123,7 @@ impl Known {
     }
 
     /// The values that are shown.
+    #[cfg(feature = "picture")]
     pub(super) fn values(&self) -> impl Iterator<Item = f64> {
         let cells = self.plane.cells.iter().zip(&self.gaps);
         cells
