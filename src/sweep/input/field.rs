@@ -245,7 +245,7 @@ catalogue! {
             source: Source::Critical(|cell| f64::from(cell.found.critical.method as u8)),
             ..ROW
         };
-        /// Number of the [`Class`] of v0.
+        /// Number of the [`RegimeAtV0`] of v0.
         Regime = Row {
             name: "regime",
             former: Some("class"),
