@@ -282,8 +282,24 @@ fn a_cell_of_a_map_is_asked_for_by_its_place() {
     same("vc", &[]);
     let motion = folder.run(&[&["simulate"], &cell[..]].concat());
     expect(&motion, 0, "cells-motion.h5");
+    std::fs::copy(folder.path().join("cells.h5"), folder.path().join("a.b.h5")).unwrap();
+    let dotted = folder.run(&[
+        "simulate",
+        "--map",
+        "a.b.h5",
+        "--at",
+        "alpha_v=-0.5",
+        "--at",
+        "tau=1",
+    ]);
+    expect(&dotted, 0, "a.b-motion.h5");
+    let trace = hdf5::File::open(folder.path().join("a.b-motion.h5")).unwrap();
+    let history = trace.attr("history").unwrap();
+    let history: hdf5::types::FixedUnicode<256> = history.read_scalar().unwrap();
+    let says = "slipmap simulate --at alpha_v=-0.5 --at tau=1 --map a.b.h5";
+    assert!(history.ends_with(says), "{history}");
     assert!(
-        err(&motion).contains("the case has no [start]"),
+        err(&motion).contains("no start is given: the block begins with"),
         "{}",
         err(&motion)
     );

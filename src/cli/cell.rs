@@ -43,6 +43,13 @@ pub(super) fn parse_at(text: &str) -> Result<(Parameter, f64), String> {
 }
 
 impl CellArgs {
+    /// The flags `--at`, each after a space.
+    pub(super) fn words(&self) -> String {
+        let at = self.at.iter();
+        at.map(|(axis, value)| format!(" --at {}={value}", axis.name()))
+            .collect()
+    }
+
     /// What can be asked at the cell; none where no map is given. Says which cell it is.
     pub(super) fn texts(&self) -> Result<Option<CellTexts>, Failure> {
         let Some(path) = &self.map else {

@@ -303,7 +303,9 @@ fn fields(map: &MapFile) -> Result<Vec<FieldFacts>, Failure> {
         };
         let field = Field::from_name(name);
         if let Some((field, kinds)) = field.and_then(|field| Some((field, field.kinds()?))) {
-            let counts = kinds.into_iter().zip(map.kind_counts(field)?);
+            let counts = map.kind_counts(field)?;
+            facts.without_value = map.cells().saturating_sub(counts.iter().sum());
+            let counts = kinds.into_iter().zip(counts);
             facts.kinds = counts.filter(|(_, cells)| *cells > 0).collect();
         } else if let Some(field) = field {
             let summary = map.summary(field)?;

@@ -9,6 +9,7 @@ use slipmap::report::numbers::grouped;
 use slipmap::report::picture::{self, Picture};
 use slipmap::slip::motion::MOST_KEPT;
 use slipmap::slip::outcome::{Outcome, Summary};
+use slipmap::store::describe::Provenance;
 use slipmap::store::{Output, StoreError, trace_file};
 use slipmap::sweep::cells::trace::TraceError;
 use slipmap::sweep::input::case_file::DISTURBED;
@@ -62,22 +63,22 @@ struct MotionOut {
 
 pub(super) fn main(args: &Args) -> Result<(), Failure> {
     let signals = Signals::catch()?;
-    let (spec, input) = args.read()?;
+    let spec = args.read()?;
     if spec.start_assumed {
         say::remark(format_args!(
-            "the case has no [start]: the block begins with x_dot0 = {}, {} % faster than it is \
+            "no start is given: the block begins with x_dot0 = {}, {} % faster than it is \
              pulled",
             spec.case.initial_state().0,
             100.0 * DISTURBED,
         ));
     }
-    let path = output_path(args.output.as_deref(), &input, "trace")?;
+    let path = args.output_path()?;
     check_picture(args, &path)?;
     check_replaced(&path, &spec, args.fresh)?;
     let trace = signals.or_end("there is no trace", || Trace::of(&spec));
     let trace = trace.map_err(failure)?;
     let output = Output::claim(&path)?;
-    trace_file::write(&spec, &trace, output, &provenance("simulate", &input))?;
+    trace_file::write(&spec, &trace, output, &args.provenance())?;
     if args.json {
         say::json(&MotionOut {
             summary: MotionSummary::of(&trace),
@@ -96,18 +97,39 @@ pub(super) fn main(args: &Args) -> Result<(), Failure> {
 }
 
 impl Args {
-    /// The case, and the file whose name the trace has.
-    fn read(&self) -> Result<(CaseSpec, PathBuf), Failure> {
+    /// The case.
+    fn read(&self) -> Result<CaseSpec, Failure> {
         if let Some(case) = &self.case {
-            return Ok((read_case(case)?, case.clone()));
+            return read_case(case);
         }
         let text = self.cell.case()?.unwrap_or_default();
         let spec = text.parse();
-        let spec = spec.map_err(|error| Failure::in_file(error, "the cell", &text))?;
+        spec.map_err(|error| Failure::in_file(error, "the cell", &text))
+    }
+
+    /// The trace to write: by the name of the case, or of the map.
+    fn output_path(&self) -> Result<PathBuf, Failure> {
         let map = self.cell.map.as_deref().and_then(Path::file_stem);
-        let mut name = map.unwrap_or_default().to_owned();
-        name.push("-motion");
-        Ok((spec, name.into()))
+        let of_map = map.map(|stem| {
+            let mut name = stem.to_owned();
+            name.push("-motion.h5");
+            PathBuf::from(name)
+        });
+        let given = self.output.as_deref().or(of_map.as_deref());
+        output_path(
+            given,
+            self.case.as_deref().unwrap_or(Path::new("")),
+            "trace",
+        )
+    }
+
+    /// What is said of the trace's origin.
+    fn provenance(&self) -> Provenance {
+        match (&self.case, &self.cell.map) {
+            (Some(case), _) => provenance("simulate", case),
+            (None, Some(map)) => provenance(&format!("simulate{} --map", self.cell.words()), map),
+            (None, None) => provenance("simulate", Path::new("")),
+        }
     }
 }
 
@@ -144,6 +166,10 @@ fn check_replaced(path: &Path, spec: &CaseSpec, fresh: bool) -> Result<(), Failu
         )),
         Err(StoreError::NotATrace { why, .. }) => Err(Failure::bad_input_with_help(
             format!("{name} is already there and no trace of slipmap: {why}"),
+            "it is left as it is; remove it first, or write elsewhere with -o",
+        )),
+        Err(error @ StoreError::DamagedFile { .. }) => Err(Failure::failed_with_help(
+            error.to_string(),
             "it is left as it is; remove it first, or write elsewhere with -o",
         )),
         Err(error) => Err(error.into()),

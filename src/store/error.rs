@@ -92,7 +92,8 @@ pub enum StoreError {
     },
     /// A file that begins as HDF5 does and cannot be opened.
     #[error(
-        "{} is a damaged HDF5 file: it was cut off, or changed, or not closed",
+        "{} is a damaged HDF5 file (cut off, changed or not closed), or of a newer kind than the \
+         HDF5 library here reads",
         path.display()
     )]
     DamagedFile {

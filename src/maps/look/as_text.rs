@@ -170,6 +170,10 @@ fn case(spec: &SweepSpec, setting: &Setting) -> String {
     let begins = |p: Parameter| p.of_start() && !setting.get(p).is_nan();
     if Parameter::ALL.into_iter().any(begins) {
         said += &table("start", setting, begins);
+    } else if spec.fields.iter().any(|field| field.of_motion()) {
+        // The cells of such a map start at the equilibrium, and so does their motion.
+        let v0 = number(setting.get(Parameter::V0));
+        said += &format!("\n[start]\n{} = {v0}\n", Parameter::XDot0.name());
     }
     said
 }

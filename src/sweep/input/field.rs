@@ -441,19 +441,18 @@ catalogue! {
             ),
             ..ROW
         };
-        /// The lower bound of the critical velocity: the largest v0 at which stick-slip was seen
-        /// to persist.
+        /// The lower bound of the critical velocity.
         VcLower = Row {
             name: "vc_lower",
-            long_name: "largest v0 at which stick-slip was seen to persist",
+            long_name: "lower bound of the critical velocity",
             short_name: "critical velocity, at least",
             measure: VELOCITY,
             source: Source::Critical(|cell| cell.found.critical.vc_lower),
             spread: Spread::Magnitudes,
             comment: Some(
-                "by every step size of v0 that was tried; vc where that is decided, v_liftoff \
-                 where N <= 0 ends stick-slip, v_max where it survives there; no value where \
-                 N <= 0 comes before any stick-slip",
+                "below the ends that all searches came to, by a margin; vc where that is decided, \
+                 v_liftoff where N <= 0 ends stick-slip, v_max where it survives there; no value \
+                 where N <= 0 comes before any stick-slip",
             ),
             ..ROW
         };

@@ -1,4 +1,4 @@
-//! Classes of working velocities.
+//! Regimes of working velocities.
 
 /// What a working velocity v0 is good for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
