@@ -20,8 +20,8 @@ use crate::sweep::input::source::Source;
 pub struct CriticalVelocity {
     /// v_c.
     pub vc: Option<f64>,
-    /// A lower bound of v_c, below the ends that all searches came to by a margin; v_c where that is
-    /// decided.
+    /// A lower bound of v_c, below the ends that all searches came to by a margin; v_c where that
+    /// is decided.
     pub vc_lower: Option<f64>,
     /// The smallest v0 at which it was lost for good or ended by lift-off; v_c where that is
     /// decided. None where neither was seen up to the end of the range, or where slow
