@@ -4,11 +4,10 @@ use std::path::{Path, PathBuf};
 
 use slipmap::maps::look::as_text::CellTexts;
 use slipmap::store::MapFile;
-use slipmap::store::schema::root;
-use slipmap::sweep::input::axis::Axis;
+use slipmap::sweep::input::axis::{Axis, nearest};
 use slipmap::sweep::input::nearest::did_you_mean;
 use slipmap::sweep::input::point_file::{PointOf, PointSpec};
-use slipmap::sweep::{Parameter, Plan, SweepSpec};
+use slipmap::sweep::{Parameter, Plan};
 
 use super::failure::Failure;
 use super::say;
@@ -120,29 +119,24 @@ impl CellArgs {
     /// Where on an axis: at the value nearest to the one given.
     fn place(&self, axis: &Axis) -> Result<usize, Failure> {
         let name = axis.parameter.name();
-        let values = &axis.values;
-        let (first, last) = (values[0], values[values.len() - 1]);
-        let (low, high) = (first.min(last), first.max(last));
         let given = self.at.iter().filter(|(at, _)| *at == axis.parameter);
         let value = match given.map(|(_, value)| *value).collect::<Vec<_>>()[..] {
-            [] if values.len() == 1 => return Ok(0),
+            [] if axis.len() == 1 => return Ok(0),
             [value] => value,
             [] => {
+                let (low, high) = axis.range();
+                let first = axis.values[0];
                 let help = format!("for example --at {name}={first}; from {low} to {high}");
                 let message = format!("--at {name}=VALUE is not given");
                 return Err(Failure::bad_input_with_help(message, help));
             }
             _ => return Err(Failure::bad_input(format!("--at {name} is given twice"))),
         };
-        let room = 1e-9 * (high - low).max(high.abs());
-        if !(low - room..=high + room).contains(&value) {
+        nearest(&axis.values, value).map_err(|[low, high]| {
             let message = format!("--at {name}={value} is outside the axis");
             let help = format!("it goes from {low} to {high}");
-            return Err(Failure::bad_input_with_help(message, help));
-        }
-        let off = |i: &usize| (values[*i] - value).abs();
-        let nearest = (0..values.len()).min_by(|a, b| off(a).total_cmp(&off(b)));
-        Ok(nearest.unwrap_or(0))
+            Failure::bad_input_with_help(message, help)
+        })
     }
 }
 
@@ -164,9 +158,8 @@ fn without(lacks: &str) -> Failure {
 /// The plan of a map.
 fn plan_of(path: &Path) -> Result<Plan, Failure> {
     let map = MapFile::open(path)?;
-    let text = map.root_text(root::SWEEP).unwrap_or_default();
-    let spec = text.parse::<SweepSpec>().and_then(Plan::new);
-    spec.map_err(|error| Failure::in_file(error, &path.display().to_string(), &text))
+    let plan = map.sweep().and_then(Plan::new);
+    plan.map_err(|e| Failure::in_file(e, &path.display().to_string(), &map.sweep_text()))
 }
 
 #[cfg(test)]

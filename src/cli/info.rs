@@ -10,9 +10,10 @@ use slipmap::linear::status::FLAGS;
 use slipmap::report::numbers::{bytes, grouped, short};
 use slipmap::store::schema::root;
 use slipmap::store::{MapAxis, MapFile};
+use slipmap::sweep::Field;
 use slipmap::sweep::input::units::Units;
-use slipmap::sweep::{Field, SweepSpec};
 
+use super::axis_facts::AxisFacts;
 use super::failure::Failure;
 use super::open::open;
 use super::say::{self, Rows, visible};
@@ -60,7 +61,7 @@ fn tell(map: &MapFile, args: &Args) -> Result<(), Failure> {
 
 fn tell_sweep(map: &MapFile) -> Result<(), Failure> {
     let mut out = std::io::stdout().lock();
-    let sweep = map.root_text(root::SWEEP).unwrap_or_default();
+    let sweep = map.sweep_text();
     // Elsewhere than on a terminal it is the file, byte by byte.
     match out.is_terminal() {
         true => write!(out, "{}", visible(&sweep))?,
@@ -90,14 +91,6 @@ struct Facts {
     status: Vec<(&'static str, u64)>,
     curves: Option<CurveFacts>,
     best: Option<BestFacts>,
-}
-
-#[derive(Serialize)]
-struct AxisFacts {
-    name: &'static str,
-    points: u64,
-    first: f64,
-    last: f64,
 }
 
 #[derive(Serialize)]
@@ -142,12 +135,7 @@ fn as_object<S: Serializer, T: Serialize>(
 
 impl Facts {
     fn of(map: &MapFile) -> Result<Self, Failure> {
-        let axis = |axis: &MapAxis| AxisFacts {
-            name: axis.parameter.name(),
-            points: axis.values.len() as u64,
-            first: axis.values[0],
-            last: axis.values[axis.values.len() - 1],
-        };
+        let axis = |axis: &MapAxis| AxisFacts::of(axis.parameter, &axis.values);
         let flags = FLAGS.iter().map(|(_, name)| *name);
         let flagged = flags.zip(map.status_counts()?.flagged);
         let scalars = map.scalars().into_iter();
@@ -167,11 +155,7 @@ impl Facts {
 
     fn tell_parameters(&self, rows: &mut Rows) -> Result<(), Failure> {
         for axis in &self.axes {
-            let (name, points) = (axis.name, grouped(axis.points));
-            let (first, last) = (axis.first, axis.last);
-            let unit = self.unit(name);
-            let text = format!("{name:<12} {points:>10} points, {first} to {last}{unit}");
-            rows.row("axis", text)?;
+            rows.row("axis", axis.text(&self.unit(axis.name)))?;
         }
         for (name, value) in &self.fixed {
             let unit = self.unit(name);
@@ -274,10 +258,7 @@ fn origin(map: &MapFile) -> Vec<(&'static str, String)> {
 
 /// Units of parameters are those of the sweep.
 fn units(map: &MapFile) -> Vec<(&'static str, String)> {
-    let sweep = map.root_text(root::SWEEP).unwrap_or_default();
-    let of_sweep = sweep
-        .parse::<SweepSpec>()
-        .map_or_else(|_| Units::default(), |s| s.units);
+    let of_sweep = map.sweep().map_or_else(|_| Units::default(), |s| s.units);
     let axes = map.axes().iter().map(|axis| axis.parameter);
     let scalars = map.scalars().into_iter().map(|(parameter, _)| parameter);
     let parameters = axes.chain(scalars);

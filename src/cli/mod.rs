@@ -1,5 +1,6 @@
 //! The command line: one file per subcommand, each thin.
 
+mod axis_facts;
 mod best;
 mod cell;
 mod failure;

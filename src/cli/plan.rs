@@ -14,6 +14,7 @@ use slipmap::sweep::input::axis::Axis;
 use slipmap::sweep::plan::pieces::spread;
 use slipmap::sweep::{Memory, Piece, Plan};
 
+use super::axis_facts::AxisFacts;
 use super::failure::Failure;
 use super::run::{MEMORY, default_threads, parse_memory, parse_threads, threads_within};
 use super::say::{self, Rows};
@@ -82,23 +83,10 @@ struct Facts {
     tiles_timed: usize,
 }
 
-#[derive(Serialize)]
-struct AxisFacts {
-    name: &'static str,
-    points: u64,
-    first: f64,
-    last: f64,
-}
-
 impl Facts {
     fn of(plan: &Plan, threads: usize) -> Result<Self, Failure> {
         let costs = Costs::of(plan)?;
-        let axis = |axis: &Axis| AxisFacts {
-            name: axis.parameter.name(),
-            points: axis.len() as u64,
-            first: axis.values[0],
-            last: axis.values[axis.len() - 1],
-        };
+        let axis = |axis: &Axis| AxisFacts::of(axis.parameter, &axis.values);
         let (total, spread) = costs.seconds();
         let seconds = [(total - spread).max(0.0), total, total + spread];
         let fields = plan.spec.fields.iter().map(|field| field.name());
@@ -122,10 +110,7 @@ impl Facts {
     fn tell(&self) -> Result<(), Failure> {
         let mut rows = Rows::begin();
         for axis in &self.axes {
-            let (name, points) = (axis.name, grouped(axis.points));
-            let (first, last) = (axis.first, axis.last);
-            let text = format!("{name:<12} {points:>10} points, {first} to {last}");
-            rows.row("axis", text)?;
+            rows.row("axis", axis.text(""))?;
         }
         rows.row("fields", self.fields.join(", "))?;
         rows.row("cells", grouped(self.cells))?;

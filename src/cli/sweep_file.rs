@@ -1,6 +1,7 @@
 //! Reading sweep files, case files and tables of friction, with errors that point into them.
 
-use std::io::Read;
+use std::fs::File;
+use std::io::{self, Read};
 use std::path::Path;
 
 use slipmap::model::Table;
@@ -34,44 +35,39 @@ pub(super) fn read_table(path: &Path) -> Result<Table, Failure> {
 /// What stands for standard input in the place of a file.
 pub(super) const STANDARD_INPUT: &str = "-";
 
-fn read_standard_input<T>(
-    kind: &str,
-    parse: impl FnOnce(&str) -> Result<T, SpecError>,
-) -> Result<T, Failure> {
-    let mut read = Vec::new();
-    let most = std::io::stdin()
-        .lock()
-        .take(MOST_BYTES + 1)
-        .read_to_end(&mut read);
-    let refuse = |why: String| Failure::bad_input(format!("cannot read standard input: {why}"));
-    most.map_err(|e| refuse(e.to_string()))?;
-    if read.len() as u64 > MOST_BYTES {
-        let most = bytes(MOST_BYTES);
-        return Err(refuse(format!("a {kind} file has {most} at most")));
-    }
-    let text = String::from_utf8(read).map_err(|_| refuse("it is not UTF-8 text".into()))?;
-    parse(&text).map_err(|error| Failure::in_file(error, "standard input", &text))
-}
-
 fn read<T>(
     path: &Path,
     kind: &str,
     parse: impl FnOnce(&str) -> Result<T, SpecError>,
 ) -> Result<T, Failure> {
-    if path == Path::new(STANDARD_INPUT) {
-        return read_standard_input(kind, parse);
-    }
-    let name = path.display().to_string();
+    let (name, read) = match path == Path::new(STANDARD_INPUT) {
+        true => (
+            "standard input".to_owned(),
+            at_most(std::io::stdin().lock()),
+        ),
+        false => (path.display().to_string(), read_file(path)),
+    };
     let refuse = |why: String| Failure::bad_input(format!("cannot read {name}: {why}"));
-    let metadata = std::fs::metadata(path).map_err(|e| refuse(e.to_string()))?;
-    if !metadata.is_file() {
-        return Err(refuse("it is no file".into()));
-    }
-    if metadata.len() > MOST_BYTES {
+    let read = read.map_err(|e| refuse(e.to_string()))?;
+    if read.len() as u64 > MOST_BYTES {
         let most = bytes(MOST_BYTES);
         return Err(refuse(format!("a {kind} file has {most} at most")));
     }
-    let read = std::fs::read(path).map_err(|e| refuse(e.to_string()))?;
     let text = String::from_utf8(read).map_err(|_| refuse("it is not UTF-8 text".into()))?;
     parse(&text).map_err(|error| Failure::in_file(error, &name, &text))
+}
+
+fn read_file(path: &Path) -> io::Result<Vec<u8>> {
+    // Opening a pipe would wait for who writes into it.
+    if !std::fs::metadata(path)?.is_file() {
+        return Err(io::Error::other("it is no file"));
+    }
+    at_most(File::open(path)?)
+}
+
+/// All bytes, or one more than a file may have.
+fn at_most(from: impl Read) -> io::Result<Vec<u8>> {
+    let mut read = Vec::new();
+    from.take(MOST_BYTES + 1).read_to_end(&mut read)?;
+    Ok(read)
 }

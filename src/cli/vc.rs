@@ -96,8 +96,8 @@ fn print(json: bool, found: &impl Serialize, not_known: Option<&str>) -> Result<
     let mut out = std::io::stdout().lock();
     let value = serde_json::to_value(found).map_err(std::io::Error::from)?;
     for (key, value) in value.as_object().into_iter().flatten() {
-        let shown = match (value, &not_known) {
-            (_, Some(text)) if key == "vc" => (*text).to_owned(),
+        let shown = match (value, not_known) {
+            (_, Some(text)) if key == "vc" => text.to_owned(),
             (_, Some(_)) if key == "v_liftoff" || key == "windows" => continue,
             (serde_json::Value::String(text), _) => text.clone(),
             (serde_json::Value::Null, _) => "none".into(),

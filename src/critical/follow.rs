@@ -125,18 +125,9 @@ impl<'p> Kinds<'p> {
         }
     }
 
-    /// Keeps what searches tell, of their motions those of slow ones.
-    fn keep(&mut self, searches: Vec<Search>) {
-        let slow = self.problem.options.bracket.slow_steps[0];
-        self.searches.extend(searches.into_iter().map(|search| {
-            let motion = search.motion.filter(|_| search.step <= slow);
-            Search { motion, ..search }
-        }));
-    }
-
     fn simulated_from(&mut self, handover: Handover) -> CriticalVelocity {
         let (critical, searches) = simulated_from(self.problem, handover);
-        self.keep(searches);
+        self.searches.extend(searches);
         critical
     }
 
@@ -148,7 +139,7 @@ impl<'p> Kinds<'p> {
             // No branch begins there.
             Sequel::Irregular | Sequel::Undetermined(_) => {
                 let (critical, searches) = simulated(self.problem);
-                self.keep(searches);
+                self.searches.extend(searches);
                 Ok((critical, None))
             }
         }
@@ -277,7 +268,7 @@ impl<'p> Kinds<'p> {
             }
             _ => {
                 let critical = told(ramped, usual);
-                self.keep(vec![search]);
+                self.searches.push(search);
                 Err(critical)
             }
         }

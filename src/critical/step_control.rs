@@ -45,9 +45,9 @@ impl Prediction {
 /// How far the next step in v0 may go. All steps are relative.
 ///
 /// A step that failed makes the next one half as long, one that succeeded doubles the largest that
-/// is allowed, up to a limit. A v0
-/// that failed is no bound: it may have been the size of the step. So it is come nearer to by half
-/// of the way, and [`Retry`] says what is tried from much nearer than the step that failed there.
+/// is allowed, up to a limit. A v0 that failed is no bound: it may have been the size of the step.
+/// So it is come nearer to by half of the way, and [`Retry`] says what is tried from much nearer
+/// than the step that failed there.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct StepControl<'o> {
     options: &'o ContinuationOptions,

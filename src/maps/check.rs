@@ -7,12 +7,12 @@ use crate::store::soundness::{check_checksums, check_schema, check_seal};
 use crate::store::tiles::RecordEncoder;
 use crate::store::tiles::record::Content;
 use crate::store::{MapFile, StoreError};
+use crate::sweep::Field;
 use crate::sweep::cells::second_look::{Answer, Question, Stored, second_look};
 use crate::sweep::engine::{Computed, Encode, STATUS_FILL, Worker};
 use crate::sweep::plan::Plan;
 use crate::sweep::plan::pieces::{Piece, spread};
 use crate::sweep::plan::tile::index_of;
-use crate::sweep::{Field, SweepSpec};
 use std::sync::atomic::AtomicBool;
 
 pub use crate::store::soundness::Report;
@@ -64,8 +64,7 @@ pub fn check(map: &MapFile, program: Program, effort: Effort) -> Result<Report, 
 }
 
 fn planned(map: &MapFile, report: &mut Report) -> Option<Plan> {
-    let sweep = map.root_text(root::SWEEP).unwrap_or_default();
-    match sweep.parse::<SweepSpec>().and_then(Plan::new) {
+    match map.sweep().and_then(Plan::new) {
         Ok(plan) if map.root_text(root::PLAN_HASH).as_deref() == Some(&plan.hash()) => Some(plan),
         Ok(_) => {
             let fault = "the sweep in the map does not have the hash of its plan";

@@ -32,7 +32,7 @@ pub(super) enum Gap {
 }
 
 impl Gap {
-    /// All.
+    /// Every gap, in the order of legends.
     #[cfg(feature = "picture")]
     pub(super) const ALL: [Self; 8] = [
         Self::NotConverged,

@@ -18,7 +18,7 @@ use crate::sweep::engine::{FEW_FILL, N_UNSTABLE_FILL, STATUS_FILL};
 use crate::sweep::input::axis::{Axis, MOST_POINTS};
 use crate::sweep::input::field::Storage;
 use crate::sweep::plan::MOST_CELLS;
-use crate::sweep::{Field, Parameter};
+use crate::sweep::{Field, Parameter, SpecError, SweepSpec};
 
 /// An axis of a map.
 #[derive(Debug, Clone, PartialEq)]
@@ -153,6 +153,20 @@ impl MapFile {
     #[must_use]
     pub fn root_text(&self, name: &str) -> Option<String> {
         text(&self.file, name).ok()
+    }
+
+    /// The sweep file that made the map; empty where the map lacks it.
+    #[must_use]
+    pub fn sweep_text(&self) -> String {
+        self.root_text(root::SWEEP).unwrap_or_default()
+    }
+
+    /// The sweep that made the map.
+    ///
+    /// # Errors
+    /// What [`SweepSpec`] refuses, with the place in [`sweep_text`](Self::sweep_text).
+    pub fn sweep(&self) -> Result<SweepSpec, SpecError> {
+        self.sweep_text().parse()
     }
 
     /// The hash of everything besides the cells, as it is now.

@@ -7,13 +7,12 @@ use std::time::{Duration, Instant, SystemTime};
 use crate::store::chunk_layout::ChunkLayout;
 use crate::store::columns::FileColumns;
 use crate::store::map_file::MapAxis;
-use crate::store::schema::root;
 use crate::store::stamp::Stamp;
 use crate::store::tiles::GrowingMap;
 use crate::store::{MapFile, StoreError};
 use crate::sweep::engine::{FEW_FILL, N_UNSTABLE_FILL, STATUS_FILL};
 use crate::sweep::input::field::Storage;
-use crate::sweep::{Field, Plan, SweepSpec};
+use crate::sweep::{Field, Plan};
 
 /// How often it is looked whether a map is still what it was.
 const BETWEEN_LOOKS: Duration = Duration::from_millis(500);
@@ -216,8 +215,7 @@ fn facts_of_tiles(growing: &GrowingMap) -> Facts {
 fn facts_of_file(columns: &FileColumns) -> Facts {
     let map = columns.map();
     let axes = map.axes().to_vec();
-    let text = map.root_text(root::SWEEP).unwrap_or_default();
-    let plan = text.parse::<SweepSpec>().and_then(Plan::new).ok();
+    let plan = map.sweep().and_then(Plan::new).ok();
     let plan = plan.filter(|plan| {
         let told = plan.spec.axes.iter();
         let told = told.map(|axis| (axis.parameter, &axis.values));

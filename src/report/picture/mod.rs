@@ -277,7 +277,7 @@ fn compose(map: &MapFile, options: &PictureOptions, most: usize) -> Result<Scene
 
 /// The field that the map's sweep names for its pictures.
 fn of_sweep(map: &MapFile) -> Option<Field> {
-    let named = view::sweep(map)?.picture;
+    let named = map.sweep().ok()?.picture;
     named.filter(|field| map.fields().contains(field))
 }
 

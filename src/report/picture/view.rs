@@ -4,9 +4,9 @@ use super::error::PictureError;
 use super::text::{Rich, assignment};
 use crate::store::MapFile;
 use crate::store::map_file::MapAxis;
-use crate::store::schema::root;
+use crate::sweep::Parameter;
+use crate::sweep::input::axis::nearest;
 use crate::sweep::input::units::Units;
-use crate::sweep::{Parameter, SweepSpec};
 
 /// More panels, or more colours, than this are not told apart.
 pub(super) const MOST_PANELS: usize = 12;
@@ -133,7 +133,7 @@ impl View {
                 notes.push(assignment(axis.parameter, axis.values[value], &axis.unit));
             }
         }
-        let units = sweep(map).map(|spec| spec.units).unwrap_or_default();
+        let units = map.sweep().map(|spec| spec.units).unwrap_or_default();
         // Only what differs from the default, and the gains, since a gain of 0 means no such
         // control.
         for (parameter, value) in map.scalars() {
@@ -149,11 +149,6 @@ impl View {
     }
 }
 
-/// The map's sweep, if it can be read.
-pub(super) fn sweep(map: &MapFile) -> Option<SweepSpec> {
-    map.root_text(root::SWEEP)?.parse().ok()
-}
-
 fn asked(map: &MapFile, at: &[(Parameter, f64)]) -> Result<Vec<Asked>, PictureError> {
     let mut asked: Vec<Asked> = vec![None; map.axes().len()];
     for &(parameter, value) in at {
@@ -165,7 +160,13 @@ fn asked(map: &MapFile, at: &[(Parameter, f64)]) -> Result<Vec<Asked>, PictureEr
                 axes: names.join(", "),
             });
         };
-        let index = nearest(parameter, &map.axes()[axis].values, value)?;
+        let index = nearest(&map.axes()[axis].values, value);
+        let index = index.map_err(|[from, to]| PictureError::OutsideAxis {
+            parameter,
+            value,
+            from,
+            to,
+        })?;
         let indices = asked[axis].get_or_insert_default();
         if !indices.contains(&index) {
             indices.push(index);
@@ -173,23 +174,6 @@ fn asked(map: &MapFile, at: &[(Parameter, f64)]) -> Result<Vec<Asked>, PictureEr
         }
     }
     Ok(asked)
-}
-
-fn nearest(parameter: Parameter, values: &[f64], value: f64) -> Result<usize, PictureError> {
-    let from = values.iter().copied().fold(f64::INFINITY, f64::min);
-    let to = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-    let slack = 1e-9 * from.abs().max(to.abs());
-    if !(from - slack..=to + slack).contains(&value) {
-        return Err(PictureError::OutsideAxis {
-            parameter,
-            value,
-            from,
-            to,
-        });
-    }
-    let distances = values.iter().map(|v| (v - value).abs()).enumerate();
-    let best = distances.min_by(|a, b| a.1.total_cmp(&b.1));
-    Ok(best.map_or(0, |(index, _)| index))
 }
 
 /// The axis for which several values are asked.
@@ -228,16 +212,5 @@ mod tests {
         assert_eq!((some.len(), some[0], some[11]), (12, 0, 39));
         assert!(some.windows(2).all(|w| (3..=4).contains(&(w[1] - w[0]))));
         assert_eq!(evenly(&all[..5], 12), [0, 1, 2, 3, 4]);
-    }
-
-    #[test]
-    fn the_nearest_value_must_lie_on_the_axis() {
-        let values = [-0.05, -0.1, -0.2];
-        let at = |value| nearest(Parameter::MuPrime, &values, value);
-        assert_eq!(at(-0.09).unwrap(), 1);
-        assert_eq!(at(-0.2).unwrap(), 2);
-        for outside in [-0.21, 0.0, f64::NAN, f64::INFINITY] {
-            assert!(matches!(at(outside), Err(PictureError::OutsideAxis { .. })));
-        }
     }
 }

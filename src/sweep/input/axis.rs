@@ -95,6 +95,22 @@ pub fn spaced(from: f64, to: f64, points: u64, spacing: Spacing) -> Result<Vec<f
     Ok(values)
 }
 
+/// The index of the one of these values, at least one, that is nearest.
+///
+/// # Errors
+/// The range of the values where this one lies outside, by more than rounding; NaN does.
+pub fn nearest(values: &[f64], value: f64) -> Result<usize, [f64; 2]> {
+    let from = values.iter().copied().fold(f64::INFINITY, f64::min);
+    let to = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    let slack = 1e-9 * from.abs().max(to.abs());
+    if !(from - slack..=to + slack).contains(&value) {
+        return Err([from, to]);
+    }
+    let distance = |i: &usize| (values[*i] - value).abs();
+    let nearest = (0..values.len()).min_by(|a, b| distance(a).total_cmp(&distance(b)));
+    Ok(nearest.unwrap_or(0))
+}
+
 impl Axis {
     /// An axis with these values.
     ///
@@ -155,6 +171,17 @@ mod tests {
         let mirrored = spaced(-1e3, -1e-3, 7, Spacing::Log).unwrap();
         assert_eq!((mirrored[0], mirrored[6]), (-1e3, -1e-3));
         assert!((mirrored[3] + 1.0).abs() < 1e-14);
+    }
+
+    #[test]
+    fn the_nearest_value_must_lie_on_the_axis() {
+        let values = [-0.05, -0.1, -0.2];
+        assert_eq!(nearest(&values, -0.09), Ok(1));
+        assert_eq!(nearest(&values, -0.2 - 1e-12), Ok(2));
+        assert_eq!(nearest(&[0.0], 0.0), Ok(0));
+        for outside in [-0.21, 0.0, f64::NAN, f64::INFINITY] {
+            assert_eq!(nearest(&values, outside), Err([-0.2, -0.05]));
+        }
     }
 
     #[test]

@@ -1,0 +1,32 @@
+//! What is told of an axis, of a sweep and of a map alike.
+
+use serde::Serialize;
+use slipmap::report::numbers::grouped;
+use slipmap::sweep::Parameter;
+
+#[derive(Serialize)]
+pub(super) struct AxisFacts {
+    pub name: &'static str,
+    points: u64,
+    first: f64,
+    last: f64,
+}
+
+impl AxisFacts {
+    /// Of an axis with these values, at least one.
+    pub(super) fn of(parameter: Parameter, values: &[f64]) -> Self {
+        Self {
+            name: parameter.name(),
+            points: values.len() as u64,
+            first: values[0],
+            last: values[values.len() - 1],
+        }
+    }
+
+    /// "tau   400 points, 0 to 12 s", the unit with a space before it or empty.
+    pub(super) fn text(&self, unit: &str) -> String {
+        let (name, points) = (self.name, grouped(self.points));
+        let (first, last) = (self.first, self.last);
+        format!("{name:<12} {points:>10} points, {first} to {last}{unit}")
+    }
+}
