@@ -8,6 +8,14 @@ set -euo pipefail
 . "$(dirname "${BASH_SOURCE[0]}")/browser.sh"
 cd "$SLIPMAP_ROOT"
 
+# leave_out TEST WHY: the test suite goes without that test.
+left_out=()
+leave_out() {
+    left_out+=(--skip "$1")
+    warnings+=("$2")
+}
+warnings=()
+
 # ncdump, h5dump, Octave and a Python that can make virtual environments.
 install_readers() {
     local missing=() program
@@ -43,30 +51,29 @@ python_with_venv() {
     return 1
 }
 
-# The packages of requirements-readers.txt, in target/readers-venv. The stamp says which ones are there.
-install_python_packages() {
-    local venv=$SLIPMAP_ROOT/target/readers-venv requirements=scripts/requirements-readers.txt
-    local stamp=$venv/requirements-readers.txt
-    export SLIPMAP_PYTHON=$venv/bin/python
-    if cmp -s "$requirements" "$stamp" && "$SLIPMAP_PYTHON" -c '' 2>/dev/null; then
+# install_packages VENV REQUIREMENTS: the packages of a file in scripts, in an environment below target. The stamp says which
+# ones are there.
+install_packages() {
+    local venv=$SLIPMAP_ROOT/target/$1 requirements=scripts/$2
+    if cmp -s "$requirements" "$venv/$2" && "$venv/bin/python" -c '' 2>/dev/null; then
         return
     fi
-    say "installing the Python readers into target/readers-venv"
+    say "installing the Python packages of $requirements into target/$1"
     rm -rf "$venv"
     mkdir -p target
-    "$(python_with_venv)" -m venv "$venv" || die "cannot make a Python environment in target/readers-venv"
-    "$SLIPMAP_PYTHON" -m pip install --quiet --disable-pip-version-check --require-hashes -r "$requirements" >&2 ||
-        die "the packages of $requirements cannot be installed: see above which; the tests read maps with them"
-    cp "$requirements" "$stamp"
+    "$(python_with_venv)" -m venv "$venv" || return 1
+    "$venv/bin/python" -m pip install --quiet --disable-pip-version-check --require-hashes -r "$requirements" >&2 || return 1
+    cp "$requirements" "$venv/$2"
 }
 
-# leave_out TEST WHY: the test suite goes without that test.
-left_out=()
-leave_out() {
-    left_out+=(--skip "$1")
-    warnings+=("$2")
+install_python_packages() {
+    export SLIPMAP_PYTHON=$SLIPMAP_ROOT/target/readers-venv/bin/python
+    install_packages readers-venv requirements-readers.txt ||
+        die "the packages of scripts/requirements-readers.txt cannot be installed: see above why; the tests read maps with them"
+    export SLIPMAP_CF_CHECKER=$SLIPMAP_ROOT/target/cf-venv/bin/compliance-checker
+    install_packages cf-venv requirements-cf.txt || leave_out the_compliance_checker \
+        "maps are not checked against the CF conventions: compliance-checker cannot be installed"
 }
-warnings=()
 
 octave_reads_netcdf() {
     octave-cli --no-gui --norc --quiet --eval "pkg load netcdf" >/dev/null 2>&1 && have gnuplot && have gs

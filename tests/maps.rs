@@ -251,7 +251,7 @@ fn a_map_of_the_second_version_is_read() {
     let curves = map.curves_where(|_| true).unwrap();
     assert!(!curves.is_empty() && map.best().unwrap().len() == 2);
     let summary = map.summary(Field::DelayMargin).unwrap();
-    assert!(summary.range.is_some() && summary.missing == 0);
+    assert!(summary.range.is_some() && summary.missing(126) == 0);
     // Every count is that of the argument principle.
     let plan = plan(&map.root_text("sweep").unwrap());
     for (alpha, tau) in [(0, 0), (3, 4), (6, 8), (2, 7)] {
@@ -271,9 +271,9 @@ fn a_map_of_the_fourth_version_has_a_regime() {
     let path = Path::new("tests/reference/format_version_4.h5");
     let map = MapFile::open(path).unwrap();
     assert_eq!(map.fields(), [Field::NUnstable, Field::Regime, Field::Vc]);
-    let counts = map.kind_counts(Field::Regime).unwrap();
-    assert_eq!(counts.iter().sum::<u64>(), 12);
-    assert_eq!(map.summary(Field::Regime).unwrap().missing, 0);
+    let summary = map.summary(Field::Regime).unwrap();
+    assert_eq!(summary.kinds.iter().sum::<u64>(), 12);
+    assert_eq!(summary.missing(12), 0);
     let text = map.root_text("sweep").unwrap();
     let plan = plan(&text);
     assert_eq!(map.root_text("plan_hash").unwrap(), plan.hash());
@@ -290,6 +290,89 @@ fn a_map_of_the_fourth_version_has_a_regime() {
     }
     let file = hdf5::File::open(&again).unwrap();
     assert!(file.link_exists("regime") && !file.link_exists("class"));
+}
+
+/// Every attribute that tells of cells, computed anew from the cells as HDF5 gives them.
+#[test]
+fn maps_tell_what_values_their_cells_have() {
+    let infinite = "fields = [\"abscissa\", \"abscissa_2\"]\n[axes]\nalpha_v = [-0.4, 0, 0.4]\n\
+                    tau = [0, 1, 2]\n[fixed]\nmu_prime = -0.1\n";
+    let kinds = "fields = [\"n_unstable\", \"outcome\"]\n[axes]\nalpha_v = [-0.4, 0.4]\n\
+                 tau = [0.5, 1, 2]\n[fixed]\nv0 = 0.3\n[start]\na0 = 0\n[friction]\n\
+                 law = \"weakening\"\nmu0 = 0.5\nv_s = 0.5\n";
+    let folder = tempfile::tempdir().unwrap();
+    for (number, text) in [SWEEPS[0], SWEEPS[5], infinite, kinds].iter().enumerate() {
+        let path = folder.path().join(format!("{number}.h5"));
+        write(&plan(text), 2, &path);
+        let file = hdf5::File::open(&path).unwrap();
+        let map = MapFile::open(&path).unwrap();
+        for field in map.fields() {
+            check_told(&file.dataset(field.name()).unwrap());
+        }
+        check_told_of_statuses(&file.dataset("status").unwrap());
+    }
+}
+
+/// The numbers of an attribute; none where there is no such attribute.
+fn attribute<T: hdf5::H5Type>(of: &hdf5::Dataset, name: &str) -> Vec<T> {
+    let attribute = of.attr(name).ok();
+    attribute.map_or(Vec::new(), |a| a.read_raw().unwrap())
+}
+
+fn number_of<T>(cells: &[T], hold: impl Fn(&T) -> bool) -> u64 {
+    cells.iter().filter(|cell| hold(cell)).count() as u64
+}
+
+/// The smallest and the largest; empty for none.
+fn ends(values: &[f64]) -> Vec<f64> {
+    let mut sorted = values.to_vec();
+    sorted.sort_by(f64::total_cmp);
+    let first = sorted.first().zip(sorted.last());
+    first.map_or(Vec::new(), |(low, high)| vec![*low, *high])
+}
+
+fn check_told(dataset: &hdf5::Dataset) {
+    let cells = dataset.read_raw::<f64>().unwrap();
+    let fill = match dataset.dtype().unwrap().size() {
+        1 => 255.0,
+        2 => 65535.0,
+        _ => f64::NAN,
+    };
+    let is_value = |v: &f64| !v.is_nan() && *v != fill;
+    let missing = number_of(&cells, |v| !is_value(v));
+    assert_eq!(attribute::<u64>(dataset, "cells_without_value"), [missing]);
+    let integers = !fill.is_nan();
+    assert_eq!(dataset.attr("_FillValue").is_ok(), missing > 0 || !integers);
+    let kinds: Vec<f64> = attribute(dataset, "flag_values");
+    if !kinds.is_empty() {
+        let of = |kind: &f64| number_of(&cells, |v| v == kind);
+        let expected: Vec<u64> = kinds.iter().map(of).collect();
+        assert_eq!(attribute::<u64>(dataset, "flag_cells"), expected);
+        return;
+    }
+    let values: Vec<f64> = cells.into_iter().filter(is_value).collect();
+    assert_eq!(attribute::<f64>(dataset, "actual_range"), ends(&values));
+    if !integers {
+        let infinite =
+            [f64::NEG_INFINITY, f64::INFINITY].map(|end| number_of(&values, |v| *v == end));
+        assert_eq!(attribute::<u64>(dataset, "cells_infinite"), infinite);
+        let finite: Vec<f64> = values.into_iter().filter(|v| v.is_finite()).collect();
+        assert_eq!(attribute::<f64>(dataset, "finite_range"), ends(&finite));
+    }
+}
+
+fn check_told_of_statuses(status: &hdf5::Dataset) {
+    let cells = status.read_raw::<u8>().unwrap();
+    let masks: Vec<u8> = attribute(status, "flag_masks");
+    let with = |mask: &u8| number_of(&cells, |s| s & mask != 0);
+    let expected: Vec<u64> = masks.iter().map(with).collect();
+    assert_eq!(attribute::<u64>(status, "flag_cells"), expected);
+    assert_eq!(
+        attribute::<u64>(status, "cells_unflagged"),
+        [number_of(&cells, |s| *s == 0)]
+    );
+    assert_eq!(attribute::<u64>(status, "cells_without_value"), [0]);
+    assert!(status.attr("_FillValue").is_err());
 }
 
 /// Integers have a `_FillValue` where cells are missing alone: readers turn those into floats.

@@ -286,6 +286,27 @@ fn signals_stop_a_run_soon_and_keep_what_is_done() {
         "of them missing",
     );
     assert_eq!(cells_done(&folder, "sofar.h5"), done);
+    // Of its integers it is told what stands in the cells that are missing, and how many are.
+    let so_far = hdf5::File::open(folder.path().join("sofar.h5")).unwrap();
+    let missing = so_far.attr("cells_missing").unwrap().read_scalar::<u64>();
+    let missing = missing.unwrap();
+    for name in ["n_unstable", "status"] {
+        let dataset = so_far.dataset(name).unwrap();
+        let fill = dataset
+            .attr("_FillValue")
+            .unwrap()
+            .read_raw::<u16>()
+            .unwrap()[0];
+        let cells = dataset.read_raw::<u16>().unwrap();
+        let without = cells.iter().filter(|&&value| value == fill).count() as u64;
+        let told = dataset.attr("cells_without_value").unwrap();
+        assert_eq!(
+            (without, told.read_scalar::<u64>().unwrap()),
+            (missing, missing),
+            "{name}"
+        );
+    }
+    drop(so_far);
     assert_eq!(
         folder.files(),
         [

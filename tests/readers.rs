@@ -869,3 +869,50 @@ fn the_example_for_julia_reads_a_map() {
         julia
     });
 }
+
+/// Every kind of map, against the CF conventions: cells that are counted, roots, best settings and
+/// degrees of stability, motions in units, critical velocities. The conventions want a title, which
+/// a sweep need not have.
+#[test]
+fn the_compliance_checker_finds_nothing() {
+    let checker = std::env::var("SLIPMAP_CF_CHECKER");
+    let checker = checker.unwrap_or_else(|_| "compliance-checker".into());
+    let motions = "title = \"Motions\"\nfields = [\"outcome\", \"settle_time\", \"n_min\"]\n[axes]\n\
+                   alpha_v = [-0.4, 0.4]\ntau = [0.5, 1, 2]\n[fixed]\nv0 = 0.3\n[start]\na0 = 0\n\
+                   [friction]\nlaw = \"weakening\"\nmu0 = 0.5\nv_s = 0.5\n\
+                   [units]\nforce = \"N\"\nlength = \"m\"\ntime = \"s\"\n";
+    let roots = "title = \"Roots\"\nbest = true\ndegree_of_stability = [0.05]\n\
+                 fields = [\"n_unstable\", \"delay_margin\", \"abscissa\", \"abscissa_2\"]\n\
+                 [axes]\nalpha_v = { from = -1, to = 0.2, points = 25 }\n\
+                 tau = { from = 0, to = 9, points = 40 }\n[fixed]\nmu_prime = -0.3\n";
+    let velocities = "title = \"Velocities\"\nfields = [\"vc\", \"method\", \"regime\"]\n[axes]\nalpha_n = [-4, 0.4]\n\
+                      v0 = [0.1, 1]\ntau = [0.5, 1]\n[friction]\nlaw = \"coulomb\"\nmu0 = 0.5\n";
+    let folder = TempDir::new().unwrap();
+    for (number, sweep) in [&load_control().sweep(), motions, roots, velocities]
+        .iter()
+        .enumerate()
+    {
+        let map = format!("map{number}.nc");
+        std::fs::write(folder.path().join("sweep.toml"), sweep).unwrap();
+        let arguments = ["run", "--quiet", "sweep.toml", "-o", &map];
+        run(&mut command(
+            env!("CARGO_BIN_EXE_slipmap"),
+            folder.path(),
+            arguments,
+        ));
+        // That one looks for a dimension `time` in every map with groups, and fails without.
+        let broken = "check_invalid_same_named_dimension_across_groups";
+        let arguments = [
+            "--test",
+            "cf:1.11",
+            "--criteria",
+            "strict",
+            "-s",
+            broken,
+            &map,
+        ];
+        let report = run(&mut command(&checker, folder.path(), arguments));
+        let report = text(&report.stdout);
+        assert!(report.contains("All tests passed!"), "{sweep}\n{report}");
+    }
+}

@@ -233,8 +233,8 @@ fn the_summary_of_a_field_tells_infinite_and_missing_values() {
     );
     let summary = |name| map.summary(Field::from_name(name).unwrap()).unwrap();
     assert_eq!(
-        (summary("abscissa").infinite, summary("abscissa").missing),
-        (0, 0)
+        (summary("abscissa").infinite, summary("abscissa").missing(9)),
+        ([0, 0], 0)
     );
     assert!(
         summary("abscissa")
@@ -242,7 +242,7 @@ fn the_summary_of_a_field_tells_infinite_and_missing_values() {
             .is_some_and(|(low, high)| low < high)
     );
     // No control in one of three lines, no delay in one of three columns.
-    assert_eq!(summary("abscissa_2").infinite, 5);
-    assert_eq!(summary("frequency_2").missing, 5);
+    assert_eq!(summary("abscissa_2").infinite, [5, 0]);
+    assert_eq!(summary("frequency_2").missing(9), 5);
     assert_eq!(map.stability_field(), Some(Field::Abscissa));
 }

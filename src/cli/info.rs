@@ -283,15 +283,13 @@ fn fields(map: &MapFile) -> Result<Vec<FieldFacts>, Failure> {
             kinds: Vec::new(),
         };
         let field = Field::from_name(name);
-        if let Some((field, kinds)) = field.and_then(|field| Some((field, field.kinds()?))) {
-            let counts = map.kind_counts(field)?;
-            facts.without_value = map.cells().saturating_sub(counts.iter().sum());
-            let counts = kinds.into_iter().zip(counts);
-            facts.kinds = counts.filter(|(_, cells)| *cells > 0).collect();
-        } else if let Some(field) = field {
+        if let Some(field) = field {
             let summary = map.summary(field)?;
-            (facts.range, facts.infinite) = (summary.range, summary.infinite);
-            facts.without_value = summary.missing;
+            (facts.range, facts.infinite) = (summary.range, summary.infinite.iter().sum());
+            facts.without_value = summary.missing(map.cells());
+            let kinds = field.kinds().into_iter().flatten();
+            let counts = kinds.zip(summary.kinds);
+            facts.kinds = counts.filter(|(_, cells)| *cells > 0).collect();
         }
         fields.push(facts);
     }

@@ -78,11 +78,11 @@ pub fn assemble(
                 writer.put_curves(&plane(plan, number), &rows)?;
             }
             (Piece::Best(_), Content::Best(row)) => writer.put_best(&row),
-            (Piece::Tile(number), Content::Tile(chunks)) => {
-                if chunks.len() != writer.chunks_of_tile() {
+            (Piece::Tile(number), Content::Tile(content)) => {
+                if content.chunks.len() != writer.chunks_of_tile() {
                     return Err(damaged());
                 }
-                writer.put_tile(&plan.tiles.tile(number as usize), &chunks)?;
+                writer.put_tile(&plan.tiles.tile(number as usize), &content)?;
             }
             _ => return Err(damaged()),
         }

@@ -57,6 +57,7 @@ pub fn check(map: &MapFile, program: Program, effort: Effort) -> Result<Report, 
     // Values of a map whose bytes are wrong are not worth a look.
     if report.faults.is_empty() {
         check_statuses(map, &mut report)?;
+        check_summaries(map, &mut report)?;
         look_at_cells(map, &plan, effort.cells, &mut report)?;
         compute_tiles(map, &plan, program, effort.tiles, &mut report);
     }
@@ -82,7 +83,10 @@ fn planned(map: &MapFile, report: &mut Report) -> Option<Plan> {
 }
 
 fn check_statuses(map: &MapFile, report: &mut Report) -> Result<(), StoreError> {
-    let found = map.status_counts()?;
+    let found = map.statuses_of_cells()?;
+    if found != map.status_counts()? {
+        report.faults.push(told_wrongly(STATUS));
+    }
     let computed = map.cells() - map.cells_missing().min(map.cells());
     if found.computed != computed {
         let (cells, of) = (found.computed, computed);
@@ -98,6 +102,20 @@ fn check_statuses(map: &MapFile, report: &mut Report) -> Result<(), StoreError> 
         }
     }
     Ok(())
+}
+
+/// Whether the map tells of its fields what values their cells have.
+fn check_summaries(map: &MapFile, report: &mut Report) -> Result<(), StoreError> {
+    for &field in map.fields() {
+        if map.summary_of_cells(field)? != map.summary(field)? {
+            report.faults.push(told_wrongly(map.name_of(field)));
+        }
+    }
+    Ok(())
+}
+
+fn told_wrongly(name: &str) -> String {
+    format!("{name}: the range or the numbers of cells that the map tells are not those it has")
 }
 
 fn look_at_cells(
@@ -173,7 +191,7 @@ fn compute_tiles(map: &MapFile, plan: &Plan, program: Program, tiles: u64, repor
         worker.compute(&tile);
         let piece = Piece::Tile(number as u64);
         let record = encoder.encode(piece, Computed::Tile(&worker.buffers));
-        let Some(Content::Tile(chunks)) = Content::read(piece, &record.payload) else {
+        let Some(Content::Tile(computed)) = Content::read(piece, &record.payload) else {
             continue;
         };
         let mut equal = true;
@@ -183,7 +201,7 @@ fn compute_tiles(map: &MapFile, plan: &Plan, program: Program, tiles: u64, repor
             .iter()
             .map(|&f| map.name_of(f))
             .chain([STATUS]);
-        for (name, chunk) in held.zip(chunks) {
+        for (name, chunk) in held.zip(computed.chunks) {
             match map.stored_chunk(name, &tile.offset) {
                 Ok(Some(stored)) if stored == chunk => {}
                 // Of a map that is not complete.

@@ -1,114 +1,69 @@
-//! What values a map holds, all cells of it, read piece by piece.
+//! What values a map holds: as it tells, or all cells of it, read piece by piece.
 
 use hdf5::{Dataset, SliceOrIndex};
 
 use super::error::StoreError;
 use super::map_file::MapFile;
 use super::schema::STATUS;
-use crate::linear::status::FLAGS;
+use super::summary::{FieldSummary, StatusCounts};
+use super::values::Number;
 use crate::sweep::Field;
-use crate::sweep::engine::STATUS_FILL;
-
-/// What values a field has in a map.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct FieldSummary {
-    /// The smallest and largest finite value; none where there is none.
-    pub range: Option<(f64, f64)>,
-    /// Number of infinite values.
-    pub infinite: u64,
-    /// Number of cells without a value.
-    pub missing: u64,
-}
-
-/// What the statuses of cells say.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub struct StatusCounts {
-    /// Cells that are computed.
-    pub computed: u64,
-    /// Cells without any flag.
-    pub unflagged: u64,
-    /// Cells with each flag, in the order of [`FLAGS`].
-    pub flagged: [u64; FLAGS.len()],
-}
-
-impl StatusCounts {
-    /// Adds the statuses of more cells.
-    pub fn add(&mut self, cells: impl IntoIterator<Item = u8>) {
-        for status in cells {
-            if status == STATUS_FILL {
-                continue;
-            }
-            self.computed += 1;
-            self.unflagged += u64::from(status == 0);
-            for (count, (mask, _)) in self.flagged.iter_mut().zip(FLAGS) {
-                *count += u64::from(status & mask != 0);
-            }
-        }
-    }
-}
-
-impl FieldSummary {
-    /// Takes in more cells.
-    pub fn add(&mut self, cells: &[f64]) {
-        for &value in cells {
-            if value.is_finite() {
-                let (low, high) = self.range.unwrap_or((value, value));
-                self.range = Some((low.min(value), high.max(value)));
-            } else if value.is_nan() {
-                self.missing += 1;
-            } else {
-                self.infinite += 1;
-            }
-        }
-    }
-}
+use crate::sweep::input::field::Storage;
 
 impl MapFile {
-    /// What values a field has, read piece by piece.
-    ///
-    /// # Errors
-    /// When the file is damaged.
-    pub fn summary(&self, field: Field) -> Result<FieldSummary, StoreError> {
-        let dataset = self.of_field(field)?;
-        let mut summary = FieldSummary::default();
-        for_each_chunk(&dataset, |slab| {
-            summary.add(&self.read_field(field, &dataset, slab)?);
-            Ok(())
-        })?;
-        Ok(summary)
-    }
-
-    /// Number of cells with each kind of a field that has kinds, in the order of [`Field::kinds`],
-    /// read piece by piece. Empty for other fields.
+    /// What values a field has: as the map tells, or read piece by piece from one that does not.
     ///
     /// # Errors
     /// When the map does not hold the field, or is damaged.
-    pub fn kind_counts(&self, field: Field) -> Result<Vec<u64>, StoreError> {
-        let dataset = self.of_field(field)?;
-        let mut counts = vec![0; field.kinds().map_or(0, |kinds| kinds.len())];
-        if counts.is_empty() {
-            return Ok(counts);
+    pub fn summary(&self, field: Field) -> Result<FieldSummary, StoreError> {
+        match FieldSummary::told(&self.of_field(field)?, field.storage(), self.cells()) {
+            Some(told) => Ok(told),
+            None => self.summary_of_cells(field),
         }
-        for_each_chunk(&dataset, |slab| {
-            for kind in self.read::<u8>(&dataset, slab)? {
-                if let Some(count) = counts.get_mut(usize::from(kind)) {
-                    *count += 1;
-                }
-            }
-            Ok(())
-        })?;
-        Ok(counts)
     }
 
-    /// What the statuses of all cells say, read piece by piece.
+    /// What the statuses of all cells say, likewise.
     ///
     /// # Errors
     /// When the file is damaged.
     pub fn status_counts(&self) -> Result<StatusCounts, StoreError> {
+        match StatusCounts::told(&self.dataset(STATUS)?, self.cells()) {
+            Some(told) => Ok(told),
+            None => self.statuses_of_cells(),
+        }
+    }
+
+    /// What values a field has in all cells, read piece by piece.
+    pub(crate) fn summary_of_cells(&self, field: Field) -> Result<FieldSummary, StoreError> {
+        let dataset = self.of_field(field)?;
+        match field.storage() {
+            Storage::Count => self.added_up(&dataset, FieldSummary::of_roots),
+            Storage::Real => self.added_up(&dataset, FieldSummary::of_reals),
+            Storage::Kind | Storage::Few => {
+                self.added_up(&dataset, |cells| FieldSummary::of_bytes(field, cells))
+            }
+        }
+    }
+
+    fn added_up<T: Number>(
+        &self,
+        dataset: &Dataset,
+        of: impl Fn(&[T]) -> FieldSummary,
+    ) -> Result<FieldSummary, StoreError> {
+        let mut sum = FieldSummary::default();
+        for_each_chunk(dataset, |slab| {
+            sum.add(&of(&self.read(dataset, slab)?));
+            Ok(())
+        })?;
+        Ok(sum)
+    }
+
+    /// What the statuses of all cells say, read piece by piece.
+    pub(crate) fn statuses_of_cells(&self) -> Result<StatusCounts, StoreError> {
         let dataset = self.dataset(STATUS)?;
         let mut counts = StatusCounts::default();
         for_each_chunk(&dataset, |slab| {
-            counts.add(self.read::<u8>(&dataset, slab)?);
+            counts.add(&StatusCounts::of(&self.read(&dataset, slab)?));
             Ok(())
         })?;
         Ok(counts)

@@ -22,6 +22,8 @@ use super::output::Output;
 use super::schema::{self, STATUS, root};
 use super::seal;
 use super::soundness::as_written;
+use super::summary::{CellsSummary, FieldSummary};
+use super::tiles::record::TileContent;
 use super::variables::{Variables, put_fill};
 use crate::sweep::Plan;
 use crate::sweep::input::field::Storage;
@@ -39,6 +41,8 @@ pub struct MapWriter<'p> {
     best: Option<BestWriter>,
     /// The datasets of cells, in the order in which encoders give their chunks.
     cells: Vec<Cells>,
+    /// What values they have so far.
+    summary: CellsSummary,
     output: Output,
 }
 
@@ -79,6 +83,7 @@ impl<'p> MapWriter<'p> {
             boundaries,
             best,
             cells: datasets.into_iter().map(Cells::of).collect(),
+            summary: CellsSummary::default(),
             output,
         })
     }
@@ -104,11 +109,15 @@ impl<'p> MapWriter<'p> {
         }
     }
 
-    /// Puts the compressed chunks of a tile, in the order of the datasets. Tiles come in their
-    /// order.
-    pub(crate) fn put_tile(&mut self, tile: &Tile, chunks: &[&[u8]]) -> Result<(), StoreError> {
+    /// Puts the compressed chunks of a tile. Tiles come in their order.
+    pub(crate) fn put_tile(
+        &mut self,
+        tile: &Tile,
+        content: &TileContent,
+    ) -> Result<(), StoreError> {
+        self.summary.add(&content.summary);
         let offset: Vec<u64> = tile.offset.iter().map(|&o| o as u64).collect();
-        for (variable, chunk) in self.cells.iter_mut().zip(chunks) {
+        for (variable, chunk) in self.cells.iter_mut().zip(&content.chunks) {
             variable.chunks.update(chunk);
             write_chunk(&variable.dataset, &offset, chunk)
                 .map_err(StoreError::hdf5("write", self.output.path()))?;
@@ -121,19 +130,35 @@ impl<'p> MapWriter<'p> {
         self.cells.len()
     }
 
-    /// Says how many cells the map lacks, and what stands in their place.
+    /// Says how many cells the map lacks.
     pub(crate) fn put_missing(&self, cells: u64) -> Result<(), StoreError> {
-        let put = || -> hdf5::Result<()> {
-            put_numbers(&self.file, root::CELLS_MISSING, &[cells])?;
-            let fields = self.plan.spec.fields.iter().map(|field| field.storage());
-            // Those of the status are those of a kind.
-            let storages = fields.chain([Storage::Kind]);
-            for (variable, storage) in self.cells.iter().zip(storages) {
+        let put = put_numbers(&self.file, root::CELLS_MISSING, &[cells]);
+        put.map_err(StoreError::hdf5("write", self.output.path()))
+    }
+
+    /// Says what values the cells have; of integers also what stands where there is no value.
+    fn put_summary(&mut self) -> hdf5::Result<()> {
+        let cells = self.plan.cells();
+        let fields = &self.plan.spec.fields;
+        self.summary
+            .fields
+            .resize(fields.len(), FieldSummary::default());
+        let told = self.cells.iter().zip(fields).zip(&self.summary.fields);
+        for ((variable, field), summary) in told {
+            let storage = field.storage();
+            summary.put(&variable.dataset, storage, cells)?;
+            if summary.missing(cells) > 0 {
                 put_fill(&variable.dataset, storage)?;
             }
-            Ok(())
+        }
+        let (Some(status), counts) = (self.cells.last(), &self.summary.status) else {
+            return Ok(());
         };
-        put().map_err(StoreError::hdf5("write", self.output.path()))
+        counts.put(&status.dataset, cells)?;
+        match counts.computed < cells {
+            true => put_fill(&status.dataset, Storage::Kind),
+            false => Ok(()),
+        }
     }
 
     /// Closes the file, reads it back to see that it holds what was written, makes it durable and
@@ -145,6 +170,7 @@ impl<'p> MapWriter<'p> {
     pub fn finish(mut self, stop: &AtomicBool) -> Result<(), StoreError> {
         let path = self.output.path().to_owned();
         let mut close = || -> hdf5::Result<()> {
+            self.put_summary()?;
             for variable in &self.cells {
                 let digest = in_hexadecimal(&variable.chunks.clone().finalize());
                 put_text(&variable.dataset, schema::CHUNKS_SHA256, &digest)?;

@@ -73,6 +73,23 @@ pub const CHUNKS_SHA256: &str = "chunks_sha256";
 /// datasets and the history.
 pub const CONTENTS_SHA256: &str = "contents_sha256";
 
+/// Attributes of datasets of cells that tell what values these have; numbers of cells are u64.
+pub mod summary {
+    /// The smallest and the largest value, infinite ones among them, in the type of the cells. CF's
+    /// name for it.
+    pub const ACTUAL_RANGE: &str = "actual_range";
+    /// The smallest and the largest finite one, of reals.
+    pub const FINITE_RANGE: &str = "finite_range";
+    /// Number of values of −∞, and of +∞, of reals.
+    pub const INFINITE: &str = "cells_infinite";
+    /// Number of cells without a value.
+    pub const WITHOUT_VALUE: &str = "cells_without_value";
+    /// Number of cells of each kind, or with each flag, in the order of `flag_meanings`.
+    pub const FLAG_CELLS: &str = "flag_cells";
+    /// Number of cells without any flag.
+    pub const UNFLAGGED: &str = "cells_unflagged";
+}
+
 /// Name of the status of each cell.
 pub const STATUS: &str = "status";
 /// Name of the group of crossing curves.

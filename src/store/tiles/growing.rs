@@ -150,8 +150,8 @@ impl GrowingMap {
         };
         let columns = self.plan.spec.fields.len() + 1;
         match Content::read(piece, &payload) {
-            Some(Content::Tile(chunks)) if chunks.len() == columns => {
-                Ok(chunks.get(column).map(|chunk| chunk.to_vec()))
+            Some(Content::Tile(tile)) if tile.chunks.len() == columns => {
+                Ok(tile.chunks.get(column).map(|chunk| chunk.to_vec()))
             }
             _ => Err(StoreError::DamagedPiece { piece }),
         }

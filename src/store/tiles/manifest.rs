@@ -20,7 +20,7 @@ use crate::sweep::{Shard, SpecError, SweepSpec};
 pub const NAME: &str = "manifest.json";
 
 /// Version of the layout of tile files and their folder.
-pub const TILES_FORMAT_VERSION: u32 = 1;
+pub const TILES_FORMAT_VERSION: u32 = 2;
 
 /// More bytes than this are no manifest.
 const MOST_BYTES: u64 = 64 << 20;

@@ -7,6 +7,7 @@ use sha2::{Digest as _, Sha256};
 use super::super::best_writer::BestRow;
 use super::super::codec::{Chunk, ChunkCodec, decode_bytes};
 use super::super::curve_rows::CurveRows;
+use super::super::summary::CellsSummary;
 use crate::sweep::engine::{Computed, Encode};
 use crate::sweep::plan::pieces::Piece;
 
@@ -45,8 +46,16 @@ pub(crate) enum Content<'a> {
     Curves(Box<CurveRows>),
     /// The row of a plane of best settings.
     Best(BestRow),
-    /// The compressed chunks of a tile, in the order of the map's datasets.
-    Tile(Vec<&'a [u8]>),
+    /// A tile.
+    Tile(TileContent<'a>),
+}
+
+/// What is kept of a tile.
+pub(crate) struct TileContent<'a> {
+    /// What values its cells have.
+    pub summary: CellsSummary,
+    /// Its compressed chunks, in the order of the map's datasets.
+    pub chunks: Vec<&'a [u8]>,
 }
 
 impl<'a> Content<'a> {
@@ -58,7 +67,7 @@ impl<'a> Content<'a> {
                 rows.is_consistent().then_some(Self::Curves(rows))
             }
             Piece::Best(_) => whole(payload).map(Self::Best),
-            Piece::Tile(_) => chunks(payload).map(Self::Tile),
+            Piece::Tile(_) => TileContent::read(payload).map(Self::Tile),
         }
     }
 }
@@ -68,8 +77,11 @@ impl<'a> Content<'a> {
 #[must_use]
 pub fn is_readable(piece: Piece, payload: &[u8], status_cells: usize) -> bool {
     match Content::read(piece, payload) {
-        Some(Content::Tile(chunks)) => {
-            let status = chunks.last().and_then(|c| decode_bytes(c, status_cells));
+        Some(Content::Tile(tile)) => {
+            let status = tile
+                .chunks
+                .last()
+                .and_then(|c| decode_bytes(c, status_cells));
             status.is_some()
         }
         content => content.is_some(),
@@ -81,22 +93,31 @@ fn whole<T: DeserializeOwned>(payload: &[u8]) -> Option<T> {
     rest.is_empty().then_some(value)
 }
 
-/// Chunks one after the other, each after its length.
-fn chunks(mut payload: &[u8]) -> Option<Vec<&[u8]>> {
-    let mut chunks = Vec::new();
-    while !payload.is_empty() {
-        let (length, rest) = payload.split_first_chunk()?;
-        let length = usize::try_from(u64::from_le_bytes(*length)).ok()?;
-        let (chunk, rest) = rest.split_at_checked(length)?;
-        chunks.push(chunk);
-        payload = rest;
+impl<'a> TileContent<'a> {
+    /// The summary, then the chunks; each part after its length.
+    fn read(payload: &'a [u8]) -> Option<Self> {
+        let (summary, mut payload) = split_part(payload)?;
+        let mut chunks = Vec::new();
+        while !payload.is_empty() {
+            let (chunk, rest) = split_part(payload)?;
+            chunks.push(chunk);
+            payload = rest;
+        }
+        let summary: CellsSummary = whole(summary)?;
+        let all = summary.fields.len() + 1 == chunks.len();
+        all.then_some(Self { summary, chunks })
     }
-    Some(chunks)
 }
 
-fn put_chunk(payload: &mut Vec<u8>, chunk: &Chunk) {
-    payload.extend((chunk.len() as u64).to_le_bytes());
-    payload.extend(&**chunk);
+fn split_part(payload: &[u8]) -> Option<(&[u8], &[u8])> {
+    let (length, rest) = payload.split_first_chunk()?;
+    let length = usize::try_from(u64::from_le_bytes(*length)).ok()?;
+    rest.split_at_checked(length)
+}
+
+fn put_part(payload: &mut Vec<u8>, part: &[u8]) {
+    payload.extend((part.len() as u64).to_le_bytes());
+    payload.extend(part);
 }
 
 /// Turns pieces into records, one per thread.
@@ -114,7 +135,8 @@ impl Encode for RecordEncoder {
             Computed::Best(found) => packed(&BestRow::of(found)),
             Computed::Tile(buffers) => {
                 let mut payload = Vec::new();
-                let mut put = |chunk: Chunk| put_chunk(&mut payload, &chunk);
+                put_part(&mut payload, &packed(&CellsSummary::of(buffers)));
+                let mut put = |chunk: Chunk| put_part(&mut payload, &chunk);
                 if let Some(n) = &buffers.n_unstable {
                     put(self.codec.encode(n));
                 }

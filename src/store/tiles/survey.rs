@@ -2,9 +2,8 @@
 
 use std::path::{Path, PathBuf};
 
-use super::super::codec::decode_bytes;
 use super::super::error::StoreError;
-use super::super::map_summary::StatusCounts;
+use super::super::summary::StatusCounts;
 use super::folder::{is_tile_file, listed};
 use super::manifest::{self, Manifest};
 use super::reader::Checked;
@@ -12,7 +11,6 @@ use super::record::Content;
 use super::shards;
 use crate::sweep::plan::Plan;
 use crate::sweep::plan::pieces::{Piece, Pieces, Shard};
-use crate::sweep::plan::tile::{for_each_index, place_of};
 
 /// What the tiles of all shards of a map hold.
 #[derive(Debug)]
@@ -155,23 +153,8 @@ impl Survey {
     }
 
     fn count_flags(&mut self, piece: Piece, payload: &[u8]) {
-        let (Piece::Tile(number), Some(Content::Tile(chunks))) =
-            (piece, Content::read(piece, payload))
-        else {
-            return;
-        };
-        // The status comes last.
-        let cells = self.plan.tiles.tile_cells();
-        let Some(status) = chunks.last().and_then(|chunk| decode_bytes(chunk, cells)) else {
-            return;
-        };
-        let tile = self.plan.tiles.tile(number as usize);
-        let strides = self.plan.tiles.strides();
-        let last = tile.extent.len() - 1;
-        for_each_index(&tile.extent, Some(last), |index| {
-            let start = place_of(index, &strides);
-            let row = &status[start..start + tile.extent[last]];
-            self.statuses.add(row.iter().copied());
-        });
+        if let Some(Content::Tile(tile)) = Content::read(piece, payload) {
+            self.statuses.add(&tile.summary.status);
+        }
     }
 }

@@ -39,9 +39,8 @@ pub(super) fn rows(data: &[u8]) {
         }
         None => assert!(odd != 0 || rows.vertex_count.iter().any(|n| !(0..=100).contains(n))),
     }
-    let mut summary = FieldSummary::default();
-    summary.add(&rows.p);
-    summary.add(&rows.degree);
+    let mut summary = FieldSummary::of_reals(&rows.p);
+    summary.add(&FieldSummary::of_reals(&rows.degree));
     assert!(summary.range.is_none_or(|(low, high)| low <= high));
 }
 
