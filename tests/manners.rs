@@ -306,6 +306,42 @@ fn a_cell_of_a_map_is_asked_for_by_its_place() {
     places_that_are_none_are_answered(&folder, &cell);
 }
 
+/// The start, the table of friction and the phase of switching on come from the map too.
+#[test]
+fn a_cell_brings_its_start_its_table_and_its_phase() {
+    let table = "speeds = [0, 0.1, 0.3, 1, 3]\nmu_k = [0.5, 0.42, 0.3, 0.2, 0.18]\n";
+    let moving = format!(
+        "fields = [\"outcome\", \"settle_time\"]\n[axes]\nalpha_n = [-7, -3]\ntau = [0.5]\n\
+         [fixed]\nv0 = 0.118\n[start]\na0 = 0.3\nx_dot0 = 0.05\n[friction]\nlaw = \"table\"\n{table}"
+    );
+    let switched = "fields = [\"vc\"]\nprotocol = \"switch-on\"\n[axes]\nalpha_n = [-7]\n\
+                    tau = [0.5, 1]\n[start]\nswitch_on_phase = 0.25\n[friction]\n\
+                    law = \"weakening\"\nmu0 = 0.5\nv_s = 0.5\n";
+    let folder = Folder::with(&[("moving.toml", &moving), ("switched.toml", switched)]);
+    expect(&folder.run(&["run", "moving.toml"]), 0, "2 cells");
+    expect(&folder.run(&["run", "switched.toml"]), 0, "2 cells");
+    let json = |args: &str| -> Value {
+        let output = folder.run(&args.split(' ').collect::<Vec<_>>());
+        serde_json::from_str(&out(&output)).unwrap_or_else(|_| panic!("{args} {}", err(&output)))
+    };
+    let map = hdf5::File::open(folder.path().join("moving.h5")).unwrap();
+    let settled = map
+        .dataset("settle_time")
+        .unwrap()
+        .read_raw::<f64>()
+        .unwrap();
+    let found = json("simulate --json --map moving.h5 --at alpha_n=-7");
+    assert_eq!(found["outcome"], "sliding");
+    assert_eq!(found["settle_time"].as_f64().unwrap(), settled[0]);
+    let by_cell = json("vc --json --map switched.h5 --at tau=1");
+    let by_flags = json(
+        "vc --json --friction weakening --mu0 0.5 --v-s 0.5 --alpha-n=-7 --tau 1 \
+         --protocol switch-on --phase 0.25",
+    );
+    assert_eq!(by_cell, by_flags);
+    assert!(by_cell["vc"].as_f64().unwrap() > 0.1, "{by_cell}");
+}
+
 /// In the map `cells.h5`.
 fn places_that_are_none_are_answered(folder: &Folder, cell: &[&str]) {
     for (args, says) in [
