@@ -5,6 +5,7 @@ use std::time::SystemTime;
 
 use slipmap::maps::assembly::Assembled;
 use slipmap::report::numbers::{grouped, representable};
+use slipmap::report::picture;
 use slipmap::store::describe::Provenance;
 
 use super::failure::Failure;
@@ -73,6 +74,22 @@ pub(super) fn output_path(
         ));
     }
     Ok(path)
+}
+
+/// The name that `flag` gives a picture is one, and not that of `other`, a map or a trace.
+pub(super) fn check_picture(flag: &str, name: &Path, other: Option<&Path>) -> Result<(), Failure> {
+    let shown = name.display();
+    if !picture::is_name(name) {
+        return Err(Failure::bad_input_with_help(
+            format!("{flag} {shown} is no name for a picture"),
+            "name it like fig.png or fig.svg",
+        ));
+    }
+    if other == Some(name) {
+        let message = format!("{flag} {shown} would replace the file of that name");
+        return Err(Failure::bad_input(message));
+    }
+    Ok(())
 }
 
 /// This program, now, running `command` on `input`.

@@ -1,15 +1,23 @@
 //! `slipmap point`: everything about one point of parameter space.
 
 use std::io::Write;
+use std::path::{Path, PathBuf};
 
+use slipmap::explore::along_delay::AlongDelay;
 use slipmap::explore::point::{Point, Spectrum};
+use slipmap::report::picture::{self, Picture, PointPicture};
 use slipmap::sweep::input::point_file::PointOf;
-use slipmap::sweep::relaxation_time;
+use slipmap::sweep::input::units::Units;
+use slipmap::sweep::{Setting, relaxation_time};
 
 use super::cell::{CellArgs, alone};
 use super::failure::Failure;
+use super::output::check_picture;
 use super::parameters::ParameterArgs;
 use super::say;
+
+/// Roots in a picture, pairs counted once: enough to see how they lie.
+const ROOTS_DRAWN: u8 = 14;
 
 /// Stable intervals printed for people; the JSON output has them all, up to a hundred thousand.
 const INTERVALS_SHOWN: usize = 12;
@@ -25,6 +33,9 @@ pub(super) struct Args {
     #[arg(long, value_name = "K", default_value_t = 4, allow_hyphen_values = true,
           value_parser = parse_roots)]
     roots: u8,
+    /// Draw the roots in the complex plane and the stable delays, as .png or .svg
+    #[arg(long, value_name = "PICTURE")]
+    plot: Option<PathBuf>,
     /// One JSON object on standard output; infinities are null
     #[arg(long)]
     json: bool,
@@ -75,22 +86,59 @@ fn print_spectrum(
 }
 
 pub(super) fn main(args: &Args) -> Result<(), Failure> {
-    let setting = match args.cell.point(PointOf::Sliding)? {
-        Some(point) => {
-            alone(args.parameters.any_given())?;
-            point.setting
-        }
-        None => args.parameters.setting()?,
-    };
+    if let Some(plot) = &args.plot {
+        check_picture("--plot", plot, args.cell.map.as_deref())?;
+    }
+    let (setting, units) = args.read()?;
     let point = Point::at(&setting, args.roots)?;
     let spectrum = &point.spectrum;
     if let Some(why) = spectrum.fewer.as_ref().filter(|_| spectrum.incomplete) {
         say::remark(format_args!("warning: {why}"));
     }
     if args.json {
-        return say::json(&point);
+        say::json(&point)?;
+    } else {
+        print(&mut std::io::stdout().lock(), &point)?;
     }
-    Ok(print(&mut std::io::stdout().lock(), &point)?)
+    let Some(plot) = &args.plot else {
+        return Ok(());
+    };
+    draw(&setting, &units, &point, plot)?;
+    match args.json {
+        true => Ok(()),
+        false => say::result(plot.display()),
+    }
+}
+
+impl Args {
+    /// The setting, from a map or from flags, and its units.
+    fn read(&self) -> Result<(Setting, Units), Failure> {
+        let Some(point) = self.cell.point(PointOf::Sliding)? else {
+            return Ok((self.parameters.setting()?, Units::default()));
+        };
+        alone(self.parameters.any_given())?;
+        Ok((point.setting, point.units))
+    }
+}
+
+/// Draws the point with the roots of a picture; with those of `listed` where some of the others
+/// are not found.
+fn draw(setting: &Setting, units: &Units, listed: &Point, path: &Path) -> Result<(), Failure> {
+    let more = Point::at(setting, ROOTS_DRAWN)?;
+    let point = if more.spectrum.incomplete {
+        listed
+    } else {
+        &more
+    };
+    let along = AlongDelay::of(setting)?;
+    let drawn = PointPicture {
+        point,
+        along: &along,
+        units,
+    };
+    let picture = picture::draw_point(&drawn, path);
+    let saved = picture.and_then(Picture::save);
+    saved.map_err(|error| Failure::failed(error.to_string()))
 }
 
 fn print(out: &mut impl Write, point: &Point) -> std::io::Result<()> {

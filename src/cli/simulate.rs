@@ -17,7 +17,7 @@ use slipmap::sweep::{CaseSpec, Trace};
 
 use super::cell::CellArgs;
 use super::failure::Failure;
-use super::output::{output_path, provenance};
+use super::output::{check_picture, output_path, provenance};
 use super::plot;
 use super::say;
 use super::signals::Signals;
@@ -73,7 +73,9 @@ pub(super) fn main(args: &Args) -> Result<(), Failure> {
         ));
     }
     let path = args.output_path()?;
-    check_picture(args, &path)?;
+    if let Some(picture) = &args.picture {
+        check_picture("--picture", picture, Some(&path))?;
+    }
     check_replaced(&path, &spec, args.fresh)?;
     let trace = signals.or_end("there is no trace", || Trace::of(&spec));
     let trace = trace.map_err(failure)?;
@@ -130,21 +132,6 @@ impl Args {
             (None, Some(map)) => provenance(&format!("simulate{} --map", self.cell.words()), map),
             (None, None) => provenance("simulate", Path::new("")),
         }
-    }
-}
-
-/// The name of the picture that is asked for is one, and another one than the trace's.
-fn check_picture(args: &Args, trace: &Path) -> Result<(), Failure> {
-    match &args.picture {
-        Some(picture) if !picture::is_name(picture) => Err(Failure::bad_input_with_help(
-            format!("--picture {} is no name for a picture", picture.display()),
-            "name it like fig.png or fig.svg",
-        )),
-        Some(picture) if picture == trace => Err(Failure::bad_input(format!(
-            "--picture {} would replace the trace",
-            picture.display()
-        ))),
-        _ => Ok(()),
     }
 }
 

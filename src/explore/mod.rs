@@ -3,7 +3,7 @@
 //!
 //! - [`chart`]: cells and curves of a sweep, computed into memory within limits; [`chart_bytes`]:
 //!   the same as bytes, laid out as in [`encoded`]
-//! - [`point`]: linear stability at a point, with its roots
+//! - [`point`]: linear stability at a point, with its roots; [`along_delay`]: over its delays
 //! - [`vc`]: the critical velocity at a point
 //! - [`motion`]: one motion in time; [`motion_bytes`]: the same as bytes
 //! - [`law`]: a friction law as a curve
@@ -13,6 +13,7 @@
 //!
 //! Numbers that there are not are `null` in JSON, infinities among them.
 
+pub mod along_delay;
 pub mod answer;
 pub mod chart;
 pub mod chart_bytes;

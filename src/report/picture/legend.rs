@@ -27,6 +27,10 @@ pub(super) enum Swatch {
     None,
     /// A box as cells with this gap are.
     Gap(Gap),
+    /// A dot of this diameter.
+    Dot(Rgb, f64),
+    /// A dot in a ring, with the diameters of ring, hole and dot.
+    Ring(Rgb, f64, f64, f64),
 }
 
 /// A list of colours with their meanings.
@@ -70,6 +74,14 @@ impl Legend {
                     scene.outline(from, to, SOFT_INK, u);
                 }
                 Swatch::None => {}
+                Swatch::Dot(colour, dot) => {
+                    scene.dot((0.5 * (left + right), middle), colour, dot * u);
+                }
+                Swatch::Ring(colour, ring, hole, dot) => {
+                    let at = (0.5 * (left + right), middle);
+                    scene.ring(at, colour, (ring * u, hole * u));
+                    scene.dot(at, colour, dot * u);
+                }
                 Swatch::Gap(gap) => {
                     scene.rect(from, to, hatch::ground(gap));
                     hatch::fill(from, to, gap, scene);

@@ -197,7 +197,7 @@ fn draw_line(panel: &Panel, line: &Graph, scene: &mut Scene) {
                     scene.dashed(&points, colour, width * u, dash);
                 }
                 Swatch::Line(colour, width, _) => scene.path(points, colour, width * u),
-                Swatch::Box(_) | Swatch::Gap(_) | Swatch::None => {}
+                _ => {}
             }
         }
     }

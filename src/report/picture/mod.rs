@@ -1,4 +1,4 @@
-//! Pictures of maps and traces.
+//! Pictures of maps, traces and points.
 //!
 //! ```text
 //! map → [view] what is shown → [boundaries], [heat] or [line]
@@ -9,6 +9,7 @@
 //! - `page`, `panels`, `legend`: where things stand; `scale`, `ticks`: from values to places
 //! - `stable_area`, `curve_labels`: the region between curves, and free places on curves
 //! - `trace`, `stack`: a motion over time, in panels above one another
+//! - `roots`: the characteristic roots of a point, and its line of delays
 //! - `degrees`: dashed curves of degrees of stability
 //! - `colour`, `text`, `font`: how things look
 
@@ -27,6 +28,7 @@ mod page;
 mod panels;
 mod rectangles;
 mod render;
+mod roots;
 mod scale;
 mod scene;
 mod stable_area;
@@ -46,6 +48,7 @@ use crate::store::schema::root;
 use crate::store::{MapFile, Output, StoreError};
 use crate::sweep::{CaseSpec, Field, Parameter, Trace};
 pub use error::PictureError;
+pub use roots::PointPicture;
 use scene::Scene;
 use text::Rich;
 use view::{MOST_PANELS, View};
@@ -167,6 +170,18 @@ pub fn draw_trace(spec: &CaseSpec, trace: &Trace, path: &Path) -> Result<Picture
     let format = Format::of(path)?;
     let mut scene = Scene::new(PictureOptions::default().size);
     trace::draw(spec, trace, &mut scene);
+    Picture::of(&scene, &format, path)
+}
+
+/// Draws a point for the file `path`, as [`draw`] does a map: its characteristic roots in the
+/// complex plane, and the number of unstable ones and the stable delays of its line.
+///
+/// # Errors
+/// When the name of the file is no picture's.
+pub fn draw_point(picture: &PointPicture, path: &Path) -> Result<Picture, PictureError> {
+    let format = Format::of(path)?;
+    let mut scene = Scene::new(PictureOptions::default().size);
+    roots::draw(picture, &mut scene);
     Picture::of(&scene, &format, path)
 }
 

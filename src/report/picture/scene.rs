@@ -1,6 +1,6 @@
 //! What is on a picture, in pixels from its upper left corner, apart from how it is rendered.
 
-use super::colour::Rgb;
+use super::colour::{PAPER, Rgb};
 use super::text::Rich;
 
 /// Place in pixels: to the right, downwards.
@@ -133,6 +133,18 @@ impl Scene {
                 width,
             });
         }
+    }
+
+    /// Adds a dot.
+    pub(super) fn dot(&mut self, (x, y): Point, colour: Rgb, diameter: f64) {
+        // A line with round ends that is too short to be seen as one.
+        self.path(vec![(x - 0.1, y), (x + 0.1, y)], colour, diameter);
+    }
+
+    /// Adds a ring between two diameters, with paper inside.
+    pub(super) fn ring(&mut self, at: Point, colour: Rgb, (outer, inner): (f64, f64)) {
+        self.dot(at, colour, outer);
+        self.dot(at, PAPER, inner);
     }
 
     /// Adds a polyline in dashes: (length, gap) in units of the picture.

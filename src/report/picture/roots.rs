@@ -1,0 +1,294 @@
+//! A point of parameter space: its characteristic roots in the complex plane, and the number of
+//! unstable ones over the delay.
+
+use super::colour::{self, INK, Rgb, SOFT_INK, STABLE, UNSTABLE};
+use super::legend::{Legend, Swatch};
+use super::page::{self, Area};
+use super::panels::Panel;
+use super::scale::Scale;
+use super::scene::Scene;
+use super::stack::{Row, Stack};
+use super::text::{Rich, assignment, number, suffix};
+use crate::explore::along_delay::AlongDelay;
+use crate::explore::point::Point;
+use crate::sweep::Parameter;
+use crate::sweep::input::units::Units;
+
+/// Part of the width for the complex plane.
+const PLANE: f64 = 0.56;
+/// Diameters of a root, and of the ring around the rightmost ones.
+const DOT: f64 = 11.0;
+const RING: f64 = 23.0;
+const HOLE: f64 = 17.0;
+const WIDTH: f64 = 2.6;
+/// The line of the delay asked for, and that of the certificate.
+const MARK_WIDTH: f64 = 2.0;
+const DASH: (f64, f64) = (9.0, 7.0);
+/// How much of the colours of stable delays and of the unstable half-plane is left.
+const TINT: f64 = 0.45;
+
+/// Real parts within this of the imaginary ones are not told from 0.
+const FLAT: f64 = 1e-9;
+
+/// What is drawn of a point.
+#[derive(Debug, Clone, Copy)]
+pub struct PointPicture<'p> {
+    /// The point, with as many roots as are drawn.
+    pub point: &'p Point,
+    /// Its line of delays.
+    pub along: &'p AlongDelay,
+    /// The units of both.
+    pub units: &'p Units,
+}
+
+/// Draws a point.
+pub(super) fn draw(picture: &PointPicture, scene: &mut Scene) {
+    let body = page::head(scene, "Characteristic roots of sliding", &notes(picture));
+    let u = scene.unit();
+    let middle = body.left + PLANE * body.width();
+    let plane = Area {
+        right: middle - 10.0 * u,
+        ..body
+    };
+    let beside = Area {
+        left: middle + 14.0 * u,
+        ..body
+    };
+    draw_plane(picture, plane, scene);
+    let legend = legend(picture);
+    let over_delay = Area {
+        bottom: body.bottom - legend.height(u) - 20.0 * u,
+        ..beside
+    };
+    draw_counts(picture, over_delay, scene);
+    let column = Area {
+        left: beside.left + 60.0 * u,
+        top: over_delay.bottom + 20.0 * u,
+        ..beside
+    };
+    legend.draw(scene, column);
+}
+
+/// The setting, and what is known of it.
+fn notes(picture: &PointPicture) -> Vec<Rich> {
+    let PointPicture { point, units, .. } = picture;
+    let given = [
+        (Parameter::MuPrime, point.mu_prime),
+        (Parameter::AlphaV, point.alpha_v),
+        (Parameter::AlphaN, point.alpha_n),
+        (Parameter::Tau, point.tau),
+    ];
+    let mut notes: Vec<Rich> = given
+        .into_iter()
+        .map(|(parameter, value)| assignment(parameter, value, &units.of_parameter(parameter)))
+        .collect();
+    notes.push(Rich::plain(&verdict(point)));
+    if let Some(abscissa) = point.spectrum.abscissa {
+        let rate = suffix(&units.rate(), " ", "");
+        notes.push(Rich::plain(&format!(
+            "spectral abscissa {}{rate}",
+            number(abscissa)
+        )));
+    }
+    if !point.spectrum.certified {
+        notes.push(Rich::plain("the roots are not certified"));
+    }
+    notes
+}
+
+fn verdict(point: &Point) -> String {
+    match (point.marginal, point.stable) {
+        (true, _) => "sliding is marginal".into(),
+        (_, true) => "sliding is stable".into(),
+        _ => format!("sliding is unstable: {} roots", point.n_unstable),
+    }
+}
+
+/// The complex plane.
+fn draw_plane(picture: &PointPicture, area: Area, scene: &mut Scene) {
+    let (u, units) = (scene.unit(), picture.units);
+    let spectrum = &picture.point.spectrum;
+    let (x, y) = scales(&spectrum.roots);
+    let unit = |unit: &str| suffix(unit, "  (", ")");
+    let title = format!("Im λ{}", unit(&units.angular_frequency()));
+    let row = Row {
+        scale: y,
+        title: Rich::plain(&title),
+    };
+    let below = Rich::plain(&format!("Re λ{}", unit(&units.rate())));
+    let stack = Stack::new(scene, area, x, below, vec![row]);
+    let Some(panel) = stack.panels.first() else {
+        return;
+    };
+    let axis = panel.across(0.0);
+    let (top, bottom) = (panel.area.top, panel.area.bottom);
+    scene.rect((axis, top), (panel.area.right, bottom), half_plane());
+    stack.draw_grid(scene);
+    scene.ruler((axis, top), (axis, bottom), INK, MARK_WIDTH * u);
+    if let Some(line) = spectrum.certified_line {
+        let x = panel.across(line);
+        scene.dashed(
+            &[(x, bottom), (x, top)],
+            SOFT_INK,
+            0.7 * MARK_WIDTH * u,
+            DASH,
+        );
+    }
+    for (i, root) in spectrum.roots.iter().enumerate().rev() {
+        for im in both(root[1]) {
+            draw_root(panel, (root[0], im), i == 0, scene);
+        }
+    }
+    stack.draw_axes(scene);
+}
+
+/// The imaginary parts of a root and its conjugate.
+fn both(im: f64) -> Vec<f64> {
+    if im == 0.0 { vec![im] } else { vec![im, -im] }
+}
+
+fn draw_root(panel: &Panel, (re, im): (f64, f64), rightmost: bool, scene: &mut Scene) {
+    let (at, u) = (panel.at(re, im), scene.unit());
+    let colour = colour_of_root(re);
+    if rightmost {
+        scene.ring(at, colour, (RING * u, HOLE * u));
+    }
+    scene.dot(at, colour, DOT * u);
+}
+
+fn colour_of_root(re: f64) -> Rgb {
+    if re > 0.0 {
+        UNSTABLE[3]
+    } else {
+        colour::of_line(0, 3)
+    }
+}
+
+fn half_plane() -> Rgb {
+    colour::pale(UNSTABLE[0], 2.0 * TINT)
+}
+
+/// Scales that hold all roots with their conjugates, and either side of the imaginary axis.
+fn scales(roots: &[[f64; 2]]) -> (Scale, Scale) {
+    let fold = |of: usize, start: f64, f: fn(f64, f64) -> f64| {
+        roots.iter().map(|root| root[of]).fold(start, f)
+    };
+    let (left, right) = (fold(0, 0.0, f64::min), fold(0, 0.0, f64::max));
+    let highest = fold(1, 0.0, f64::max);
+    // What is on the axis to rounding is drawn on it.
+    let width = match right - left {
+        width if width > FLAT * highest => width,
+        _ if highest > 0.0 => 0.1 * highest,
+        _ => 1.0,
+    };
+    let height = if highest > 0.0 { highest } else { width };
+    (
+        Scale::linear(left - 0.15 * width, right + 0.2 * width),
+        Scale::linear(-1.1 * height, 1.1 * height),
+    )
+}
+
+/// The number of unstable roots over the delay.
+fn draw_counts(picture: &PointPicture, area: Area, scene: &mut Scene) {
+    let PointPicture { along, point, .. } = picture;
+    let u = scene.unit();
+    let most = along.steps.iter().map(|step| step.2).max().unwrap_or(0);
+    let high = (most as f64).max(2.0);
+    let row = Row {
+        scale: Scale::linear(-0.06 * high, 1.1 * high).with_smallest_step(2.0),
+        title: Rich::plain("number of unstable roots"),
+    };
+    let unit = suffix(&picture.units.time(), "  (", ")");
+    let below = Rich::plain("delay  ").and_symbol(Parameter::Tau).and(&unit);
+    let x = Scale::linear(0.0, along.until);
+    let stack = Stack::new(scene, area, x, below, vec![row]);
+    let Some(panel) = stack.panels.first() else {
+        return;
+    };
+    for interval in &along.stable {
+        let [from, to] = [interval.from, interval.to].map(|t| panel.across(t.min(along.until)));
+        let (top, bottom) = (panel.area.top, panel.area.bottom);
+        scene.rect((from, top), (to, bottom), stable_delays());
+    }
+    stack.draw_grid(scene);
+    let x = panel.across(point.tau);
+    let line = [(x, panel.area.bottom), (x, panel.area.top)];
+    scene.dashed(&line, INK, MARK_WIDTH * u, DASH);
+    let stairs = along.steps.iter().flat_map(|&(from, to, n)| {
+        let n = n as f64;
+        [panel.at(from, n), panel.at(to, n)]
+    });
+    scene.path(stairs.collect(), colour::of_line(1, 3), WIDTH * u);
+    let here = panel.at(point.tau, point.n_unstable as f64);
+    scene.dot(here, INK, DOT * u);
+    stack.draw_axes(scene);
+}
+
+fn stable_delays() -> Rgb {
+    colour::pale(STABLE, TINT)
+}
+
+fn legend(picture: &PointPicture) -> Legend {
+    let PointPicture { point, along, .. } = picture;
+    let mut entries = Vec::new();
+    let mut entry = |swatch, text: &str| entries.push((swatch, Rich::plain(text)));
+    let roots = &point.spectrum.roots;
+    if let Some([re, im]) = roots.first() {
+        let words = ["rightmost root", "rightmost roots"][both(*im).len() - 1];
+        entry(Swatch::Ring(colour_of_root(*re), RING, HOLE, DOT), words);
+    }
+    if roots.len() > 1 {
+        let last = roots.last().map_or(INK, |root| colour_of_root(root[0]));
+        let text = format!("the next ones, {} in all", number_of(roots));
+        entry(Swatch::Dot(last, DOT), &text);
+    }
+    if point.spectrum.certified_line.is_some() {
+        let line = Swatch::Dashed(SOFT_INK, 0.7 * MARK_WIDTH, DASH);
+        entry(line, "no root is right of it, certified");
+    }
+    entry(Swatch::Box(half_plane()), "unstable half-plane");
+    entry(Swatch::Box(stable_delays()), stable_words(along));
+    let here = Swatch::Dashed(INK, MARK_WIDTH, DASH);
+    entry(here, "the delay of the roots");
+    Legend {
+        heading: Vec::new(),
+        entries,
+    }
+}
+
+/// How many roots are drawn.
+fn number_of(roots: &[[f64; 2]]) -> usize {
+    roots.iter().map(|root| both(root[1]).len()).sum()
+}
+
+fn stable_words(along: &AlongDelay) -> &'static str {
+    match (along.stable.is_empty(), along.more_stable) {
+        (true, _) => "stable delays: none",
+        (_, true) => "stable delays; longer ones follow",
+        _ => "stable delays",
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn scales_hold_both_half_planes() {
+        for roots in [
+            vec![],
+            vec![[0.0, 0.0]],
+            vec![[0.0, 1.0]],
+            vec![[-0.5, 0.0], [-2.0, 40.0]],
+            vec![[3.0, 0.5], [1.0, 0.0]],
+            vec![[-1e-9, 1e9], [-2e-9, 3e9]],
+            vec![[2.4e-6, 0.9], [2.3e-6, 0.8]],
+        ] {
+            let (x, y) = scales(&roots);
+            assert!(x.part(0.0) > 0.02 && x.part(0.0) < 0.98, "{roots:?}");
+            for [re, im] in roots {
+                assert!(x.holds(re) && y.holds(im) && y.holds(-im));
+            }
+        }
+    }
+}
