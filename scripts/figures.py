@@ -8,7 +8,7 @@ import matplotlib as mpl
 import xarray as xr
 
 # For each kind of file: the attribute that marks it, and the format versions that are read.
-KINDS = {"map": ("slipmap_format_version", (1, 2, 3, 4, 5)), "trace": ("slipmap_trace_format_version", (1,))}
+KINDS = {"map": ("slipmap_format_version", (1, 2, 3, 4, 5, 6)), "trace": ("slipmap_trace_format_version", (1, 2))}
 SUFFIXES = (".pdf", ".png", ".svg")
 
 STYLE = {

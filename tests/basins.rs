@@ -86,7 +86,7 @@ fn survival_at_the_stop_phase_is_reentrant() {
 
 /// Axes of starts first, last and beside delays; in physical units; with roots beside the motions.
 const SWEEPS: [&str; 3] = [
-    "fields = [\"outcome\", \"settle_time\", \"n_min\", \"peak_force\"]\n[axes]\na0 = { from = -0.6, to = 2, points = 19 }\n\
+    "fields = [\"outcome\", \"settle_time\", \"last_release\", \"n_min\", \"peak_force\"]\n[axes]\na0 = { from = -0.6, to = 2, points = 19 }\n\
      x_dot0 = { from = -1, to = 1.5, points = 17 }\n[fixed]\nv0 = 0.118\nalpha_n = -7\ntau = 1\n",
     "fields = [\"n_unstable\", \"abscissa\", \"outcome\", \"n_min\"]\n[axes]\nx_dot0 = [0.05, 0.3]\ntau = { from = 0.3, to = 1.2, points = 7 }\n\
      a0 = [0.2, 0.9]\n[fixed]\nv0 = 0.2\nalpha_n = -12\nmass = 4\nstiffness = 2\nnormal_load = 3\n",

@@ -261,7 +261,7 @@ fn usage_mistakes_have_exit_code_2() {
         &[],
         &["point", "--tau", "x", "--mu-prime", "1"],
         &["point", "--tau", "1"],
-        &["point", "--mu-prime", "1"],
+        &["point", "--mu-prime", "1", "--alpha-v", "1"],
         &["point", "--mu-prime", "nan", "--tau", "1"],
         &["point", "--mu-prime", "inf", "--tau", "1"],
         &["point", "--mu-prime", "1", "--tau", "-1"],
@@ -403,7 +403,7 @@ fn point_lists_the_rightmost_roots() {
         let unstable = roots.iter().filter(|root| root[0] > 0.0).count() as u64;
         assert!(unstable == 20 || 2 * unstable == value["n_unstable"].as_u64().unwrap());
     }
-    for few in [&["--tau", "0", "--alpha-v", "-0.4"][..], &["--tau", "2"]] {
+    for few in [&["--tau", "0", "--alpha-v", "-0.4"][..], &[]] {
         let value = json(&[few, &["--roots", "20"]].concat());
         let roots: Vec<[f64; 2]> = serde_json::from_value(value["roots"].clone()).unwrap();
         assert!(

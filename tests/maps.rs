@@ -417,10 +417,10 @@ fn maps_of_the_first_version_are_read() {
         found
     );
     assert!(!found.is_empty() && found.iter().all(|c| c.degree_of_stability == 0.0));
-    for version in [0, 6] {
+    for version in [0, 7] {
         edit(&path, |file| set_version(file, version));
         let error = MapFile::open(&path).unwrap_err().to_string();
-        assert!(error.contains("this program reads 1 to 5"), "{error}");
+        assert!(error.contains("this program reads 1 to 6"), "{error}");
     }
 }
 

@@ -54,7 +54,7 @@ fn figure_3_has_its_events() {
         let (t, a) = releases[releases.len() - 1];
         near(t, last);
         near(a, at);
-        assert_eq!(value["last_release"], t);
+        near(value["last_release"].as_f64().unwrap(), t - 70.0);
     }
 }
 

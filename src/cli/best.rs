@@ -1,18 +1,23 @@
 //! `slipmap best`: the settings of fastest decay.
 
 use std::io::Write;
+use std::path::PathBuf;
 
 use clap::ValueEnum;
 use serde::Serialize;
 use slipmap::linear::best::{Optimum, SearchedGain};
+use slipmap::report::numbers::unit_behind;
 use slipmap::sweep::cells::best::{
     BestRegion, BestSettings, Ranges, best_settings, default_ranges,
 };
-use slipmap::sweep::{Parameter, Setting};
+use slipmap::sweep::input::units::Units;
+use slipmap::sweep::{Field, Parameter, Setting};
 
 use super::failure::Failure;
+use super::output::tell_dimensionless;
 use super::parameters::ParameterArgs;
 use super::say;
+use super::setting;
 
 #[derive(Debug, clap::Args)]
 #[command(after_help = "Example: slipmap best --mu-prime -0.3 --control velocity
@@ -40,6 +45,10 @@ pub(super) struct Args {
     /// Longest delay to search
     #[arg(long, allow_hyphen_values = true, value_name = "T")]
     tau_to: Option<f64>,
+    /// Write the best setting to a file that point and vc take with --setting, and simulate as a
+    /// case file
+    #[arg(long, value_name = "SETTING.toml")]
+    save: Option<PathBuf>,
     /// One JSON object on standard output
     #[arg(long)]
     json: bool,
@@ -135,6 +144,9 @@ impl From<&Optimum> for OptimumOut {
 }
 
 pub(super) fn main(args: &Args) -> Result<(), Failure> {
+    if let Some(path) = &args.save {
+        setting::check_save(path)?;
+    }
     let gain = args.control.searched();
     let help = "leave it out; --alpha-from, --alpha-to, --tau-from and --tau-to are the ranges of \
         the search";
@@ -145,10 +157,22 @@ pub(super) fn main(args: &Args) -> Result<(), Failure> {
     let ranges = ranges(args, &default_ranges(&setting, gain)?)?;
     let found = best_settings(&setting, gain, &ranges)?;
     if args.json {
-        return say::json(&json(args, &setting, &ranges, &found)?);
+        say::json(&json(args, &setting, &ranges, &found)?)?;
+    } else {
+        let mut out = std::io::stdout().lock();
+        print(&mut out, args, &setting, &ranges, &found)?;
     }
-    let mut out = std::io::stdout().lock();
-    print(&mut out, args, &setting, &ranges, &found)
+    let Some(path) = &args.save else {
+        return Ok(());
+    };
+    let mut best = setting;
+    best.set(args.control.parameter(), found.overall.gain);
+    best.set(Parameter::Tau, found.overall.tau);
+    setting::save(&best, &args.parameters.units(), path)?;
+    match args.json {
+        true => Ok(()),
+        false => say::result(path.display()),
+    }
 }
 
 /// The ranges that the flags give, over those searched by default.
@@ -231,12 +255,14 @@ fn print(
     ranges: &Ranges,
     found: &BestSettings,
 ) -> Result<(), Failure> {
+    let units = args.parameters.units();
     let best = &found.overall;
+    let time = unit_behind(&units.time());
     match best.relaxation_time() {
-        Some(time) => writeln!(
+        Some(relaxation) => writeln!(
             out,
-            "sliding relaxes fastest, with the relaxation time {}, at",
-            short(time)
+            "sliding relaxes fastest, with the relaxation time {}{time}, at",
+            short(relaxation)
         )?,
         None => writeln!(
             out,
@@ -249,29 +275,39 @@ fn print(
     };
     let sliding = setting.sliding_point()?;
     let mut row = |name: &str, value: String| writeln!(out, "  {name:<16} {value}");
-    row(searched.name(), short(best.gain))?;
-    row("tau", short(best.tau))?;
-    row("abscissa", short(best.abscissa))?;
-    row("frequency", short(best.frequency()))?;
+    let of = |parameter: Parameter| unit_behind(&units.of_parameter(parameter));
+    let with = |parameter: Parameter, value: f64| format!("{}{}", short(value), of(parameter));
+    row(searched.name(), with(searched, best.gain))?;
+    row("tau", with(Parameter::Tau, best.tau))?;
+    for (field, value) in [
+        (Field::Abscissa, best.abscissa),
+        (Field::Frequency, best.frequency()),
+    ] {
+        let unit = unit_behind(&field.unit(&units));
+        row(field.name(), format!("{}{unit}", short(value)))?;
+    }
     row("kind", best.kind.name().into())?;
     row(
         "certified",
         if best.certified { "yes" } else { "no" }.into(),
     )?;
-    row("mu_prime", short(sliding.mu_prime))?;
+    row("mu_prime", with(Parameter::MuPrime, sliding.mu_prime))?;
     row("mu_k", short(sliding.mu_k))?;
-    row(other.name(), short(setting.get(other)))?;
-    let range = |(from, to): (f64, f64)| format!("{} to {}", short(from), short(to));
+    row(other.name(), with(other, setting.get(other)))?;
+    let range = |(from, to): (f64, f64), unit: &str| {
+        format!("{}{unit} to {}{unit}", short(from), short(to))
+    };
     row(
         "searched",
         format!(
             "{} {}, tau {}",
             searched.name(),
-            range(ranges.gain),
-            range(ranges.tau)
+            range(ranges.gain, &of(searched)),
+            range(ranges.tau, &time)
         ),
     )?;
-    print_regions(out, searched, found)
+    tell_dimensionless(out, &units)?;
+    print_regions(out, searched, found, &units)
 }
 
 /// One line for each stable region.
@@ -279,6 +315,7 @@ fn print_regions(
     out: &mut impl Write,
     searched: Parameter,
     found: &BestSettings,
+    units: &Units,
 ) -> Result<(), Failure> {
     if found.regions.is_empty() {
         return Ok(());
@@ -286,10 +323,9 @@ fn print_regions(
     writeln!(out, "the best setting of every stable region, by delay")?;
     let mut line = |cells: [&str; 6]| {
         let [gain, tau, time, frequency, certified, kind] = cells;
-        writeln!(
-            out,
-            "  {gain:>14} {tau:>14} {time:>15} {frequency:>14} {certified:>9}  {kind}"
-        )
+        let text =
+            format!("  {gain:>14} {tau:>14} {time:>15} {frequency:>14} {certified:>9}  {kind}");
+        writeln!(out, "{}", text.trim_end())
     };
     line([
         searched.name(),
@@ -299,6 +335,11 @@ fn print_regions(
         "certified",
         "kind",
     ])?;
+    if !units.dimensionless() {
+        let gain = units.of_parameter(searched);
+        let (time, frequency) = (units.time(), units.angular_frequency());
+        line([&gain, &time, &time, &frequency, "", ""])?;
+    }
     for BestRegion { best, .. } in &found.regions {
         let time = best.relaxation_time().map_or("none".into(), short);
         line([

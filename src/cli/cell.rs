@@ -140,13 +140,16 @@ impl CellArgs {
     }
 }
 
-/// Nothing else says what is asked where a cell does.
-pub(super) fn alone(given: bool) -> Result<(), Failure> {
+/// Nothing else says what is asked where a cell or a file does.
+pub(super) fn alone(flag: &str, given: bool) -> Result<(), Failure> {
     match given {
         false => Ok(()),
         true => Err(Failure::bad_input_with_help(
-            "--map is given with other flags of the point",
-            "the map says everything but the cell, which --at says",
+            format!("{flag} is given with other flags of the point"),
+            match flag {
+                "--map" => "the map says everything but the cell, which --at says",
+                _ => "the file says everything",
+            },
         )),
     }
 }

@@ -7,7 +7,7 @@ use std::path::PathBuf;
 use serde::{Serialize, Serializer};
 use slipmap::linear::curves::StableSide;
 use slipmap::linear::status::FLAGS;
-use slipmap::report::numbers::{bytes, grouped, short};
+use slipmap::report::numbers::{bytes, grouped, short, unit_behind};
 use slipmap::store::schema::root;
 use slipmap::store::{MapAxis, MapFile};
 use slipmap::sweep::Field;
@@ -167,8 +167,7 @@ impl Facts {
     /// The unit of a name, after a space; nothing where it has none.
     fn unit(&self, name: &str) -> String {
         let of = self.units.iter().find(|(of, _)| *of == name);
-        let unit = of.filter(|(_, unit)| unit != "1");
-        unit.map_or_else(String::new, |(_, unit)| format!(" {unit}"))
+        of.map_or_else(String::new, |(_, unit)| unit_behind(unit))
     }
 
     fn tell_cells(&self, rows: &mut Rows) -> Result<(), Failure> {
@@ -253,7 +252,9 @@ fn origin(map: &MapFile) -> Vec<(&'static str, String)> {
         let text = map.root_text(attribute).filter(|text| !text.is_empty())?;
         Some((name, text))
     });
-    told.collect()
+    let sweep = map.sweep().ok();
+    let assumed = sweep.and_then(|sweep| sweep.simulation.assumed_start());
+    told.chain(assumed.map(|start| ("start", start))).collect()
 }
 
 /// Units of parameters are those of the sweep.

@@ -17,6 +17,7 @@ mod read_map;
 mod run;
 mod say;
 mod serve;
+mod setting;
 mod signals;
 mod simulate;
 mod status;

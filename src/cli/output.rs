@@ -1,5 +1,6 @@
 //! What all commands that write a file share: its name, and who made it.
 
+use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::time::SystemTime;
 
@@ -7,6 +8,7 @@ use slipmap::maps::assembly::Assembled;
 use slipmap::report::numbers::{grouped, representable};
 use slipmap::report::picture;
 use slipmap::store::describe::Provenance;
+use slipmap::sweep::input::units::Units;
 
 use super::failure::Failure;
 use super::say;
@@ -99,6 +101,21 @@ pub(super) fn provenance(command: &str, input: &Path) -> Provenance {
         program_version: env!("CARGO_PKG_VERSION").into(),
         git_revision: env!("SLIPMAP_GIT_REVISION").into(),
         history: format!("{now} slipmap {command} {}", input.display()),
+    }
+}
+
+/// Says, once, that numbers have no units; what they are stands behind each where they have.
+pub(super) fn tell_dimensionless(out: &mut impl Write, units: &Units) -> std::io::Result<()> {
+    match units.dimensionless() {
+        true => writeln!(out, "  {:<16} none: dimensionless", "units"),
+        false => Ok(()),
+    }
+}
+
+/// Says, once, where a delay is given that nothing acts on.
+pub(super) fn warn_of_idle_delay(idle: bool) {
+    if idle {
+        say::remark("warning: tau has no effect: both gains, alpha_v and alpha_n, are 0");
     }
 }
 

@@ -9,8 +9,10 @@ use slipmap::sweep::Parameter;
 use slipmap::sweep::input::law_kind::{Formula, LawKind};
 use slipmap::sweep::input::parameter::Group;
 use slipmap::sweep::input::setting::Setting;
+use slipmap::sweep::input::units::Units;
 
 use super::failure::Failure;
+use super::output::warn_of_idle_delay;
 use super::sweep_file::read_table;
 
 /// The values that flags give to parameters, each by the flag of its row.
@@ -54,7 +56,7 @@ fn parse_number(text: &str) -> Result<f64, String> {
     number.ok_or_else(|| "expected a number, such as -0.3 or 1e-2".to_owned())
 }
 
-/// The flags of a friction law besides its parameters.
+/// The flags of a friction law besides its parameters, and of units.
 #[derive(Debug, Args)]
 struct LawArgs {
     /// Friction law, instead of --mu-prime and --mu-k
@@ -63,6 +65,10 @@ struct LawArgs {
     /// Points of a measured friction law, for --friction table: two columns, speed and μ_K
     #[arg(long, value_name = "FILE.csv")]
     table: Option<PathBuf>,
+    /// Units of the numbers given and told: SI, or those of force, length and time, as in N,mm,s
+    /// [default: dimensionless]
+    #[arg(long, value_name = "UNITS", value_parser = Units::read)]
+    units: Option<Units>,
 }
 
 /// Friction laws by name, with their formulas.
@@ -191,11 +197,19 @@ impl ParameterArgs {
         }
     }
 
-    /// The setting that the flags describe.
+    /// The setting that the flags describe, with a delay only where control acts.
     pub(super) fn setting(&self) -> Result<Setting, Failure> {
-        let setting = self.setting_but(&[], "")?;
+        let setting = self.setting_with(self.unneeded_delay(), &[], "")?;
         setting.sliding_point().map_err(|e| self.refused(&e))?;
         Ok(setting)
+    }
+
+    /// The delay, where both gains are 0.
+    fn unneeded_delay(&self) -> Option<(Parameter, f64)> {
+        match [Parameter::AlphaV, Parameter::AlphaN].map(|p| self.given(p)) {
+            [None | Some(0.0), None | Some(0.0)] => Some((Parameter::Tau, 0.0)),
+            _ => None,
+        }
     }
 
     /// The setting of a critical velocity: a friction law, no v0, and a delay only where control
@@ -207,19 +221,21 @@ impl ParameterArgs {
                 "for example: --friction weakening --mu0 0.5 --v-s 0.5",
             ));
         }
-        let unneeded = match [Parameter::AlphaV, Parameter::AlphaN].map(|p| self.given(p)) {
-            [None | Some(0.0), None | Some(0.0)] => Some((Parameter::Tau, 0.0)),
-            _ => None,
-        };
         let help = "leave it out: v0 is what is looked for";
-        let setting = self.setting_with(unneeded, &[Parameter::V0], help)?;
+        let setting = self.setting_with(self.unneeded_delay(), &[Parameter::V0], help)?;
         setting.friction_law().map_err(|e| self.refused(&e))?;
         Ok(setting)
     }
 
+    /// The units of all numbers.
+    pub(super) fn units(&self) -> Units {
+        self.law.units.clone().unwrap_or_default()
+    }
+
     /// Whether any parameter is given.
     pub(super) fn any_given(&self) -> bool {
-        let flags = self.law.friction.is_some() || self.law.table.is_some();
+        let law = &self.law;
+        let flags = law.friction.is_some() || law.table.is_some() || law.units.is_some();
         flags || Parameter::ALL.into_iter().any(|p| self.given(p).is_some())
     }
 
@@ -265,6 +281,9 @@ impl ParameterArgs {
                 let value = parameter.check(value).map_err(|e| self.refused(&e))?;
                 setting.set(parameter, value);
             }
+        }
+        if !searched.contains(&Parameter::Tau) {
+            warn_of_idle_delay(setting.has_idle_delay());
         }
         Ok(setting)
     }

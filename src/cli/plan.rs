@@ -1,10 +1,11 @@
 //! `slipmap plan`: what a sweep would cost, from a timed sample of its own pieces.
 
+use std::collections::BTreeMap;
 use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
 use serde::Serialize;
-use slipmap::report::numbers::{bytes, grouped, seconds};
+use slipmap::report::numbers::{bytes, grouped, seconds, unit_behind};
 use slipmap::store::schema::STATUS;
 use slipmap::store::tiles::RecordEncoder;
 use slipmap::sweep::cells::best::{best_of_plane, best_plane};
@@ -16,6 +17,7 @@ use slipmap::sweep::{Memory, Piece, Plan};
 
 use super::axis_facts::AxisFacts;
 use super::failure::Failure;
+use super::output::warn_of_idle_delay;
 use super::run::{MEMORY, default_threads, parse_memory, parse_threads, threads_within};
 use super::say::{self, Rows};
 use super::sweep_file::read_plan;
@@ -52,6 +54,7 @@ pub(super) struct Args {
 
 pub(super) fn main(args: &Args) -> Result<(), Failure> {
     let plan = read_plan(&args.sweep)?;
+    warn_of_idle_delay(plan.spec.has_idle_delay());
     let asked = args.threads.unwrap_or_else(default_threads);
     let threads = threads_within(&plan, args.memory, asked)?;
     let facts = Facts::of(&plan, threads)?;
@@ -65,7 +68,12 @@ pub(super) fn main(args: &Args) -> Result<(), Failure> {
 #[derive(Serialize)]
 struct Facts {
     axes: Vec<AxisFacts>,
+    /// Units of the axes by name; `1` where there is none.
+    units: BTreeMap<&'static str, String>,
+    dimensionless: bool,
     fields: Vec<&'static str>,
+    /// What is said of the start of motions that no key gives.
+    start: Option<String>,
     cells: u64,
     tiles: u64,
     cells_of_a_tile: u64,
@@ -87,12 +95,19 @@ impl Facts {
     fn of(plan: &Plan, threads: usize) -> Result<Self, Failure> {
         let costs = Costs::of(plan)?;
         let axis = |axis: &Axis| AxisFacts::of(axis.parameter, &axis.values);
+        let unit = |axis: &Axis| {
+            let parameter = axis.parameter;
+            (parameter.name(), plan.spec.units.of_parameter(parameter))
+        };
         let (total, spread) = costs.seconds();
         let seconds = [(total - spread).max(0.0), total, total + spread];
         let fields = plan.spec.fields.iter().map(|field| field.name());
         Ok(Self {
             axes: plan.spec.axes.iter().map(axis).collect(),
+            units: plan.spec.axes.iter().map(unit).collect(),
+            dimensionless: plan.spec.units.dimensionless(),
             fields: fields.chain([STATUS]).collect(),
+            start: plan.spec.simulation.assumed_start(),
             cells: plan.cells(),
             tiles: plan.tiles.len() as u64,
             cells_of_a_tile: plan.tiles.tile_cells() as u64,
@@ -110,9 +125,16 @@ impl Facts {
     fn tell(&self) -> Result<(), Failure> {
         let mut rows = Rows::begin();
         for axis in &self.axes {
-            rows.row("axis", axis.text(""))?;
+            let unit = self.units.get(axis.name).map_or("", String::as_str);
+            rows.row("axis", axis.text(&unit_behind(unit)))?;
+        }
+        if self.dimensionless {
+            rows.row("units", "none: dimensionless")?;
         }
         rows.row("fields", self.fields.join(", "))?;
+        if let Some(start) = &self.start {
+            rows.row("start", start)?;
+        }
         rows.row("cells", grouped(self.cells))?;
         let (tiles, cells) = (grouped(self.tiles), grouped(self.cells_of_a_tile));
         rows.row("tiles", format!("{tiles} of {cells} cells"))?;

@@ -5,16 +5,18 @@ use std::path::{Path, PathBuf};
 
 use slipmap::explore::along_delay::AlongDelay;
 use slipmap::explore::point::{Point, Spectrum};
+use slipmap::report::numbers::unit_behind;
 use slipmap::report::picture::{self, Picture, PointPicture};
 use slipmap::sweep::input::point_file::PointOf;
 use slipmap::sweep::input::units::Units;
-use slipmap::sweep::{Setting, relaxation_time};
+use slipmap::sweep::{Field, Parameter, Setting, relaxation_time};
 
 use super::cell::{CellArgs, alone};
 use super::failure::Failure;
-use super::output::check_picture;
+use super::output::{check_picture, tell_dimensionless};
 use super::parameters::ParameterArgs;
 use super::say;
+use super::setting::SettingArgs;
 
 /// Roots in a picture, pairs counted once: enough to see how they lie.
 const ROOTS_DRAWN: u8 = 14;
@@ -29,6 +31,8 @@ pub(super) struct Args {
     parameters: ParameterArgs,
     #[command(flatten)]
     cell: CellArgs,
+    #[command(flatten)]
+    file: SettingArgs,
     /// How many characteristic roots to list, from the right; pairs count once
     #[arg(long, value_name = "K", default_value_t = 4, allow_hyphen_values = true,
           value_parser = parse_roots)]
@@ -58,6 +62,7 @@ fn digits(value: f64) -> String {
 
 fn print_spectrum(
     spectrum: &Spectrum,
+    units: &Units,
     mut row: impl FnMut(&str, String) -> std::io::Result<()>,
 ) -> std::io::Result<()> {
     let certified = match (spectrum.certified, spectrum.certificate_margin) {
@@ -68,8 +73,16 @@ fn print_spectrum(
         _ => "no".into(),
     };
     row("certified", certified)?;
-    let head = ["re lambda", "im lambda", "relaxation time"];
-    row("roots", head.map(|title| format!("{title:>22}")).concat())?;
+    let head = [
+        ("re lambda", units.rate()),
+        ("im lambda", units.angular_frequency()),
+        ("relaxation time", units.time()),
+    ];
+    let title = |(title, unit): (&str, String)| {
+        let title = format!("{title}{}", unit_behind(&unit));
+        format!("{title:>22}")
+    };
+    row("roots", head.map(title).concat())?;
     for [re, im] in &spectrum.roots {
         let pair = if *im == 0.0 { "" } else { "±" };
         let cells = [
@@ -98,7 +111,7 @@ pub(super) fn main(args: &Args) -> Result<(), Failure> {
     if args.json {
         say::json(&point)?;
     } else {
-        print(&mut std::io::stdout().lock(), &point)?;
+        print(&mut std::io::stdout().lock(), &point, &units)?;
     }
     let Some(plot) = &args.plot else {
         return Ok(());
@@ -113,11 +126,16 @@ pub(super) fn main(args: &Args) -> Result<(), Failure> {
 impl Args {
     /// The setting, from a map or from flags, and its units.
     fn read(&self) -> Result<(Setting, Units), Failure> {
-        let Some(point) = self.cell.point(PointOf::Sliding)? else {
-            return Ok((self.parameters.setting()?, Units::default()));
-        };
-        alone(self.parameters.any_given())?;
-        Ok((point.setting, point.units))
+        let given = self.parameters.any_given();
+        if let Some(point) = self.file.point(PointOf::Sliding)? {
+            alone("--setting", given)?;
+            return Ok((point.setting, point.units));
+        }
+        if let Some(point) = self.cell.point(PointOf::Sliding)? {
+            alone("--map", given)?;
+            return Ok((point.setting, point.units));
+        }
+        Ok((self.parameters.setting()?, self.parameters.units()))
     }
 }
 
@@ -141,7 +159,7 @@ fn draw(setting: &Setting, units: &Units, listed: &Point, path: &Path) -> Result
     saved.map_err(|error| Failure::failed(error.to_string()))
 }
 
-fn print(out: &mut impl Write, point: &Point) -> std::io::Result<()> {
+fn print(out: &mut impl Write, point: &Point, units: &Units) -> std::io::Result<()> {
     let verdict = match (point.stable, point.marginal) {
         (_, true) => "marginal: within rounding of a stability boundary",
         (true, false) => "stable",
@@ -149,26 +167,50 @@ fn print(out: &mut impl Write, point: &Point) -> std::io::Result<()> {
     };
     writeln!(out, "continuous sliding is {verdict}")?;
     let mut row = |name: &str, value: String| writeln!(out, "  {name:<16} {value}");
-    row("mu_prime", point.mu_prime.to_string())?;
-    row("mu_k", point.mu_k.to_string())?;
-    row("alpha_v", point.alpha_v.to_string())?;
-    row("alpha_n", point.alpha_n.to_string())?;
-    row("tau", point.tau.to_string())?;
+    for (parameter, value) in [
+        (Parameter::MuPrime, point.mu_prime),
+        (Parameter::MuK, point.mu_k),
+        (Parameter::AlphaV, point.alpha_v),
+        (Parameter::AlphaN, point.alpha_n),
+        (Parameter::Tau, point.tau),
+    ] {
+        let unit = unit_behind(&units.of_parameter(parameter));
+        row(parameter.name(), format!("{value}{unit}"))?;
+    }
     row("n_unstable", point.n_unstable.to_string())?;
+    let time = unit_behind(&units.time());
     let margin = match point.delay_margin {
-        Some(margin) => margin.to_string(),
+        Some(margin) => format!("{margin}{time}"),
         None => "infinite: no delay changes stability".into(),
     };
     row("delay_margin", margin)?;
     let spectrum = &point.spectrum;
-    let or_unknown = |value: Option<f64>| value.map_or("unknown".into(), |v| v.to_string());
-    row("abscissa", or_unknown(spectrum.abscissa))?;
-    row("frequency", or_unknown(spectrum.frequency))?;
+    for (field, value) in [
+        (Field::Abscissa, spectrum.abscissa),
+        (Field::Frequency, spectrum.frequency),
+    ] {
+        let unit = unit_behind(&field.unit(units));
+        let text = value.map_or("unknown".into(), |v| format!("{v}{unit}"));
+        row(field.name(), text)?;
+    }
+    print_delays(point, units, &mut row)?;
+    print_spectrum(spectrum, units, &mut row)?;
+    tell_dimensionless(out, units)
+}
+
+/// The crossings of the point's line, and its stable delays.
+fn print_delays(
+    point: &Point,
+    units: &Units,
+    mut row: impl FnMut(&str, String) -> std::io::Result<()>,
+) -> std::io::Result<()> {
+    let time = unit_behind(&units.time());
     for crossing in &point.crossings {
         let text = format!(
-            "to the {} at omega = {}, tau = {} + k {}",
+            "to the {} at omega = {}{}, tau = {}{time} + k {}{time}",
             crossing.direction,
             crossing.omega,
+            unit_behind(&units.angular_frequency()),
             crossing.first_delay,
             std::f64::consts::TAU / crossing.omega
         );
@@ -178,20 +220,19 @@ fn print(out: &mut impl Write, point: &Point) -> std::io::Result<()> {
         row("stable delays", "none".into())?;
     }
     for interval in point.stable_delays.iter().take(INTERVALS_SHOWN) {
-        let end = interval[1].map_or("infinity".into(), |to| to.to_string());
-        row(
-            "stable delays",
-            format!("{} < tau < {end}", interval[0].unwrap_or(0.0)),
-        )?;
+        let end = interval[1].map_or("infinity".into(), |to| format!("{to}{time}"));
+        let from = interval[0].unwrap_or(0.0);
+        row("stable delays", format!("{from}{time} < tau < {end}"))?;
     }
     let more = point.stable_delays.len().saturating_sub(INTERVALS_SHOWN);
-    if point.stable_delays_truncated {
-        row("", format!("and more than {more} further intervals"))?;
-    } else if more > 0 {
-        row(
+    match more {
+        _ if point.stable_delays_truncated => {
+            row("", format!("and more than {more} further intervals"))
+        }
+        0 => Ok(()),
+        _ => row(
             "",
             format!("and {more} further intervals (--json lists them)"),
-        )?;
+        ),
     }
-    print_spectrum(&point.spectrum, row)
 }

@@ -35,8 +35,8 @@ impl Rows<'_> {
 }
 
 /// Version of the keys of the JSON output of all commands: larger where a key is gone or means
-/// something else; new keys may come without that.
-const SCHEMA_VERSION: u32 = 1;
+/// something else; new keys may come without that. 2: `last_release` counts from switch-on.
+const SCHEMA_VERSION: u32 = 2;
 
 /// An object with the version of its keys.
 #[derive(Serialize)]

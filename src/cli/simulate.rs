@@ -5,19 +5,23 @@ use std::path::{Path, PathBuf};
 
 use serde::Serialize;
 use slipmap::explore::motion::MotionSummary;
-use slipmap::report::numbers::grouped;
+use slipmap::report::numbers::{grouped, unit_behind};
 use slipmap::report::picture::{self, Picture};
 use slipmap::slip::motion::MOST_KEPT;
 use slipmap::slip::outcome::{Outcome, Summary};
 use slipmap::store::describe::Provenance;
 use slipmap::store::{Output, StoreError, trace_file};
 use slipmap::sweep::cells::trace::TraceError;
-use slipmap::sweep::input::case_file::DISTURBED;
-use slipmap::sweep::{CaseSpec, Trace};
+use slipmap::sweep::input::setting_text::setting_text;
+use slipmap::sweep::input::simulation::DISTURBED;
+use slipmap::sweep::{CaseSpec, Field, Trace};
 
-use super::cell::CellArgs;
+use super::cell::{CellArgs, alone};
 use super::failure::Failure;
-use super::output::{check_picture, output_path, provenance};
+use super::output::{
+    check_picture, output_path, provenance, tell_dimensionless, warn_of_idle_delay,
+};
+use super::parameters::ParameterArgs;
 use super::plot;
 use super::say;
 use super::signals::Signals;
@@ -30,16 +34,14 @@ const EVENTS_SHOWN: usize = 12;
 #[command(after_help = "Example: slipmap simulate sweeps/fig3a.toml")]
 pub(super) struct Args {
     /// The case file
-    #[arg(
-        value_name = "CASE.toml",
-        required_unless_present = "map",
-        conflicts_with = "map"
-    )]
+    #[arg(value_name = "CASE.toml", conflicts_with = "map")]
     case: Option<PathBuf>,
+    #[command(flatten)]
+    parameters: ParameterArgs,
     #[command(flatten)]
     cell: CellArgs,
     /// The trace to write [default: the case file's name with .h5, in the current folder; with
-    /// --map the map's name with -motion.h5]
+    /// --map the map's name with -motion.h5, with flags motion.h5]
     #[arg(short, long, value_name = "TRACE.h5")]
     output: Option<PathBuf>,
     /// The picture to draw, .png or .svg [default: the trace's name with .png, beside it]
@@ -63,7 +65,10 @@ struct MotionOut {
 
 pub(super) fn main(args: &Args) -> Result<(), Failure> {
     let signals = Signals::catch()?;
+    args.check_alone()?;
     let spec = args.read()?;
+    // A cell of a map has a delay whatever its gains are; flags are warned of as they are read.
+    warn_of_idle_delay(args.case.is_some() && spec.setting.has_idle_delay());
     if spec.start_assumed {
         say::remark(format_args!(
             "no start is given: the block begins with x_dot0 = {}, {} % faster than it is \
@@ -104,9 +109,36 @@ impl Args {
         if let Some(case) = &self.case {
             return read_case(case);
         }
-        let text = self.cell.case()?.unwrap_or_default();
+        let (from, text) = match self.cell.case()? {
+            Some(text) => ("the cell", text),
+            None => ("the flags", self.case_of_flags()?),
+        };
         let spec = text.parse();
-        spec.map_err(|error| Failure::in_file(error, "the cell", &text))
+        spec.map_err(|error| Failure::in_file(error, from, &text))
+    }
+
+    /// The case of the flags, as a file would say it: the trace holds that.
+    fn case_of_flags(&self) -> Result<String, Failure> {
+        if !self.parameters.any_given() {
+            return Err(Failure::bad_input_with_help(
+                "no case is given",
+                "slipmap simulate CASE.toml; or flags, such as --friction weakening --mu0 0.5 \
+                 --v-s 0.5 --v0 0.1; or a cell of a map: --map MAP.h5 --at AXIS=VALUE",
+            ));
+        }
+        let setting = self.parameters.setting()?;
+        let units = self.parameters.units();
+        Ok(setting_text(&setting, &units, |_| true))
+    }
+
+    /// A case or a map stands alone.
+    fn check_alone(&self) -> Result<(), Failure> {
+        let flags = self.parameters.any_given();
+        match (&self.case, &self.cell.map) {
+            (Some(_), _) => alone("CASE.toml", flags),
+            (None, Some(_)) => alone("--map", flags),
+            (None, None) => Ok(()),
+        }
     }
 
     /// The trace to write: by the name of the case, or of the map.
@@ -118,11 +150,8 @@ impl Args {
             PathBuf::from(name)
         });
         let given = self.output.as_deref().or(of_map.as_deref());
-        output_path(
-            given,
-            self.case.as_deref().unwrap_or(Path::new("")),
-            "trace",
-        )
+        let case = self.case.as_deref().unwrap_or(Path::new("motion"));
+        output_path(given, case, "trace")
     }
 
     /// What is said of the trace's origin.
@@ -130,7 +159,7 @@ impl Args {
         match (&self.case, &self.cell.map) {
             (Some(case), _) => provenance("simulate", case),
             (None, Some(map)) => provenance(&format!("simulate{} --map", self.cell.words()), map),
-            (None, None) => provenance("simulate", Path::new("")),
+            (None, None) => provenance("simulate", Path::new("(flags)")),
         }
     }
 }
@@ -215,23 +244,29 @@ fn failure(error: TraceError) -> Failure {
 fn print(out: &mut impl Write, spec: &CaseSpec, trace: &Trace) -> std::io::Result<()> {
     let summary = &trace.summary;
     writeln!(out, "{}", verdict(summary, spec))?;
+    let units = &spec.units;
     for (name, value) in summary.numbers() {
         if value.is_finite() {
+            let field = Field::from_name(name).map(|field| field.unit(units));
+            let unit = unit_behind(&field.unwrap_or_else(|| units.time()));
             let name = if name == "decided" {
                 "decided at"
             } else {
                 name
             };
-            writeln!(out, "  {name:<16} {}", digits(value))?;
+            writeln!(out, "  {name:<16} {}{unit}", digits(value))?;
         }
     }
     writeln!(out, "  {:<16} {}", "steps", summary.steps)?;
+    tell_dimensionless(out, units)?;
     let events = &trace.events;
     let hidden = events.len().saturating_sub(EVENTS_SHOWN);
     if events.is_empty() {
         return Ok(());
     }
-    writeln!(out, "{:>18}{:>18}  event", "t", "a")?;
+    let [t, a] = [("t", [0, 0, 1]), ("a", [0, 1, 0])]
+        .map(|(name, dimension)| format!("{name}{}", unit_behind(&units.of(dimension))));
+    writeln!(out, "{t:>18}{a:>18}  event")?;
     if hidden > 0 {
         writeln!(
             out,

@@ -7,6 +7,8 @@ use std::path::Path;
 use slipmap::model::Table;
 use slipmap::report::numbers::bytes;
 use slipmap::sweep::input::friction_table::table_of_columns;
+use slipmap::sweep::input::point_file::{PointOf, PointSpec};
+use slipmap::sweep::input::table_file::Inlined;
 use slipmap::sweep::{CaseSpec, Plan, SpecError, SweepSpec};
 
 use super::failure::Failure;
@@ -17,29 +19,55 @@ const MOST_BYTES: u64 = 16 << 20;
 
 /// The plan of the sweep file at `path`.
 pub(super) fn read_plan(path: &Path) -> Result<Plan, Failure> {
-    read(path, "sweep", |text| {
+    read_with_table(path, "sweep", |text| {
         text.parse::<SweepSpec>().and_then(Plan::new)
     })
 }
 
 /// The case of the case file at `path`.
 pub(super) fn read_case(path: &Path) -> Result<CaseSpec, Failure> {
-    read(path, "case", str::parse)
+    read_with_table(path, "case", str::parse)
+}
+
+/// What the file at `path` gives of a point.
+pub(super) fn read_setting(path: &Path, of: PointOf) -> Result<PointSpec, Failure> {
+    read_with_table(path, "setting", |text| PointSpec::read(text, of))
 }
 
 /// The friction curve of the two columns in the file at `path`.
 pub(super) fn read_table(path: &Path) -> Result<Table, Failure> {
-    read(path, "table", table_of_columns)
+    let (name, text) = text_of(path, "table")?;
+    table_of_columns(&text).map_err(|error| Failure::in_file(error, &name, &text))
 }
 
 /// What stands for standard input in the place of a file.
 pub(super) const STANDARD_INPUT: &str = "-";
 
-fn read<T>(
+/// Reads a file whose friction law may stand in another file, named from the folder of the first.
+fn read_with_table<T>(
     path: &Path,
     kind: &str,
     parse: impl FnOnce(&str) -> Result<T, SpecError>,
 ) -> Result<T, Failure> {
+    let (name, text) = text_of(path, kind)?;
+    let folder = match path == Path::new(STANDARD_INPUT) {
+        true => None,
+        false => path.parent(),
+    };
+    let beside = |table: &str| {
+        let path = folder.map_or_else(|| table.into(), |folder| folder.join(table));
+        as_text(read_file(&path), "table")
+    };
+    let inlined = Inlined::new(&text, beside);
+    let read = inlined.and_then(|inlined| {
+        let read = parse(&inlined.text);
+        read.map_err(|error| inlined.in_original(error))
+    });
+    read.map_err(|error| Failure::in_file(error, &name, &text))
+}
+
+/// The name and the text of a file, or of standard input.
+fn text_of(path: &Path, kind: &str) -> Result<(String, String), Failure> {
     let (name, read) = match path == Path::new(STANDARD_INPUT) {
         true => (
             "standard input".to_owned(),
@@ -47,14 +75,19 @@ fn read<T>(
         ),
         false => (path.display().to_string(), read_file(path)),
     };
-    let refuse = |why: String| Failure::bad_input(format!("cannot read {name}: {why}"));
-    let read = read.map_err(|e| refuse(e.to_string()))?;
-    if read.len() as u64 > MOST_BYTES {
-        let most = bytes(MOST_BYTES);
-        return Err(refuse(format!("a {kind} file has {most} at most")));
+    match as_text(read, kind) {
+        Ok(text) => Ok((name, text)),
+        Err(why) => Err(Failure::bad_input(format!("cannot read {name}: {why}"))),
     }
-    let text = String::from_utf8(read).map_err(|_| refuse("it is not UTF-8 text".into()))?;
-    parse(&text).map_err(|error| Failure::in_file(error, &name, &text))
+}
+
+/// What was read as a text, or why it is none.
+fn as_text(read: io::Result<Vec<u8>>, kind: &str) -> Result<String, String> {
+    let read = read.map_err(|error| error.to_string())?;
+    if read.len() as u64 > MOST_BYTES {
+        return Err(format!("a {kind} file has {} at most", bytes(MOST_BYTES)));
+    }
+    String::from_utf8(read).map_err(|_| "it is not UTF-8 text".into())
 }
 
 fn read_file(path: &Path) -> io::Result<Vec<u8>> {

@@ -6,15 +6,18 @@ use clap::ValueEnum;
 use serde::Serialize;
 use slipmap::critical::switch_on::Phase;
 use slipmap::explore::vc::{CriticalVelocity, ShortDelay};
+use slipmap::report::numbers::unit_behind;
 use slipmap::slip::stop::Stop;
-use slipmap::sweep::Parameter;
 use slipmap::sweep::input::point_file::PointOf;
 use slipmap::sweep::input::search::{self, PHASES};
+use slipmap::sweep::input::units::Units;
+use slipmap::sweep::{Field, Parameter, Setting};
 
 use super::cell::{CellArgs, alone};
 use super::failure::Failure;
 use super::parameters::{LimitArgs, ParameterArgs, flag};
 use super::say;
+use super::setting::SettingArgs;
 
 #[derive(Debug, clap::Args)]
 #[command(after_help = "Examples:
@@ -27,6 +30,8 @@ pub(super) struct Args {
     parameters: ParameterArgs,
     #[command(flatten)]
     cell: CellArgs,
+    #[command(flatten)]
+    file: SettingArgs,
     /// Which question is asked
     #[arg(long, value_enum, default_value_t = ProtocolName::Follow)]
     protocol: ProtocolName,
@@ -57,39 +62,49 @@ pub(super) fn main(args: &Args) -> Result<(), Failure> {
     args.check()?;
     if let Some(point) = args.cell.point(PointOf::CriticalVelocity)? {
         let by_flags = args.protocol != ProtocolName::Follow || args.phase.is_some();
-        alone(by_flags || args.parameters.any_given())?;
+        alone("--map", by_flags || args.parameters.any_given())?;
         let found = CriticalVelocity::of(&point.setting, point.protocol, &Stop::default())?;
-        return print(args.json, &found, not_known(&found).as_deref());
+        return print_found(args.json, &found, &point.units);
     }
     match args.protocol {
-        ProtocolName::Limit => print(args.json, &args.limit()?, None),
+        ProtocolName::Limit => print(args.json, &args.limit()?, None, &Units::default()),
         protocol => {
-            let setting = args.parameters.setting_without_v0()?;
+            let (setting, units) = args.read()?;
             let protocol = match protocol {
                 ProtocolName::SwitchOn => search::Protocol::SwitchOn(args.phase()?),
                 _ => search::Protocol::Follow,
             };
             let found = CriticalVelocity::of(&setting, protocol, &Stop::default());
             let found = found.map_err(|e| args.parameters.refused(&e))?;
-            print(args.json, &found, not_known(&found).as_deref())
+            print_found(args.json, &found, &units)
         }
     }
 }
 
 /// What is said of v_c where it is not decided: between what it lies.
-fn not_known(found: &CriticalVelocity) -> Option<String> {
+fn not_known(found: &CriticalVelocity, units: &Units) -> Option<String> {
+    let unit = unit_behind(&Field::Vc.unit(units));
     let ends = match (found.vc_lower, found.vc_upper) {
         (None, None) => String::new(),
-        (None, Some(upper)) => format!(", below {upper}"),
-        (Some(lower), None) => format!(", above {lower}"),
-        (Some(lower), Some(upper)) => format!(", between {lower} and {upper}"),
+        (None, Some(upper)) => format!(", below {upper}{unit}"),
+        (Some(lower), None) => format!(", above {lower}{unit}"),
+        (Some(lower), Some(upper)) => format!(", between {lower}{unit} and {upper}{unit}"),
     };
     (!found.decided).then(|| format!("not known{ends}"))
 }
 
+fn print_found(json: bool, found: &CriticalVelocity, units: &Units) -> Result<(), Failure> {
+    print(json, found, not_known(found, units).as_deref(), units)
+}
+
 /// The object as one line of JSON, or its entries one below the other. Where v_c is `not_known`
 /// neither it, the velocity of lift-off nor a window is shown to people.
-fn print(json: bool, found: &impl Serialize, not_known: Option<&str>) -> Result<(), Failure> {
+fn print(
+    json: bool,
+    found: &impl Serialize,
+    not_known: Option<&str>,
+    units: &Units,
+) -> Result<(), Failure> {
     if json {
         return say::json(found);
     }
@@ -101,14 +116,37 @@ fn print(json: bool, found: &impl Serialize, not_known: Option<&str>) -> Result<
             (_, Some(_)) if key == "v_liftoff" || key == "windows" => continue,
             (serde_json::Value::String(text), _) => text.clone(),
             (serde_json::Value::Null, _) => "none".into(),
-            (other, _) => other.to_string(),
+            (other, _) => format!("{other}{}", unit_behind(&unit_of(key, units))),
         };
         writeln!(out, "{key:<20} {shown}")?;
+    }
+    if units.dimensionless() {
+        writeln!(out, "{:<20} none: dimensionless", "units")?;
     }
     Ok(())
 }
 
+/// The unit of what stands at a key.
+fn unit_of(key: &str, units: &Units) -> String {
+    // The field of that name is how many there are.
+    let field = match key {
+        "windows" => Some(Field::Vc),
+        _ => Field::from_name(key),
+    };
+    field.map_or_else(|| "1".into(), |field| field.unit(units))
+}
+
 impl Args {
+    /// The setting, from a file or from flags, and its units.
+    fn read(&self) -> Result<(Setting, Units), Failure> {
+        if let Some(point) = self.file.point(PointOf::CriticalVelocityOfSetting)? {
+            alone("--setting", self.parameters.any_given())?;
+            return Ok((point.setting, point.units));
+        }
+        let setting = self.parameters.setting_without_v0()?;
+        Ok((setting, self.parameters.units()))
+    }
+
     /// No flag is given that another protocol needs.
     fn check(&self) -> Result<(), Failure> {
         let refuse = |flag: &str, protocol: &str| {
@@ -124,7 +162,7 @@ impl Args {
             if let Some(parameter) = self.limit.any_given() {
                 return refuse(&flag(parameter), "limit");
             }
-        } else if self.parameters.any_given() {
+        } else if self.parameters.any_given() || self.file.is_given() {
             return Err(Failure::bad_input_with_help(
                 "the limit takes no parameters but --gamma and --mu-ratio",
                 "for example: slipmap vc --protocol limit --gamma 0.25 --mu-ratio 0.5",

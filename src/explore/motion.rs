@@ -109,7 +109,8 @@ pub struct MotionSummary {
     /// Time in slip in one period.
     #[cfg_attr(feature = "serve", schema(value_type = Option<f64>, required))]
     pub slip_time: f64,
-    /// When the last stick ended.
+    /// From switch-on until the last stick ended; 0 where there is none after switch-on, null where
+    /// sticks go on periodically.
     #[cfg_attr(feature = "serve", schema(value_type = Option<f64>, required))]
     pub last_release: f64,
     /// Steps taken.

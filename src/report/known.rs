@@ -67,6 +67,7 @@ impl Gap {
                 Field::VLiftoff => "no lift-off",
                 Field::VSmooth => "not smooth at v_max",
                 Field::SettleTime => "does not settle",
+                Field::LastRelease => "sticks go on",
                 _ => "no value",
             },
             Self::NotComputed => "not computed",

@@ -79,12 +79,22 @@ pub fn short(value: f64) -> String {
     }
 }
 
+/// A unit behind a number, after a space; nothing where there is none, "1".
+#[must_use]
+pub fn unit_behind(unit: &str) -> String {
+    match unit {
+        "" | "1" => String::new(),
+        unit => format!(" {unit}"),
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
 
     #[test]
     fn people_can_read_them() {
+        assert_eq!([unit_behind("1"), unit_behind("N m-1")], ["", " N m-1"]);
         assert_eq!(grouped(0), "0");
         assert_eq!(grouped(999), "999");
         assert_eq!(grouped(8_658_009), "8 658 009");

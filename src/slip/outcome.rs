@@ -71,7 +71,8 @@ pub struct Summary {
     pub outcome: Outcome,
     /// When that was known.
     pub decided: f64,
-    /// From switch-on until ẋ stays within 1 % of v0; NaN unless it came to sliding.
+    /// From switch-on, or from t = 0 where that never is, until ẋ stays within 1 % of v0; NaN
+    /// unless it came to sliding.
     pub settle_time: f64,
     /// The smallest load since switch-on.
     pub n_min: f64,
@@ -84,7 +85,8 @@ pub struct Summary {
     pub stick_time: f64,
     /// Time in slip in one period.
     pub slip_time: f64,
-    /// When the last stick ended; NaN if there was none.
+    /// From switch-on until the last stick ended; 0 where the block does not stick after
+    /// switch-on, NaN where sticks go on periodically.
     pub last_release: f64,
     /// Slips in one period of stick-slip; 0 else.
     pub slips: u32,

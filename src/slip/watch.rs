@@ -317,20 +317,24 @@ impl Watch {
         } else {
             0.0
         };
+        let after_switch_on = |t: f64| (t - since).max(0.0);
         Summary {
             outcome,
             decided: motion.t,
-            settle_time: if outcome == Outcome::Sliding {
-                (self.unsettled - since).max(0.0)
-            } else {
-                f64::NAN
+            settle_time: match outcome {
+                Outcome::Sliding => after_switch_on(self.unsettled),
+                _ => f64::NAN,
             },
             n_min: self.n_min,
             peak: self.peak,
             period,
             stick_time: period - slip_time,
             slip_time,
-            last_release: self.last_release,
+            last_release: match (outcome, self.last_release) {
+                (Outcome::StickSlip, _) => f64::NAN,
+                (_, last) if last.is_nan() => 0.0,
+                (_, last) => after_switch_on(last),
+            },
             slips: self.fold as u32,
             steps: self.steps,
         }
@@ -388,8 +392,8 @@ mod tests {
                 "{s:?}"
             );
         }
-        assert!((a.last_release - 97.029009396).abs() < 1e-8);
-        assert!((b.last_release - 76.277483031).abs() < 1e-8);
+        assert!((a.last_release - 27.029009396).abs() < 1e-8);
+        assert!((b.last_release - 6.277483031).abs() < 1e-8);
         assert!(
             b.n_min >= 0.5 - 1e-12 && b.n_min < 0.6 && a.n_min == 1.0,
             "{a:?} {b:?}"

@@ -49,6 +49,10 @@ pub(super) fn put_root(file: &File, plan: &Plan, provenance: &Provenance) -> hdf
     put_text(file, root::AXES, &names.join(" "))?;
     put_text(file, root::PLAN_HASH, &plan.hash())?;
     put_text(file, root::SWEEP, &plan.spec.text)?;
+    if plan.spec.simulation.disturbance != 0.0 {
+        let disturbance = plan.spec.simulation.disturbance;
+        put_numbers(file, root::DISTURBANCE, &[disturbance])?;
+    }
     put_numbers(file, root::MARGINAL_TOLERANCE, &[plan.spec.tolerance.0])?;
     if plan.spec.limit {
         put_text(file, root::PROTOCOL, LIMIT)?;

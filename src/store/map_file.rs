@@ -161,12 +161,16 @@ impl MapFile {
         self.root_text(root::SWEEP).unwrap_or_default()
     }
 
-    /// The sweep that made the map.
+    /// The sweep that made the map, with the meaning that its text had when it was written.
     ///
     /// # Errors
     /// What [`SweepSpec`] refuses, with the place in [`sweep_text`](Self::sweep_text).
     pub fn sweep(&self) -> Result<SweepSpec, SpecError> {
-        self.sweep_text().parse()
+        let mut spec: SweepSpec = self.sweep_text().parse()?;
+        if self.format_version() < schema::DISTURBED_SINCE {
+            spec.simulation.disturbance = 0.0;
+        }
+        Ok(spec)
     }
 
     /// The hash of everything besides the cells, as it is now.

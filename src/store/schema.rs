@@ -4,18 +4,25 @@
 /// Version of the layout described here, which is written. 2: [`DEGREE_OF_STABILITY`] of every
 /// curve. 3: indexes with checksums, and a seal behind the file. 4: the fields `vc_lower` and
 /// `vc_upper`, by which the regime and `v_smooth` decide. 5: the field `regime`, `class` before,
-/// and integers without `_FillValue` where no cell is missing.
-pub const FORMAT_VERSION: i32 = 5;
+/// and integers without `_FillValue` where no cell is missing. 6: motions without a start begin
+/// faster than they are pulled, see [`DISTURBED_SINCE`]; the field `last_release`.
+pub const FORMAT_VERSION: i32 = 6;
 /// The first version with a seal.
 pub const SEALED_SINCE: i32 = 3;
+/// The first version in which a sweep without a start disturbs its motions; before, they began on
+/// their equilibrium.
+pub const DISTURBED_SINCE: i32 = 6;
 /// The oldest version that is still read; readers refuse older and newer ones.
 pub const OLDEST_FORMAT_VERSION: i32 = 1;
 
 /// Conventions that a map follows.
 pub const CONVENTIONS: &str = "CF-1.11";
 
-/// Version of the layout of a trace.
-pub const TRACE_FORMAT_VERSION: i32 = 1;
+/// Version of the layout of a trace, which is written. 2: `last_release` counts from switch-on, as
+/// `settle_time` does.
+pub const TRACE_FORMAT_VERSION: i32 = 2;
+/// The oldest version of a trace that is still read.
+pub const OLDEST_TRACE_FORMAT_VERSION: i32 = 1;
 
 /// Names in a trace file besides those of parameters.
 pub mod trace {
@@ -53,6 +60,9 @@ pub mod root {
     pub const HISTORY: &str = "history";
     /// Number of cells that are not computed yet; absent in a complete map.
     pub const CELLS_MISSING: &str = "cells_missing";
+    /// By which share of v0 blocks are faster than they are pulled at t = 0, where the sweep of
+    /// their motions says no start; absent where it says one.
+    pub const DISTURBANCE: &str = "disturbance";
     /// Tolerance of the marginal flag.
     pub const MARGINAL_TOLERANCE: &str = "marginal_tolerance";
     /// [`crate::sweep::input::search::LIMIT`], where it is a map of that limit.

@@ -118,12 +118,16 @@ pub fn case_of(path: &Path) -> Result<String, StoreError> {
     let file = open::to_read(path, StoreError::not_a_trace)?;
     let missing = |name: &str| StoreError::not_a_trace(path, format!("it has no {name}"));
     match one_number::<i32>(&file, trace::FORMAT_VERSION) {
-        Some(schema::TRACE_FORMAT_VERSION) => {
+        Some(schema::OLDEST_TRACE_FORMAT_VERSION..=schema::TRACE_FORMAT_VERSION) => {
             text(&file, trace::CASE).map_err(|_| missing(trace::CASE))
         }
         Some(other) => {
-            let readable = schema::TRACE_FORMAT_VERSION;
-            let why = format!("its format version is {other}, this program reads {readable}");
+            let (oldest, newest) = (
+                schema::OLDEST_TRACE_FORMAT_VERSION,
+                schema::TRACE_FORMAT_VERSION,
+            );
+            let why =
+                format!("its format version is {other}, this program reads {oldest} to {newest}");
             Err(StoreError::not_a_trace(path, why))
         }
         None => Err(missing(trace::FORMAT_VERSION)),

@@ -50,7 +50,7 @@ with h5py.File(e.MAP, "r") as file:
     e.equal("flag_meanings", text(file["status"].attrs["flag_meanings"]).split(), e.FLAG_NAMES)
     e.equal("axes", text(file.attrs["axes"]).split(), list(e.AXES))
     e.equal("sweep", text(file.attrs["sweep"]), e.SWEEP)
-    e.equal("format version", int(np.ravel(file.attrs["slipmap_format_version"])[0]), 5)
+    e.equal("format version", int(np.ravel(file.attrs["slipmap_format_version"])[0]), 6)
     e.equal("length of the plan hash", len(text(file.attrs["plan_hash"])), 64)
     group = file["boundaries"]
     e.equal("scale of omega", group["omega"].dims[0][0].name, "/boundaries/vertex")

@@ -3,14 +3,12 @@
 
 use crate::critical::switch_on::Phase;
 use crate::model::Control;
-use crate::model::table::TableColumn;
 use crate::sweep::input::command::{command_line, vc_command};
-use crate::sweep::input::law_kind::LawKind;
-use crate::sweep::input::parameter::{Group, Parameter};
+use crate::sweep::input::parameter::Parameter;
 use crate::sweep::input::search::Protocol;
 use crate::sweep::input::setting::Setting;
+use crate::sweep::input::setting_text::{number, of_point, setting_text, table};
 use crate::sweep::input::simulation::Simulation;
-use crate::sweep::input::units::Units;
 use crate::sweep::{Plan, SweepSpec};
 
 /// What can be asked at a cell, as text; none where it means nothing there.
@@ -45,14 +43,14 @@ impl CellTexts {
         let delay = has(Parameter::Tau);
         let slides = setting.law().is_none() || has(Parameter::V0);
         let law = setting.law().is_some();
-        let point = (slides && delay).then(|| text(spec, &setting, |_| true));
+        let point = (slides && delay).then(|| setting_text(&setting, &spec.units, |_| true));
         let no_v0 = |parameter| parameter != Parameter::V0;
         let protocol = spec
             .critical
             .map_or(Protocol::Follow, |search| search.protocol);
         let protocol = protocol.at(&setting);
         let vc = (law && (delay || uncontrolled))
-            .then(|| asked_for(protocol) + &text(spec, &setting, no_v0));
+            .then(|| asked_for(protocol) + &setting_text(&setting, &spec.units, no_v0));
         let moves = law && slides && (delay || uncontrolled);
         let of_point = |parameter| of_point(&setting, parameter);
         let command = match (&point, &vc) {
@@ -69,11 +67,6 @@ impl CellTexts {
     }
 }
 
-/// Whether a point of this setting has the parameter.
-fn of_point(setting: &Setting, parameter: Parameter) -> bool {
-    !parameter.of_start() && setting.uses(parameter)
-}
-
 /// The keys that say by which protocol a critical velocity is looked for.
 fn asked_for(protocol: Protocol) -> String {
     let name = protocol.name();
@@ -88,58 +81,6 @@ fn asked_for(protocol: Protocol) -> String {
                 "protocol = \"{name}\"\nstart.{phase} = {}\n\n",
                 number(time)
             )
-        }
-    }
-}
-
-/// A number that is read as the same.
-fn number(value: f64) -> String {
-    format!("{value:?}")
-}
-
-/// A table of parameters.
-fn table(name: &str, setting: &Setting, wanted: impl Fn(Parameter) -> bool) -> String {
-    let mut text = format!("\n[{name}]\n");
-    for parameter in Parameter::ALL.into_iter().filter(|&p| wanted(p)) {
-        let value = number(setting.get(parameter));
-        text += &format!("{} = {value}\n", parameter.name());
-    }
-    text
-}
-
-/// The tables `[fixed]`, `[friction]` and `[units]` of a setting.
-fn text(spec: &SweepSpec, setting: &Setting, wanted: impl Fn(Parameter) -> bool) -> String {
-    let wanted = |parameter| wanted(parameter) && of_point(setting, parameter);
-    let fixed = |p: Parameter| wanted(p) && p.group() != Group::Law;
-    let mut text = table("fixed", setting, fixed);
-    if let Some(law) = setting.law() {
-        text += &table("friction", setting, |p| {
-            wanted(p) && p.group() == Group::Law
-        });
-        text += &format!("law = \"{}\"\n", law.name());
-        if let LawKind::Table(points) = law {
-            for (column, values) in [
-                (TableColumn::Speeds, points.speeds()),
-                (TableColumn::MuK, points.mu_k()),
-            ] {
-                let values: Vec<String> = values.iter().map(|&value| number(value)).collect();
-                text += &format!("{} = [{}]\n", column.name(), values.join(", "));
-            }
-        }
-    }
-    text += &units(&spec.units);
-    text.trim_start().to_owned()
-}
-
-fn units(units: &Units) -> String {
-    match &units.force_length_time {
-        None => String::new(),
-        Some(names) => {
-            let keys = ["force", "length", "time"].iter().zip(names);
-            let lines: String = keys
-                .map(|(key, name)| format!("{key} = \"{name}\"\n"))
-                .collect();
-            format!("\n[units]\n{lines}")
         }
     }
 }
@@ -166,12 +107,12 @@ fn case(spec: &SweepSpec, setting: &Setting) -> String {
     if !said.is_empty() {
         said += "\n";
     }
-    said += &text(spec, setting, |_| true);
+    said += &setting_text(setting, &spec.units, |_| true);
     let begins = |p: Parameter| p.of_start() && !setting.get(p).is_nan();
     if Parameter::ALL.into_iter().any(begins) {
         said += &table("start", setting, begins);
-    } else if spec.fields.iter().any(|field| field.of_motion()) {
-        // The cells of such a map start at the equilibrium, and so does their motion.
+    } else if spec.follows_motions() && spec.simulation.disturbance == 0.0 {
+        // Motions of such a map, an older one, start on their equilibrium.
         let v0 = number(setting.get(Parameter::V0));
         said += &format!("\n[start]\n{} = {v0}\n", Parameter::XDot0.name());
     }

@@ -36,7 +36,7 @@ use std::ops::Range;
 use super::given::{GivenParameters, read_units};
 use super::parameter::{LARGEST, Parameter};
 use super::setting::Setting;
-use super::simulation::{POSITIVE, Simulation};
+use super::simulation::{DISTURBED, POSITIVE, Simulation};
 use super::toml_reader::{Entry, SpecError, entries, parse};
 use super::units::Units;
 use crate::model::Control;
@@ -77,9 +77,6 @@ pub struct CaseSpec {
     /// The text of the file.
     pub text: String,
 }
-
-/// A block whose start is not given slides faster than it is pulled by this share.
-pub const DISTURBED: f64 = 0.01;
 
 impl std::str::FromStr for CaseSpec {
     type Err = SpecError;

@@ -10,7 +10,7 @@ use super::given::{GivenParameters, read_units};
 use super::limit_spec::LimitDraft;
 use super::parameter::Parameter;
 use super::search::LIMIT;
-use super::simulation::Simulation;
+use super::simulation::{DISTURBED, Simulation};
 use super::spec::SweepSpec;
 use super::spec_values::{
     read_degrees, read_field, read_fields, read_list, read_range, read_tolerance,
@@ -205,6 +205,10 @@ impl Draft {
             let (fixed, critical) = self.check()?;
             (fixed, critical, vec![Field::NUnstable])
         };
+        let mut simulation = self.simulation;
+        if critical.is_none() && self.motion_place.is_some() && !self.given.has_start() {
+            simulation.disturbance = DISTURBED;
+        }
         let fields = self.fields.unwrap_or(default_fields);
         Ok(SweepSpec {
             title: self.title,
@@ -217,7 +221,7 @@ impl Draft {
             degrees_of_stability: self.degrees,
             best: self.best.is_some(),
             tolerance: self.tolerance,
-            simulation: self.simulation,
+            simulation,
             critical,
             units: self.units,
             text: text.to_owned(),

@@ -403,6 +403,21 @@ catalogue! {
             comment: Some("no value where the motion does not come to slide"),
             ..ROW
         };
+        /// From switch-on until the last stick ends; 0 where there is none after switch-on, NaN
+        /// where sticks go on.
+        LastRelease = Row {
+            name: "last_release",
+            long_name: "time from switch-on until the last stick ends",
+            short_name: "last release",
+            measure: TIME,
+            source: Source::Motion(|motion| motion.last_release),
+            spread: Spread::LongTail,
+            comment: Some(
+                "0 where the block does not stick after switch-on; no value where sticks go on \
+                 periodically; as far as it was followed where the motion is undecided",
+            ),
+            ..ROW
+        };
         /// The smallest load since switch-on.
         NMin = Row {
             name: "n_min",
@@ -890,6 +905,7 @@ mod tests {
             ("certificate_margin", "1"),
             ("outcome", "1"),
             ("settle_time", "s"),
+            ("last_release", "s"),
             ("n_min", "N"),
             ("peak_force", "N"),
             ("vc_over_vtilde", "1"),
@@ -909,9 +925,9 @@ mod tests {
             "n_unstable, outcome, method, regime, windows, delay_margin, abscissa, abscissa_2 … \
              abscissa_8, frequency, frequency_2 … frequency_8, relaxation_time, \
              d_abscissa_d_tau, d_abscissa_d_alpha_v, d_abscissa_d_alpha_n, \
-             d_abscissa_d_mu_prime, certificate_margin, settle_time, n_min, peak_force, vc, \
-             vc_lower, vc_upper, v_liftoff, stick_time, slip_time, v_smooth, vc_over_vtilde, \
-             omega0_T, liftoff_over_vtilde, vc_weak_control, vc_strong_control, \
+             d_abscissa_d_mu_prime, certificate_margin, settle_time, last_release, n_min, \
+             peak_force, vc, vc_lower, vc_upper, v_liftoff, stick_time, slip_time, v_smooth, \
+             vc_over_vtilde, omega0_T, liftoff_over_vtilde, vc_weak_control, vc_strong_control, \
              weak_control_error, strong_control_error"
         );
     }

@@ -28,9 +28,14 @@ impl Numbers {
     }
 }
 
+/// The key of all points as pairs, or of the file that has them.
+pub(super) const PAIRS: &str = "table";
+
 /// The columns of a table as a text gives them.
 #[derive(Debug, Default)]
 pub(super) struct GivenTable {
+    /// Where they are given as pairs, if they are.
+    pairs: Option<Range<usize>>,
     speeds: Option<(Range<usize>, Numbers)>,
     mu_k: Option<(Range<usize>, Numbers)>,
 }
@@ -39,18 +44,58 @@ impl GivenTable {
     /// Reads `entry` if it is a column. Says whether it is one.
     pub(super) fn read(&mut self, entry: &Entry) -> Result<bool, SpecError> {
         let column = match entry.key {
+            PAIRS => return self.read_pairs(entry).map(|()| true),
             key if key == TableColumn::Speeds.name() => &mut self.speeds,
             key if key == TableColumn::MuK.name() => &mut self.mu_k,
             _ => return Ok(false),
         };
         *column = Some((entry.key_span.clone(), Numbers::of_array(entry)?));
-        Ok(true)
+        self.given_twice().map(|()| true)
+    }
+
+    /// Reads points as pairs of a speed and a value of μ_K.
+    fn read_pairs(&mut self, entry: &Entry) -> Result<(), SpecError> {
+        if entry.string().is_ok() {
+            let message = "it names a file, which only commands on a sweep or case file read";
+            return Err(entry
+                .error(message)
+                .help("here the points are needed: table = [[0.0, 0.5], …]"));
+        }
+        let (mut speeds, mut mu_k) = (Numbers::default(), Numbers::default());
+        for pair in entry.array()? {
+            let [speed, mu] = &pair.array()?[..] else {
+                return Err(pair.error("expected a speed and a value of mu_k"));
+            };
+            speeds.push(speed.number()?, speed.span.clone());
+            mu_k.push(mu.number()?, mu.span.clone());
+        }
+        self.pairs = Some(entry.key_span.clone());
+        self.given_twice()?;
+        self.speeds = Some((entry.key_span.clone(), speeds));
+        self.mu_k = Some((entry.key_span.clone(), mu_k));
+        Ok(())
+    }
+
+    /// An error if points are given both as pairs and as columns.
+    fn given_twice(&self) -> Result<(), SpecError> {
+        match (&self.pairs, &self.speeds, &self.mu_k) {
+            (Some(pairs), Some(_), _) | (Some(pairs), _, Some(_)) => {
+                let message = "table: the points are given as speeds and mu_k as well";
+                Err(SpecError::at(pairs.clone(), message).help("leave one of them out"))
+            }
+            _ => Ok(()),
+        }
     }
 
     /// The place and name of a column that is given; none without columns.
-    pub(super) fn any(&self) -> Option<(&Range<usize>, TableColumn)> {
-        let speeds = self.speeds.as_ref().map(|c| (&c.0, TableColumn::Speeds));
-        speeds.or(self.mu_k.as_ref().map(|c| (&c.0, TableColumn::MuK)))
+    pub(super) fn any(&self) -> Option<(&Range<usize>, &'static str)> {
+        let pairs = self.pairs.as_ref().map(|place| (place, PAIRS));
+        let speeds = self
+            .speeds
+            .as_ref()
+            .map(|c| (&c.0, TableColumn::Speeds.name()));
+        let mu_k = self.mu_k.as_ref().map(|c| (&c.0, TableColumn::MuK.name()));
+        pairs.or(speeds).or(mu_k)
     }
 
     /// The place of μ_K at its first point.
@@ -61,8 +106,10 @@ impl GivenTable {
     /// The table; what is missing is told at `law`.
     pub(super) fn table(&self, law: &Range<usize>) -> Result<Table, SpecError> {
         let missing = |column: TableColumn| {
-            SpecError::at(law.clone(), format!("{} is not given", column.name()))
-                .help("the table law goes through points: speeds = [0.0, …], mu_k = [0.5, …]")
+            SpecError::at(law.clone(), format!("{} is not given", column.name())).help(
+                "the table law goes through points: speeds = [0.0, …], mu_k = [0.5, …], or \
+                     table = \"curve.csv\"",
+            )
         };
         let speeds = self
             .speeds

@@ -3,16 +3,13 @@
 
 use std::ops::Range;
 
-use super::friction_table::GivenTable;
+use super::friction_table::{GivenTable, PAIRS};
 use super::law_kind::{Formula, LawKind};
 use super::nearest::did_you_mean;
 use super::parameter::Parameter;
 use super::setting::{GivenError, Setting};
 use super::toml_reader::{Entry, SpecError};
 use super::units::Units;
-
-/// The most letters of a unit.
-const LONGEST_UNIT: usize = 20;
 
 /// Parameters in the order of the file, each at most once.
 #[derive(Debug, Default)]
@@ -107,7 +104,7 @@ impl GivenParameters {
         let names: Vec<_> = ["law"]
             .into_iter()
             .chain(of_laws.map(Parameter::name))
-            .chain(["speeds", "mu_k"])
+            .chain(["speeds", "mu_k", PAIRS])
             .collect();
         let mut law = None;
         for entry in friction.table()? {
@@ -138,7 +135,7 @@ impl GivenParameters {
                 .help(format!("known: {}", LawKind::names()))
         })?;
         if let Some((place, column)) = self.table.any() {
-            let message = format!("{} has no meaning with the {name} law", column.name());
+            let message = format!("{column} has no meaning with the {name} law");
             return Err(
                 SpecError::at(place.clone(), message).help("points are for law = \"table\"")
             );
@@ -224,12 +221,7 @@ pub(super) fn read_units(units: &Entry) -> Result<Units, SpecError> {
             _ => return Err(entry.unknown(&["force", "length", "time"])),
         };
         let name = entry.string()?;
-        let is_short = (1..=LONGEST_UNIT).contains(&name.chars().count());
-        if !is_short || !name.chars().all(|c| c.is_alphabetic() || c == '%') {
-            return Err(entry.error(format!(
-                "a unit is one word of 1 to {LONGEST_UNIT} letters, like \"N\" or \"mm\""
-            )));
-        }
+        Units::check_name(name).map_err(|why| entry.error(why))?;
         *slot = Some(name.to_owned());
     }
     match (force, length, time) {

@@ -33,6 +33,8 @@ pub enum PointOf {
     Sliding,
     /// Its critical velocity: a friction law, no v0, a delay only where control acts.
     CriticalVelocity,
+    /// The critical velocity of a setting whose v0, if it has one, is left aside.
+    CriticalVelocityOfSetting,
     /// Its friction law alone.
     Law,
 }
@@ -80,6 +82,7 @@ impl PointSpec {
         match of {
             PointOf::Sliding => given.check(&[], None)?,
             PointOf::CriticalVelocity => check_critical(&given, &mut setting)?,
+            PointOf::CriticalVelocityOfSetting => check_critical_of(&given, &mut setting)?,
             PointOf::Law => {
                 given.check(&[Parameter::V0, Parameter::Tau], None)?;
             }
@@ -87,7 +90,7 @@ impl PointSpec {
         // Without v0 the law itself has to be well posed.
         let posed = match of {
             PointOf::Sliding => setting.sliding_point().map(drop),
-            PointOf::CriticalVelocity | PointOf::Law => setting.friction_law().map(drop),
+            _ => setting.friction_law().map(drop),
         };
         posed.map_err(|error| SpecError {
             span: given.ill_posed_place().cloned(),
@@ -103,14 +106,19 @@ impl PointSpec {
 
 /// A friction law is given, no v0, and a delay unless both gains are 0.
 fn check_critical(given: &GivenParameters, setting: &mut Setting) -> Result<(), SpecError> {
+    if let (Some(_), Some(place)) = (given.law_place(), given.place(Parameter::V0)) {
+        let message = "v0 is what is looked for";
+        return Err(SpecError::at(place.clone(), message).help("leave it out"));
+    }
+    check_critical_of(given, setting)
+}
+
+/// A friction law is given, and a delay unless both gains are 0.
+fn check_critical_of(given: &GivenParameters, setting: &mut Setting) -> Result<(), SpecError> {
     if given.law_place().is_none() {
         let message = "the critical velocity depends on the whole friction law";
         return Err(SpecError::whole(message)
             .help("for example: [friction] law = \"weakening\", mu0 = 0.5, v_s = 0.5"));
-    }
-    if let Some(place) = given.place(Parameter::V0) {
-        let message = "v0 is what is looked for";
-        return Err(SpecError::at(place.clone(), message).help("leave it out"));
     }
     for parameter in [Parameter::XDot0, Parameter::A0] {
         if let Some(place) = given.place(parameter) {

@@ -221,6 +221,12 @@ impl Setting {
         Ok((groups, oscillator.time_unit()))
     }
 
+    /// Whether there is a delay that nothing acts on: both gains are 0.
+    #[must_use]
+    pub fn has_idle_delay(&self) -> bool {
+        self.control() == Control::default() && self.get(Parameter::Tau) > 0.0
+    }
+
     /// Both gains.
     #[inline]
     #[must_use]

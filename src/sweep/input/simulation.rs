@@ -29,8 +29,15 @@ pub struct Simulation {
     pub tolerance: f64,
     /// The most steps.
     pub steps: u64,
+    /// By which share of v0 a block is faster than it is pulled at t = 0, where nothing says how it
+    /// starts.
+    pub disturbance: f64,
     horizon_place: Option<Range<usize>>,
 }
+
+/// The disturbance of a motion whose start is not given: exactly at its equilibrium a block stays,
+/// stable or not.
+pub const DISTURBED: f64 = 0.01;
 
 impl Default for Simulation {
     fn default() -> Self {
@@ -38,6 +45,7 @@ impl Default for Simulation {
             horizon: None,
             tolerance: Accuracy::default().tolerance,
             steps: STEPS,
+            disturbance: 0.0,
             horizon_place: None,
         }
     }
@@ -79,6 +87,19 @@ impl Simulation {
         Ok(())
     }
 
+    /// What is said of a start that is not given; none where no motion has such a one.
+    #[must_use]
+    pub fn assumed_start(&self) -> Option<String> {
+        (self.disturbance != 0.0).then(|| {
+            format!(
+                "none is given: each block begins with x_dot0 = {} v0, {} % faster than it is \
+                 pulled",
+                1.0 + self.disturbance,
+                100.0 * self.disturbance,
+            )
+        })
+    }
+
     /// The horizon, where it is given, is later than `switch_on`, the value of `name`.
     pub(super) fn check_horizon(&self, name: &str, switch_on: f64) -> Result<(), SpecError> {
         match (&self.horizon, &self.horizon_place) {
@@ -92,8 +113,8 @@ impl Simulation {
     }
 
     /// The motion of `setting`, with control acting from `switch_on` on unless the setting has a
-    /// phase for that. Where it has no start the block slides at v0. None where it has no friction
-    /// law.
+    /// phase for that. Where it has no start the block slides at v0, faster by the disturbance.
+    /// None where it has no friction law.
     ///
     /// # Errors
     /// When a parameter is outside the model's range.
@@ -108,7 +129,7 @@ impl Simulation {
         let start = match phase {
             Some(_) => Start::AfterRelease,
             None => Start::State {
-                x_dot0: given(Parameter::XDot0).unwrap_or(v0),
+                x_dot0: given(Parameter::XDot0).unwrap_or((1.0 + self.disturbance) * v0),
                 a0: given(Parameter::A0).unwrap_or_else(|| {
                     law.mu_k(v0) * (oscillator.normal_load() / oscillator.stiffness())
                 }),

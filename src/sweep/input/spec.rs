@@ -34,7 +34,8 @@
 //! # with "weakening" also two of mu0, v_s and mu_prime_rest, here or as axes
 //! v_s = 0.5
 //!
-//! # optional, for fields of motions: where they start, if no axis says so
+//! # optional, for fields of motions: where they start, if no axis says so; by default at v0, 1 %
+//! # faster than the block is pulled
 //! [start]
 //! x_dot0 = 0.1                            # and a0; or switch_on_phase, as in case files
 //!
@@ -113,6 +114,19 @@ impl SweepSpec {
         let given =
             self.fixed.law().is_none() || on_axis || !self.fixed.get(Parameter::V0).is_nan();
         !self.limit && given
+    }
+
+    /// Whether cells differ in a delay, or have one, that nothing acts on: both gains are 0 in all
+    /// of them.
+    #[must_use]
+    pub fn has_idle_delay(&self) -> bool {
+        let on_axis = |p| self.axes.iter().any(|axis| axis.parameter == p);
+        let gain = on_axis(Parameter::AlphaV) || on_axis(Parameter::AlphaN);
+        let mut setting = self.fixed.clone();
+        if on_axis(Parameter::Tau) {
+            setting.set(Parameter::Tau, 1.0);
+        }
+        !self.limit && !gain && setting.has_idle_delay()
     }
 
     /// Whether motions from a start are followed.

@@ -9,6 +9,8 @@ pub struct Units {
     pub force_length_time: Option<[String; 3]>,
 }
 
+/// The most letters of a unit.
+const LONGEST_NAME: usize = 20;
 /// The units of force, length and time in the SI.
 const SI: [&str; 3] = ["N", "m", "s"];
 /// The powers of force, length and time in a mass.
@@ -28,6 +30,45 @@ impl Units {
             "dimensionless" => Some(Self::default()),
             _ => None,
         }
+    }
+
+    /// Units as one text: the name of a preset, or the units of force, length and time with commas
+    /// between, such as `N,mm,s`.
+    ///
+    /// # Errors
+    /// Says what was expected.
+    pub fn read(text: &str) -> Result<Self, String> {
+        if let Some(preset) = Self::preset(text.trim()) {
+            return Ok(preset);
+        }
+        let names: Vec<String> = text.split(',').map(|name| name.trim().to_owned()).collect();
+        let known = Self::PRESETS.join(", ");
+        let expected = format!("expected {known}, or the units of force, length and time: N,mm,s");
+        let names = <[String; 3]>::try_from(names).map_err(|_| expected)?;
+        names.iter().try_for_each(|name| Self::check_name(name))?;
+        Ok(Self {
+            force_length_time: Some(names),
+        })
+    }
+
+    /// Whether a name can be that of a unit.
+    ///
+    /// # Errors
+    /// Says what was expected.
+    pub fn check_name(name: &str) -> Result<(), String> {
+        let is_short = (1..=LONGEST_NAME).contains(&name.chars().count());
+        match is_short && name.chars().all(|c| c.is_alphabetic() || c == '%') {
+            true => Ok(()),
+            false => Err(format!(
+                "a unit is one word of 1 to {LONGEST_NAME} letters, like \"N\" or \"mm\""
+            )),
+        }
+    }
+
+    /// Whether there are none: all numbers are dimensionless.
+    #[must_use]
+    pub fn dimensionless(&self) -> bool {
+        self.force_length_time.is_none()
     }
 
     /// The unit of a quantity with these powers of force, length and time; "1" where it has none.
@@ -96,9 +137,17 @@ mod tests {
         assert_eq!(of(&si), ["kg", "N m-1", "s"]);
         assert_eq!(of(&without), ["1"; 3]);
         assert_eq!(Units::preset("si"), None);
+        assert_eq!(Units::read("SI"), Ok(si));
+        assert_eq!(Units::read(" dimensionless"), Ok(without));
+        for text in [
+            "", "si", "N", "N,mm", "N,mm,s,s", "N,mm,", "N,m m,s", "N,mm,s-1",
+        ] {
+            assert!(Units::read(text).is_err(), "{text}");
+        }
         let mm = Units {
             force_length_time: Some(["N", "mm", "s"].map(String::from)),
         };
         assert_eq!(of(&mm), ["N mm-1 s2", "N mm-1", "s"]);
+        assert_eq!(Units::read("N, mm, s"), Ok(mm));
     }
 }

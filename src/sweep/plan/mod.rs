@@ -276,6 +276,10 @@ impl Plan {
             let horizon = how.horizon.unwrap_or(0.0);
             let numbers = vec![horizon, how.tolerance, how.steps as f64];
             facts.push(("simulation", numbers.into()));
+            // Absent where a start is given, and where motions began on their equilibrium.
+            if how.disturbance != 0.0 {
+                facts.push(("disturbance", one(how.disturbance)));
+            }
         }
         facts
     }

@@ -1,0 +1,77 @@
+//! A setting from a file, in the place of flags: `--setting SETTING.toml`; and files of settings
+//! for the commands that follow.
+
+use std::path::{Path, PathBuf};
+
+use slipmap::store::{Output, StoreError};
+use slipmap::sweep::Setting;
+use slipmap::sweep::input::point_file::{PointOf, PointSpec};
+use slipmap::sweep::input::setting_text::setting_text;
+use slipmap::sweep::input::units::Units;
+
+use super::failure::Failure;
+use super::output::warn_of_idle_delay;
+use super::sweep_file::read_setting;
+
+/// The first words of a file of a setting.
+const HEAD: &str = "# A setting by slipmap";
+
+#[derive(Debug, clap::Args)]
+pub(super) struct SettingArgs {
+    /// Take everything from this file, which `slipmap best --save` wrote
+    #[arg(long, value_name = "SETTING.toml", conflicts_with = "map")]
+    setting: Option<PathBuf>,
+}
+
+impl SettingArgs {
+    /// Whether a file is given.
+    pub(super) fn is_given(&self) -> bool {
+        self.setting.is_some()
+    }
+
+    /// The point of the file; none where none is given.
+    pub(super) fn point(&self, of: PointOf) -> Result<Option<PointSpec>, Failure> {
+        let Some(path) = &self.setting else {
+            return Ok(None);
+        };
+        let point = read_setting(path, of)?;
+        warn_of_idle_delay(point.setting.has_idle_delay());
+        Ok(Some(point))
+    }
+}
+
+/// An error if a setting must not be written to `path`: what slipmap did not write stays.
+pub(super) fn check_save(path: &Path) -> Result<(), Failure> {
+    let name = path.display();
+    if path.extension().is_none_or(|extension| extension != "toml") {
+        return Err(Failure::bad_input_with_help(
+            format!("--save {name} is no name for a setting"),
+            "name it like setting.toml",
+        ));
+    }
+    if path.symlink_metadata().is_err() {
+        return Ok(());
+    }
+    let by_slipmap = path.metadata().is_ok_and(|metadata| metadata.is_file())
+        && std::fs::read_to_string(path).is_ok_and(|text| text.starts_with(HEAD));
+    match by_slipmap {
+        true => Ok(()),
+        false => Err(Failure::bad_input_with_help(
+            format!("--save {name} is there and not by slipmap"),
+            "it is left as it is; remove it first, or write elsewhere",
+        )),
+    }
+}
+
+/// Writes a setting: whole, or not at all.
+pub(super) fn save(setting: &Setting, units: &Units, path: &Path) -> Result<(), Failure> {
+    let text = setting_text(setting, units, |_| true);
+    let text = format!("{HEAD}; `slipmap simulate` takes it as a case file\n\n{text}");
+    let output = Output::claim(path)?;
+    std::fs::write(output.part(), text).map_err(|source| StoreError::Io {
+        action: "write",
+        path: path.to_owned(),
+        source,
+    })?;
+    Ok(output.commit()?)
+}

@@ -1,0 +1,169 @@
+//! A friction law whose points stand in a file of their own: `table = "curve.csv"` of a sweep or
+//! case file. They are put into its text, so that what is stored with a map or trace is complete.
+
+use std::ops::Range;
+
+use super::friction_table::{PAIRS, table_of_columns};
+use super::toml_reader::{Entry, SpecError, entries, parse};
+
+/// A text with the points in the place of the file's name.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Inlined {
+    /// The text that is read and stored.
+    pub text: String,
+    /// Where the name stood in the text as it was written, and where the points stand now.
+    places: Option<(Range<usize>, Range<usize>)>,
+}
+
+impl Inlined {
+    /// Puts the points of the file that `friction.table` names, if it names one, into `text`.
+    /// `read` gives the text of a file, or says why it cannot be read.
+    ///
+    /// # Errors
+    /// When the file cannot be read, or what is in it is no table: at its name.
+    pub fn new(
+        text: &str,
+        read: impl FnOnce(&str) -> Result<String, String>,
+    ) -> Result<Self, SpecError> {
+        let unchanged = Self {
+            text: text.to_owned(),
+            places: None,
+        };
+        // What is no TOML is told by those who read the text.
+        let Ok(document) = parse(text) else {
+            return Ok(unchanged);
+        };
+        let friction = entries(document.get_ref(), "").into_iter();
+        let friction = friction.filter(|entry| entry.key == "friction");
+        let inside = friction.filter_map(|entry| entry.table().ok()).flatten();
+        let mut tables = inside.filter(|entry| entry.key == PAIRS);
+        let named = tables.find_map(|entry| Some((entry.string().ok()?, entry)));
+        let Some((name, entry)) = named else {
+            return Ok(unchanged);
+        };
+        let points = points(&entry, name, read)?;
+        let old = entry.span.clone();
+        let new = old.start..old.start + points.len();
+        let text = [&text[..old.start], &points, &text[old.end..]].concat();
+        Ok(Self {
+            text,
+            places: Some((old, new)),
+        })
+    }
+
+    /// An error in [`Inlined::text`] with its place in the text as it was written.
+    #[must_use]
+    pub fn in_original(&self, mut error: SpecError) -> SpecError {
+        if let (Some((old, new)), Some(span)) = (&self.places, &mut error.span) {
+            if span.start >= new.end {
+                let shifted = |at: usize| at - new.end + old.end;
+                *span = shifted(span.start)..shifted(span.end);
+            } else if span.end > new.start {
+                *span = old.clone();
+            }
+        }
+        error
+    }
+}
+
+/// The points of the file `name` as a list of pairs.
+fn points(
+    entry: &Entry,
+    name: &str,
+    read: impl FnOnce(&str) -> Result<String, String>,
+) -> Result<String, SpecError> {
+    let text = read(name).map_err(|why| entry.error(format!("cannot read {name}: {why}")))?;
+    let table = table_of_columns(&text).map_err(|error| {
+        let line = error
+            .span
+            .map(|span| 1 + text[..span.start].matches('\n').count());
+        let line = line.map_or_else(String::new, |line| format!(":{line}"));
+        entry.error(format!("{name}{line}: {}", error.message))
+    })?;
+    let pairs = table.speeds().iter().zip(table.mu_k());
+    let pairs: Vec<String> = pairs
+        .map(|(speed, mu)| format!("[{speed:?}, {mu:?}]"))
+        .collect();
+    Ok(format!("[{}]", pairs.join(", ")))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::sweep::input::law_kind::LawKind;
+    use crate::sweep::{CaseSpec, SweepSpec};
+
+    const CURVE: &str = "speed,mu\n0,0.5\n0.25,0.30000000000000004\n";
+
+    fn inlined(text: &str) -> Result<Inlined, SpecError> {
+        Inlined::new(text, |name| match name {
+            "curve.csv" => Ok(CURVE.to_owned()),
+            "bad.csv" => Ok("speed,mu\n0,0.5\n\n0.25,x\n".to_owned()),
+            _ => Err("there is none".to_owned()),
+        })
+    }
+
+    #[test]
+    fn points_take_the_place_of_the_name_however_it_is_written() {
+        let axes = "[axes]\nv0 = [0.1]\ntau = [1]\n";
+        for friction in [
+            "[friction]\nlaw = \"table\"\ntable = \"curve.csv\"\n",
+            "friction = { table = \"curve.csv\", law = \"table\" }\n",
+            "friction.table = 'curve.csv'\nfriction.law = \"table\"\n",
+        ] {
+            let text = &format!("{friction}{axes}");
+            let found = inlined(text).unwrap();
+            let spec: SweepSpec = found.text.parse().unwrap();
+            let Some(LawKind::Table(table)) = spec.fixed.law() else {
+                panic!("{text}");
+            };
+            assert_eq!(table.speeds(), [0.0, 0.25]);
+            assert_eq!(table.mu_k(), [0.5, 0.300_000_000_000_000_04]);
+            assert_eq!(found.text.lines().count(), text.lines().count());
+            let error = text.parse::<SweepSpec>().unwrap_err();
+            assert!(error.message.contains("names a file"), "{error}");
+        }
+    }
+
+    #[test]
+    fn what_names_no_file_is_left_alone() {
+        for text in ["", "friction = 3", "= 3", "[friction]\ntable = [[0, 1]]\n"] {
+            assert_eq!(inlined(text).unwrap().text, text);
+        }
+    }
+
+    #[test]
+    fn mistakes_are_told_at_the_name_with_the_line_of_the_file() {
+        let place = |text: &str| {
+            let error = inlined(text).unwrap_err();
+            (text[error.span.unwrap()].to_owned(), error.message)
+        };
+        let (at, message) = place("friction.table = \"none.csv\"");
+        assert_eq!(at, "\"none.csv\"");
+        assert_eq!(
+            message,
+            "friction.table: cannot read none.csv: there is none"
+        );
+        let (_, message) = place("friction.table = \"bad.csv\"");
+        assert!(message.contains("bad.csv:4: expected a speed"), "{message}");
+    }
+
+    /// Places before, in and behind the points are those of the text as it was written.
+    #[test]
+    fn places_of_other_mistakes_are_those_of_the_text() {
+        let friction = "[friction]\nlaw = \"table\"\ntable = \"curve.csv\"\n";
+        for (text, expected) in [
+            (format!("x = 1\n{friction}"), "x"),
+            (
+                format!("{friction}mu_s = 0.1\n[fixed]\nv0 = 1\n"),
+                "\"curve.csv\"",
+            ),
+            (format!("{friction}[fixed]\nv0 = -1\n"), "-1"),
+        ] {
+            let found = inlined(&text).unwrap();
+            let error = found.text.parse::<CaseSpec>().unwrap_err();
+            let error = found.in_original(error);
+            assert_eq!(&text[error.span.unwrap()], expected, "{}", error.message);
+        }
+    }
+}
