@@ -20,7 +20,7 @@ const RIG: [&str; 12] = [
     "table",
     "--table",
     "curve.csv",
-    "--mu-s=0.55",
+    "--mu-s=0.9",
     "--units",
     "SI",
     "--alpha-v=0",
@@ -110,7 +110,7 @@ fn flags_and_files_say_the_same() {
     let flags = [&RIG[..], &control].concat();
     let by_flags = json(&folder, &[&["point", "--json"], &flags[..]].concat());
     let case = "[fixed]\nmass = 2\nstiffness = 500\nnormal_load = 30\nv0 = 0.1\nalpha_n = -600\n\
-                tau = 0.03\n[friction]\nlaw = \"table\"\ntable = \"curve.csv\"\nmu_s = 0.55\n";
+                tau = 0.03\n[friction]\nlaw = \"table\"\ntable = \"curve.csv\"\nmu_s = 0.9\n";
     std::fs::write(
         folder.path().join("case.toml"),
         format!("units = \"SI\"\n{case}"),
