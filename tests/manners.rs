@@ -366,7 +366,7 @@ fn places_that_are_none_are_answered(folder: &Folder, cell: &[&str]) {
             &["point", "--map", "cells.h5", "--at", "mass=1"],
             "mass is no axis of this map",
         ),
-        (&["simulate"], "<CASE.toml>"),
+        (&["simulate"], "no case is given"),
     ] {
         let text = said(folder, args);
         assert!(text.contains(says), "{args:?}: {text}");
