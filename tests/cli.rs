@@ -129,7 +129,7 @@ fn pictures_show_what_they_say_and_replace_no_other() {
     assert!(read("small.png") == of_run);
     std::fs::write(folder.path().join("small.n_unstable.png"), "a photograph").unwrap();
     let args = ["plot", "small.h5", "--field", "n_unstable"];
-    expect(&folder.run(&args), 2, "is there and not drawn by slipmap");
+    expect(&folder.run(&args), 2, "is there and not by slipmap");
     assert_eq!(read("small.n_unstable.png"), b"a photograph");
     let wide = [
         "plot", "small.h5", "-o", "wide.svg", "--size", "2000x700", "--title", "Mine",

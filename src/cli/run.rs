@@ -9,7 +9,7 @@ use bytesize::ByteSize;
 use slipmap::maps::maker::{self, Job};
 use slipmap::report::log::{Both, Log};
 use slipmap::report::numbers::{bytes, grouped, prefixed, seconds};
-use slipmap::report::picture::{self, Picture, PictureError, PictureOptions};
+use slipmap::report::picture::{self, Named, Picture, PictureError, PictureOptions};
 use slipmap::report::preview::preview;
 use slipmap::report::progress::Progress;
 use slipmap::store::schema::root;
@@ -18,6 +18,7 @@ use slipmap::store::{MapFile, StoreError};
 use slipmap::sweep::events::Attended;
 use slipmap::sweep::{Memory, Plan, RunError, Shard};
 
+use super::colours::Colours;
 use super::failure::Failure;
 use super::output::{self, output_path, provenance};
 use super::plot;
@@ -121,7 +122,8 @@ pub(super) fn main(args: &Args) -> Result<(), Failure> {
     shards::settle(&path, |hash| maker::is_complete(&path, Some(hash)))?;
     if let Some(remark) = already_there(&path, &plan, args.fresh)? {
         drop(shards::remove_root(&path));
-        return nothing_to_do(&path, &remark, args.quiet, &signals);
+        let view = View::of(&plan, args.quiet);
+        return nothing_to_do(&path, &remark, view, &signals);
     }
     match args.shard.filter(|_| args.fresh) {
         Some(shard) => shards::clear_shard(&path, shard)?,
@@ -204,7 +206,7 @@ fn run_whole(plan: &Arc<Plan>, job: &Job, watched: &Watched, args: &Args) -> Res
         prefixed(cells as f64 / elapsed),
         bytes(std::fs::metadata(path).map_or(0, |m| m.len())),
     ));
-    show(path, quiet, watched.signals);
+    show(path, View::of(plan, quiet), watched.signals);
     told
 }
 
@@ -232,15 +234,16 @@ fn refuse_other_way(map: &Path, asked: Shard) -> Result<(), Failure> {
     Err(Failure::bad_input_with_help(message, help))
 }
 
-/// Says that a map is complete, and draws it where an earlier command did not come to that.
+/// Says that a map is complete, and draws it where an earlier command did not come to that, or
+/// where the sweep file names another field for pictures by now.
 pub(super) fn nothing_to_do(
     path: &Path,
     remark: &str,
-    quiet: bool,
+    view: View,
     signals: &Signals,
 ) -> Result<(), Failure> {
-    if lacks_picture(path) {
-        show(path, quiet, signals);
+    if lacks_picture(path, view.named) {
+        show(path, view, signals);
     }
     say::result(format_args!(
         "{} is already complete{remark}",
@@ -248,47 +251,71 @@ pub(super) fn nothing_to_do(
     ))
 }
 
-/// Whether there is no picture beside a map, or one of what was there before.
-fn lacks_picture(map: &Path) -> bool {
+/// How a complete map is shown.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct View {
+    /// What names the field of its picture.
+    pub named: Named,
+    /// Without a preview on the terminal.
+    pub quiet: bool,
+}
+
+impl View {
+    fn of(plan: &Plan, quiet: bool) -> Self {
+        Self {
+            named: plan.spec.picture.into(),
+            quiet,
+        }
+    }
+}
+
+/// Whether there is no picture beside a map, or one of what was there before, or of another field
+/// than the sweep file names.
+fn lacks_picture(map: &Path, named: Named) -> bool {
+    let beside = plot::beside(map);
     let written = |path: &Path| path.metadata().and_then(|m| m.modified());
-    match (written(map), written(&plot::beside(map))) {
-        (Ok(map), Ok(picture)) => picture < map,
+    let other = || {
+        let shown = picture::named_in(&beside);
+        shown.is_some_and(|shown| match named {
+            Named::InMap => false,
+            Named::As(field) => shown != field.name(),
+            Named::Nothing => !shown.is_empty(),
+        })
+    };
+    match (written(map), written(&beside)) {
+        (Ok(map), Ok(picture)) => picture < map || other(),
         (_, picture) => picture.is_err(),
     }
 }
 
 /// Draws a complete map beside it, and on the terminal. What fails here is a warning: the map is
 /// there.
-pub(super) fn show(path: &Path, quiet: bool, signals: &Signals) {
+pub(super) fn show(path: &Path, view: View, signals: &Signals) {
     let complete = format!("{} is complete, the same command draws it", path.display());
     let map = match signals.or_end(&complete, || MapFile::open(path)) {
         Ok(map) => map,
         Err(error) => return say::remark(format_args!("warning: no picture: {error}")),
     };
     let picture = plot::beside(path);
-    let drawn = if picture::may_replace(&picture) {
-        let options = PictureOptions::default();
-        let drawn = signals.or_end(&complete, || picture::draw(&map, &picture, &options));
-        drawn.and_then(Picture::save)
-    } else {
-        let name = picture.display();
-        say::remark(format_args!(
-            "warning: no picture: {name} is there and not by slipmap; `slipmap plot -o` draws \
-            elsewhere"
-        ));
-        Err(PictureError::NothingToDraw)
+    let options = PictureOptions {
+        named: view.named,
+        ..PictureOptions::default()
     };
-    match drawn {
+    let drawn = signals.or_end(&complete, || picture::draw(&map, &picture, &options));
+    match drawn.and_then(Picture::save_unasked) {
         // Where standard output takes no more, the line about the map has said so.
         Ok(()) => drop(say::result(picture.display())),
         Err(PictureError::NothingToDraw) => {}
+        Err(error @ PictureError::OthersWork { .. }) => say::remark(format_args!(
+            "warning: no picture: {error}; `slipmap plot -o` draws elsewhere"
+        )),
         Err(error) => say::remark(format_args!("warning: no picture: {error}")),
     }
-    if quiet || !std::io::stderr().is_terminal() {
+    if view.quiet || !std::io::stderr().is_terminal() {
         return;
     }
-    let no_colour = std::env::var_os("NO_COLOR").is_some_and(|value| !value.is_empty());
-    match signals.or_end(&complete, || preview(&map, PREVIEW_WIDTH, !no_colour)) {
+    let coloured = Colours::asked().of_terminal();
+    match signals.or_end(&complete, || preview(&map, PREVIEW_WIDTH, coloured)) {
         Ok(Some(text)) => say::coloured(text.trim_end_matches('\n')),
         Ok(None) => {}
         Err(error) => say::remark(format_args!("warning: no preview: {error}")),

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use serde::Serialize;
 use slipmap::explore::motion::MotionSummary;
 use slipmap::report::numbers::grouped;
-use slipmap::report::picture::{self, Picture};
+use slipmap::report::picture::{self, Picture, PictureError};
 use slipmap::slip::motion::MOST_KEPT;
 use slipmap::slip::outcome::{Outcome, Summary};
 use slipmap::store::describe::Provenance;
@@ -138,7 +138,7 @@ fn check_picture(args: &Args, trace: &Path) -> Result<(), Failure> {
     match &args.picture {
         Some(picture) if !picture::is_name(picture) => Err(Failure::bad_input_with_help(
             format!("--picture {} is no name for a picture", picture.display()),
-            "name it like fig.png or fig.svg",
+            "name it like fig.png, fig.svg or fig.pdf",
         )),
         Some(picture) if picture == trace => Err(Failure::bad_input(format!(
             "--picture {} would replace the trace",
@@ -186,23 +186,25 @@ fn draw(
 ) -> Result<Option<PathBuf>, Failure> {
     let draw = |picture: &Path| {
         let complete = format!("{} is complete, its picture is not drawn", path.display());
-        let drawn = signals.or_end(complete, || picture::draw_trace(spec, trace, picture));
-        drawn.and_then(Picture::save)
+        signals.or_end(complete, || {
+            picture::draw_trace((spec, trace), path, picture)
+        })
     };
     if let Some(asked) = &args.picture {
-        draw(asked).map_err(|e| Failure::failed(e.to_string()))?;
+        draw(asked)
+            .and_then(Picture::save)
+            .map_err(|e| Failure::failed(e.to_string()))?;
         return Ok(Some(asked.clone()));
     }
     let beside = plot::beside(path);
-    let name = beside.display();
-    if !picture::may_replace(&beside) {
-        say::remark(format_args!(
-            "warning: no picture: {name} is there and not by slipmap; --picture draws elsewhere"
-        ));
-        return Ok(None);
-    }
-    match draw(&beside) {
+    match draw(&beside).and_then(Picture::save_unasked) {
         Ok(()) => Ok(Some(beside)),
+        Err(error @ PictureError::OthersWork { .. }) => {
+            say::remark(format_args!(
+                "warning: no picture: {error}; --picture draws elsewhere"
+            ));
+            Ok(None)
+        }
         Err(error) => {
             say::remark(format_args!("warning: no picture: {error}"));
             Ok(None)
