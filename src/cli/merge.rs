@@ -15,7 +15,7 @@ use slipmap::sweep::{Plan, Shard};
 
 use super::failure::Failure;
 use super::output::{provenance, tell_assembled};
-use super::run::View;
+use super::show::{View, nothing_to_do, show};
 use super::signals::Signals;
 use super::{open_files, run, say};
 
@@ -49,7 +49,7 @@ pub(super) fn main(args: &Args) -> Result<(), Failure> {
     let signals = Signals::catch()?;
     let target = args.output.as_ref().unwrap_or(&args.map);
     if shards::settle(&args.map, |hash| maker::is_complete(target, Some(hash)))? {
-        return run::nothing_to_do(target, "", VIEW, &signals);
+        return nothing_to_do(target, "", VIEW, &signals);
     }
     let folders = folders(args)?;
     if folders.is_empty() {
@@ -59,7 +59,7 @@ pub(super) fn main(args: &Args) -> Result<(), Failure> {
     let (_, plan) = shards::plan(&folders)?;
     if let Some(remark) = run::already_there(target, &plan, args.fresh)? {
         drop(shards::remove_root(target));
-        return run::nothing_to_do(target, &remark, VIEW, &signals);
+        return nothing_to_do(target, &remark, VIEW, &signals);
     }
     let provenance = provenance("merge", &args.map);
     let (progress, log) = (Progress::new(false), Log::beside(target, Shard::WHOLE));
@@ -84,7 +84,7 @@ pub(super) fn main(args: &Args) -> Result<(), Failure> {
     let merged = maker::merge(&plan, &asked, &provenance, attended);
     let assembled = merged.map_err(|error| failure(error, &args.map, &signals))?;
     tell(target, &plan, &assembled)?;
-    run::show(target, VIEW, &signals);
+    show(target, VIEW, &signals);
     Ok(())
 }
 
@@ -112,7 +112,7 @@ fn nothing_to_merge(args: &Args, target: &Path, signals: &Signals) -> Result<(),
             true => "; there are no shards that could replace it",
             false => "",
         };
-        return run::nothing_to_do(target, remark, VIEW, signals);
+        return nothing_to_do(target, remark, VIEW, signals);
     }
     Err(Failure::bad_input_with_help(
         format!(

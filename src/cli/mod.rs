@@ -18,6 +18,7 @@ mod read_map;
 mod run;
 mod say;
 mod serve;
+mod show;
 mod signals;
 mod simulate;
 mod status;

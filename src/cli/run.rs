@@ -1,6 +1,5 @@
 //! `slipmap run`: from a sweep file to a map and its picture, or to one shard of the map.
 
-use std::io::IsTerminal;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::Duration;
@@ -9,8 +8,6 @@ use bytesize::ByteSize;
 use slipmap::maps::maker::{self, Job};
 use slipmap::report::log::{Both, Log};
 use slipmap::report::numbers::{bytes, grouped, prefixed, seconds};
-use slipmap::report::picture::{self, Named, Picture, PictureError, PictureOptions};
-use slipmap::report::preview::preview;
 use slipmap::report::progress::Progress;
 use slipmap::store::schema::root;
 use slipmap::store::tiles::{Manifest, shards};
@@ -18,19 +15,15 @@ use slipmap::store::{MapFile, StoreError};
 use slipmap::sweep::events::Attended;
 use slipmap::sweep::{Memory, Plan, RunError, Shard};
 
-use super::colours::Colours;
 use super::failure::Failure;
 use super::output::{self, output_path, provenance};
-use super::plot;
 use super::say;
+use super::show::{View, nothing_to_do, show};
 use super::signals::Signals;
 use super::sweep_file::read_plan;
 
 /// More threads than this are taken for a slip of the finger.
 const MOST_THREADS: usize = 4096;
-
-/// Columns of the picture on the terminal: as many as every terminal has.
-const PREVIEW_WIDTH: usize = 78;
 
 #[derive(Debug, clap::Args)]
 pub(super) struct Args {
@@ -232,94 +225,6 @@ fn refuse_other_way(map: &Path, asked: Shard) -> Result<(), Failure> {
     let root = shards::root(map);
     let message = format!("{} holds {what}", root.display());
     Err(Failure::bad_input_with_help(message, help))
-}
-
-/// Says that a map is complete, and draws it where an earlier command did not come to that, or
-/// where the sweep file names another field for pictures by now.
-pub(super) fn nothing_to_do(
-    path: &Path,
-    remark: &str,
-    view: View,
-    signals: &Signals,
-) -> Result<(), Failure> {
-    if lacks_picture(path, view.named) {
-        show(path, view, signals);
-    }
-    say::result(format_args!(
-        "{} is already complete{remark}",
-        path.display()
-    ))
-}
-
-/// How a complete map is shown.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct View {
-    /// What names the field of its picture.
-    pub named: Named,
-    /// Without a preview on the terminal.
-    pub quiet: bool,
-}
-
-impl View {
-    fn of(plan: &Plan, quiet: bool) -> Self {
-        Self {
-            named: plan.spec.picture.into(),
-            quiet,
-        }
-    }
-}
-
-/// Whether there is no picture beside a map, or one of what was there before, or of another field
-/// than the sweep file names.
-fn lacks_picture(map: &Path, named: Named) -> bool {
-    let beside = plot::beside(map);
-    let written = |path: &Path| path.metadata().and_then(|m| m.modified());
-    let other = || {
-        let shown = picture::named_in(&beside);
-        shown.is_some_and(|shown| match named {
-            Named::InMap => false,
-            Named::As(field) => shown != field.name(),
-            Named::Nothing => !shown.is_empty(),
-        })
-    };
-    match (written(map), written(&beside)) {
-        (Ok(map), Ok(picture)) => picture < map || other(),
-        (_, picture) => picture.is_err(),
-    }
-}
-
-/// Draws a complete map beside it, and on the terminal. What fails here is a warning: the map is
-/// there.
-pub(super) fn show(path: &Path, view: View, signals: &Signals) {
-    let complete = format!("{} is complete, the same command draws it", path.display());
-    let map = match signals.or_end(&complete, || MapFile::open(path)) {
-        Ok(map) => map,
-        Err(error) => return say::remark(format_args!("warning: no picture: {error}")),
-    };
-    let picture = plot::beside(path);
-    let options = PictureOptions {
-        named: view.named,
-        ..PictureOptions::default()
-    };
-    let drawn = signals.or_end(&complete, || picture::draw(&map, &picture, &options));
-    match drawn.and_then(Picture::save_unasked) {
-        // Where standard output takes no more, the line about the map has said so.
-        Ok(()) => drop(say::result(picture.display())),
-        Err(PictureError::NothingToDraw) => {}
-        Err(error @ PictureError::OthersWork { .. }) => say::remark(format_args!(
-            "warning: no picture: {error}; `slipmap plot -o` draws elsewhere"
-        )),
-        Err(error) => say::remark(format_args!("warning: no picture: {error}")),
-    }
-    if view.quiet || !std::io::stderr().is_terminal() {
-        return;
-    }
-    let coloured = Colours::asked().of_terminal();
-    match signals.or_end(&complete, || preview(&map, PREVIEW_WIDTH, coloured)) {
-        Ok(Some(text)) => say::coloured(text.trim_end_matches('\n')),
-        Ok(None) => {}
-        Err(error) => say::remark(format_args!("warning: no preview: {error}")),
-    }
 }
 
 /// A remark if the map of this plan is there and `fresh` is not set; an error if what is there must

@@ -5,8 +5,9 @@ use std::io::BufReader;
 use std::path::{Path, PathBuf};
 
 use super::error::PictureError;
+use super::pdf;
+use super::render;
 use super::scene::Scene;
-use super::{pdf, render};
 use crate::report::visible::visible_line;
 use crate::store::{Output, StoreError};
 

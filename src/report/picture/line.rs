@@ -43,8 +43,8 @@ struct Graph {
 }
 
 /// Draws `fields` along the axis `view.x` at no more than so many cells as stand beside the
-/// options: a single one at every panel's values of the other axes, several ones, of the same unit, at those
-/// of the first.
+/// options: a single one at every panel's values of the other axes, several ones, of the same
+/// unit, at those of the first.
 pub(super) fn draw(
     map: &MapFile,
     view: &View,

@@ -5,8 +5,8 @@ use plotters::backend::{BitMapBackend, DrawingBackend, RGBPixel, SVGBackend};
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 use plotters::style::{Color, FontTransform, RGBAColor, RGBColor, TextStyle};
 
-use super::PictureError;
 use super::colour::Rgb;
+use super::error::PictureError;
 use super::font;
 use super::rectangles::{Rectangle, rectangles};
 use super::scene::{Mark, Point, Scene};
