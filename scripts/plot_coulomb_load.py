@@ -21,7 +21,7 @@ from matplotlib.patches import Patch
 
 import figures
 
-LIMIT, NEVER, LIFTOFF = "0.1", "#d9ead3", "#8c8c8c"
+LIMIT, NEVER, LIFTOFF = "0.1", "#bfe3ff", "#c994c7"
 DELAYS = [0.02, 0.2, 0.5, 0.9, 1.1]
 GAMMAS = (0.05, 5.0)
 # How far down the velocities are shown.
@@ -54,7 +54,7 @@ def read_limit(path, ratio):
 
 
 def draw_curves(axes, cells, limit):
-    colours = mpl.colormaps["plasma"](np.linspace(0.0, 0.85, len(DELAYS)))
+    colours = mpl.colormaps["viridis"](np.linspace(0.0, 0.8, len(DELAYS)))
     axes.semilogy(limit.gamma, limit.vc_over_vtilde, color=LIMIT, linestyle=(0, (3, 1.5)), label=r"$\tau\to 0$")
     for delay, colour in zip(DELAYS, colours, strict=True):
         column = cells.sel(tau=delay, method="nearest").sortby("gamma")

@@ -87,9 +87,9 @@ def stable_pieces(curves, gain):
 
 
 def colours(slopes):
-    """One colour for each slope, the same in both panels: dark where friction weakens most."""
-    ordered = sorted(slopes)
-    shades = mpl.colormaps["plasma"](np.linspace(0.0, 0.78, len(ordered)))
+    """One colour for each slope, the same in both panels: dark where friction weakens least."""
+    ordered = sorted(slopes, reverse=True)
+    shades = mpl.colormaps["viridis"](np.linspace(0.0, 0.8, len(ordered)))
     return dict(zip(ordered, shades, strict=True))
 
 

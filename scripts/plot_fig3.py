@@ -19,7 +19,7 @@ import numpy as np
 
 import figures
 
-BLOCK, PULL, STUCK = "#440154", "#35978f", "#ede6d6"
+BLOCK, PULL, STUCK = "#440154", "#7ad151", "#e2d8c0"
 
 def read(path):
     """The samples and the events of a trace, in memory."""

@@ -6,6 +6,7 @@ use slipmap::maps::assembly::{Assembled, Missing};
 use slipmap::maps::maker::{self, Merge};
 use slipmap::report::log::{Both, Log};
 use slipmap::report::numbers::{bytes, grouped};
+use slipmap::report::picture::Named;
 use slipmap::report::progress::Progress;
 use slipmap::store::StoreError;
 use slipmap::store::tiles::shards;
@@ -14,6 +15,7 @@ use slipmap::sweep::{Plan, Shard};
 
 use super::failure::Failure;
 use super::output::{provenance, tell_assembled};
+use super::show::{View, nothing_to_do, show};
 use super::signals::Signals;
 use super::{open_files, run, say};
 
@@ -37,11 +39,17 @@ pub(super) struct Args {
     fresh: bool,
 }
 
+/// Shards are merged without their sweep file.
+const VIEW: View = View {
+    named: Named::InMap,
+    quiet: false,
+};
+
 pub(super) fn main(args: &Args) -> Result<(), Failure> {
     let signals = Signals::catch()?;
     let target = args.output.as_ref().unwrap_or(&args.map);
     if shards::settle(&args.map, |hash| maker::is_complete(target, Some(hash)))? {
-        return run::nothing_to_do(target, "", false, &signals);
+        return nothing_to_do(target, "", VIEW, &signals);
     }
     let folders = folders(args)?;
     if folders.is_empty() {
@@ -51,7 +59,7 @@ pub(super) fn main(args: &Args) -> Result<(), Failure> {
     let (_, plan) = shards::plan(&folders)?;
     if let Some(remark) = run::already_there(target, &plan, args.fresh)? {
         drop(shards::remove_root(target));
-        return run::nothing_to_do(target, &remark, false, &signals);
+        return nothing_to_do(target, &remark, VIEW, &signals);
     }
     let provenance = provenance("merge", &args.map);
     let (progress, log) = (Progress::new(false), Log::beside(target, Shard::WHOLE));
@@ -76,7 +84,7 @@ pub(super) fn main(args: &Args) -> Result<(), Failure> {
     let merged = maker::merge(&plan, &asked, &provenance, attended);
     let assembled = merged.map_err(|error| failure(error, &args.map, &signals))?;
     tell(target, &plan, &assembled)?;
-    run::show(target, false, &signals);
+    show(target, VIEW, &signals);
     Ok(())
 }
 
@@ -104,7 +112,7 @@ fn nothing_to_merge(args: &Args, target: &Path, signals: &Signals) -> Result<(),
             true => "; there are no shards that could replace it",
             false => "",
         };
-        return run::nothing_to_do(target, remark, false, signals);
+        return nothing_to_do(target, remark, VIEW, signals);
     }
     Err(Failure::bad_input_with_help(
         format!(

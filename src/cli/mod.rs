@@ -3,6 +3,7 @@
 mod axis_facts;
 mod best;
 mod cell;
+mod colours;
 mod failure;
 mod info;
 mod merge;
@@ -18,6 +19,7 @@ mod run;
 mod say;
 mod serve;
 mod setting;
+mod show;
 mod signals;
 mod simulate;
 mod status;
@@ -28,7 +30,9 @@ mod verify;
 use std::process::ExitCode;
 use std::sync::Arc;
 
-use clap::{ColorChoice, CommandFactory, FromArgMatches, Parser, Subcommand, ValueEnum};
+use clap::{CommandFactory, FromArgMatches, Parser, Subcommand};
+
+use colours::Colours;
 
 /// Exact stability maps of delayed-feedback control of dry friction.
 #[derive(Parser)]
@@ -39,56 +43,11 @@ use clap::{ColorChoice, CommandFactory, FromArgMatches, Parser, Subcommand, Valu
     after_help = "Exit codes: 0 done, 1 failed, 2 bad input or usage, 129, 130 or 143 interrupted."
 )]
 struct Cli {
-    /// Colours in help, errors and warnings
+    /// Colours in help, errors, warnings and previews
     #[arg(long, global = true, value_enum, default_value_t = Colours::Auto, value_name = "WHEN")]
     color: Colours,
     #[command(subcommand)]
     command: Command,
-}
-
-/// When text has colours.
-#[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
-enum Colours {
-    /// On a terminal, unless NO_COLOR is set
-    Auto,
-    /// Always
-    Always,
-    /// Never
-    Never,
-}
-
-impl Colours {
-    /// What the arguments ask for, before they are understood: an error in them is told in the
-    /// same colours.
-    fn asked() -> Self {
-        let args: Vec<_> = std::env::args_os().skip(1).collect();
-        let named = |name: &std::ffi::OsStr| Self::from_str(name.to_str()?, true).ok();
-        let of = |i: usize| match args[i].to_str()?.strip_prefix("--color")? {
-            "" => named(args.get(i + 1)?),
-            joined => named(joined.strip_prefix('=')?.as_ref()),
-        };
-        (0..args.len()).find_map(of).unwrap_or(Self::Auto)
-    }
-
-    const fn choice(self) -> ColorChoice {
-        match self {
-            Self::Auto => ColorChoice::Auto,
-            Self::Always => ColorChoice::Always,
-            Self::Never => ColorChoice::Never,
-        }
-    }
-
-    /// Errors and warnings follow it.
-    fn apply(self) {
-        if self == Self::Auto {
-            return;
-        }
-        let colour = self == Self::Always;
-        // Refused where there is a hook already, of which there is none.
-        let _ = miette::set_hook(Box::new(move |_| {
-            Box::new(miette::MietteHandlerOpts::new().color(colour).build())
-        }));
-    }
 }
 
 #[derive(Subcommand)]
@@ -116,7 +75,7 @@ enum Command {
     Vc(vc::Args),
     /// One motion in time: from a case file to HDF5 and a picture, with its events and outcome
     Simulate(simulate::Args),
-    /// Draw a map as PNG or SVG
+    /// Draw a map as PNG, SVG or PDF
     Plot(plot::Args),
     /// Say what a map holds
     Info(info::Args),

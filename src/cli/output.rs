@@ -16,9 +16,7 @@ use super::sweep_file::STANDARD_INPUT;
 
 /// The format that the name of a file promises, if that is neither HDF5 nor netCDF.
 fn other_format(path: &Path) -> Option<String> {
-    const OTHERS: [&str; 9] = [
-        "csv", "gif", "jpeg", "jpg", "json", "mat", "npy", "pdf", "txt",
-    ];
+    const OTHERS: [&str; 8] = ["csv", "gif", "jpeg", "jpg", "json", "mat", "npy", "txt"];
     let extension = path.extension()?.to_str()?.to_lowercase();
     OTHERS.contains(&extension.as_str()).then_some(extension)
 }
@@ -66,7 +64,7 @@ pub(super) fn output_path(
         )));
     }
     let extension = path.extension().map(|e| e.to_string_lossy().to_lowercase());
-    if let Some(picture @ ("png" | "svg")) = extension.as_deref() {
+    if let Some(picture @ ("png" | "svg" | "pdf")) = extension.as_deref() {
         return Err(Failure::bad_input_with_help(
             format!(
                 "--output {} would be a {kind} with the name of a {picture} picture",
@@ -84,7 +82,7 @@ pub(super) fn check_picture(flag: &str, name: &Path, other: Option<&Path>) -> Re
     if !picture::is_name(name) {
         return Err(Failure::bad_input_with_help(
             format!("{flag} {shown} is no name for a picture"),
-            "name it like fig.png or fig.svg",
+            "name it like fig.png, fig.svg or fig.pdf",
         ));
     }
     if other == Some(name) {

@@ -3,7 +3,10 @@
 use std::path::{Path, PathBuf};
 
 use clap::ValueEnum;
-use slipmap::report::picture::{self, Picture, PictureError, PictureKind, PictureOptions};
+use clap::builder::{PossibleValuesParser, TypedValueParser};
+use slipmap::report::picture::{
+    self, ColourMap, Picture, PictureError, PictureKind, PictureOptions,
+};
 use slipmap::sweep::input::field::fields_meant;
 use slipmap::sweep::{Field, Parameter};
 
@@ -21,8 +24,9 @@ pub(super) struct Args {
     /// The map
     #[arg(value_name = "MAP.h5")]
     map: PathBuf,
-    /// The picture to write, .png or .svg [default: beside the map, MAP.png or, with --field,
-    /// --kind or --at, their values between, as in MAP.vc.png]
+    /// The picture to write, .png, .svg or .pdf [default: beside the map, MAP.png or, with other
+    /// options, their values between, as in MAP.vc.png; only an earlier picture of the same map and
+    /// field is replaced]
     #[arg(short, long, value_name = "PICTURE")]
     output: Option<PathBuf>,
     /// What to show, a field of the map [default: the `picture` of its sweep file, else the first
@@ -43,6 +47,24 @@ pub(super) struct Args {
     /// The title [default: the sweep's, or what the field is where the sweep shows another]
     #[arg(long, value_name = "TEXT")]
     title: Option<String>,
+    /// The ends of the scale of values; what lies beyond has colours of its own
+    #[arg(
+        long,
+        value_name = "LOW,HIGH",
+        allow_hyphen_values = true,
+        value_parser = parse_range
+    )]
+    range: Option<(f64, f64)>,
+    /// The colours of values, by their names in matplotlib: one of the first three for sizes, one
+    /// of the last two for values on both sides of 0
+    #[arg(long, value_name = "NAME", value_parser = colour_maps())]
+    colour_map: Option<ColourMap>,
+    /// A logarithmic scale of values, where none is below 0
+    #[arg(long)]
+    log: bool,
+    /// Leave out what colours and lines mean
+    #[arg(long)]
+    no_legend: bool,
 }
 
 /// The size of a picture where none is asked for.
@@ -54,6 +76,20 @@ fn parse_size(text: &str) -> Result<(u32, u32), String> {
         Some((side(width)?, side(height)?))
     });
     sides.ok_or_else(|| format!("expected WIDTHxHEIGHT, for example {SIZE}"))
+}
+
+fn parse_range(text: &str) -> Result<(f64, f64), String> {
+    let ends = text.split_once(',').and_then(|(low, high)| {
+        let end = |text: &str| text.trim().parse().ok();
+        Some((end(low)?, end(high)?))
+    });
+    ends.ok_or_else(|| "expected LOW,HIGH, for example 0,0.5".into())
+}
+
+/// Colour maps by name.
+fn colour_maps() -> impl TypedValueParser<Value = ColourMap> {
+    let names = PossibleValuesParser::new(ColourMap::ALL.map(ColourMap::name));
+    names.try_map(|name| ColourMap::from_name(&name).ok_or("no such colour map"))
 }
 
 /// Kinds of pictures by name.
@@ -72,10 +108,8 @@ fn parse_field(name: &str) -> Result<Field, String> {
 pub(super) fn main(args: &Args) -> Result<(), Failure> {
     let signals = Signals::catch()?;
     let map = open(&args.map, &signals, NOT_DRAWN)?;
-    let path = match &args.output {
-        Some(path) => path.clone(),
-        None => unasked(args)?,
-    };
+    let unasked = || named_after(&args.map, &shown(args));
+    let path = args.output.clone().unwrap_or_else(unasked);
     let options = PictureOptions {
         field: args.field,
         kind: args.kind.map(|kind| match kind {
@@ -85,27 +119,20 @@ pub(super) fn main(args: &Args) -> Result<(), Failure> {
         at: args.at.clone(),
         size: args.size,
         title: args.title.clone(),
+        range: args.range,
+        colour_map: args.colour_map,
+        log: args.log,
+        no_legend: args.no_legend,
+        ..PictureOptions::default()
     };
     let drawn = signals.or_end(NOT_DRAWN, || picture::draw(&map, &path, &options));
-    drawn
-        .and_then(Picture::save)
-        .map_err(|error| failure(error, args))?;
+    let save = match args.output {
+        Some(_) => Picture::save,
+        None => Picture::save_unasked,
+    };
+    drawn.and_then(save).map_err(|error| failure(error, args))?;
     say::result(path.display())?;
     Ok(())
-}
-
-/// Where a picture goes that no `--output` names: the one that a run draws keeps its name, others
-/// are named by what they show, and what slipmap did not draw is not replaced.
-fn unasked(args: &Args) -> Result<PathBuf, Failure> {
-    let path = named_after(&args.map, &shown(args));
-    if picture::may_replace(&path) {
-        return Ok(path);
-    }
-    let message = format!("{} is there and not drawn by slipmap", path.display());
-    Err(Failure::bad_input_with_help(
-        message,
-        "-o draws elsewhere, or replaces it",
-    ))
 }
 
 /// What tells the picture asked for from the one that a run draws, in words for its name.
@@ -119,6 +146,11 @@ fn shown(args: &Args) -> Vec<String> {
         words.push(format!("{}x{}", args.size.0, args.size.1));
     }
     words.extend(args.title.iter().map(|_| "titled".to_owned()));
+    words.extend(args.range.map(|(low, high)| format!("range={low},{high}")));
+    words.extend(args.colour_map.map(|map| map.name().to_owned()));
+    let flags = [(args.log, "log"), (args.no_legend, "no-legend")];
+    let set = flags.into_iter().filter(|(set, _)| *set);
+    words.extend(set.map(|(_, word)| word.to_owned()));
     words
 }
 
@@ -145,7 +177,7 @@ fn failure(error: PictureError, args: &Args) -> Failure {
         PictureError::Store(error) => error.into(),
         PictureError::Render(_) => Failure::failed(error.to_string()),
         PictureError::Extension { .. } => {
-            let help = "name the picture like fig.png or fig.svg";
+            let help = "name the picture like fig.png, fig.svg or fig.pdf";
             bad("--output: ", error, help.into())
         }
         PictureError::OverMap { .. } => bad("", error, "-o writes elsewhere".into()),
@@ -177,6 +209,18 @@ fn failure(error: PictureError, args: &Args) -> Failure {
         PictureError::NothingToDraw => {
             let help = "slipmap point says everything about one point";
             bad("", error, help.into())
+        }
+        PictureError::Range { .. } | PictureError::LogRange { .. } => {
+            Failure::bad_input(format!("--range: {error}"))
+        }
+        PictureError::NoLogarithm { .. } => Failure::bad_input(format!("--log: {error}")),
+        PictureError::OtherColourMap { ref fitting, .. } => {
+            let help = format!("these do: {fitting}");
+            bad("--colour-map: ", error, help)
+        }
+        PictureError::NotForThis { .. } => Failure::bad_input(error.to_string()),
+        PictureError::OthersWork { .. } => {
+            bad("", error, "-o draws elsewhere, or replaces it".into())
         }
         PictureError::Size { .. } => Failure::bad_input(format!("--size: {error}")),
     }

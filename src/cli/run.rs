@@ -1,6 +1,5 @@
 //! `slipmap run`: from a sweep file to a map and its picture, or to one shard of the map.
 
-use std::io::IsTerminal;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::Duration;
@@ -9,8 +8,6 @@ use bytesize::ByteSize;
 use slipmap::maps::maker::{self, Job};
 use slipmap::report::log::{Both, Log};
 use slipmap::report::numbers::{bytes, grouped, prefixed, seconds};
-use slipmap::report::picture::{self, Picture, PictureError, PictureOptions};
-use slipmap::report::preview::preview;
 use slipmap::report::progress::Progress;
 use slipmap::store::schema::root;
 use slipmap::store::tiles::{Manifest, shards};
@@ -20,16 +17,13 @@ use slipmap::sweep::{Memory, Plan, RunError, Shard};
 
 use super::failure::Failure;
 use super::output::{self, output_path, provenance, warn_of_idle_delay};
-use super::plot;
 use super::say;
+use super::show::{View, nothing_to_do, show};
 use super::signals::Signals;
 use super::sweep_file::read_plan;
 
 /// More threads than this are taken for a slip of the finger.
 const MOST_THREADS: usize = 4096;
-
-/// Columns of the picture on the terminal: as many as every terminal has.
-const PREVIEW_WIDTH: usize = 78;
 
 #[derive(Debug, clap::Args)]
 pub(super) struct Args {
@@ -122,7 +116,8 @@ pub(super) fn main(args: &Args) -> Result<(), Failure> {
     shards::settle(&path, |hash| maker::is_complete(&path, Some(hash)))?;
     if let Some(remark) = already_there(&path, &plan, args.fresh)? {
         drop(shards::remove_root(&path));
-        return nothing_to_do(&path, &remark, args.quiet, &signals);
+        let view = View::of(&plan, args.quiet);
+        return nothing_to_do(&path, &remark, view, &signals);
     }
     match args.shard.filter(|_| args.fresh) {
         Some(shard) => shards::clear_shard(&path, shard)?,
@@ -205,7 +200,7 @@ fn run_whole(plan: &Arc<Plan>, job: &Job, watched: &Watched, args: &Args) -> Res
         prefixed(cells as f64 / elapsed),
         bytes(std::fs::metadata(path).map_or(0, |m| m.len())),
     ));
-    show(path, quiet, watched.signals);
+    show(path, View::of(plan, quiet), watched.signals);
     told
 }
 
@@ -231,69 +226,6 @@ fn refuse_other_way(map: &Path, asked: Shard) -> Result<(), Failure> {
     let root = shards::root(map);
     let message = format!("{} holds {what}", root.display());
     Err(Failure::bad_input_with_help(message, help))
-}
-
-/// Says that a map is complete, and draws it where an earlier command did not come to that.
-pub(super) fn nothing_to_do(
-    path: &Path,
-    remark: &str,
-    quiet: bool,
-    signals: &Signals,
-) -> Result<(), Failure> {
-    if lacks_picture(path) {
-        show(path, quiet, signals);
-    }
-    say::result(format_args!(
-        "{} is already complete{remark}",
-        path.display()
-    ))
-}
-
-/// Whether there is no picture beside a map, or one of what was there before.
-fn lacks_picture(map: &Path) -> bool {
-    let written = |path: &Path| path.metadata().and_then(|m| m.modified());
-    match (written(map), written(&plot::beside(map))) {
-        (Ok(map), Ok(picture)) => picture < map,
-        (_, picture) => picture.is_err(),
-    }
-}
-
-/// Draws a complete map beside it, and on the terminal. What fails here is a warning: the map is
-/// there.
-pub(super) fn show(path: &Path, quiet: bool, signals: &Signals) {
-    let complete = format!("{} is complete, the same command draws it", path.display());
-    let map = match signals.or_end(&complete, || MapFile::open(path)) {
-        Ok(map) => map,
-        Err(error) => return say::remark(format_args!("warning: no picture: {error}")),
-    };
-    let picture = plot::beside(path);
-    let drawn = if picture::may_replace(&picture) {
-        let options = PictureOptions::default();
-        let drawn = signals.or_end(&complete, || picture::draw(&map, &picture, &options));
-        drawn.and_then(Picture::save)
-    } else {
-        let name = picture.display();
-        say::remark(format_args!(
-            "warning: no picture: {name} is there and not by slipmap; `slipmap plot -o` draws \
-            elsewhere"
-        ));
-        Err(PictureError::NothingToDraw)
-    };
-    match drawn {
-        // Where standard output takes no more, the line about the map has said so.
-        Ok(()) => drop(say::result(picture.display())),
-        Err(PictureError::NothingToDraw) => {}
-        Err(error) => say::remark(format_args!("warning: no picture: {error}")),
-    }
-    if quiet || !std::io::stderr().is_terminal() {
-        return;
-    }
-    let no_colour = std::env::var_os("NO_COLOR").is_some_and(|value| !value.is_empty());
-    match signals.or_end(&complete, || preview(&map, PREVIEW_WIDTH, !no_colour)) {
-        Ok(Some(text)) => say::coloured(text.trim_end_matches('\n')),
-        Ok(None) => {}
-        Err(error) => say::remark(format_args!("warning: no preview: {error}")),
-    }
 }
 
 /// A remark if the map of this plan is there and `fresh` is not set; an error if what is there must

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use serde::Serialize;
 use slipmap::explore::motion::MotionSummary;
 use slipmap::report::numbers::{grouped, unit_behind};
-use slipmap::report::picture::{self, Picture};
+use slipmap::report::picture::{self, Picture, PictureError};
 use slipmap::slip::motion::MOST_KEPT;
 use slipmap::slip::outcome::{Outcome, Summary};
 use slipmap::store::describe::Provenance;
@@ -202,23 +202,25 @@ fn draw(
 ) -> Result<Option<PathBuf>, Failure> {
     let draw = |picture: &Path| {
         let complete = format!("{} is complete, its picture is not drawn", path.display());
-        let drawn = signals.or_end(complete, || picture::draw_trace(spec, trace, picture));
-        drawn.and_then(Picture::save)
+        signals.or_end(complete, || {
+            picture::draw_trace((spec, trace), path, picture)
+        })
     };
     if let Some(asked) = &args.picture {
-        draw(asked).map_err(|e| Failure::failed(e.to_string()))?;
+        draw(asked)
+            .and_then(Picture::save)
+            .map_err(|e| Failure::failed(e.to_string()))?;
         return Ok(Some(asked.clone()));
     }
     let beside = plot::beside(path);
-    let name = beside.display();
-    if !picture::may_replace(&beside) {
-        say::remark(format_args!(
-            "warning: no picture: {name} is there and not by slipmap; --picture draws elsewhere"
-        ));
-        return Ok(None);
-    }
-    match draw(&beside) {
+    match draw(&beside).and_then(Picture::save_unasked) {
         Ok(()) => Ok(Some(beside)),
+        Err(error @ PictureError::OthersWork { .. }) => {
+            say::remark(format_args!(
+                "warning: no picture: {error}; --picture draws elsewhere"
+            ));
+            Ok(None)
+        }
         Err(error) => {
             say::remark(format_args!("warning: no picture: {error}"));
             Ok(None)

@@ -1,25 +1,31 @@
 //! The boundaries of stability in one plane, a colour for each value of the axis outside it.
 
-use super::colour::{self, INK, PAPER, Rgb};
+use super::choice;
+use super::clip;
+use super::colour::{self, INK, PAPER, Rgb, SOFT_INK};
 use super::curve_labels::{Curves, Place, places};
 use super::degrees::Degrees;
+use super::error::PictureError;
+use super::inset::{self, Inset};
 use super::legend::{Legend, Swatch};
+use super::options::PictureOptions;
 use super::page::{self, SMALL};
-use super::panels::{Panel, Panels, Words};
+use super::panels::{Panel, Panels, Words, fitting_across, fitting_up};
 use super::scale::Scale;
 use super::scene::{Align, Mark, Point, Scene};
-use super::stable_area::regions;
+use super::stable_area::{Region, regions, stable_throughout};
+use super::symbols;
 use super::text::{Rich, axis_title, number, suffix};
 use super::view::View;
-use super::{PictureError, PictureOptions};
 use crate::linear::curves::{CurvePiece, StableSide};
 use crate::store::MapFile;
-use crate::store::map_file::{MapCurve, Plane};
-use crate::sweep::Field;
+use crate::store::map_file::MapCurve;
 
 const WIDTH: f64 = 3.0;
 const THIN: f64 = 1.3;
 const SHADE: f64 = 0.13;
+/// Dashes of lines that lead to an inset, (length, gap).
+const DASH: (f64, f64) = (6.0, 6.0);
 /// More than this many cells along an axis are not read to learn what holds where no curve lies.
 const MOST_CELLS: usize = 600;
 
@@ -44,13 +50,18 @@ pub(super) fn draw(
     scene: &mut Scene,
 ) -> Result<(), PictureError> {
     let families = families(map, view, curves);
-    let title = super::title(map, options);
+    let title = choice::title(map, options);
     let title = title.unwrap_or_else(|| "Boundaries of stable sliding".into());
     let mut body = page::head(scene, &title, &view.notes(map));
     let u = scene.unit();
     let degrees = Degrees::of(map, curves);
-    let legend = legend(map, view, &families, &degrees);
-    let column = body.cut_right(legend.width(u), 30.0 * u);
+    let symbols = symbols::of_view(map, view, y)?;
+    let mut legend = legend(map, view, &families, &degrees);
+    legend.entries.extend(symbols::entries(&symbols));
+    let column = match options.no_legend {
+        true => None,
+        false => Some(body.cut_right(legend.width(u), 30.0 * u)),
+    };
     let (x_axis, y_axis) = (&map.axes()[view.x], &map.axes()[y]);
     let scales = (
         Scale::between(&x_axis.values),
@@ -66,28 +77,37 @@ pub(super) fn draw(
     let Some(panel) = panels.list.first() else {
         return Ok(());
     };
+    let mut areas = Vec::new();
     for family in &families {
-        shade(map, view, y, family, panel, scene)?;
+        areas.push(stable_areas(map, view, y, family, panel)?);
     }
-    for family in &families {
-        for piece in &family.others {
-            let colour = colour::pale(family.colour, 0.45);
-            scene.path(traced(panel, piece), colour, THIN * u);
+    draw_areas(&families, &areas, scene);
+    draw_curves(&families, &degrees, panel, scene);
+    let labels = label(&families, panel, scene);
+    let regions: Vec<Region> = areas.iter().flatten().cloned().collect();
+    if let Some(inset) = inset::of(panel, &regions, &labels, u) {
+        link(&inset, scene);
+        let panel = &inset.panel;
+        let mut areas = Vec::new();
+        for family in &families {
+            areas.push(stable_areas(map, view, y, family, panel)?);
         }
+        draw_areas(&families, &areas, scene);
+        draw_curves(&families, &degrees, panel, scene);
+        label(&families, panel, scene);
+        panel.draw_frame(scene);
+        let area = panel.area;
+        panel.draw_x_ticks(scene, &fitting_across(&panel.x, area.width(), u), true);
+        panel.draw_y_ticks(scene, &fitting_up(&panel.y, area.height(), u), true);
     }
-    for family in &families {
-        for curve in &family.decaying {
-            let points = traced(panel, &curve.piece);
-            degrees.draw(curve.degree_of_stability, &points, family.colour, scene);
-        }
-        for piece in &family.bounding {
-            scene.path(traced(panel, piece), family.colour, WIDTH * u);
-        }
+    for symbols in &symbols {
+        symbols::draw(panel, symbols, scene);
     }
-    label(&families, panel, scene);
     panels.draw_axes(scene);
-    let top = panel.area.top;
-    legend.draw(scene, page::Area { top, ..column });
+    if let Some(column) = column {
+        let top = panel.area.top;
+        legend.draw(scene, page::Area { top, ..column });
+    }
     Ok(())
 }
 
@@ -116,22 +136,21 @@ fn families<'a>(map: &MapFile, view: &'a View, curves: &'a [MapCurve]) -> Vec<Fa
     view.panels.iter().enumerate().map(family).collect()
 }
 
-fn traced(panel: &Panel, piece: &CurvePiece) -> Vec<Point> {
-    piece
-        .vertices
-        .iter()
-        .map(|v| panel.at(v.p, v.tau))
-        .collect()
+/// The parts of a curve within a panel.
+fn traced(panel: &Panel, piece: &CurvePiece) -> Vec<Vec<Point>> {
+    let vertices = piece.vertices.iter();
+    let points: Vec<Point> = vertices.map(|v| panel.at(v.p, v.tau)).collect();
+    clip::within(&points, panel.area)
 }
 
-fn shade(
+/// The stable areas of a family in a panel.
+fn stable_areas(
     map: &MapFile,
     view: &View,
     y: usize,
     family: &Family,
     panel: &Panel,
-    scene: &mut Scene,
-) -> Result<(), PictureError> {
+) -> Result<Vec<Region>, PictureError> {
     let told = match map.stability_field() {
         Some(field) => Some((
             field,
@@ -143,31 +162,74 @@ fn shade(
         told.as_ref()
             .is_some_and(|(field, plane)| stable_throughout(plane, *field, p))
     };
-    for slices in regions(panel, &family.bounding, stable) {
-        scene.marks.push(Mark::Band {
-            slices,
-            colour: family.colour,
-            opacity: SHADE,
-        });
+    Ok(regions(panel, &family.bounding, stable))
+}
+
+fn draw_areas(families: &[Family], areas: &[Vec<Region>], scene: &mut Scene) {
+    for (family, regions) in families.iter().zip(areas) {
+        for slices in regions {
+            scene.marks.push(Mark::Band {
+                slices: slices.clone(),
+                colour: family.colour,
+                opacity: SHADE,
+            });
+        }
     }
-    Ok(())
 }
 
-/// Whether the column of cells nearest to `p`, in which no curve lies, is stable: most of its cells
-/// say so.
-fn stable_throughout(plane: &Plane, field: Field, p: f64) -> bool {
-    let distances = plane.columns.iter().map(|c| (c - p).abs()).enumerate();
-    let Some((column, _)) = distances.min_by(|a, b| a.1.total_cmp(&b.1)) else {
-        return false;
+fn draw_curves(families: &[Family], degrees: &Degrees, panel: &Panel, scene: &mut Scene) {
+    let u = scene.unit();
+    for family in families {
+        for points in family.others.iter().flat_map(|piece| traced(panel, piece)) {
+            scene.path(points, colour::pale(family.colour, 0.45), THIN * u);
+        }
+    }
+    for family in families {
+        for curve in &family.decaying {
+            for points in traced(panel, &curve.piece) {
+                degrees.draw(curve.degree_of_stability, &points, family.colour, scene);
+            }
+        }
+        for points in family
+            .bounding
+            .iter()
+            .flat_map(|piece| traced(panel, piece))
+        {
+            scene.path(points, family.colour, WIDTH * u);
+        }
+    }
+}
+
+/// Frames what an inset shows, clears its place, and leads from the one to the other.
+fn link(inset: &Inset, scene: &mut Scene) {
+    let u = scene.unit();
+    let (source, area) = (inset.source, inset.panel.area);
+    let corners = |area: page::Area| {
+        let (left, right) = (area.left, area.right);
+        [
+            (left, area.top),
+            (right, area.top),
+            (right, area.bottom),
+            (left, area.bottom),
+        ]
     };
-    let cells = plane.cells.iter().skip(column).step_by(plane.columns.len());
-    let stable = cells
-        .filter(|&&v| field.tells_stable(v) == Some(true))
-        .count();
-    2 * stable > plane.rows.len()
+    let (from, to) = (corners(source), corners(area));
+    scene.outline(from[0], from[2], SOFT_INK, THIN * u);
+    // The two corners of each that face the other.
+    let facing = match () {
+        () if area.right <= source.left => [(0, 1), (3, 2)],
+        () if area.left >= source.right => [(1, 0), (2, 3)],
+        () if area.bottom <= source.top => [(0, 3), (1, 2)],
+        () => [(3, 0), (2, 1)],
+    };
+    for (a, b) in facing {
+        scene.dashed(&[from[a], to[b]], SOFT_INK, THIN * u, DASH);
+    }
+    scene.rect(to[0], to[2], PAPER);
 }
 
-fn label(families: &[Family], panel: &Panel, scene: &mut Scene) {
+/// Writes at the curves to which family they belong; gives the places that this takes.
+fn label(families: &[Family], panel: &Panel, scene: &mut Scene) -> Vec<page::Area> {
     let u = scene.unit();
     let size = 0.92 * SMALL * u;
     let labelled: Vec<(&Family, &Rich)> = families
@@ -177,10 +239,14 @@ fn label(families: &[Family], panel: &Panel, scene: &mut Scene) {
     let sets: Vec<(Curves, (f64, f64))> = labelled
         .iter()
         .map(|(family, text)| {
-            let curves = family.bounding.iter().map(|piece| traced(panel, piece));
+            let curves = family
+                .bounding
+                .iter()
+                .flat_map(|piece| traced(panel, piece));
             (curves.collect(), (text.width(size), 0.8 * size))
         })
         .collect();
+    let mut taken = Vec::new();
     for ((family, text), place) in labelled.iter().zip(places(&sets, panel.area)) {
         let Some(Place { at: (x, y), from }) = place else {
             continue;
@@ -197,7 +263,14 @@ fn label(families: &[Family], panel: &Panel, scene: &mut Scene) {
             opacity: 0.85,
         });
         scene.text((x, y + 0.34 * size), Align::Middle, text, size, colour);
+        taken.push(page::Area {
+            left: x - half,
+            top: y - height,
+            right: x + half,
+            bottom: y + height,
+        });
     }
+    taken
 }
 
 fn legend(map: &MapFile, view: &View, families: &[Family], degrees: &Degrees) -> Legend {

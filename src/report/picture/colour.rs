@@ -1,5 +1,6 @@
 //! Colours: perceptually ordered and readable by the colour-blind.
 
+use super::gradient::ColourMap;
 use crate::sweep::Field;
 
 /// A colour of the screen.
@@ -14,8 +15,8 @@ pub(super) const SOFT_INK: Rgb = Rgb(0x5a, 0x5a, 0x5a);
 pub(super) const GRID: Rgb = Rgb(0xe6, 0xe6, 0xe6);
 /// Paper.
 pub(super) const PAPER: Rgb = Rgb(0xff, 0xff, 0xff);
-/// Cells without a value.
-pub(super) const NO_VALUE: Rgb = Rgb(0xb9, 0xb9, 0xb9);
+/// Cells without a value, below the lines over them.
+pub(super) const NO_VALUE: Rgb = Rgb(0xd9, 0xd9, 0xd9);
 /// Cells whose value is not known, below the lines over them.
 pub(super) const UNKNOWN: Rgb = Rgb(0xf2, 0xf2, 0xf2);
 /// Those lines.
@@ -23,20 +24,22 @@ pub(super) const HATCH: Rgb = Rgb(0x5a, 0x5a, 0x5a);
 /// Cells without a value because the block lifts off.
 pub(super) const LIFTS_OFF: Rgb = Rgb(0xc9, 0x94, 0xc7);
 /// Cells without a value because stick-slip persists.
-pub(super) const PERSISTS: Rgb = Rgb(0xd6, 0x60, 0x4d);
+pub(super) const PERSISTS: Rgb = Rgb(0xa0, 0x5e, 0x4a);
 /// Sizes that are 0, above and below a scale that has no place for them.
 pub(super) const ZERO: Rgb = Rgb(0xbf, 0xe3, 0xff);
-pub(super) const ABOVE: Rgb = Rgb(0xff, 0xf9, 0xc4);
+pub(super) const ABOVE: Rgb = Rgb(0xe1, 0xfc, 0xc2);
 pub(super) const BELOW: Rgb = Rgb(0x00, 0x00, 0x00);
 /// Sizes that are infinite.
-pub(super) const INFINITE: Rgb = Rgb(0xfd, 0xae, 0x61);
+pub(super) const INFINITE: Rgb = Rgb(0xf5, 0x44, 0x00);
 pub(super) const MINUS_INFINITE: Rgb = Rgb(0x7f, 0x3b, 0x08);
-/// Values beyond the ends of a scale with two sides: (worse, better).
-const BEYOND: (Rgb, Rgb) = (Rgb(0x4a, 0x2a, 0x04), Rgb(0x00, 0x30, 0x2c));
-/// Infinite ones.
-const ENDLESS: (Rgb, Rgb) = (Rgb(0xb2, 0x18, 0x2b), Rgb(0x21, 0x66, 0xac));
+/// Infinite values on a scale with two sides: (worse, better).
+const ENDLESS: (Rgb, Rgb) = (Rgb(0x00, 0x00, 0x00), Rgb(0x20, 0x40, 0xff));
 /// Stable cells.
 pub(super) const STABLE: Rgb = Rgb(0x5f, 0xb9, 0xae);
+/// The same below a line.
+pub(super) const STABLE_TINT: Rgb = Rgb(0xa0, 0xd5, 0xcf);
+/// Where the block sticks, below a line.
+pub(super) const STUCK: Rgb = Rgb(0xe2, 0xd8, 0xc0);
 /// Cells with 2, 4, 6 and at least 8 unstable roots.
 pub(super) const UNSTABLE: [Rgb; 4] = [
     Rgb(0xf6, 0xe8, 0xc3),
@@ -60,8 +63,8 @@ const OUTCOMES: [Rgb; 14] = [
     Rgb(0xdd, 0x99, 0x00),
     Rgb(0xbb, 0x77, 0x55),
     Rgb(0x99, 0x00, 0x00),
-    Rgb(0x77, 0x33, 0xbb),
-    Rgb(0x00, 0x77, 0x99),
+    Rgb(0x74, 0x2b, 0xd0),
+    Rgb(0x25, 0x76, 0x92),
     Rgb(0xbb, 0x77, 0xdd),
 ];
 
@@ -82,50 +85,17 @@ const FEW: [Rgb; 4] = [
     Rgb(0x7a, 0x46, 0x08),
 ];
 
-/// Viridis at nine equal steps.
-const VIRIDIS: [Rgb; 9] = [
-    Rgb(68, 1, 84),
-    Rgb(71, 44, 122),
-    Rgb(59, 81, 139),
-    Rgb(44, 113, 142),
-    Rgb(33, 144, 141),
-    Rgb(39, 173, 129),
-    Rgb(92, 200, 99),
-    Rgb(170, 220, 50),
-    Rgb(253, 231, 37),
-];
-
-/// Plasma up to its orange, for lines: what follows is too light on white.
-const PLASMA: [Rgb; 6] = [
-    Rgb(13, 8, 135),
-    Rgb(92, 1, 166),
-    Rgb(156, 23, 158),
-    Rgb(203, 70, 121),
-    Rgb(229, 107, 93),
-    Rgb(244, 136, 73),
-];
-
-/// ColorBrewer's BrBG: brown, white, teal.
-const BROWN_TEAL: [Rgb; 9] = [
-    Rgb(0x8c, 0x51, 0x0a),
-    Rgb(0xbf, 0x81, 0x2d),
-    Rgb(0xdf, 0xc2, 0x7d),
-    Rgb(0xf6, 0xe8, 0xc3),
-    Rgb(0xf7, 0xf7, 0xf7),
-    Rgb(0xc7, 0xea, 0xe5),
-    Rgb(0x80, 0xcd, 0xc1),
-    Rgb(0x35, 0x97, 0x8f),
-    Rgb(0x01, 0x66, 0x5e),
-];
-
-/// Steps of [`diverging`] on each side of zero: finer than the eye tells apart, coarse enough for
+/// Steps of [`two_sided`] on each side of zero: finer than the eye tells apart, coarse enough for
 /// cells to merge.
 const STEPS: f64 = 32.0;
 
-/// The weakest colour of [`diverging`] on either side of zero, as a part of the strongest.
-const TINT: f64 = 0.1;
+/// The weakest colour of [`two_sided`] on either side of zero, as a part of the strongest.
+const TINT: f64 = 0.2;
 /// Steps of [`of_size`], for the same reasons.
 const SIZE_STEPS: f64 = 64.0;
+
+/// The part of viridis that lines take: what follows is too light on white.
+const LINES: f64 = 0.8;
 
 /// The colour of line `i` of `n`, from dark to light.
 pub(super) fn of_line(i: usize, n: usize) -> Rgb {
@@ -134,7 +104,7 @@ pub(super) fn of_line(i: usize, n: usize) -> Rgb {
     } else {
         0.3
     };
-    sample(&PLASMA, part)
+    ColourMap::Viridis.at(LINES * part)
 }
 
 /// The colour of a number of unstable roots.
@@ -164,31 +134,36 @@ pub(super) fn last_of_few() -> usize {
     FEW.len() - 1
 }
 
-/// The colour of `value` where ±`range` are the ends: brown below zero, teal above, colours of
-/// their own beyond the ends and at infinity.
+/// The colour of a value on a scale with two sides, where ±`range` are the full colours: the
+/// worse one below zero, the better one above.
 ///
 /// Colours go with the square root, and both sides begin with a tint: stable cells with little to
 /// spare are the most common ones, and must not look like unstable ones.
-pub(super) fn diverging(value: f64, range: f64) -> Rgb {
-    let side = |(worse, better): (Rgb, Rgb)| if value < 0.0 { worse } else { better };
-    match value {
-        v if v.is_nan() => return NO_VALUE,
-        v if v.is_infinite() => return side(ENDLESS),
-        v if v.abs() > range * (1.0 + 1e-9) => return side(BEYOND),
-        _ => {}
-    }
+pub(super) fn two_sided(map: ColourMap, value: f64, range: f64) -> Rgb {
     let part = (value / range).clamp(-1.0, 1.0);
+    if part.is_nan() {
+        return NO_VALUE;
+    }
     if part == 0.0 {
-        return sample(&BROWN_TEAL, 0.5);
+        return map.on_side(0.0);
     }
     let step = (part.abs().sqrt() * STEPS).ceil() / STEPS;
     let strength = TINT + (1.0 - TINT) * step;
-    sample(&BROWN_TEAL, 0.5 + 0.5 * strength.copysign(part))
+    map.on_side(strength.copysign(part))
+}
+
+/// The colour of a value beyond the ends of such a scale, or of an infinite one.
+pub(super) fn beyond(map: ColourMap, value: f64) -> Rgb {
+    let (worse, better) = match value.is_infinite() {
+        true => ENDLESS,
+        false => map.beyond(),
+    };
+    if value < 0.0 { worse } else { better }
 }
 
 /// The colour of a size at a part of the way from small to large: from dark to light.
-pub(super) fn of_size(part: f64) -> Rgb {
-    sample(&VIRIDIS, (part * SIZE_STEPS).round() / SIZE_STEPS)
+pub(super) fn of_size(map: ColourMap, part: f64) -> Rgb {
+    map.at((part * SIZE_STEPS).round() / SIZE_STEPS)
 }
 
 /// `colour` mixed with paper; 0: paper.
@@ -199,12 +174,6 @@ pub(super) fn pale(colour: Rgb, part: f64) -> Rgb {
 /// `colour` for letters, which need more contrast than lines.
 pub(super) fn darker(colour: Rgb) -> Rgb {
     mix(colour, INK, 0.35)
-}
-
-fn sample(table: &[Rgb], part: f64) -> Rgb {
-    let at = part.clamp(0.0, 1.0) * (table.len() - 1) as f64;
-    let below = (at as usize).min(table.len() - 2);
-    mix(table[below], table[below + 1], at - below as f64)
 }
 
 fn mix(a: Rgb, b: Rgb, part: f64) -> Rgb {
@@ -246,13 +215,15 @@ mod tests {
 
     #[test]
     fn margins_tell_their_sign() {
-        let [brown, zero, teal] = [-1e-9, 0.0, 1e-9].map(|m| diverging(m, 1.0));
+        let map = ColourMap::BrBG;
+        let [brown, zero, teal] = [-1e-9, 0.0, 1e-9].map(|m| two_sided(map, m, 1.0));
         assert!(brown.0 > brown.2 && teal.2 > teal.0);
-        assert_eq!(zero, Rgb(0xf7, 0xf7, 0xf7));
-        let ends = [f64::NEG_INFINITY, -5.0, -1.0, 1.0, 5.0, f64::INFINITY];
-        let mut colours = ends.map(|v| diverging(v, 1.0)).to_vec();
+        assert!(lightness(zero) > lightness(brown).max(lightness(teal)));
+        let ends = [-1.0, 1.0].map(|v| two_sided(map, v, 1.0));
+        let beyond = [f64::NEG_INFINITY, -5.0, 5.0, f64::INFINITY].map(|v| beyond(map, v));
+        let mut colours = [&ends[..], &beyond].concat();
         colours.sort_unstable();
         colours.dedup();
-        assert_eq!(colours.len(), ends.len());
+        assert_eq!(colours.len(), 6);
     }
 }

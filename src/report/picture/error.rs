@@ -11,8 +11,8 @@ pub enum PictureError {
     /// The map could not be read, or the picture not be written.
     #[error(transparent)]
     Store(#[from] StoreError),
-    /// The name of the picture does not end in .png or .svg.
-    #[error("{} is no name for a picture: it must end in .png or .svg", path.display())]
+    /// The name of the picture does not end in .png, .svg or .pdf.
+    #[error("{} is no name for a picture: it must end in .png, .svg or .pdf", path.display())]
     Extension {
         /// The name.
         path: PathBuf,
@@ -32,6 +32,56 @@ pub enum PictureError {
         height: u32,
         /// The range allowed, in words.
         allowed: String,
+    },
+    /// A range of values that is none.
+    #[error("the range {low} to {high} is none: two finite numbers, the smaller one first")]
+    Range {
+        /// The first.
+        low: f64,
+        /// The second.
+        high: f64,
+    },
+    /// A logarithmic scale that begins at 0 or below.
+    #[error("a logarithmic scale begins above 0, not at {low}")]
+    LogRange {
+        /// Where it would begin.
+        low: f64,
+    },
+    /// Values that have no logarithm.
+    #[error("{field} is {value} in some cells: a logarithmic scale has no place for that")]
+    NoLogarithm {
+        /// The field.
+        field: &'static str,
+        /// One of the values.
+        value: f64,
+    },
+    /// Colours that do not go with the field.
+    #[error("{map} does not go with {field}, which {why}")]
+    OtherColourMap {
+        /// Name of the colour map.
+        map: &'static str,
+        /// Name of the field.
+        field: &'static str,
+        /// What the field is like.
+        why: &'static str,
+        /// Names of those that go with it.
+        fitting: String,
+    },
+    /// An option that means nothing in this picture.
+    #[error("{option} has no meaning in this picture: {why}")]
+    NotForThis {
+        /// The option.
+        option: &'static str,
+        /// What the picture is like.
+        why: &'static str,
+    },
+    /// A name that nobody asked for is taken.
+    #[error("{} is there and {holds}", path.display())]
+    OthersWork {
+        /// The name.
+        path: PathBuf,
+        /// What is there.
+        holds: String,
     },
     /// No axis has more than one value left.
     #[error("there is nothing to draw: every axis of the map has one value or is held at one")]

@@ -1,4 +1,4 @@
-//! Cells that show no value: their colours, and the lines over those that are not known.
+//! Cells that show no value: their colours, and the lines over them.
 
 use super::colour::{self, Rgb};
 use super::rectangles::{Rectangle, rectangles};
@@ -15,6 +15,7 @@ enum Run {
     Rising,
     Falling,
     Upright,
+    Level,
 }
 
 /// The lines over cells with a gap; none where its colour says all.
@@ -24,7 +25,9 @@ fn runs(gap: Gap) -> &'static [Run] {
         Gap::Marginal => &[Run::Falling],
         Gap::Disagree => &[Run::Rising, Run::Falling],
         Gap::Undecided => &[Run::Upright],
-        Gap::LiftsOff | Gap::Persists | Gap::NoValue | Gap::NotComputed => &[],
+        Gap::NoValue => &[Run::Level],
+        Gap::NotComputed => &[Run::Upright, Run::Level],
+        Gap::LiftsOff | Gap::Persists => &[],
     }
 }
 
@@ -41,7 +44,7 @@ pub(super) fn ground(gap: Gap) -> Rgb {
 
 /// Draws the lines over cells between these edges.
 pub(super) fn draw(columns: &[f64], rows: &[f64], gaps: &[Option<Gap>], scene: &mut Scene) {
-    let hatched = |gap: &Option<Gap>| gap.filter(|gap| gap.is_unknown());
+    let hatched = |gap: &Option<Gap>| gap.filter(|gap| !runs(*gap).is_empty());
     if !gaps.iter().any(|gap| hatched(gap).is_some()) {
         return;
     }
@@ -70,7 +73,14 @@ pub(super) fn fill(a: Point, b: Point, gap: Gap, scene: &mut Scene) {
     let u = scene.unit();
     for &run in runs(gap) {
         for line in lines(near, far, run, SPACING * u) {
-            scene.path(line.to_vec(), colour::HATCH, WIDTH * u);
+            match run {
+                Run::Rising | Run::Falling => {
+                    scene.path(line.to_vec(), colour::HATCH, WIDTH * u);
+                }
+                Run::Upright | Run::Level => {
+                    scene.ruler(line[0], line[1], colour::HATCH, WIDTH * u);
+                }
+            }
         }
     }
 }
@@ -82,6 +92,7 @@ fn lines(near: Point, far: Point, run: Run, spacing: f64) -> Vec<[Point; 2]> {
         Run::Rising => (near.0 + near.1, far.0 + far.1),
         Run::Falling => (near.0 - far.1, far.0 - near.1),
         Run::Upright => (near.0, far.0),
+        Run::Level => (near.1, far.1),
     };
     let line = |c: f64| match run {
         Run::Rising => {
@@ -93,6 +104,7 @@ fn lines(near: Point, far: Point, run: Run, spacing: f64) -> Vec<[Point; 2]> {
             [(from, from - c), (to, to - c)]
         }
         Run::Upright => [(c, near.1), (c, far.1)],
+        Run::Level => [(near.0, c), (far.0, c)],
     };
     let (first, last) = ((least / spacing).ceil(), (most / spacing).floor());
     if first > last {
@@ -132,7 +144,7 @@ mod tests {
     #[test]
     fn the_smallest_cell_has_a_line() {
         let mut scene = Scene::new((1600, 1100));
-        let gaps = [None, Some(Gap::NotConverged), Some(Gap::NoValue)];
+        let gaps = [None, Some(Gap::NotConverged), Some(Gap::LiftsOff)];
         draw(&[10.0, 10.1, 10.2, 10.3], &[20.0, 20.1], &gaps, &mut scene);
         assert!(matches!(scene.marks[..], [Mark::Path { .. }]));
     }

@@ -1,24 +1,32 @@
 //! Heat maps of a field: a panel for each value of the axis outside the plane.
 
+use super::choice;
 use super::colour::INK;
 use super::degrees::Degrees;
+use super::error::PictureError;
+use super::fitted::{Sides, fitted};
 use super::hatch;
 use super::key::{BOUNDARY_WIDTH, Key};
+use super::options::PictureOptions;
 use super::page::{self, Area};
 use super::panels::{Panel, Panels, Words};
 use super::scale::Scale;
 use super::scene::{Mark, Scene};
+use super::stable_area::stable_throughout;
+use super::symbols;
 use super::text::axis_title;
 use super::view::View;
-use super::{PictureError, PictureOptions};
 use crate::linear::curves::StableSide;
 use crate::report::known::Known;
 use crate::store::MapFile;
 use crate::store::map_file::MapCurve;
 use crate::sweep::Field;
+use crate::sweep::input::field::Storage;
 
 /// Space for the colours' meanings, to begin with.
 const GAP: f64 = 34.0;
+/// More than this many cells along an axis are not read to learn what holds where no curve lies.
+const MOST_TOLD: usize = 600;
 
 /// Draws a heat map of `field` with at most as many cells each way in all panels together as stand
 /// beside the options, and the curves of `curves` that bound the stable region.
@@ -28,14 +36,14 @@ pub(super) fn draw(
     y: usize,
     field: Field,
     curves: &[MapCurve],
-    options: (&PictureOptions, usize),
+    (options, most): (&PictureOptions, usize),
     scene: &mut Scene,
 ) -> Result<(), PictureError> {
-    let (options, most) = options;
     let unit = map.field_unit(field);
-    let (title, mut notes) = super::head(map, field, options);
+    let (title, mut notes) = choice::head(map, field, options);
     notes.extend(view.notes(map));
     let mut body = page::head(scene, &title, &notes);
+    let u = scene.unit();
     let across = (view.panels.len() as f64).sqrt().ceil() as usize;
     let most = (most / across).max(100);
     let planes: Vec<Known> = view
@@ -44,8 +52,13 @@ pub(super) fn draw(
         .map(|panel| Known::read(map, field, panel, (y, view.x), most))
         .collect::<Result<_, _>>()?;
     let degrees = Degrees::of(map, curves);
-    let key = Key::new(field, &unit, &planes, !curves.is_empty()).with(degrees.entries(INK));
-    let column = body.cut_right(key.width(scene.unit()), GAP * scene.unit());
+    let symbols = symbols::of_view(map, view, y)?;
+    let entries = [degrees.entries(INK), symbols::entries(&symbols)].concat();
+    let key = Key::new((field, &unit), &planes, !curves.is_empty(), options)?.with(entries);
+    let column = match options.no_legend {
+        true => None,
+        false => Some(body.cut_right(key.width(u), GAP * u)),
+    };
     let (x_axis, y_axis) = (&map.axes()[view.x], &map.axes()[y]);
     let scales = (Scale::around(&x_axis.values), Scale::around(&y_axis.values));
     let words = Words {
@@ -54,15 +67,24 @@ pub(super) fn draw(
         headings: view.panels.iter().map(|p| view.heading(map, p)).collect(),
     };
     let panels = Panels::new(scene, body, scales, words);
-    for ((panel, plane), index) in panels.list.iter().zip(&planes).zip(&view.panels) {
-        draw_cells(panel, plane, &key, scene);
+    let parts = panels.list.iter().zip(planes).zip(&view.panels);
+    for (((panel, plane), index), symbols) in parts.zip(&symbols) {
         let outer = view.outer_values(map, index);
-        for curve in curves.iter().filter(|c| c.outer == outer) {
+        let here: Vec<&MapCurve> = curves.iter().filter(|c| c.outer == outer).collect();
+        let plane = match changes_at_boundary(field) {
+            true => cut(map, (view.x, y), index, panel, plane, &here, u)?,
+            false => plane,
+        };
+        draw_cells(panel, &plane, &key, scene);
+        for curve in here {
             draw_curve(panel, curve, &degrees, scene);
         }
+        symbols::draw(panel, symbols, scene);
     }
     panels.draw_axes(scene);
-    if let (Some(first), Some(last)) = (panels.list.first(), panels.list.last()) {
+    if let (Some(first), Some(last), Some(column)) =
+        (panels.list.first(), panels.list.last(), column)
+    {
         let (top, bottom) = (first.area.top, last.area.bottom);
         key.draw(
             scene,
@@ -74,6 +96,38 @@ pub(super) fn draw(
         );
     }
     Ok(())
+}
+
+/// Whether the field is another one on the other side of the boundary of stability.
+fn changes_at_boundary(field: Field) -> bool {
+    field == Field::Regime || (field.of_sliding() && field.storage() == Storage::Count)
+}
+
+/// The cells of a panel, cut along the boundary that its curves are.
+fn cut(
+    map: &MapFile,
+    (x, y): (usize, usize),
+    index: &[usize],
+    panel: &Panel,
+    known: Known,
+    curves: &[&MapCurve],
+    u: f64,
+) -> Result<Known, PictureError> {
+    let bounds =
+        |c: &&&MapCurve| c.degree_of_stability == 0.0 && c.piece.stable_side != StableSide::Neither;
+    let pieces: Vec<_> = curves.iter().filter(bounds).map(|c| &c.piece).collect();
+    let Some(field) = map.stability_field().filter(|_| !pieces.is_empty()) else {
+        return Ok(known);
+    };
+    let told = map.plane(field, index, (y, x), MOST_TOLD)?;
+    let values = &map.axes()[x].values;
+    let ends = |(from, to): (f64, f64), value: &f64| (value.min(from), value.max(to));
+    let sides = Sides {
+        pieces: &pieces,
+        reach: values.iter().fold((f64::INFINITY, f64::NEG_INFINITY), ends),
+        without_crossing: &|p| stable_throughout(&told, field, p),
+    };
+    Ok(fitted(panel, known, &sides, u))
 }
 
 fn draw_curve(panel: &Panel, curve: &MapCurve, degrees: &Degrees, scene: &mut Scene) {

@@ -1,191 +1,20 @@
 //! What the colours of a heat map mean: the colour of every value of a field, and the bar or list
 //! that says so.
 
-use super::colour::{
-    self, ABOVE, BELOW, INFINITE, INK, MINUS_INFINITE, NO_VALUE, Rgb, STABLE, UNSTABLE, ZERO,
-};
+use super::colour::{self, INK, Rgb, STABLE, UNSTABLE};
+use super::error::PictureError;
 use super::legend::{Bar, Legend, Swatch};
+use super::options::PictureOptions;
 use super::page::Area;
-use super::scale::Scale;
+use super::paint::Paint;
 use super::scene::Scene;
-use super::text::{Rich, decimal_exponent, field_name, number, suffix};
+use super::text::{Rich, field_name, suffix};
 use crate::report::known::{Gap, Known};
 use crate::sweep::Field;
-use crate::sweep::input::field::{Spread, Storage};
 use crate::sweep::input::source::{OfRoots, Source};
 
 /// Width of boundary lines.
 pub(super) const BOUNDARY_WIDTH: f64 = 1.8;
-/// The part of all slopes and further roots that the colours tell apart. Near double roots some
-/// slopes are beyond any scale, and as the delay vanishes all roots but the rightmost go to −∞.
-const TOLD_APART: f64 = 0.96;
-/// Decades of a velocity whose colours differ, and that a line shows: it falls to zero faster than
-/// any power.
-pub(super) const DECADES: i32 = 5;
-/// The longest relaxation time that has a colour of its own, in units of the shortest one.
-const LONGEST_RELAXATION: f64 = 100.0;
-
-/// The largest ratio of velocities, or of stick times, that are told apart.
-const LARGEST_RATIO: f64 = 1000.0;
-
-/// A largest velocity no more than this many times those told apart is within the scale.
-const FEW_TIMES: f64 = 5.0;
-/// Ends of a scale are rounded.
-const ROUNDED: f64 = 1e-9;
-
-/// How values become colours.
-#[derive(Debug, Clone, Copy, PartialEq)]
-enum Paint {
-    /// A colour for each number of unstable roots.
-    Counts,
-    /// A colour for each kind of this field, or each of its small counts.
-    Kinds(Field),
-    /// Two colours that meet at zero and are full at ±`range`; `stable` is the sign of the values
-    /// on the stable side.
-    Signed { range: f64, stable: f64 },
-    /// From dark to light along a scale; beyond its ends, at infinity and, where it has none or
-    /// `zero` means something of its own, at 0 there are other colours.
-    Sized { scale: Scale, zero: bool },
-}
-
-impl Paint {
-    fn of(field: Field, values: &[f64]) -> Self {
-        let finite = || values.iter().copied().filter(|v| v.is_finite());
-        let largest = finite().fold(0.0, f64::max);
-        match field.spread() {
-            _ if matches!(field.storage(), Storage::Kind | Storage::Few) => Self::Kinds(field),
-            Spread::Counts => Self::Counts,
-            Spread::AboutZero { stable } => Self::Signed {
-                range: symmetric_range(finite().map(|v| stable * v)),
-                stable,
-            },
-            Spread::BetterBelow => Self::Signed {
-                range: rounded_up(quantile(finite().map(f64::abs), TOLD_APART)),
-                stable: -1.0,
-            },
-            Spread::Relaxation => {
-                let positive = finite().filter(|v| *v > 0.0);
-                let shortest = positive.fold(f64::INFINITY, f64::min);
-                if !shortest.is_finite() {
-                    return Self::sized(Scale::linear(0.0, 1.0));
-                }
-                let longest = largest.clamp(1.5 * shortest, LONGEST_RELAXATION * shortest);
-                Self::sized(Scale::logarithmic(shortest, rounded_up(longest)))
-            }
-            Spread::LongTail => {
-                let longest = rounded_up(quantile(finite(), TOLD_APART));
-                Self::sized(Scale::linear(0.0, longest))
-            }
-            Spread::Decades => {
-                let scale = Scale::over_decades(finite(), DECADES);
-                Self::from_above_zero(scale.unwrap_or(Scale::linear(0.0, 1.0)))
-            }
-            Spread::RelativeError => Self::Signed {
-                range: 1.0,
-                stable: 1.0,
-            },
-            Spread::Magnitudes => {
-                let positive = || finite().filter(|v| *v > 0.0);
-                let smallest = positive().fold(f64::INFINITY, f64::min);
-                let most = match quantile(positive(), TOLD_APART) {
-                    most if largest <= FEW_TIMES * most => largest,
-                    most => most,
-                };
-                let most = rounded_up(most);
-                Self::from_above_zero(match smallest.max(most / LARGEST_RATIO) {
-                    least if least < 0.1 * most => Scale::logarithmic(least, most),
-                    _ => Scale::linear(0.0, most),
-                })
-            }
-            Spread::FromZero => Self::sized(Scale::linear(0.0, rounded_up(largest))),
-        }
-    }
-
-    fn sized(scale: Scale) -> Self {
-        Self::Sized { scale, zero: false }
-    }
-
-    fn from_above_zero(scale: Scale) -> Self {
-        Self::Sized { scale, zero: true }
-    }
-
-    fn colour(&self, value: f64) -> Rgb {
-        match *self {
-            Self::Counts => colour::of_count(value),
-            Self::Kinds(field) => colour::of_kind(field, value),
-            Self::Signed { range, stable } => colour::diverging(stable * value, range),
-            Self::Sized { scale, zero } => match value {
-                v if v.is_nan() => NO_VALUE,
-                f64::INFINITY => INFINITE,
-                f64::NEG_INFINITY => MINUS_INFINITE,
-                0.0 if zero || scale.is_logarithmic() => ZERO,
-                v if v > scale.value(1.0) * (1.0 + ROUNDED) => ABOVE,
-                v if v < scale.value(0.0) * (1.0 - ROUNDED) => BELOW,
-                v => colour::of_size(scale.part(v)),
-            },
-        }
-    }
-
-    /// The scale of the bar; none where a list says everything.
-    fn scale(&self) -> Option<Scale> {
-        match *self {
-            Self::Counts | Self::Kinds(_) => None,
-            Self::Signed { range, .. } => Some(Scale::linear(-range, range)),
-            Self::Sized { scale, .. } => Some(scale),
-        }
-    }
-
-    /// What is beyond the ends of the bar.
-    fn beyond(&self, field: Field, values: &[f64]) -> Vec<(Swatch, Rich)> {
-        let mut entries = Vec::new();
-        let mut entry = |value: f64, text: String| {
-            entries.push((
-                Swatch::Box(self.colour(value)),
-                Rich::default().and_formula(&text),
-            ));
-        };
-        let (low, high, apart) = match *self {
-            Self::Counts | Self::Kinds(_) => return entries,
-            Self::Signed { range, .. } => (-range, range, false),
-            Self::Sized { scale, zero } => {
-                let zero = zero || scale.is_logarithmic();
-                (scale.value(0.0), scale.value(1.0), zero)
-            }
-        };
-        let there = |which: &dyn Fn(f64) -> bool| values.iter().copied().find(|v| which(*v));
-        let counted = |v: f64| v.is_finite() && !(apart && v == 0.0);
-        if let Some(more) = there(&|v| v > high + ROUNDED * high.abs() && counted(v)) {
-            entry(more, format!("above {}", number(high)));
-        }
-        if let Some(less) = there(&|v| v < low - ROUNDED * low.abs() && counted(v)) {
-            entry(less, format!("below {}", number(low)));
-        }
-        if apart && there(&|v| v == 0.0).is_some() {
-            entry(0.0, format!("0{}", at_zero(field)));
-        }
-        for infinite in [f64::INFINITY, f64::NEG_INFINITY] {
-            if values.contains(&infinite) {
-                let unstable = field.tells_stable(infinite) == Some(false);
-                let meaning = match self {
-                    Self::Sized { .. } if unstable => ", unstable",
-                    _ => "",
-                };
-                entry(infinite, format!("{}{meaning}", number(infinite)));
-            }
-        }
-        entries
-    }
-}
-
-/// What a velocity of 0 means.
-fn at_zero(field: Field) -> &'static str {
-    match field {
-        Field::Vc | Field::VcUpper | Field::VcOverVtilde => ": stick-slip never lasts",
-        Field::VSmooth => ": smooth at any v_0",
-        _ => "",
-    }
-}
-
 /// What the colours of a field mean, in the panels and beside them.
 pub(super) struct Key {
     paint: Paint,
@@ -197,9 +26,17 @@ pub(super) struct Key {
 
 impl Key {
     /// The key to all cells of `planes`; `curves`: boundaries are drawn as well.
-    pub(super) fn new(field: Field, unit: &str, planes: &[Known], curves: bool) -> Self {
+    ///
+    /// # Errors
+    /// When the options do not go with the field or its values.
+    pub(super) fn new(
+        (field, unit): (Field, &str),
+        planes: &[Known],
+        curves: bool,
+        options: &PictureOptions,
+    ) -> Result<Self, PictureError> {
         let values: Vec<f64> = planes.iter().flat_map(Known::values).collect();
-        let paint = Paint::of(field, &values);
+        let paint = Paint::of(field, &values, options)?;
         let mut legend = match paint {
             Paint::Counts => counts(&values),
             Paint::Kinds(field) => kinds(field, &values),
@@ -211,11 +48,11 @@ impl Key {
             let swatch = Swatch::Line(INK, BOUNDARY_WIDTH, None);
             legend.entries.push((swatch, Rich::plain("boundary")));
         }
-        Self {
+        Ok(Self {
             paint,
             heading: heading(field, unit),
             legend,
-        }
+        })
     }
 
     /// The key with more entries at the end of its list.
@@ -302,6 +139,17 @@ fn counts(values: &[f64]) -> Legend {
     }
 }
 
+/// What a kind of a field means, where its name alone does not say.
+fn in_words(field: Field, name: &str) -> String {
+    let words = match (field, name) {
+        (Field::Regime, "stable") => "stable, no stick-slip",
+        (Field::Regime, "bistable") => "bistable: stick-slip, too",
+        (Field::Regime, "lift-off") => "stable, but lifts off",
+        _ => name,
+    };
+    words.into()
+}
+
 /// The kinds that there are, or the small counts.
 fn kinds(field: Field, values: &[f64]) -> Legend {
     let names = field.kinds().unwrap_or_default();
@@ -309,7 +157,7 @@ fn kinds(field: Field, values: &[f64]) -> Legend {
     let most = finite().fold(0.0, f64::max) as usize;
     let last = colour::last_of_few();
     let name = |number: usize| match names.get(number) {
-        Some(name) => (*name).to_owned(),
+        Some(name) => in_words(field, name),
         None if number == last && most > last => format!("{number} or more"),
         None => number.to_string(),
     };
@@ -335,43 +183,14 @@ fn kinds(field: Field, values: &[f64]) -> Legend {
     }
 }
 
-/// The range of colours: the largest finite value of a stable cell, stable being positive, since
-/// far outside the stable region the distance to it matters less; but not so small that most of the
-/// others lie beyond. 1 where there is no value.
-fn symmetric_range(values: impl Iterator<Item = f64>) -> f64 {
-    let (mut stable, mut largest) = (0.0, 0.0);
-    for value in values {
-        stable = f64::max(stable, value);
-        largest = f64::max(largest, value.abs());
-    }
-    rounded_up(f64::max(stable, 0.5 * largest))
-}
-
-/// The value below which `part` of the values lie; 0 where there are none.
-fn quantile(values: impl Iterator<Item = f64>, part: f64) -> f64 {
-    let mut values: Vec<f64> = values.collect();
-    let place = (part * values.len() as f64) as usize;
-    if place >= values.len() {
-        return 0.0;
-    }
-    *values.select_nth_unstable_by(place, f64::total_cmp).1
-}
-
-/// A positive value rounded up to two digits; 1 for 0.
-fn rounded_up(value: f64) -> f64 {
-    if value == 0.0 {
-        return 1.0;
-    }
-    let unit = 10f64.powi(decimal_exponent(value) - 1);
-    (value / unit - 1e-9).ceil() * unit
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::report::picture::gradient::ColourMap;
     use crate::report::picture::hatch;
     use crate::slip::outcome::Outcome;
     use crate::store::map_file::Plane;
+    use crate::sweep::input::field::Storage;
     use crate::sweep::input::regime_at_v0::RegimeAtV0;
 
     fn plane(cells: &[f64]) -> Known {
@@ -386,33 +205,37 @@ mod tests {
         }
     }
 
+    fn of(field: Field, cells: &[f64], curves: bool) -> Key {
+        Key::new(
+            (field, "1"),
+            &[plane(cells)],
+            curves,
+            &PictureOptions::default(),
+        )
+        .unwrap()
+    }
+
+    fn of_plane(field: Field, plane: Known) -> Key {
+        Key::new((field, "1"), &[plane], false, &PictureOptions::default()).unwrap()
+    }
+
     fn texts(key: Key) -> Vec<Rich> {
         key.legend.entries.into_iter().map(|e| e.1).collect()
     }
 
     #[test]
-    fn far_values_do_not_stretch_the_range() {
-        assert_eq!(symmetric_range([1.5, -2.0].into_iter()), 1.5);
-        assert_eq!(symmetric_range([0.001, -2.0].into_iter()), 1.0);
-        assert!((rounded_up(2.412) - 2.5).abs() < 1e-12);
-        assert_eq!(symmetric_range(std::iter::empty()), 1.0);
-        assert_eq!(quantile((0..100).map(f64::from), 0.96), 96.0);
-        assert_eq!(quantile(std::iter::empty(), 0.96), 0.0);
-    }
-
-    #[test]
     fn the_legend_lists_what_is_there() {
-        let key = Key::new(Field::NUnstable, "1", &[plane(&[0.0, 4.0, f64::NAN])], true);
+        let key = of(Field::NUnstable, &[0.0, 4.0, f64::NAN], true);
         let expected = ["0, stable", "2", "4", "no value", "boundary"];
         assert_eq!(texts(key), expected.map(Rich::plain));
         let cells = [-0.1, 0.9, f64::NEG_INFINITY];
-        let key = Key::new(Field::Abscissa, "1", &[plane(&cells)], false);
+        let key = of(Field::Abscissa, &cells, false);
         assert_eq!(texts(key), ["above 0.45", "−∞"].map(Rich::plain));
         let cells = [2.0, 900.0, f64::INFINITY];
-        let key = Key::new(Field::RelaxationTime, "s", &[plane(&cells)], false);
+        let key = of(Field::RelaxationTime, &cells, false);
         assert_eq!(texts(key), ["above 200", "∞, unstable"].map(Rich::plain));
         let cells = [1.0, 3.0, 1.0, f64::NAN];
-        let key = Key::new(Field::Outcome, "1", &[plane(&cells)], false);
+        let key = of(Field::Outcome, &cells, false);
         assert_eq!(
             texts(key),
             ["stick-slip", "lift-off", "no value"].map(Rich::plain)
@@ -446,7 +269,7 @@ mod tests {
                 known.plane.cells.push(f64::NAN);
                 known.gaps.push(Some(gap));
             }
-            let key = Key::new(field, "1", &[known], false);
+            let key = of_plane(field, known);
             let colour = |swatch: &Swatch| match swatch {
                 Swatch::Box(colour) => *colour,
                 Swatch::Gap(gap) => hatch::ground(*gap),
@@ -458,7 +281,7 @@ mod tests {
                 let parts = (-128..=128).map(|i| f64::from(i) / 128.0);
                 let parts = parts.flat_map(|t| [0.5 + 0.5 * t, 0.5 + 0.5 * t * t.abs()]);
                 let bar = parts.map(|part| key.colour(scale.value(part)));
-                let mut bar: Vec<Rgb> = bar.filter(|colour| *colour != ZERO).collect();
+                let mut bar: Vec<Rgb> = bar.filter(|colour| *colour != colour::ZERO).collect();
                 bar.sort_unstable();
                 bar.dedup();
                 said.extend(bar);
@@ -474,10 +297,10 @@ mod tests {
 
     #[test]
     fn zero_is_no_small_velocity() {
-        let key = Key::new(Field::Vc, "1", &[plane(&[0.0, 0.5, 2.0])], false);
+        let key = of(Field::Vc, &[0.0, 0.5, 2.0], false);
         let said: Vec<_> = key.legend.entries.iter().collect();
         assert_eq!(said.len(), 1);
-        assert_eq!(said[0].0, Swatch::Box(ZERO));
+        assert_eq!(said[0].0, Swatch::Box(colour::ZERO));
         assert_eq!(said[0].1, Rich::plain("0: stick-slip never lasts"));
         assert_ne!(key.colour(0.0), key.colour(1e-9));
     }
@@ -487,7 +310,7 @@ mod tests {
     fn the_unknown_is_no_data() {
         let mut known = plane(&[1.0, 2.0, 1e9]);
         known.gaps[2] = Some(Gap::NotConverged);
-        let key = Key::new(Field::VSmooth, "1", &[known], false);
+        let key = of_plane(Field::VSmooth, known);
         assert!(
             key.paint
                 .scale()
@@ -501,9 +324,9 @@ mod tests {
     /// Teal is stable, whichever sign that is.
     #[test]
     fn every_field_has_its_stable_colour() {
-        let stable = colour::diverging(1.0, 1.0);
+        let stable = colour::two_sided(ColourMap::BrBG, 1.0, 1.0);
         for (field, value) in [(Field::DelayMargin, 1.0), (Field::Abscissa, -1.0)] {
-            let key = Key::new(field, "1", &[plane(&[value])], false);
+            let key = of(field, &[value], false);
             assert_eq!(key.colour(value), stable);
             assert_ne!(key.colour(-value), stable);
         }
@@ -514,7 +337,7 @@ mod tests {
     fn every_field_has_a_key() {
         for field in Field::ALL {
             for cells in [&[f64::NAN][..], &[0.0], &[f64::INFINITY], &[1.0, 2.0]] {
-                let key = Key::new(field, "1", &[plane(cells)], false);
+                let key = of(field, cells, false);
                 assert!(key.width(1.0) > 0.0, "{field:?} {cells:?}");
                 key.colour(cells[0]);
             }

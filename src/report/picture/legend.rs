@@ -5,6 +5,7 @@ use super::hatch;
 use super::page::{Area, SMALL};
 use super::scale::Scale;
 use super::scene::{Align, Scene};
+use super::symbols::Symbol;
 use super::text::Rich;
 use crate::report::known::Gap;
 
@@ -23,6 +24,8 @@ pub(super) enum Swatch {
     Dashed(Rgb, f64, (f64, f64)),
     /// A box.
     Box(Rgb),
+    /// A symbol.
+    Symbol(Symbol),
     /// Nothing: the words say all.
     None,
     /// A box as cells with this gap are.
@@ -82,6 +85,7 @@ impl Legend {
                     scene.ring(at, colour, (ring * u, hole * u));
                     scene.dot(at, colour, dot * u);
                 }
+                Swatch::Symbol(symbol) => symbol.draw((left + 0.5 * (right - left), middle), scene),
                 Swatch::Gap(gap) => {
                     scene.rect(from, to, hatch::ground(gap));
                     hatch::fill(from, to, gap, scene);

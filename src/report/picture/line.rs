@@ -1,31 +1,33 @@
 //! Fields along the one axis that is left.
 
-use super::colour::{self, PAPER, Rgb, SOFT_INK, STABLE};
+use super::areas;
+use super::choice;
+use super::clip::between;
+use super::colour::{self, PAPER, Rgb, SOFT_INK, STABLE_TINT};
+use super::error::PictureError;
 use super::hatch;
-use super::key::DECADES;
 use super::legend::{Legend, Swatch};
-use super::page;
+use super::off_scale::{self, Along};
+use super::options::PictureOptions;
+use super::page::{self, SMALL};
 use super::panels::{Panel, Panels, Words};
 use super::rectangles::{Rectangle, rectangles};
 use super::scale::Scale;
-use super::scene::{Mark, Point, Scene};
+use super::scene::{Align, Mark, Point, Scene};
 use super::text::{Rich, axis_title, field_name, field_title, number, suffix};
+use super::value_scale;
 use super::view::View;
-use super::{PictureError, PictureOptions};
 use crate::report::known::{Gap, Known};
 use crate::store::map_file::MapAxis;
 use crate::store::{MapFile, StoreError};
 use crate::sweep::Field;
-use crate::sweep::input::field::{Spread, Storage};
+use crate::sweep::input::field::Storage;
 
 const WIDTH: f64 = 3.2;
 /// Dashes of approximations, (length, gap).
 const DASH: (f64, f64) = (9.0, 7.0);
-const SHADE: f64 = 0.25;
 /// Half the length of a line of one point.
 const LONE: f64 = 5.0;
-/// Relative errors beyond this are not told apart.
-const LARGEST_ERROR: f64 = 1.0;
 
 /// The cells along one line, and how they are drawn.
 struct Graph {
@@ -35,40 +37,55 @@ struct Graph {
     /// Why a cell shows no value.
     gaps: Vec<Option<Gap>>,
     swatch: Swatch,
+    colour: Rgb,
     /// What tells the line from the others.
     name: Rich,
 }
 
-/// Draws `fields` along the axis `view.x` at no more than `most` cells: a single one at every
-/// panel's values of the other axes, several ones, of the same unit, at those of the first.
+/// Draws `fields` along the axis `view.x` at no more than so many cells as stand beside the
+/// options: a single one at every panel's values of the other axes, several ones, of the same
+/// unit, at those of the first.
 pub(super) fn draw(
     map: &MapFile,
     view: &View,
     fields: &[Field],
-    options: &PictureOptions,
-    most: usize,
+    (options, most): (&PictureOptions, usize),
     scene: &mut Scene,
 ) -> Result<(), PictureError> {
     let Some(&field) = fields.first() else {
         return Ok(());
     };
     let lines = read_lines(map, view, fields, most)?;
-    let (title, mut notes) = super::head(map, field, options);
+    let (title, mut notes) = choice::head(map, field, options);
     if fields.len() > 1 {
         notes.clear();
     }
     notes.extend(view.notes(map));
     let mut body = page::head(scene, &title, &notes);
-    let u = scene.unit();
-    let legend = legend(map, view, &lines);
-    let column = body.cut_right(legend.width(u), 30.0 * u);
     let axis = &map.axes()[view.x];
+    let scales = (
+        Scale::around(&axis.values),
+        value_scale::asked(field, &finite(&lines).collect::<Vec<_>>(), options)?,
+    );
+    let u = scene.unit();
+    let mut legend = legend(map, view, &lines);
+    // What lies beyond the scale does not depend on where the panel is.
+    let anywhere = Panel {
+        area: body,
+        x: scales.0,
+        y: scales.1,
+    };
+    let entries = draw_off_scale(&anywhere, &lines, &mut Scene::new(scene.size));
+    legend.entries.extend(entries);
+    let column = match options.no_legend {
+        true => None,
+        false => Some(body.cut_right(legend.width(u), 30.0 * u)),
+    };
     let words = Words {
         x: axis_title(axis),
         y: ordinate(map, fields),
         headings: vec![None],
     };
-    let scales = (Scale::around(&axis.values), value_scale(field, &lines));
     let panels = Panels::new(scene, body, scales, words);
     let Some(panel) = panels.list.first() else {
         return Ok(());
@@ -83,22 +100,85 @@ pub(super) fn draw(
         draw_gaps(panel, line, scene);
     }
     panels.draw_grid(scene);
+    draw_lines(panel, &lines, scene);
+    panels.draw_axes(scene);
+    if let Some(column) = column {
+        let top = panel.area.top;
+        legend.draw(scene, page::Area { top, ..column });
+    }
+    Ok(())
+}
+
+/// Draws the lines, above where 0 is.
+fn draw_lines(panel: &Panel, lines: &[Graph], scene: &mut Scene) {
     if panel.y.holds(0.0) {
         let zero = panel.up(0.0);
         scene.ruler(
             (panel.area.left, zero),
             (panel.area.right, zero),
             SOFT_INK,
-            u,
+            scene.unit(),
         );
     }
-    for line in &lines {
+    for line in lines {
         draw_line(panel, line, scene);
     }
-    panels.draw_axes(scene);
-    let top = panel.area.top;
-    legend.draw(scene, page::Area { top, ..column });
-    Ok(())
+    draw_off_scale(panel, lines, scene);
+    name_areas(panel, lines, scene);
+}
+
+/// Draws the values without a place on the scale; gives what that means.
+fn draw_off_scale(panel: &Panel, lines: &[Graph], scene: &mut Scene) -> Vec<(Swatch, Rich)> {
+    let edges: Vec<Vec<f64>> = lines.iter().map(|l| panel.x.filling_edges(&l.at)).collect();
+    let lines = lines.iter().zip(&edges);
+    let along = lines.map(|(line, edges)| Along {
+        field: line.field,
+        values: &line.values,
+        gaps: &line.gaps,
+        edges,
+        colour: line.colour,
+    });
+    off_scale::draw(panel, &along.collect::<Vec<_>>(), scene)
+}
+
+/// Names what lies on either side of the critical velocity of a short delay, and beyond the
+/// lift-off.
+fn name_areas(panel: &Panel, lines: &[Graph], scene: &mut Scene) {
+    let of = |field: Field| {
+        let mut found = lines.iter().filter(|line| line.field == field);
+        found.next().filter(|_| found.next().is_none())
+    };
+    let Some(critical) = of(Field::VcOverVtilde) else {
+        return;
+    };
+    let traced: Vec<Vec<Point>> = lines
+        .iter()
+        .flat_map(|line| stretches(panel, line))
+        .collect();
+    let all: Vec<&[Point]> = traced.iter().map(Vec::as_slice).collect();
+    let longest = |line: &Graph| {
+        let parts = stretches(panel, line).into_iter();
+        let mut longest = parts.max_by_key(Vec::len).unwrap_or_default();
+        longest.sort_by(|a, b| a.0.total_cmp(&b.0));
+        longest
+    };
+    let critical = longest(critical);
+    let critical = Some(critical.as_slice());
+    let lift_off = of(Field::LiftoffOverVtilde).map(longest);
+    let lift_off = lift_off.as_deref();
+    let size = SMALL * scene.unit();
+    let areas = [
+        ((None, critical), "stick-slip persists"),
+        ((critical, lift_off), "no stick-slip"),
+        ((lift_off.or(Some(&[])), None), "the block lifts off"),
+    ];
+    for ((lower, upper), name) in areas {
+        let name = Rich::plain(name);
+        let place = areas::between((lower, upper), &all, (name.width(size), size), panel.area);
+        if let Some((x, y)) = place {
+            scene.text((x, y + 0.34 * size), Align::Middle, &name, size, SOFT_INK);
+        }
+    }
 }
 
 fn read_lines(
@@ -120,6 +200,7 @@ fn read_lines(
                 values: known.plane.cells,
                 gaps: known.gaps,
                 swatch: swatch(field, colour::of_line(lines.len(), n)),
+                colour: colour::of_line(lines.len(), n),
                 name: match view.along {
                     Some(axis) if !several => {
                         Rich::plain(&number(map.axes()[axis].values[index[axis]]))
@@ -151,37 +232,11 @@ fn ordinate(map: &MapFile, fields: &[Field]) -> Rich {
     }
 }
 
-fn value_scale(field: Field, lines: &[Graph]) -> Scale {
-    let finite = || {
-        let cells = lines.iter().flat_map(|l| l.values.iter().zip(&l.gaps));
-        let shown = cells.filter(|(value, gap)| value.is_finite() && gap.is_none());
-        shown.map(|(value, _)| *value)
-    };
-    let (mut low, mut high) = (finite().fold(0.0, f64::min), finite().fold(0.0, f64::max));
-    match field.spread() {
-        Spread::Decades => {
-            if let Some(scale) = Scale::over_decades(finite(), DECADES) {
-                return scale;
-            }
-        }
-        Spread::RelativeError => {
-            (low, high) = (low.max(-LARGEST_ERROR), high.min(LARGEST_ERROR));
-        }
-        _ => {}
-    }
-    if let Some(kinds) = field.kinds() {
-        let most = kinds.len() as f64;
-        return Scale::linear(-0.5, most - 0.5).with_smallest_step(1.0);
-    }
-    if field.storage() == Storage::Few {
-        return Scale::linear(-0.5, high + 0.5).with_smallest_step(1.0);
-    }
-    if field.storage() == Storage::Count {
-        let high = f64::max(high, 2.0);
-        return Scale::linear(-0.04 * high, 1.06 * high).with_smallest_step(2.0);
-    }
-    let span = if high > low { high - low } else { 1.0 };
-    Scale::linear(low - 0.05 * span, high + 0.05 * span)
+/// The values that a line can show.
+fn finite(lines: &[Graph]) -> impl Iterator<Item = f64> {
+    let cells = lines.iter().flat_map(|l| l.values.iter().zip(&l.gaps));
+    let shown = cells.filter(|(value, gap)| value.is_finite() && gap.is_none());
+    shown.map(|(value, _)| *value)
 }
 
 fn draw_line(panel: &Panel, line: &Graph, scene: &mut Scene) {
@@ -224,38 +279,6 @@ fn stretches(panel: &Panel, line: &Graph) -> Vec<Vec<Point>> {
     done
 }
 
-/// The parts of a polyline between two heights.
-fn between(points: &[Point], top: f64, bottom: f64) -> Vec<Vec<Point>> {
-    let mut done = Vec::new();
-    let mut open: Vec<Point> = Vec::new();
-    for pair in points.windows(2) {
-        let (a, b) = (pair[0], pair[1]);
-        let part = |height: f64| (height - a.1) / (b.1 - a.1);
-        let (mut from, mut to) = (0.0, 1.0);
-        if a.1 != b.1 {
-            let (s, t) = (part(top), part(bottom));
-            (from, to) = (f64::max(from, s.min(t)), f64::min(to, s.max(t)));
-        }
-        let level = a.1 == b.1 && !(top..=bottom).contains(&a.1);
-        if level || from >= to {
-            done.push(std::mem::take(&mut open));
-            continue;
-        }
-        let on = |part: f64| (a.0 + part * (b.0 - a.0), a.1 + part * (b.1 - a.1));
-        if from > 0.0 || open.is_empty() {
-            done.push(std::mem::take(&mut open));
-            open.push(if from > 0.0 { on(from) } else { a });
-        }
-        open.push(if to < 1.0 { on(to) } else { b });
-        if to < 1.0 {
-            done.push(std::mem::take(&mut open));
-        }
-    }
-    done.push(open);
-    done.retain(|part| !part.is_empty());
-    done
-}
-
 /// Marks the cells along a line that show no value, over the height of the panel.
 fn draw_gaps(panel: &Panel, line: &Graph, scene: &mut Scene) {
     let edges = panel.x.filling_edges(&line.at);
@@ -271,9 +294,8 @@ fn draw_gaps(panel: &Panel, line: &Graph, scene: &mut Scene) {
 
 /// Shades the cells in which sliding is stable.
 fn shade(panel: &Panel, line: &Graph, scene: &mut Scene) {
-    let tint = colour::pale(STABLE, 2.0 * SHADE);
     let colour = |(&value, gap): (&f64, &Option<Gap>)| match line.field.tells_stable(value) {
-        Some(true) if gap.is_none() => tint,
+        Some(true) if gap.is_none() => STABLE_TINT,
         _ => PAPER,
     };
     let edges = panel.x.filling_edges(&line.at);
@@ -302,8 +324,7 @@ fn legend(map: &MapFile, view: &View, lines: &[Graph]) -> Legend {
     if lines.len() > 1 {
         legend.entries = lines.iter().map(|l| (l.swatch, l.name.clone())).collect();
     } else if map.stability_field().is_some() {
-        let tint = colour::pale(STABLE, 2.0 * SHADE);
-        legend.entries = vec![(Swatch::Box(tint), Rich::plain("stable"))];
+        legend.entries = vec![(Swatch::Box(STABLE_TINT), Rich::plain("stable"))];
     }
     add_gaps(&mut legend, lines);
     legend
@@ -336,6 +357,7 @@ mod tests {
             values: vec![1.0, 1.0, 0.0, 2.0, 2.0],
             gaps: vec![None, None, Some(Gap::NotConverged), None, None],
             swatch: swatch(Field::Vc, PAPER),
+            colour: PAPER,
             name: Rich::default(),
         };
         let panel = Panel {
@@ -346,7 +368,7 @@ mod tests {
                 bottom: 10.0,
             },
             x: Scale::around(&line.at),
-            y: value_scale(Field::VLiftoff, std::slice::from_ref(&line)),
+            y: value_scale::by_default(Field::VLiftoff, &[1.0, 2.0]),
         };
         let parts = stretches(&panel, &line);
         assert_eq!(parts.iter().map(Vec::len).collect::<Vec<_>>(), [2, 2]);
@@ -363,21 +385,5 @@ mod tests {
         add_gaps(&mut legend, &[line]);
         let expected = (Swatch::Gap(Gap::NotConverged), Rich::plain("not converged"));
         assert_eq!(legend.entries, [expected]);
-    }
-
-    #[test]
-    fn a_line_ends_at_the_frame() {
-        let line = [(0.0, -1.0), (1.0, 1.0), (2.0, 2.0), (3.0, 6.0), (4.0, 2.0)];
-        let parts = between(&line, 0.0, 4.0);
-        assert_eq!(
-            parts,
-            [
-                vec![(0.5, 0.0), (1.0, 1.0), (2.0, 2.0), (2.5, 4.0)],
-                vec![(3.5, 4.0), (4.0, 2.0)]
-            ]
-        );
-        let inside = [(0.0, 1.0), (1.0, 1.0), (2.0, 3.0)];
-        assert_eq!(between(&inside, 0.0, 4.0), [inside.to_vec()]);
-        assert!(between(&[(0.0, 5.0), (1.0, 5.0)], 0.0, 4.0).is_empty());
     }
 }

@@ -13,7 +13,7 @@ const FRAME_WIDTH: f64 = 1.6;
 /// Width over height that panels should have.
 const SHAPE: f64 = 1.25;
 /// What an empty place counts, as a part of all panels, against the logarithm of their shape.
-const EMPTY: f64 = 3.0;
+const EMPTY: f64 = 6.0;
 const MOST_TICKS: usize = 10;
 
 /// One panel: where it is, and its scales.

@@ -5,8 +5,8 @@ use plotters::backend::{BitMapBackend, DrawingBackend, RGBPixel, SVGBackend};
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 use plotters::style::{Color, FontTransform, RGBAColor, RGBColor, TextStyle};
 
-use super::PictureError;
 use super::colour::Rgb;
+use super::error::PictureError;
 use super::font;
 use super::rectangles::{Rectangle, rectangles};
 use super::scene::{Mark, Point, Scene};
@@ -21,7 +21,8 @@ const DEJAVU_HEIGHT: f64 = 1.164;
 const SVG_FONT_FACTOR: f64 = 1.24;
 
 /// The picture as a PNG file.
-pub(super) fn png(scene: &Scene) -> Result<Vec<u8>, PictureError> {
+/// `texts`: keywords and what the file says under them.
+pub(super) fn png(scene: &Scene, texts: &[(&str, &str)]) -> Result<Vec<u8>, PictureError> {
     let (width, height) = scene.size;
     let (fine_width, fine_height) = (width * OVERSAMPLING, height * OVERSAMPLING);
     let mut fine = vec![255; fine_width as usize * fine_height as usize * 3];
@@ -43,22 +44,14 @@ pub(super) fn png(scene: &Scene) -> Result<Vec<u8>, PictureError> {
     encoder.set_color(png::ColorType::Rgb);
     encoder.set_depth(png::BitDepth::Eight);
     encoder.set_compression(png::Compression::Default);
-    encoder
-        .add_text_chunk(SIGNATURE.0.into(), SIGNATURE.1.into())
-        .map_err(refused)?;
+    for (keyword, text) in texts {
+        let added = encoder.add_itxt_chunk((*keyword).into(), (*text).into());
+        added.map_err(refused)?;
+    }
     let mut writer = encoder.write_header().map_err(refused)?;
     writer.write_image_data(&pixels).map_err(refused)?;
     writer.finish().map_err(refused)?;
     Ok(bytes)
-}
-
-/// The text in a PNG file that says who drew it.
-const SIGNATURE: (&str, &str) = ("Software", "slipmap");
-
-/// True for the start of a PNG file that [`png`] made.
-pub(super) fn signed(start: &[u8]) -> bool {
-    let text = [SIGNATURE.0.as_bytes(), b"\0", SIGNATURE.1.as_bytes()].concat();
-    start.windows(text.len()).any(|part| part == text)
 }
 
 /// The picture as an SVG file.
@@ -358,7 +351,7 @@ mod tests {
 
     #[test]
     fn cells_fill_their_place() {
-        let bytes = png(&scene()).unwrap();
+        let bytes = png(&scene(), &[]).unwrap();
         assert_eq!(pixel(&bytes, 12, 17), [200, 0, 0]);
         assert_eq!(pixel(&bytes, 28, 17), [200, 0, 0]);
         assert_eq!(pixel(&bytes, 28, 12), [0, 0, 200]);
@@ -370,7 +363,7 @@ mod tests {
     fn lines_are_as_wide_as_asked() {
         let mut scene = Scene::new((40, 30));
         scene.path(vec![(5.0, 15.0), (35.0, 15.0)], Rgb(0, 0, 0), 4.0);
-        let bytes = png(&scene).unwrap();
+        let bytes = png(&scene, &[]).unwrap();
         assert_eq!(pixel(&bytes, 20, 13), [0, 0, 0]);
         assert_eq!(pixel(&bytes, 20, 16), [0, 0, 0]);
         assert_eq!(pixel(&bytes, 20, 12), [255, 255, 255]);

@@ -2,6 +2,8 @@
 
 use super::panels::Panel;
 use crate::linear::curves::{CurvePiece, StableSide, Vertex};
+use crate::store::map_file::Plane;
+use crate::sweep::Field;
 
 /// Slices of a region: (x, y of its lower end, y of its upper end) in pixels, by growing x.
 pub(super) type Region = Vec<(f64, f64, f64)>;
@@ -56,7 +58,7 @@ fn ends_above(region: &Region, interval: (f64, f64)) -> bool {
 }
 
 /// The stable intervals of delay at the parameter `p`, as (lower, upper) pixels.
-fn intervals(
+pub(super) fn intervals(
     panel: &Panel,
     pieces: &[&CurvePiece],
     p: f64,
@@ -83,6 +85,20 @@ fn intervals(
     }
     intervals.extend(start.map(|from| (from, top)));
     intervals
+}
+
+/// Whether the column of cells nearest to `p`, in which no curve lies, is stable: most of its cells
+/// say so.
+pub(super) fn stable_throughout(plane: &Plane, field: Field, p: f64) -> bool {
+    let distances = plane.columns.iter().map(|c| (c - p).abs()).enumerate();
+    let Some((column, _)) = distances.min_by(|a, b| a.1.total_cmp(&b.1)) else {
+        return false;
+    };
+    let cells = plane.cells.iter().skip(column).step_by(plane.columns.len());
+    let stable = cells
+        .filter(|&&v| field.tells_stable(v) == Some(true))
+        .count();
+    2 * stable > plane.rows.len()
 }
 
 /// The delay of a curve at `p`; none where it does not reach. A curve is a function of p between

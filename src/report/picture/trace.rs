@@ -1,25 +1,26 @@
 //! A motion over time, and its velocity over the elongation.
 
-use super::colour::{self, Rgb, SOFT_INK, UNSTABLE};
+use super::colour::{self, Rgb, SOFT_INK, STUCK, UNSTABLE};
 use super::legend::{Legend, Swatch};
 use super::page::{self, Area};
 use super::panels::Panel;
 use super::scale::Scale;
 use super::scene::{Point, Scene};
 use super::stack::{Row, Stack};
+use super::symbols::{self, Placed, Symbol};
 use super::text::{Rich, assignment, number, suffix};
+use crate::model::Control;
 use crate::slip::motion::Event;
 use crate::slip::outcome::Outcome;
 use crate::sweep::cells::trace::{Sample, TraceEvent};
-use crate::sweep::input::units::Units;
 use crate::sweep::{CaseSpec, Parameter, Trace};
 
 const WIDTH: f64 = 2.6;
 /// The line of a switch-on or a lift-off.
 const MARK_WIDTH: f64 = 2.0;
 const DASH: (f64, f64) = (9.0, 7.0);
-/// Where the block sticks.
-const STUCK: Rgb = Rgb(0xed, 0xe6, 0xd6);
+/// That of the time when the velocity has settled.
+const SETTLED: (f64, f64) = (1.0, 5.0);
 /// Part of the width for the panels over time.
 const OVER_TIME: f64 = 0.655;
 /// Points of the phase portrait: after so many, from the end, what is older is covered by them.
@@ -60,12 +61,12 @@ pub(super) fn draw(spec: &CaseSpec, trace: &Trace, scene: &mut Scene) {
     };
     let strips = strips(spec);
     draw_strips(spec, trace, &strips, over_time, scene);
-    let legend = legend(trace, &strips);
+    let legend = legend(spec, trace, &strips);
     let portrait = Area {
         bottom: body.bottom - legend.height(u) - 20.0 * u,
         ..beside
     };
-    draw_portrait(&spec.units, &trace.samples, portrait, scene);
+    draw_portrait(spec, &trace.samples, portrait, scene);
     let column = Area {
         left: beside.left + 60.0 * u,
         top: portrait.bottom + 20.0 * u,
@@ -92,16 +93,36 @@ fn notes(spec: &CaseSpec, trace: &Trace) -> Vec<Rich> {
     let time = |t: f64| format!("{}{}", number(t), suffix(&units.time(), " ", ""));
     let summary = &trace.summary;
     let became = match summary.outcome {
-        Outcome::Sliding => format!(
-            "outcome: sliding, settled {} after switch-on",
-            time(summary.settle_time)
-        ),
+        Outcome::Sliding => {
+            let settled = settled(spec, trace);
+            let later = match settled > end(trace) {
+                true => ", later than is shown",
+                false => "",
+            };
+            format!(
+                "outcome: sliding, within 1 % of v0 from t = {} on{later}",
+                time(settled)
+            )
+        }
         Outcome::StickSlip => format!("outcome: stick-slip, period {}", time(summary.period)),
         Outcome::LiftOff => format!("outcome: lift-off at t = {}", time(summary.decided)),
         other => format!("outcome: {}", other.name()),
     };
     notes.push(Rich::plain(&became));
     notes
+}
+
+/// The time from which on the block's velocity is within 1 % of v0; NaN where it never is.
+fn settled(spec: &CaseSpec, trace: &Trace) -> f64 {
+    // Without control the time counts from the start.
+    let controlled = spec.setting.control() != Control::default();
+    let switched_on = Some(spec.case.switch_on).filter(|t| controlled && t.is_finite());
+    switched_on.unwrap_or(0.0) + trace.summary.settle_time
+}
+
+/// The time at which the trace ends.
+fn end(trace: &Trace) -> f64 {
+    trace.samples.last().map_or(0.0, |s| s.t)
 }
 
 /// The panels over time: the last one shows what is controlled, if anything is.
@@ -146,7 +167,7 @@ fn draw_strips(spec: &CaseSpec, trace: &Trace, strips: &[Strip], area: Area, sce
         scale: scale(strip.curves.iter().map(|c| c.of), samples),
         title: Rich::plain(&strip.title),
     };
-    let end = samples.last().map_or(0.0, |s| s.t);
+    let end = end(trace);
     // A lift-off is the end of the trace: its mark needs a place beside the frame.
     let room = if lifts_off(trace) { 1.03 } else { 1.0 };
     let x = Scale::linear(0.0, if end > 0.0 { room * end } else { 1.0 });
@@ -159,7 +180,10 @@ fn draw_strips(spec: &CaseSpec, trace: &Trace, strips: &[Strip], area: Area, sce
     stack.draw_grid(scene);
     for (panel, strip) in stack.panels.iter().zip(strips) {
         for event in marked(trace) {
-            mark(panel, event, scene);
+            mark(panel, event.t, mark_colour(event.kind), DASH, scene);
+        }
+        if settled(spec, trace) <= end {
+            mark(panel, settled(spec, trace), SOFT_INK, SETTLED, scene);
         }
         for curve in &strip.curves {
             let points = samples.iter().map(|s| panel.at(s.t, (curve.of)(s)));
@@ -171,7 +195,7 @@ fn draw_strips(spec: &CaseSpec, trace: &Trace, strips: &[Strip], area: Area, sce
 
 /// Events with a mark of their own, within the picture.
 fn marked(trace: &Trace) -> impl Iterator<Item = &TraceEvent> {
-    let end = trace.samples.last().map_or(0.0, |s| s.t);
+    let end = end(trace);
     let events = trace.events.iter().filter(move |e| e.t <= end);
     events.filter(|e| matches!(e.kind, Event::SwitchOn | Event::LiftOff))
 }
@@ -180,11 +204,10 @@ fn lifts_off(trace: &Trace) -> bool {
     marked(trace).any(|event| event.kind == Event::LiftOff)
 }
 
-fn mark(panel: &Panel, event: &TraceEvent, scene: &mut Scene) {
-    let x = panel.across(event.t);
+fn mark(panel: &Panel, t: f64, colour: Rgb, dash: (f64, f64), scene: &mut Scene) {
+    let x = panel.across(t);
     let line = [(x, panel.area.bottom), (x, panel.area.top)];
-    let width = MARK_WIDTH * scene.unit();
-    scene.dashed(&line, mark_colour(event.kind), width, DASH);
+    scene.dashed(&line, colour, MARK_WIDTH * scene.unit(), dash);
 }
 
 fn mark_colour(kind: Event) -> Rgb {
@@ -202,8 +225,9 @@ fn shade_sticks(panel: &Panel, trace: &Trace, scene: &mut Scene) {
     }
 }
 
-fn draw_portrait(units: &Units, samples: &[Sample], area: Area, scene: &mut Scene) {
+fn draw_portrait(spec: &CaseSpec, samples: &[Sample], area: Area, scene: &mut Scene) {
     let u = scene.unit();
+    let units = &spec.units;
     let unit = |dimension| suffix(&units.of(dimension), "  (", ")");
     let (elongation, velocity): (Value, Value) = (|s| s.a, |s| s.x_dot);
     let x = scale([elongation].into_iter(), samples);
@@ -220,6 +244,7 @@ fn draw_portrait(units: &Units, samples: &[Sample], area: Area, scene: &mut Scen
         let old = points.len().saturating_sub(MOST_PORTRAIT);
         points.drain(..old);
         scene.path(points, colour::of_line(0, 3), 0.7 * WIDTH * u);
+        symbols::draw(panel, &sliding(spec, samples), scene);
     }
     stack.draw_axes(scene);
 }
@@ -291,7 +316,7 @@ fn apart(points: impl Iterator<Item = Point>) -> Vec<Point> {
     kept
 }
 
-fn legend(trace: &Trace, strips: &[Strip]) -> Legend {
+fn legend(spec: &CaseSpec, trace: &Trace, strips: &[Strip]) -> Legend {
     let curves = strips.iter().flat_map(|strip| &strip.curves).rev();
     let named = curves.filter(|curve| !curve.name.is_empty());
     let mut entries: Vec<(Swatch, Rich)> = named
@@ -308,10 +333,25 @@ fn legend(trace: &Trace, strips: &[Strip]) -> Legend {
         let swatch = Swatch::Dashed(mark_colour(event.kind), MARK_WIDTH, DASH);
         entries.push((swatch, Rich::plain(text)));
     }
+    if settled(spec, trace) <= end(trace) {
+        let swatch = Swatch::Dashed(SOFT_INK, MARK_WIDTH, SETTLED);
+        let words = Rich::default().and_formula("from here within 1 % of v_0");
+        entries.push((swatch, words));
+    }
+    entries.extend(symbols::entries(&[sliding(spec, &trace.samples)]));
     Legend {
         heading: Vec::new(),
         entries,
     }
+}
+
+/// The place of even sliding in the portrait, if the portrait holds it.
+fn sliding(spec: &CaseSpec, samples: &[Sample]) -> Placed {
+    let scales: [Value; 2] = [|s| s.a, |s| s.x_dot];
+    let [x, y] = scales.map(|of| scale([of].into_iter(), samples));
+    let place = symbols::sliding(&spec.setting);
+    let held = place.filter(|(a, v0)| x.holds(*a) && y.holds(*v0));
+    held.map(|at| (Symbol::Sliding, at)).into_iter().collect()
 }
 
 #[cfg(test)]

@@ -1,0 +1,133 @@
+//! Which field a picture shows, and what is written above it.
+
+use super::error::PictureError;
+use super::options::{Named, PictureOptions};
+use super::text::{self, Rich};
+use crate::report::visible::visible_line;
+use crate::store::MapFile;
+use crate::store::schema::root;
+use crate::sweep::Field;
+
+/// The field that a picture shows.
+pub(super) struct Choice {
+    pub field: Field,
+    /// Nobody asked for it or named it.
+    by_default: bool,
+}
+
+impl Choice {
+    pub(super) fn of(map: &MapFile, options: &PictureOptions) -> Result<Self, PictureError> {
+        let chosen = options.field.or_else(|| named(map, options));
+        let field = chosen.unwrap_or_else(|| default_field(map));
+        if !map.fields().contains(&field) {
+            let held: Vec<&str> = map.fields().iter().map(|f| f.name()).collect();
+            return Err(PictureError::NoSuchField {
+                field: field.name(),
+                held: held.join(", "),
+            });
+        }
+        Ok(Self {
+            field,
+            by_default: chosen.is_none(),
+        })
+    }
+
+    /// True where curves of the map say as much as its cells.
+    pub(super) fn leaves_curves(&self, map: &MapFile) -> bool {
+        self.by_default && says_more(map).is_none()
+    }
+
+    /// The fields that one line picture shows: this one and, where it is there by default and for
+    /// no `several` values of an axis, those that it is compared with.
+    pub(super) fn shown_together(&self, map: &MapFile, several: bool) -> Vec<Field> {
+        if !self.by_default || several || !self.field.of_limit() {
+            return vec![self.field];
+        }
+        let velocities = Field::LIMIT_VELOCITIES.into_iter();
+        let held: Vec<Field> = velocities.filter(|f| map.fields().contains(f)).collect();
+        if held.is_empty() {
+            vec![self.field]
+        } else {
+            held
+        }
+    }
+}
+
+/// The field that a sweep names for pictures of the map: the sweep at hand, else the map's own.
+pub(super) fn named(map: &MapFile, options: &PictureOptions) -> Option<Field> {
+    let named = match options.named {
+        Named::InMap => map.sweep().ok()?.picture,
+        Named::As(field) => Some(field),
+        Named::Nothing => None,
+    };
+    named.filter(|field| map.fields().contains(field))
+}
+
+/// A field of the map that says more than where sliding is stable: what v0 is good for,
+/// from where sliding is smooth, the critical velocity, what becomes of motions, or the rate at
+/// which disturbances decay.
+fn says_more(map: &MapFile) -> Option<Field> {
+    let more = [
+        Field::Regime,
+        Field::VSmooth,
+        Field::Vc,
+        Field::Outcome,
+        Field::Abscissa,
+    ];
+    more.into_iter().find(|field| map.fields().contains(field))
+}
+
+/// What says most about the map.
+fn default_field(map: &MapFile) -> Field {
+    says_more(map)
+        .or_else(|| map.stability_field())
+        .or_else(|| map.fields().first().copied())
+        .unwrap_or(Field::NUnstable)
+}
+
+/// Of longer titles no more is drawn.
+const LONGEST_TITLE: usize = 400;
+
+/// The title of a picture of `field` of a sweep without one.
+fn untitled(field: Field) -> &'static str {
+    if field.of_limit() {
+        "Critical velocity as the delay vanishes"
+    } else if field.of_vc() {
+        "The critical velocity"
+    } else if field.of_motion() {
+        "Motions of the block"
+    } else {
+        "Stability of sliding"
+    }
+}
+
+/// The title asked for, or that of the map's sweep.
+pub(super) fn title(map: &MapFile, options: &PictureOptions) -> Option<String> {
+    let of_sweep = || map.root_text(root::TITLE);
+    let title = options.title.clone().or_else(of_sweep);
+    let title = title.filter(|title| !title.trim().is_empty())?;
+    let cut: String = title.chars().take(LONGEST_TITLE).collect();
+    Some(visible_line(&cut))
+}
+
+/// The title of a picture of `field`, and notes that name it. The title of a sweep is about the
+/// field that it shows unasked: a picture of another one is headed by that.
+pub(super) fn head(map: &MapFile, field: Field, options: &PictureOptions) -> (String, Vec<Rich>) {
+    let unit = map.field_unit(field);
+    let shown = named(map, options).unwrap_or_else(|| default_field(map));
+    let note = text::field_note(field, &unit);
+    match title(map, options) {
+        Some(title) if field != shown && options.title.is_none() => {
+            let name = Rich::plain(field.name()).and(&text::suffix(&unit, "  (", ")"));
+            let of = Rich::plain(&format!("from: {title}"));
+            (capitalised(field.long_name()), vec![name, of])
+        }
+        title => (title.unwrap_or_else(|| untitled(field).into()), vec![note]),
+    }
+}
+
+fn capitalised(text: &str) -> String {
+    let mut characters = text.chars();
+    let first = characters.next().into_iter().flat_map(char::to_uppercase);
+    first.chain(characters).collect()
+}

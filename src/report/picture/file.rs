@@ -1,0 +1,180 @@
+//! The file of a picture: its format by its name, and whose picture it may replace.
+
+use std::fs;
+use std::io::BufReader;
+use std::path::{Path, PathBuf};
+
+use super::error::PictureError;
+use super::pdf;
+use super::render;
+use super::scene::Scene;
+use crate::report::visible::visible_line;
+use crate::store::{Output, StoreError};
+
+/// Cells read along an axis: more are not seen in a bitmap, and make a file of shapes unwieldy.
+const MOST_CELLS: usize = 1200;
+const MOST_SHAPES: usize = 320;
+
+/// A picture that is drawn, and not yet in its file.
+#[derive(Debug)]
+#[must_use]
+pub struct Picture {
+    bytes: Vec<u8>,
+    path: PathBuf,
+    origin: Origin,
+}
+
+/// What a PNG picture tells of itself.
+#[derive(Debug)]
+pub(super) struct Origin {
+    /// Of what it is a picture, in one line.
+    pub of: String,
+    /// The name of the field that the sweep named for pictures; empty for none.
+    pub named: &'static str,
+}
+
+impl Picture {
+    /// Renders a scene for the file `path`.
+    pub(super) fn of(
+        scene: &Scene,
+        format: Format,
+        path: &Path,
+        origin: Origin,
+    ) -> Result<Self, PictureError> {
+        let bytes = match format {
+            Format::Png => png(scene, &origin),
+            Format::Svg => render::svg(scene),
+            Format::Pdf => pdf::of_svg(&render::svg(scene)?),
+        }?;
+        Ok(Self {
+            bytes,
+            path: path.to_owned(),
+            origin,
+        })
+    }
+
+    /// Writes the file. It appears when it is complete; one that is there is replaced.
+    ///
+    /// # Errors
+    /// When the file cannot be written.
+    pub fn save(self) -> Result<(), PictureError> {
+        let Self { bytes, path, .. } = self;
+        let output = Output::claim(&path)?;
+        fs::write(output.part(), bytes).map_err(|source| StoreError::Io {
+            action: "write",
+            path,
+            source,
+        })?;
+        Ok(output.commit()?)
+    }
+
+    /// Writes the file under a name that nobody asked for: what is there is replaced only if it is
+    /// an earlier picture of the same. Nobody's work is lost.
+    ///
+    /// # Errors
+    /// When something else is there, or the file cannot be written.
+    pub fn save_unasked(self) -> Result<(), PictureError> {
+        match others_work(&self.path, &self.origin.of) {
+            Some(holds) => Err(PictureError::OthersWork {
+                path: self.path,
+                holds,
+            }),
+            None => self.save(),
+        }
+    }
+}
+
+/// What is at `path` if it is anything but a picture of this origin.
+fn others_work(path: &Path, origin: &str) -> Option<String> {
+    let foreign = || Some("not by slipmap".to_owned());
+    if path.symlink_metadata().is_err() {
+        return None;
+    }
+    match texts(path) {
+        Some(texts) if texts.of == origin => None,
+        Some(texts) => Some(format!("a picture of {}", visible_line(&texts.of))),
+        None => foreign(),
+    }
+}
+
+/// The field that the sweep named for the PNG picture at `path` when it was drawn: an empty name
+/// where it named none; none where there is no picture of slipmap's.
+#[must_use]
+pub fn named_in(path: &Path) -> Option<String> {
+    texts(path).map(|texts| texts.named)
+}
+
+/// The picture as a PNG file that tells its origin.
+fn png(scene: &Scene, origin: &Origin) -> Result<Vec<u8>, PictureError> {
+    let texts = [SIGNATURE, (OF, origin.of.as_str()), (NAMED, origin.named)];
+    render::png(scene, &texts)
+}
+
+/// The texts in a PNG file: who drew it, of what, and which field the sweep named.
+const SIGNATURE: (&str, &str) = ("Software", "slipmap");
+const OF: &str = "Source";
+const NAMED: &str = "Comment";
+
+/// What the texts of a PNG file tell.
+struct Texts {
+    of: String,
+    named: String,
+}
+
+/// The texts of a picture of slipmap's; none where there is none at `path`.
+fn texts(path: &Path) -> Option<Texts> {
+    // A pipe would be waited for.
+    if !path.metadata().is_ok_and(|m| m.is_file()) {
+        return None;
+    }
+    let file = BufReader::new(fs::File::open(path).ok()?);
+    let reader = png::Decoder::new(file).read_info().ok()?;
+    let texts = &reader.info().utf8_text;
+    let text = |keyword: &str| {
+        let found = texts.iter().find(|text| text.keyword == keyword)?;
+        found.get_text().ok()
+    };
+    let own = text(SIGNATURE.0).as_deref() == Some(SIGNATURE.1);
+    own.then_some(())?;
+    Some(Texts {
+        of: text(OF)?,
+        named: text(NAMED)?,
+    })
+}
+
+/// True for a file name that a picture can have.
+#[must_use]
+pub fn is_name(path: &Path) -> bool {
+    Format::of(path).is_ok()
+}
+
+/// What a picture is written as.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Format {
+    Png,
+    Svg,
+    Pdf,
+}
+
+impl Format {
+    /// The format that a file's name promises.
+    pub(super) fn of(path: &Path) -> Result<Self, PictureError> {
+        let extension = path.extension().map(|e| e.to_string_lossy().to_lowercase());
+        match extension.as_deref() {
+            Some("png") => Ok(Self::Png),
+            Some("svg") => Ok(Self::Svg),
+            Some("pdf") => Ok(Self::Pdf),
+            _ => Err(PictureError::Extension {
+                path: path.to_owned(),
+            }),
+        }
+    }
+
+    /// How many cells along an axis are drawn at most.
+    pub(super) fn most_cells(self) -> usize {
+        match self {
+            Self::Png => MOST_CELLS,
+            Self::Svg | Self::Pdf => MOST_SHAPES,
+        }
+    }
+}

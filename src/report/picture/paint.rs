@@ -1,0 +1,387 @@
+//! How the values of a field become colours.
+
+use super::colour::{self, ABOVE, BELOW, INFINITE, MINUS_INFINITE, NO_VALUE, Rgb, ZERO};
+use super::error::PictureError;
+use super::gradient::ColourMap;
+use super::legend::Swatch;
+use super::options::PictureOptions;
+use super::scale::Scale;
+use super::text::{Rich, decimal_exponent, number};
+use crate::sweep::Field;
+use crate::sweep::input::field::{Spread, Storage};
+
+/// The part of all slopes and further roots that the colours tell apart. Near double roots some
+/// slopes are beyond any scale, and as the delay vanishes all roots but the rightmost go to −∞.
+const TOLD_APART: f64 = 0.96;
+/// Decades of a velocity whose colours differ, and that a line shows: it falls to zero faster than
+/// any power.
+pub(super) const DECADES: i32 = 5;
+/// The longest relaxation time that has a colour of its own, in units of the shortest one.
+const LONGEST_RELAXATION: f64 = 100.0;
+
+/// The largest ratio of velocities, or of stick times, that are told apart.
+const LARGEST_RATIO: f64 = 1000.0;
+
+/// A largest velocity no more than this many times those told apart is within the scale.
+const FEW_TIMES: f64 = 5.0;
+/// Ends of a scale are rounded.
+const ROUNDED: f64 = 1e-9;
+
+/// How values become colours.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) enum Paint {
+    /// A colour for each number of unstable roots.
+    Counts,
+    /// A colour for each kind of this field, or each of its small counts.
+    Kinds(Field),
+    /// Two colours that meet at zero; `stable` is the sign of the values on the stable side.
+    TwoSided {
+        map: ColourMap,
+        low: f64,
+        high: f64,
+        stable: f64,
+    },
+    /// From dark to light along a scale; beyond its ends, at infinity and, where it has none or
+    /// `zero` means something of its own, at 0 there are other colours.
+    Sized {
+        map: ColourMap,
+        scale: Scale,
+        zero: bool,
+    },
+}
+
+impl Paint {
+    /// The colours of a field that has these values, as they are asked for.
+    ///
+    /// # Errors
+    /// When what is asked for does not go with the field or its values.
+    pub(super) fn of(
+        field: Field,
+        values: &[f64],
+        options: &PictureOptions,
+    ) -> Result<Self, PictureError> {
+        let paint = Self::by_default(field, values);
+        let paint = match options.colour_map {
+            Some(map) => paint.with_map(map, field)?,
+            None => paint,
+        };
+        let paint = match options.log {
+            true => paint.logarithmic(field, values)?,
+            false => paint,
+        };
+        match options.range {
+            Some(range) => paint.within(range),
+            None => Ok(paint),
+        }
+    }
+
+    fn with_map(self, map: ColourMap, field: Field) -> Result<Self, PictureError> {
+        let other = |why, two_sides| PictureError::OtherColourMap {
+            map: map.name(),
+            field: field.name(),
+            why,
+            fitting: ColourMap::names(two_sides),
+        };
+        match self {
+            Self::TwoSided { .. } if !map.has_two_sides() => Err(other("has two sides", true)),
+            Self::Sized { .. } if map.has_two_sides() => Err(other("has one side only", false)),
+            Self::TwoSided {
+                low, high, stable, ..
+            } => Ok(Self::TwoSided {
+                map,
+                low,
+                high,
+                stable,
+            }),
+            Self::Sized { scale, zero, .. } => Ok(Self::Sized { map, scale, zero }),
+            Self::Counts | Self::Kinds(_) => Err(no_scale("--colour-map")),
+        }
+    }
+
+    fn logarithmic(self, field: Field, values: &[f64]) -> Result<Self, PictureError> {
+        match self {
+            Self::Counts | Self::Kinds(_) => Err(no_scale("--log")),
+            Self::TwoSided { .. } => Err(PictureError::NotForThis {
+                option: "--log",
+                why: "its values have two sides, below and above 0",
+            }),
+            Self::Sized { map, zero, .. } => {
+                let scale = logarithmic(field, zero, values)?;
+                Ok(Self::Sized { map, scale, zero })
+            }
+        }
+    }
+
+    /// The same between two values.
+    fn within(self, (low, high): (f64, f64)) -> Result<Self, PictureError> {
+        match self {
+            Self::Counts | Self::Kinds(_) => Err(no_scale("--range")),
+            Self::TwoSided { map, stable, .. } => Ok(Self::TwoSided {
+                map,
+                low,
+                high,
+                stable,
+            }),
+            Self::Sized { map, scale, zero } => Ok(Self::Sized {
+                map,
+                scale: match scale.is_logarithmic() && low > 0.0 {
+                    true => Scale::logarithmic(low, high),
+                    false => Scale::linear(low, high),
+                },
+                zero,
+            }),
+        }
+    }
+
+    fn by_default(field: Field, values: &[f64]) -> Self {
+        let finite = || values.iter().copied().filter(|v| v.is_finite());
+        let largest = finite().fold(0.0, f64::max);
+        match field.spread() {
+            _ if matches!(field.storage(), Storage::Kind | Storage::Few) => Self::Kinds(field),
+            Spread::Counts => Self::Counts,
+            Spread::AboutZero { stable } => {
+                Self::two_sided(symmetric_range(finite().map(|v| stable * v)), stable)
+            }
+            Spread::BetterBelow => {
+                let range = rounded_up(quantile(finite().map(f64::abs), TOLD_APART));
+                Self::two_sided(range, -1.0)
+            }
+            Spread::Relaxation => {
+                let positive = finite().filter(|v| *v > 0.0);
+                let shortest = positive.fold(f64::INFINITY, f64::min);
+                if !shortest.is_finite() {
+                    return Self::sized(Scale::linear(0.0, 1.0));
+                }
+                let longest = largest.clamp(1.5 * shortest, LONGEST_RELAXATION * shortest);
+                Self::sized(Scale::logarithmic(shortest, rounded_up(longest)))
+            }
+            Spread::LongTail => {
+                let longest = rounded_up(quantile(finite(), TOLD_APART));
+                Self::sized(Scale::linear(0.0, longest))
+            }
+            Spread::Decades => {
+                let scale = Scale::over_decades(finite(), DECADES);
+                Self::from_above_zero(scale.unwrap_or(Scale::linear(0.0, 1.0)))
+            }
+            Spread::RelativeError => Self::two_sided(1.0, 1.0),
+            Spread::Magnitudes => {
+                let positive = || finite().filter(|v| *v > 0.0);
+                let smallest = positive().fold(f64::INFINITY, f64::min);
+                let most = match quantile(positive(), TOLD_APART) {
+                    most if largest <= FEW_TIMES * most => largest,
+                    most => most,
+                };
+                let most = rounded_up(most);
+                Self::from_above_zero(match smallest.max(most / LARGEST_RATIO) {
+                    least if least < 0.1 * most => Scale::logarithmic(least, most),
+                    _ => Scale::linear(0.0, most),
+                })
+            }
+            Spread::FromZero => Self::sized(Scale::linear(0.0, rounded_up(largest))),
+        }
+    }
+
+    fn two_sided(range: f64, stable: f64) -> Self {
+        Self::TwoSided {
+            map: ColourMap::BrBG,
+            low: -range,
+            high: range,
+            stable,
+        }
+    }
+
+    fn sized(scale: Scale) -> Self {
+        Self::Sized {
+            map: ColourMap::Viridis,
+            scale,
+            zero: false,
+        }
+    }
+
+    fn from_above_zero(scale: Scale) -> Self {
+        Self::Sized {
+            map: ColourMap::Viridis,
+            scale,
+            zero: true,
+        }
+    }
+
+    /// The colour of a value.
+    pub(super) fn colour(&self, value: f64) -> Rgb {
+        match *self {
+            Self::Counts => colour::of_count(value),
+            Self::Kinds(field) => colour::of_kind(field, value),
+            Self::TwoSided {
+                map,
+                low,
+                high,
+                stable,
+            } => {
+                let beyond = |end: f64| match value.is_infinite() {
+                    true => colour::beyond(map, stable * value),
+                    false => colour::beyond(map, stable * end),
+                };
+                match value {
+                    v if above(v, high) => beyond(1.0),
+                    v if below(v, low) => beyond(-1.0),
+                    v => colour::two_sided(map, stable * v, low.abs().max(high.abs())),
+                }
+            }
+            Self::Sized { map, scale, zero } => match value {
+                v if v.is_nan() => NO_VALUE,
+                f64::INFINITY => INFINITE,
+                f64::NEG_INFINITY => MINUS_INFINITE,
+                0.0 if zero || scale.is_logarithmic() => ZERO,
+                v if above(v, scale.value(1.0)) => ABOVE,
+                v if below(v, scale.value(0.0)) => BELOW,
+                v => colour::of_size(map, scale.part(v)),
+            },
+        }
+    }
+
+    /// The scale of the bar; none where a list says everything.
+    pub(super) fn scale(&self) -> Option<Scale> {
+        match *self {
+            Self::Counts | Self::Kinds(_) => None,
+            Self::TwoSided { low, high, .. } => Some(Scale::linear(low, high)),
+            Self::Sized { scale, .. } => Some(scale),
+        }
+    }
+
+    /// What is beyond the ends of the bar.
+    pub(super) fn beyond(&self, field: Field, values: &[f64]) -> Vec<(Swatch, Rich)> {
+        let mut entries = Vec::new();
+        let mut entry = |value: f64, text: String| {
+            entries.push((
+                Swatch::Box(self.colour(value)),
+                Rich::default().and_formula(&text),
+            ));
+        };
+        let (low, high, apart) = match *self {
+            Self::Counts | Self::Kinds(_) => return entries,
+            Self::TwoSided { low, high, .. } => (low, high, false),
+            Self::Sized { scale, zero, .. } => {
+                let zero = zero || scale.is_logarithmic();
+                (scale.value(0.0), scale.value(1.0), zero)
+            }
+        };
+        let there = |which: &dyn Fn(f64) -> bool| values.iter().copied().find(|v| which(*v));
+        let counted = |v: f64| v.is_finite() && !(apart && v == 0.0);
+        if let Some(more) = there(&|v| above(v, high) && counted(v)) {
+            entry(more, format!("above {}", number(high)));
+        }
+        if let Some(less) = there(&|v| below(v, low) && counted(v)) {
+            entry(less, format!("below {}", number(low)));
+        }
+        if apart && there(&|v| v == 0.0).is_some() {
+            entry(0.0, format!("0{}", at_zero(field)));
+        }
+        for infinite in [f64::INFINITY, f64::NEG_INFINITY] {
+            if values.contains(&infinite) {
+                let unstable = field.tells_stable(infinite) == Some(false);
+                let meaning = match self {
+                    Self::Sized { .. } if unstable => ", unstable",
+                    _ => "",
+                };
+                entry(infinite, format!("{}{meaning}", number(infinite)));
+            }
+        }
+        entries
+    }
+}
+
+/// Whether a value lies beyond the upper end of a scale.
+fn above(value: f64, end: f64) -> bool {
+    value > end + ROUNDED * end.abs()
+}
+
+/// Whether a value lies beyond the lower end of a scale.
+fn below(value: f64, end: f64) -> bool {
+    value < end - ROUNDED * end.abs()
+}
+
+fn no_scale(option: &'static str) -> PictureError {
+    PictureError::NotForThis {
+        option,
+        why: "each of its values has a colour of its own",
+    }
+}
+
+/// A logarithmic scale over all `values`, of which 0 may be one where it is told apart.
+///
+/// # Errors
+/// When a value has no logarithm.
+pub(super) fn logarithmic(field: Field, zero: bool, values: &[f64]) -> Result<Scale, PictureError> {
+    let finite = || values.iter().copied().filter(|v| v.is_finite());
+    let has_none = |v: &f64| *v < 0.0 || (*v == 0.0 && !zero);
+    if let Some(value) = finite().find(has_none) {
+        let field = field.name();
+        return Err(PictureError::NoLogarithm { field, value });
+    }
+    let positive = || finite().filter(|v| *v > 0.0);
+    let (low, high) = (
+        positive().fold(f64::INFINITY, f64::min),
+        positive().fold(0.0, f64::max),
+    );
+    Ok(match low < high {
+        true => Scale::logarithmic(low, high),
+        // A single value, or none.
+        false if high > 0.0 => Scale::logarithmic(0.5 * high, 2.0 * high),
+        false => Scale::logarithmic(0.1, 1.0),
+    })
+}
+
+/// What a velocity of 0 means.
+pub(super) fn at_zero(field: Field) -> &'static str {
+    match field {
+        Field::Vc | Field::VcUpper | Field::VcOverVtilde => ": stick-slip never lasts",
+        Field::VSmooth => ": smooth at any v_0",
+        _ => "",
+    }
+}
+
+/// The range of colours: the largest finite value of a stable cell, stable being positive, since
+/// far outside the stable region the distance to it matters less; but not so small that most of the
+/// others lie beyond. 1 where there is no value.
+fn symmetric_range(values: impl Iterator<Item = f64>) -> f64 {
+    let (mut stable, mut largest) = (0.0, 0.0);
+    for value in values {
+        stable = f64::max(stable, value);
+        largest = f64::max(largest, value.abs());
+    }
+    rounded_up(f64::max(stable, 0.5 * largest))
+}
+
+/// The value below which `part` of the values lie; 0 where there are none.
+fn quantile(values: impl Iterator<Item = f64>, part: f64) -> f64 {
+    let mut values: Vec<f64> = values.collect();
+    let place = (part * values.len() as f64) as usize;
+    if place >= values.len() {
+        return 0.0;
+    }
+    *values.select_nth_unstable_by(place, f64::total_cmp).1
+}
+
+/// A positive value rounded up to two digits; 1 for 0.
+fn rounded_up(value: f64) -> f64 {
+    if value == 0.0 {
+        return 1.0;
+    }
+    let unit = 10f64.powi(decimal_exponent(value) - 1);
+    (value / unit - 1e-9).ceil() * unit
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn far_values_do_not_stretch_the_range() {
+        assert_eq!(symmetric_range([1.5, -2.0].into_iter()), 1.5);
+        assert_eq!(symmetric_range([0.001, -2.0].into_iter()), 1.0);
+        assert!((rounded_up(2.412) - 2.5).abs() < 1e-12);
+        assert_eq!(symmetric_range(std::iter::empty()), 1.0);
+        assert_eq!(quantile((0..100).map(f64::from), 0.96), 96.0);
+        assert_eq!(quantile(std::iter::empty(), 0.96), 0.0);
+    }
+}

@@ -1,0 +1,276 @@
+//! Pictures of small maps, from the map to the bytes.
+
+use std::collections::HashSet;
+use std::fs;
+use std::path::PathBuf;
+use std::sync::Arc;
+
+use super::*;
+use crate::maps::maker::make_in_memory;
+use crate::store::describe::Provenance;
+use crate::sweep::{Field, Parameter, Plan, SweepSpec};
+
+const FIG2: &str = "
+    title = \"Velocity control\"
+    fields = [\"n_unstable\", \"delay_margin\"]
+    boundaries = true
+    [axes]
+    mu_prime = [-0.1, -0.3]
+    alpha_v = { from = -1.6, to = 0.4, points = 41 }
+    tau = { from = 0.0, to = 12.0, points = 61 }
+    [units]
+    force = \"N\"
+    length = \"m\"
+    time = \"s\"";
+
+struct Case {
+    folder: tempfile::TempDir,
+    map: MapFile,
+}
+
+impl Case {
+    fn new(sweep: &str) -> Self {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("map.h5");
+        let plan = Plan::new(sweep.parse::<SweepSpec>().unwrap()).unwrap();
+        make_in_memory(&Arc::new(plan), &path, 1, &Provenance::default()).unwrap();
+        let map = MapFile::open(&path).unwrap();
+        Self { folder, map }
+    }
+
+    fn path(&self, name: &str) -> PathBuf {
+        self.folder.path().join(name)
+    }
+
+    fn draw(&self, name: &str, options: &PictureOptions) -> Result<Vec<u8>, PictureError> {
+        draw(&self.map, &self.path(name), options)?.save()?;
+        Ok(fs::read(self.path(name)).unwrap())
+    }
+}
+
+fn decoded(bytes: &[u8]) -> (u32, u32, Vec<u8>) {
+    let mut reader = png::Decoder::new(bytes).read_info().unwrap();
+    let mut pixels = vec![0; reader.output_buffer_size()];
+    let info = reader.next_frame(&mut pixels).unwrap();
+    (info.width, info.height, pixels)
+}
+
+fn of_kind(kind: PictureKind) -> PictureOptions {
+    PictureOptions {
+        kind: Some(kind),
+        ..PictureOptions::default()
+    }
+}
+
+#[test]
+fn a_png_has_its_size_and_many_colours_and_is_the_same_twice() {
+    let case = Case::new(FIG2);
+    for kind in [PictureKind::Boundaries, PictureKind::Heat] {
+        let bytes = case.draw("map.png", &of_kind(kind)).unwrap();
+        let (width, height, pixels) = decoded(&bytes);
+        assert_eq!((width, height), (1600, 1100));
+        let colours: HashSet<&[u8]> = pixels.chunks_exact(3).collect();
+        assert!(colours.len() > 60, "{}", colours.len());
+        assert_eq!(case.draw("again.png", &of_kind(kind)).unwrap(), bytes);
+    }
+    let left: Vec<_> = fs::read_dir(case.folder.path()).unwrap().collect();
+    assert_eq!(left.len(), 3, "the map and two pictures: {left:?}");
+}
+
+#[test]
+fn stable_and_unstable_cells_differ() {
+    let case = Case::new(FIG2);
+    let options = PictureOptions {
+        at: vec![(Parameter::MuPrime, -0.1)],
+        ..of_kind(PictureKind::Heat)
+    };
+    let (width, _, pixels) = decoded(&case.draw("map.png", &options).unwrap());
+    let count = |colour: colour::Rgb| {
+        let wanted = [colour.0, colour.1, colour.2];
+        pixels.chunks_exact(3).filter(|p| *p == wanted).count()
+    };
+    let area = width as usize * 1100;
+    // About a third of the plane is stable.
+    assert!(count(colour::STABLE) > area / 10);
+    assert!(count(colour::of_count(2.0)) > area / 10);
+    // The edges of letters have any grey.
+    assert!(count(colour::NO_VALUE) < area / 1000);
+}
+
+#[test]
+fn an_svg_names_values_axes_and_units() {
+    let case = Case::new(FIG2);
+    let bytes = case.draw("map.svg", &PictureOptions::default()).unwrap();
+    let text = String::from_utf8(bytes).unwrap();
+    let labels = [
+        "Velocity control",
+        "−0.1",
+        "−0.3",
+        "gain of velocity control",
+        "(s⁻¹)",
+        "(s)",
+    ];
+    for label in labels {
+        assert!(text.contains(label), "{label}");
+    }
+    assert!(text.len() < 1_000_000);
+}
+
+/// The title of a sweep is about the field that it shows.
+#[test]
+fn titles_tell_the_field() {
+    let named = FIG2.replace("boundaries = true", "picture = \"delay_margin\"");
+    let case = Case::new(&named);
+    let text = |field, title: Option<&str>| {
+        let options = PictureOptions {
+            field,
+            title: title.map(str::to_owned),
+            ..PictureOptions::default()
+        };
+        String::from_utf8(case.draw("map.svg", &options).unwrap()).unwrap()
+    };
+    let unasked = text(None, None);
+    assert_eq!(unasked, text(Some(Field::DelayMargin), None));
+    assert!(unasked.contains("Velocity control"));
+    assert!(unasked.contains("delay_margin: distance in delay"));
+    let other = text(Some(Field::NUnstable), None);
+    assert!(other.contains("Number of characteristic roots"));
+    assert!(other.contains("from: Velocity control"));
+    let given = text(Some(Field::NUnstable), Some("My title"));
+    assert!(given.contains("My title") && given.contains("n_unstable: number of"));
+    assert!(!given.contains("Velocity control"));
+}
+
+#[test]
+fn every_shape_of_map_is_drawn() {
+    for axes in [
+        "mu_prime = [-0.5, -0.1]\n tau = [0.0, 1.0, 2.0, 5.0]",
+        "mu_prime = [-0.1]\n tau = { from = 0, to = 30, points = 3001 }",
+        "mu_prime = [-0.2, -0.1]\n tau = [1.0]",
+        "tau = { from = 0.001, to = 1000, points = 31, spacing = \"log\" }\n mu_prime = [-0.2, \
+        -0.1]",
+        "mu_prime = [0.1, 0.2]\n alpha_n = [-1.0, 0.0]\n alpha_v = [-0.2, -0.1]\n tau = [1.0, \
+        2.0]",
+    ] {
+        let case = Case::new(&format!("[axes]\n{axes}"));
+        for name in ["map.png", "map.svg"] {
+            case.draw(name, &PictureOptions::default()).unwrap();
+        }
+    }
+}
+
+/// Every field as a heat map and along a line, with cells without delay or control among them.
+#[test]
+fn every_field_is_drawn() {
+    let linear = || Field::ALL.into_iter().filter(|f| f.of_sliding());
+    let names: Vec<String> = linear().map(|f| format!("{:?}", f.name())).collect();
+    let case = Case::new(&format!(
+        "fields = [{}]\n[axes]\nalpha_n = [-1.5, -1.0, -0.5, 0.0]\ntau = [0.0, 0.3, 0.6, 0.9, \
+        6.0]\n[fixed]\nmu_prime = -0.1",
+        names.join(", ")
+    ));
+    let mut pictures = HashSet::new();
+    for field in linear() {
+        for at in [
+            vec![],
+            vec![(Parameter::AlphaN, -1.0)],
+            vec![(Parameter::AlphaN, 0.0)],
+        ] {
+            let options = PictureOptions {
+                field: Some(field),
+                at,
+                size: (300, 300),
+                ..PictureOptions::default()
+            };
+            pictures.insert(case.draw("map.png", &options).unwrap());
+        }
+    }
+    assert!(pictures.len() > 2 * linear().count());
+    let bytes = case.draw("map.svg", &PictureOptions::default()).unwrap();
+    let text = String::from_utf8(bytes).unwrap();
+    assert!(text.contains("spectral abscissa") && text.contains("stable below 0"));
+}
+
+/// Draws every field as heat maps, and along a line at a value of one axis.
+fn draw_every_field(case: &Case, line: (Parameter, f64)) {
+    for &field in case.map.fields() {
+        for at in [vec![], vec![line]] {
+            let options = PictureOptions {
+                field: Some(field),
+                at,
+                ..PictureOptions::default()
+            };
+            case.draw("map.png", &options).unwrap();
+        }
+    }
+}
+
+#[test]
+fn fields_of_motions_are_drawn() {
+    let case = Case::new(
+        "fields = [\"outcome\", \"settle_time\", \"n_min\", \"peak_force\"]\n[axes]\na0 = \
+        [-0.4, 0.6, 1]\nx_dot0 = [0.1, 0.7]\n\
+         [fixed]\nv0 = 0.118\nalpha_n = -7\ntau = 1\n[friction]\nlaw = \"weakening\"\nmu0 = \
+         0.5\nv_s = 0.5\n",
+    );
+    draw_every_field(&case, (Parameter::XDot0, 0.1));
+    let bytes = case.draw("map.svg", &PictureOptions::default()).unwrap();
+    let text = String::from_utf8(bytes).unwrap();
+    for label in ["Motions of the block", "sliding", "stick-slip", "lift-off"] {
+        assert!(text.contains(label), "{label}");
+    }
+}
+
+#[test]
+fn fields_of_the_critical_velocity_are_drawn() {
+    let case = Case::new(
+        "fields = [\"n_unstable\", \"vc\", \"outcome\", \"method\", \"class\", \"windows\", \
+        \"v_liftoff\", \"stick_time\", \"vc_lower\", \"vc_upper\", \"v_smooth\"]\n\
+         [axes]\nmu_prime_rest = [-1, -0.5]\nalpha_n = [-9, 0, 2]\ntau = [0.4, 1]\n[fixed]\nv0 \
+         = 0.1\n\
+         [friction]\nlaw = \"weakening\"\nmu0 = 0.5\n",
+    );
+    draw_every_field(&case, (Parameter::Tau, 1.0));
+    let bytes = case.draw("map.svg", &PictureOptions::default()).unwrap();
+    let text = String::from_utf8(bytes).unwrap();
+    for label in ["The critical velocity", "unstable", "boundary"] {
+        assert!(text.contains(label), "{label}");
+    }
+}
+
+#[test]
+fn what_cannot_be_drawn_is_refused_and_leaves_nothing() {
+    let case = Case::new(FIG2);
+    let default = PictureOptions::default();
+    let at = |parameter, value| PictureOptions {
+        at: vec![(parameter, value), (Parameter::MuPrime, -0.1)],
+        ..default.clone()
+    };
+    let small = PictureOptions {
+        size: (10, 10),
+        ..default.clone()
+    };
+    let held = PictureOptions {
+        kind: Some(PictureKind::Boundaries),
+        ..at(Parameter::Tau, 3.0)
+    };
+    for (name, options, says) in [
+        ("map.h5", default.clone(), ".png, .svg or .pdf"),
+        ("map", default.clone(), ".png, .svg or .pdf"),
+        ("x.png", at(Parameter::Mass, 1.0), "mass is no axis"),
+        (
+            "x.png",
+            at(Parameter::Tau, 12.5),
+            "tau = 12.5 is outside the map: 0 to 12",
+        ),
+        ("x.png", held, "only one axis is left"),
+        ("x.png", small, "outside the range"),
+    ] {
+        let error = case.draw(name, &options).unwrap_err().to_string();
+        assert!(error.contains(says), "{error}");
+    }
+    assert_eq!(fs::read_dir(case.folder.path()).unwrap().count(), 1);
+    let cell = Case::new("[axes]\nmu_prime = [-0.1]\n tau = [1.0]");
+    let error = cell.draw("x.png", &default).unwrap_err();
+    assert!(matches!(error, PictureError::NothingToDraw));
+}
