@@ -79,11 +79,9 @@ fn files_of_another_kind_are_recognised() {
     expect(&folder.run(&["simulate", "case.toml"]), 0, "slide");
     for (args, says) in [
         (&["run", "case.toml"][..], "`slipmap simulate` takes it"),
-        (&["plan", "case.toml"], "`slipmap simulate` takes it"),
         (&["simulate", "small.toml"], "`slipmap run` takes it"),
-        (&["info", "case.h5"], "a trace of one motion"),
-        (&["plot", "case.h5"], "a trace of one motion"),
-        (&["verify", "case.h5"], "a trace of one motion"),
+        (&["status", "case.h5"], "a trace of one motion"),
+        (&["point", "--map", "case.h5"], "a trace of one motion"),
         (&["info", "small.toml"], "it is no HDF5 file"),
     ] {
         let text = said(&folder, args);

@@ -2,15 +2,18 @@
 
 mod axis_facts;
 mod best;
+mod case_facts;
 mod cell;
 mod failure;
 mod info;
+mod info_trace;
 mod merge;
 mod open;
 mod open_files;
 mod output;
 mod parameters;
 mod plan;
+mod plan_case;
 mod plot;
 mod point;
 mod read_map;
@@ -98,9 +101,10 @@ enum Command {
     Merge(merge::Args),
     /// Say how far a map is, from another terminal
     Status(status::Args),
-    /// Check a map: its checksums, its schema, and a sample of its cells by other methods
+    /// Check a map: its checksums, its schema, and a sample of its cells by other methods; or
+    /// compute the motion of a trace again
     Verify(verify::Args),
-    /// Say what a sweep would cost, without running it
+    /// Say what a sweep or a motion would cost, without computing it
     Plan(plan::Args),
     /// Everything about one point of parameter space
     Point(point::Args),
@@ -115,9 +119,9 @@ enum Command {
     Vc(vc::Args),
     /// One motion in time: from a case file to HDF5 and a picture, with its events and outcome
     Simulate(simulate::Args),
-    /// Draw a map as PNG or SVG
+    /// Draw a map or a trace as PNG or SVG
     Plot(plot::Args),
-    /// Say what a map holds
+    /// Say what a map or a trace holds
     Info(info::Args),
 }
 

@@ -1,9 +1,10 @@
-//! `slipmap plot`: a picture of a map.
+//! `slipmap plot`: a picture of a map or a trace.
 
 use std::path::{Path, PathBuf};
 
 use clap::ValueEnum;
 use slipmap::report::picture::{self, Picture, PictureError, PictureKind, PictureOptions};
+use slipmap::store::{TraceFile, trace_reader};
 use slipmap::sweep::input::field::fields_meant;
 use slipmap::sweep::{Field, Parameter};
 
@@ -18,8 +19,8 @@ const NOT_DRAWN: &str = "the picture is not drawn";
 
 #[derive(Debug, clap::Args)]
 pub(super) struct Args {
-    /// The map
-    #[arg(value_name = "MAP.h5")]
+    /// The map, or the trace of a motion
+    #[arg(value_name = "FILE.h5")]
     map: PathBuf,
     /// The picture to write, .png or .svg [default: beside the map, MAP.png or, with --field,
     /// --kind or --at, their values between, as in MAP.vc.png]
@@ -71,10 +72,9 @@ fn parse_field(name: &str) -> Result<Field, String> {
 
 pub(super) fn main(args: &Args) -> Result<(), Failure> {
     let signals = Signals::catch()?;
-    let map = open(&args.map, &signals, NOT_DRAWN)?;
-    let path = match &args.output {
-        Some(path) => path.clone(),
-        None => unasked(args)?,
+    let path = || match &args.output {
+        Some(path) => Ok(path.clone()),
+        None => unasked(args),
     };
     let options = PictureOptions {
         field: args.field,
@@ -86,12 +86,46 @@ pub(super) fn main(args: &Args) -> Result<(), Failure> {
         size: args.size,
         title: args.title.clone(),
     };
-    let drawn = signals.or_end(NOT_DRAWN, || picture::draw(&map, &path, &options));
+    let (path, drawn) = if trace_reader::is_trace(&args.map) {
+        refuse_of_maps(args)?;
+        let path = path()?;
+        let drawn = signals.or_end(NOT_DRAWN, || draw_trace(&args.map, &path, &options));
+        (path, drawn)
+    } else {
+        let map = open(&args.map, &signals, NOT_DRAWN)?;
+        let path = path()?;
+        let drawn = signals.or_end(NOT_DRAWN, || picture::draw(&map, &path, &options));
+        (path, drawn)
+    };
     drawn
         .and_then(Picture::save)
         .map_err(|error| failure(error, args))?;
     say::result(path.display())?;
     Ok(())
+}
+
+fn draw_trace(
+    trace: &Path,
+    picture: &Path,
+    options: &PictureOptions,
+) -> Result<Picture, PictureError> {
+    picture::draw_trace_file(&TraceFile::open(trace)?, picture, options)
+}
+
+/// A motion has no fields and no axes to choose from.
+fn refuse_of_maps(args: &Args) -> Result<(), Failure> {
+    let given = [
+        ("--field", args.field.is_some()),
+        ("--kind", args.kind.is_some()),
+        ("--at", !args.at.is_empty()),
+    ];
+    match given.into_iter().find(|(_, given)| *given) {
+        None => Ok(()),
+        Some((flag, _)) => Err(Failure::bad_input_with_help(
+            format!("{flag} has no meaning for a trace of one motion"),
+            "its picture shows the motion over time, and its velocity over its elongation",
+        )),
+    }
 }
 
 /// Where a picture goes that no `--output` names: the one that a run draws keeps its name, others

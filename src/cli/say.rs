@@ -4,7 +4,7 @@
 use std::fmt::Display;
 use std::io::{StdoutLock, Write};
 
-use serde::Serialize;
+use serde::{Serialize, Serializer};
 pub(super) use slipmap::report::visible::{shortened, visible, visible_line};
 
 use super::failure::Failure;
@@ -44,6 +44,18 @@ struct Versioned<'v, T> {
     schema_version: u32,
     #[serde(flatten)]
     value: &'v T,
+}
+
+/// Pairs of a name and a value as an object, in their order; names of several words are joined.
+pub(super) fn as_object<S: Serializer, T: Serialize>(
+    pairs: &[(&'static str, T)],
+    to: S,
+) -> Result<S::Ok, S::Error> {
+    to.collect_map(
+        pairs
+            .iter()
+            .map(|(name, value)| (name.replace(' ', "_"), value)),
+    )
 }
 
 /// One JSON object on standard output, with the version of its keys.

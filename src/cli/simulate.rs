@@ -6,11 +6,11 @@ use std::path::{Path, PathBuf};
 use serde::Serialize;
 use slipmap::explore::motion::MotionSummary;
 use slipmap::report::numbers::grouped;
-use slipmap::report::picture::{self, Picture};
+use slipmap::report::picture::{self, Picture, PictureOptions};
 use slipmap::slip::motion::MOST_KEPT;
 use slipmap::slip::outcome::{Outcome, Summary};
 use slipmap::store::describe::Provenance;
-use slipmap::store::{Output, StoreError, trace_file};
+use slipmap::store::{Output, StoreError, trace_file, trace_reader};
 use slipmap::sweep::cells::trace::TraceError;
 use slipmap::sweep::input::case_file::DISTURBED;
 use slipmap::sweep::{CaseSpec, Trace};
@@ -155,7 +155,7 @@ fn check_replaced(path: &Path, spec: &CaseSpec, fresh: bool) -> Result<(), Failu
         return Ok(());
     }
     let name = path.display();
-    match trace_file::case_of(path) {
+    match trace_reader::case_of(path) {
         Ok(text) if fresh || text == spec.text => Ok(()),
         Ok(_) => Err(Failure::bad_input_with_help(
             format!(
@@ -186,7 +186,10 @@ fn draw(
 ) -> Result<Option<PathBuf>, Failure> {
     let draw = |picture: &Path| {
         let complete = format!("{} is complete, its picture is not drawn", path.display());
-        let drawn = signals.or_end(complete, || picture::draw_trace(spec, trace, picture));
+        let options = PictureOptions::default();
+        let drawn = signals.or_end(complete, || {
+            picture::draw_trace(spec, trace, picture, &options)
+        });
         drawn.and_then(Picture::save)
     };
     if let Some(asked) = &args.picture {

@@ -37,6 +37,7 @@ pub mod stamp;
 mod summary;
 pub mod tiles;
 pub mod trace_file;
+pub mod trace_reader;
 mod values;
 mod variables;
 
@@ -46,3 +47,4 @@ pub use map_file::{MapAxis, MapFile};
 pub use map_writer::MapWriter;
 pub use output::Output;
 pub use summary::{FieldSummary, StatusCounts};
+pub use trace_reader::TraceFile;

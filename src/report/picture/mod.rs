@@ -43,7 +43,7 @@ use std::path::{Path, PathBuf};
 
 use crate::report::visible::visible_line;
 use crate::store::schema::root;
-use crate::store::{MapFile, Output, StoreError};
+use crate::store::{MapFile, Output, StoreError, TraceFile};
 use crate::sweep::{CaseSpec, Field, Parameter, Trace};
 pub use error::PictureError;
 use scene::Scene;
@@ -146,11 +146,7 @@ impl Picture {
 /// When the options do not fit the map, there is nothing to draw, or the map cannot be read.
 pub fn draw(map: &MapFile, path: &Path, options: &PictureOptions) -> Result<Picture, PictureError> {
     let format = Format::of(path)?;
-    if same_file(map.path(), path) {
-        return Err(PictureError::OverMap {
-            path: path.to_owned(),
-        });
-    }
+    apart(map.path(), path)?;
     let most = match format {
         Format::Png => MOST_CELLS,
         Format::Svg => MOST_SVG_CELLS,
@@ -159,15 +155,45 @@ pub fn draw(map: &MapFile, path: &Path, options: &PictureOptions) -> Result<Pict
 }
 
 /// Draws a trace for the file `path`, as [`draw`] does a map: velocities, elongation and the
-/// quantity that is controlled over time, and the velocity over the elongation.
+/// quantity that is controlled over time, and the velocity over the elongation. Of the options the
+/// size and the title count; the title is the case's by default.
 ///
 /// # Errors
-/// When the name of the file is no picture's.
-pub fn draw_trace(spec: &CaseSpec, trace: &Trace, path: &Path) -> Result<Picture, PictureError> {
+/// When the name of the file is no picture's, or the size none of a picture.
+pub fn draw_trace(
+    spec: &CaseSpec,
+    trace: &Trace,
+    path: &Path,
+    options: &PictureOptions,
+) -> Result<Picture, PictureError> {
     let format = Format::of(path)?;
-    let mut scene = Scene::new(PictureOptions::default().size);
-    trace::draw(spec, trace, &mut scene);
+    let mut scene = sheet(options)?;
+    let title = options.title.as_deref().unwrap_or(&spec.title);
+    trace::draw((spec, title), trace, &mut scene);
     Picture::of(&scene, &format, path)
+}
+
+/// [`draw_trace`] of a trace in a file.
+///
+/// # Errors
+/// As there, and when the picture would replace the trace.
+pub fn draw_trace_file(
+    file: &TraceFile,
+    path: &Path,
+    options: &PictureOptions,
+) -> Result<Picture, PictureError> {
+    apart(file.path(), path)?;
+    draw_trace(&file.spec, &file.trace, path, options)
+}
+
+/// The picture is another file than what it shows.
+fn apart(shown: &Path, picture: &Path) -> Result<(), PictureError> {
+    match same_file(shown, picture) {
+        false => Ok(()),
+        true => Err(PictureError::OverMap {
+            path: picture.to_owned(),
+        }),
+    }
 }
 
 /// True for a file name that a picture can have.
@@ -222,7 +248,8 @@ fn same_file(a: &Path, b: &Path) -> bool {
     }
 }
 
-fn compose(map: &MapFile, options: &PictureOptions, most: usize) -> Result<Scene, PictureError> {
+/// An empty sheet of the size asked for.
+fn sheet(options: &PictureOptions) -> Result<Scene, PictureError> {
     let (width, height) = options.size;
     if !(SIZES.contains(&width) && SIZES.contains(&height)) {
         return Err(PictureError::Size {
@@ -231,6 +258,11 @@ fn compose(map: &MapFile, options: &PictureOptions, most: usize) -> Result<Scene
             allowed: format!("{} to {} pixels", SIZES.start(), SIZES.end()),
         });
     }
+    Ok(Scene::new(options.size))
+}
+
+fn compose(map: &MapFile, options: &PictureOptions, most: usize) -> Result<Scene, PictureError> {
+    let mut scene = sheet(options)?;
     let chosen = options.field.or_else(|| of_sweep(map));
     let field = chosen.unwrap_or_else(|| default_field(map));
     if !map.fields().contains(&field) {
@@ -241,7 +273,6 @@ fn compose(map: &MapFile, options: &PictureOptions, most: usize) -> Result<Scene
         });
     }
     let view = View::new(map, &options.at)?;
-    let mut scene = Scene::new(options.size);
     let Some(y) = view.y else {
         if options.kind == Some(PictureKind::Boundaries) {
             return Err(no_curves("only one axis is left to draw along"));
