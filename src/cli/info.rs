@@ -11,7 +11,6 @@ use slipmap::report::numbers::{bytes, grouped, short};
 use slipmap::store::schema::root;
 use slipmap::store::{MapAxis, MapFile, trace_reader};
 use slipmap::sweep::Field;
-use slipmap::sweep::input::units::Units;
 
 use super::axis_facts::AxisFacts;
 use super::failure::Failure;
@@ -260,7 +259,7 @@ pub(super) fn origin(text: impl Fn(&str) -> Option<String>) -> Vec<(&'static str
 
 /// Units of parameters are those of the sweep.
 fn units(map: &MapFile) -> Vec<(&'static str, String)> {
-    let of_sweep = map.sweep().map_or_else(|_| Units::default(), |s| s.units);
+    let of_sweep = map.units();
     let axes = map.axes().iter().map(|axis| axis.parameter);
     let scalars = map.scalars().into_iter().map(|(parameter, _)| parameter);
     let parameters = axes.chain(scalars);

@@ -112,7 +112,7 @@ impl Facts {
         }
         rows.row("outcome", self.outcome)?;
         for (name, value) in self.numbers.iter().filter(|(_, value)| !value.is_nan()) {
-            rows.row("", format!("{name:<12} {}", short(*value)))?;
+            rows.row("", format!("{name:<12} {value}"))?;
         }
         rows.row("", format!("{:<12} {}", "steps", grouped(self.steps)))
     }

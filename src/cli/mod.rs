@@ -4,6 +4,7 @@ mod axis_facts;
 mod best;
 mod case_facts;
 mod cell;
+mod export;
 mod failure;
 mod info;
 mod info_trace;
@@ -24,6 +25,7 @@ mod signals;
 mod simulate;
 mod status;
 mod sweep_file;
+mod text_output;
 mod vc;
 mod verify;
 
@@ -121,6 +123,8 @@ enum Command {
     Simulate(simulate::Args),
     /// Draw a map or a trace as PNG or SVG
     Plot(plot::Args),
+    /// Write what a map or a trace holds as text (CSV)
+    Export(export::Args),
     /// Say what a map or a trace holds
     Info(info::Args),
 }
@@ -164,6 +168,7 @@ pub(crate) fn main() -> ExitCode {
         Command::Vc(args) => vc::main(&args),
         Command::Simulate(args) => simulate::main(&args),
         Command::Plot(args) => plot::main(&args),
+        Command::Export(args) => export::main(&args),
         Command::Info(args) => info::main(&args),
     };
     match result {

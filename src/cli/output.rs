@@ -53,7 +53,8 @@ pub(super) fn output_path(
                 "--output {}: a {kind} is written as HDF5, not as {other}",
                 path.display()
             ),
-            "name it like NAME.h5, or NAME.nc for readers of netCDF",
+            "name it like NAME.h5, or NAME.nc for readers of netCDF; `slipmap export` makes tables \
+             of it",
         ));
     }
     if path.to_str().is_none() {

@@ -1,5 +1,6 @@
 //! `slipmap plot`: a picture of a map or a trace.
 
+use std::io::{IsTerminal, Write};
 use std::path::{Path, PathBuf};
 
 use clap::ValueEnum;
@@ -13,17 +14,20 @@ use super::failure::Failure;
 use super::open::open;
 use super::say;
 use super::signals::Signals;
+use super::text_output::STANDARD_OUTPUT;
 
 /// What a signal leaves.
 const NOT_DRAWN: &str = "the picture is not drawn";
+/// The name by which a picture on standard output has its format.
+const PIPED: &str = "-.png";
 
 #[derive(Debug, clap::Args)]
 pub(super) struct Args {
     /// The map, or the trace of a motion
     #[arg(value_name = "FILE.h5")]
     map: PathBuf,
-    /// The picture to write, .png or .svg [default: beside the map, MAP.png or, with --field,
-    /// --kind or --at, their values between, as in MAP.vc.png]
+    /// The picture to write, .png or .svg; - for a PNG on standard output [default: beside the
+    /// map, MAP.png or, with --field, --kind or --at, their values between, as in MAP.vc.png]
     #[arg(short, long, value_name = "PICTURE")]
     output: Option<PathBuf>,
     /// What to show, a field of the map [default: the `picture` of its sweep file, else the first
@@ -72,7 +76,15 @@ fn parse_field(name: &str) -> Result<Field, String> {
 
 pub(super) fn main(args: &Args) -> Result<(), Failure> {
     let signals = Signals::catch()?;
+    let piped = args.output.as_deref() == Some(Path::new(STANDARD_OUTPUT));
+    if piped && std::io::stdout().is_terminal() {
+        return Err(Failure::bad_input_with_help(
+            "--output -: a terminal shows no PNG",
+            "-o NAME.png writes a file; a pipe or a file takes what goes to standard output",
+        ));
+    }
     let path = || match &args.output {
+        Some(_) if piped => Ok(PathBuf::from(PIPED)),
         Some(path) => Ok(path.clone()),
         None => unasked(args),
     };
@@ -97,11 +109,14 @@ pub(super) fn main(args: &Args) -> Result<(), Failure> {
         let drawn = signals.or_end(NOT_DRAWN, || picture::draw(&map, &path, &options));
         (path, drawn)
     };
+    if piped {
+        let picture = drawn.map_err(|error| failure(error, args))?;
+        return Ok(std::io::stdout().lock().write_all(picture.bytes())?);
+    }
     drawn
         .and_then(Picture::save)
         .map_err(|error| failure(error, args))?;
-    say::result(path.display())?;
-    Ok(())
+    say::result(path.display())
 }
 
 fn draw_trace(

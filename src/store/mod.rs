@@ -12,6 +12,7 @@ mod attributes;
 mod best_reader;
 pub(crate) mod best_writer;
 mod boundary_writer;
+pub mod cell_blocks;
 pub mod chunk_layout;
 mod codec;
 pub mod columns;

@@ -122,6 +122,12 @@ impl Picture {
         })
     }
 
+    /// The bytes of its file.
+    #[must_use]
+    pub fn bytes(&self) -> &[u8] {
+        &self.bytes
+    }
+
     /// Writes the file. It appears when it is complete; one that is there is replaced.
     ///
     /// # Errors
@@ -186,16 +192,6 @@ pub fn draw_trace_file(
     draw_trace(&file.spec, &file.trace, path, options)
 }
 
-/// The picture is another file than what it shows.
-fn apart(shown: &Path, picture: &Path) -> Result<(), PictureError> {
-    match same_file(shown, picture) {
-        false => Ok(()),
-        true => Err(PictureError::OverMap {
-            path: picture.to_owned(),
-        }),
-    }
-}
-
 /// True for a file name that a picture can have.
 #[must_use]
 pub fn is_name(path: &Path) -> bool {
@@ -241,10 +237,17 @@ impl Format {
     }
 }
 
-fn same_file(a: &Path, b: &Path) -> bool {
-    match (a.canonicalize(), b.canonicalize()) {
-        (Ok(a), Ok(b)) => a == b,
-        _ => a == b,
+/// The picture is another file than what it shows.
+fn apart(shown: &Path, picture: &Path) -> Result<(), PictureError> {
+    let same = match (shown.canonicalize(), picture.canonicalize()) {
+        (Ok(shown), Ok(picture)) => shown == picture,
+        _ => shown == picture,
+    };
+    let path = picture.to_owned();
+    if same {
+        Err(PictureError::OverMap { path })
+    } else {
+        Ok(())
     }
 }
 
