@@ -67,7 +67,7 @@ impl CellArgs {
             ));
             index.push(place);
         }
-        say::remark(format_args!("the cell at {}", there.join(", ")));
+        say::note(format_args!("the cell at {}", there.join(", ")));
         Ok(Some(CellTexts::of(&plan, &index)))
     }
 

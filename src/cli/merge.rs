@@ -41,7 +41,7 @@ pub(super) fn main(args: &Args) -> Result<(), Failure> {
     let signals = Signals::catch()?;
     let target = args.output.as_ref().unwrap_or(&args.map);
     if shards::settle(&args.map, |hash| maker::is_complete(target, Some(hash)))? {
-        return run::nothing_to_do(target, "", false, &signals);
+        return run::nothing_to_do(target, "", &signals);
     }
     let folders = folders(args)?;
     if folders.is_empty() {
@@ -51,10 +51,13 @@ pub(super) fn main(args: &Args) -> Result<(), Failure> {
     let (_, plan) = shards::plan(&folders)?;
     if let Some(remark) = run::already_there(target, &plan, args.fresh)? {
         drop(shards::remove_root(target));
-        return run::nothing_to_do(target, &remark, false, &signals);
+        return run::nothing_to_do(target, &remark, &signals);
     }
     let provenance = provenance("merge", &args.map);
-    let (progress, log) = (Progress::new(false), Log::beside(target, Shard::WHOLE));
+    let (progress, log) = (
+        Progress::new(say::is_quiet()),
+        Log::beside(target, Shard::WHOLE),
+    );
     let observer = Both(&progress, &log);
     let missing = match args.partial {
         true => Missing::Leave,
@@ -76,7 +79,7 @@ pub(super) fn main(args: &Args) -> Result<(), Failure> {
     let merged = maker::merge(&plan, &asked, &provenance, attended);
     let assembled = merged.map_err(|error| failure(error, &args.map, &signals))?;
     tell(target, &plan, &assembled)?;
-    run::show(target, false, &signals);
+    run::show(target, &signals);
     Ok(())
 }
 
@@ -104,7 +107,7 @@ fn nothing_to_merge(args: &Args, target: &Path, signals: &Signals) -> Result<(),
             true => "; there are no shards that could replace it",
             false => "",
         };
-        return run::nothing_to_do(target, remark, false, signals);
+        return run::nothing_to_do(target, remark, signals);
     }
     Err(Failure::bad_input_with_help(
         format!(
@@ -117,7 +120,7 @@ fn nothing_to_merge(args: &Args, target: &Path, signals: &Signals) -> Result<(),
 }
 
 fn tell(target: &Path, plan: &Plan, assembled: &Assembled) -> Result<(), Failure> {
-    tell_assembled(assembled, false);
+    tell_assembled(assembled);
     let size = bytes(std::fs::metadata(target).map_or(0, |m| m.len()));
     let cells = grouped(plan.cells());
     let missing = match assembled.cells_missing {

@@ -46,6 +46,9 @@ struct Cli {
     /// Colours in help, errors and warnings
     #[arg(long, global = true, value_enum, default_value_t = Colours::Auto, value_name = "WHEN")]
     color: Colours,
+    /// Nothing on standard error but errors and warnings: no progress, no remarks
+    #[arg(short, long, global = true)]
+    quiet: bool,
     #[command(subcommand)]
     command: Command,
 }
@@ -149,7 +152,10 @@ pub(crate) fn main() -> ExitCode {
     colours.apply();
     let parsed = Cli::command().color(colours.choice()).try_get_matches();
     let command = match parsed.and_then(|matches| Cli::from_arg_matches(&matches)) {
-        Ok(cli) => cli.command,
+        Ok(cli) => {
+            say::set_quiet(cli.quiet);
+            cli.command
+        }
         Err(error) => return say_usage(&error),
     };
     // Caught and not looked at: a limit on file sizes then fails the write instead of ending the

@@ -87,13 +87,10 @@ pub(super) fn provenance(command: &str, input: &Path) -> Provenance {
 }
 
 /// Says what besides cells a map holds, on standard error.
-pub(super) fn tell_assembled(assembled: &Assembled, quiet: bool) {
-    if quiet {
-        return;
-    }
+pub(super) fn tell_assembled(assembled: &Assembled) {
     if assembled.curves > 0 {
         let (curves, corners) = (grouped(assembled.curves), grouped(assembled.corners));
-        say::remark(format_args!("{curves} crossing curves, {corners} corners"));
+        say::note(format_args!("{curves} crossing curves, {corners} corners"));
     }
     if assembled.planes_left_out > 0 {
         let planes = grouped(assembled.planes_left_out);
@@ -103,7 +100,7 @@ pub(super) fn tell_assembled(assembled: &Assembled, quiet: bool) {
     }
     match assembled.best_planes {
         0 => {}
-        1 => say::remark("the best setting"),
-        planes => say::remark(format_args!("best settings in {} planes", grouped(planes))),
+        1 => say::note("the best setting"),
+        planes => say::note(format_args!("best settings in {} planes", grouped(planes))),
     }
 }

@@ -56,9 +56,6 @@ pub(super) struct Args {
     /// Save what is computed every so many seconds
     #[arg(long, value_name = "SECONDS", default_value = "2", value_parser = parse_seconds)]
     save_every: Duration,
-    /// Show no progress
-    #[arg(short, long)]
-    quiet: bool,
 }
 
 /// The number of threads of a `--threads` flag.
@@ -121,7 +118,7 @@ pub(super) fn main(args: &Args) -> Result<(), Failure> {
     shards::settle(&path, |hash| maker::is_complete(&path, Some(hash)))?;
     if let Some(remark) = already_there(&path, &plan, args.fresh)? {
         drop(shards::remove_root(&path));
-        return nothing_to_do(&path, &remark, args.quiet, &signals);
+        return nothing_to_do(&path, &remark, &signals);
     }
     match args.shard.filter(|_| args.fresh) {
         Some(shard) => shards::clear_shard(&path, shard)?,
@@ -130,13 +127,13 @@ pub(super) fn main(args: &Args) -> Result<(), Failure> {
     }
     let asked = args.threads.unwrap_or_else(default_threads);
     let threads = threads_within(&plan, args.memory, asked)?;
-    if threads < useful(&plan, asked) && !args.quiet {
+    if threads < useful(&plan, asked) {
         let (memory, one) = (bytes(args.memory), bytes(Memory::of(&plan).per_thread));
-        say::remark(format_args!(
+        say::note(format_args!(
             "{threads} of {asked} threads: each may take {one}, and --memory allows {memory}"
         ));
     }
-    let progress = Progress::new(args.quiet);
+    let progress = Progress::new(say::is_quiet());
     let log = Log::beside(&path, args.shard.unwrap_or(Shard::WHOLE));
     let observers = Both(&progress, &log);
     let provenance = provenance("run", &args.sweep);
@@ -188,13 +185,12 @@ fn run_shard(
 }
 
 fn run_whole(plan: &Arc<Plan>, job: &Job, watched: &Watched, args: &Args) -> Result<(), Failure> {
-    let (fresh, quiet) = (args.fresh, args.quiet);
     refuse_other_way(job.map, Shard::WHOLE)?;
     let made = maker::make(plan, job, watched.attended());
-    let assembled = made.map_err(|error| failure(error, job.map, fresh, watched))?;
+    let assembled = made.map_err(|error| failure(error, job.map, args.fresh, watched))?;
     let observers = watched.observers;
     let (elapsed, cells) = (observers.0.elapsed(), observers.0.computed());
-    output::tell_assembled(&assembled, quiet);
+    output::tell_assembled(&assembled);
     let path = job.map;
     let told = say::result(format_args!(
         "{}: {} cells in {} ({} cells/s), {}",
@@ -204,7 +200,7 @@ fn run_whole(plan: &Arc<Plan>, job: &Job, watched: &Watched, args: &Args) -> Res
         prefixed(cells as f64 / elapsed),
         bytes(std::fs::metadata(path).map_or(0, |m| m.len())),
     ));
-    show(path, quiet, watched.signals);
+    show(path, watched.signals);
     told
 }
 
@@ -233,14 +229,9 @@ fn refuse_other_way(map: &Path, asked: Shard) -> Result<(), Failure> {
 }
 
 /// Says that a map is complete, and draws it where an earlier command did not come to that.
-pub(super) fn nothing_to_do(
-    path: &Path,
-    remark: &str,
-    quiet: bool,
-    signals: &Signals,
-) -> Result<(), Failure> {
+pub(super) fn nothing_to_do(path: &Path, remark: &str, signals: &Signals) -> Result<(), Failure> {
     if lacks_picture(path) {
-        show(path, quiet, signals);
+        show(path, signals);
     }
     say::result(format_args!(
         "{} is already complete{remark}",
@@ -259,7 +250,7 @@ fn lacks_picture(map: &Path) -> bool {
 
 /// Draws a complete map beside it, and on the terminal. What fails here is a warning: the map is
 /// there.
-pub(super) fn show(path: &Path, quiet: bool, signals: &Signals) {
+pub(super) fn show(path: &Path, signals: &Signals) {
     let complete = format!("{} is complete, the same command draws it", path.display());
     let map = match signals.or_end(&complete, || MapFile::open(path)) {
         Ok(map) => map,
@@ -284,7 +275,7 @@ pub(super) fn show(path: &Path, quiet: bool, signals: &Signals) {
         Err(PictureError::NothingToDraw) => {}
         Err(error) => say::remark(format_args!("warning: no picture: {error}")),
     }
-    if quiet || !std::io::stderr().is_terminal() {
+    if say::is_quiet() || !std::io::stderr().is_terminal() {
         return;
     }
     let no_colour = std::env::var_os("NO_COLOR").is_some_and(|value| !value.is_empty());

@@ -68,7 +68,7 @@ pub(super) fn main(args: &Args) -> Result<(), Failure> {
     let signals = Signals::catch()?;
     let spec = args.read()?;
     if spec.start_assumed {
-        say::remark(format_args!(
+        say::note(format_args!(
             "no start is given: the block begins with x_dot0 = {}, {} % faster than it is \
              pulled",
             spec.case.initial_state().0,
