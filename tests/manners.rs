@@ -79,11 +79,9 @@ fn files_of_another_kind_are_recognised() {
     expect(&folder.run(&["simulate", "case.toml"]), 0, "slide");
     for (args, says) in [
         (&["run", "case.toml"][..], "`slipmap simulate` takes it"),
-        (&["plan", "case.toml"], "`slipmap simulate` takes it"),
         (&["simulate", "small.toml"], "`slipmap run` takes it"),
-        (&["info", "case.h5"], "a trace of one motion"),
-        (&["plot", "case.h5"], "a trace of one motion"),
-        (&["verify", "case.h5"], "a trace of one motion"),
+        (&["status", "case.h5"], "a trace of one motion"),
+        (&["point", "--map", "case.h5"], "a trace of one motion"),
         (&["info", "small.toml"], "it is no HDF5 file"),
     ] {
         let text = said(&folder, args);
@@ -231,6 +229,37 @@ fn colours_are_as_asked_for() {
     assert!(!coloured(&["info", "none.h5", "--color=never"]));
     assert!(coloured(&["--color=always", "sprint"]));
     assert!(!coloured(&["--color=never", "sprint"]));
+}
+
+/// Results stay where they are; remarks and progress are left out, warnings and errors are not.
+#[test]
+fn quiet_leaves_errors_and_warnings() {
+    let folder = Folder::with(&[("small.toml", SMALL), ("case.toml", CASE)]);
+    let both = |args: &[&str], quiet: &str, remarks: &str| {
+        let loud = folder.run(args);
+        assert!(err(&loud).contains(remarks), "{args:?} {}", err(&loud));
+        let said = folder.run(&[&[quiet], args].concat());
+        assert_eq!(said.status.code(), Some(0), "{args:?}");
+        assert_eq!(err(&said), "", "{args:?}");
+        assert!(!out(&said).is_empty(), "{args:?}");
+    };
+    both(
+        &["run", "small.toml", "--fresh"],
+        "--quiet",
+        "crossing curves",
+    );
+    both(&["simulate", "case.toml"], "-q", "no start is given");
+    let cell = ["--map", "small.h5", "--at", "alpha_v=-1", "--at", "tau=1"];
+    let point = [&["point"], &cell[..]].concat();
+    both(&point, "-q", "the cell at alpha_v = -1");
+    std::fs::write(folder.path().join("case.png"), "a photograph").unwrap();
+    let warned = folder.run(&["simulate", "-q", "case.toml"]);
+    assert!(err(&warned).starts_with("warning: no picture: case.png"));
+    expect(
+        &folder.run(&["info", "-q", "none.h5"]),
+        2,
+        "cannot open none.h5",
+    );
 }
 
 #[test]

@@ -675,6 +675,35 @@ fn python_draws_figures_of_the_critical_velocity() {
 
 /// Traces in xarray, netCDF4 and ncdump; the publication figures from them and from the map of Fig.
 /// 4.
+/// Tables as text against the same file as other people's programs read it.
+#[test]
+fn pandas_reads_tables_as_xarray_reads_the_file() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let slipmap = |args: &[&str]| {
+        let program = env!("CARGO_BIN_EXE_slipmap");
+        run(command(program, folder.path(), []).args(args));
+    };
+    let sweep = "title = \"Some #1 map\"\nfields = [\"n_unstable\", \"delay_margin\", \
+        \"outcome\", \"settle_time\"]\n[axes]\ntau = { from = 0.5, to = 3, points = 4 }\n\
+        alpha_n = [-2, -1, 0.1]\n[fixed]\nv0 = 0.2\nx_dot0 = 0\n[friction]\n\
+        law = \"weakening\"\nmu0 = 0.5\nv_s = 0.5\n";
+    std::fs::write(folder.path().join("map.toml"), sweep).unwrap();
+    slipmap(&["run", "--quiet", "map.toml"]);
+    let case = root.join("sweeps/fig3a.toml");
+    slipmap(&["simulate", case.to_str().unwrap(), "-o", "trace.h5"]);
+    for (file, table) in [
+        ("map", "cells"),
+        ("map", "boundaries"),
+        ("trace", "samples"),
+        ("trace", "events"),
+    ] {
+        let (from, to) = (format!("{file}.h5"), format!("{table}.csv"));
+        slipmap(&["export", &from, "--table", table, "--comments", "-o", &to]);
+    }
+    run(python(folder.path()).arg(root.join("tests/readers/check_csv.py")));
+}
+
 #[test]
 fn python_reads_traces_and_draws_figures_3_and_4() {
     let folder = tempfile::tempdir().expect("a folder");

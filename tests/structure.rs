@@ -161,6 +161,7 @@ fn libraries_stay_in_their_rooms() {
         ("libm", "src/model/elementary.rs"),
         ("indicatif", "src/report/progress.rs"),
         ("plotters", "src/report/picture"),
+        ("csv", "src/report/table"),
         ("axum", "src/serve"),
         ("clap", "src/cli"),
         ("miette", "src/cli"),

@@ -67,7 +67,7 @@ impl CellArgs {
             ));
             index.push(place);
         }
-        say::remark(format_args!("the cell at {}", there.join(", ")));
+        say::note(format_args!("the cell at {}", there.join(", ")));
         Ok(Some(CellTexts::of(&plan, &index)))
     }
 
@@ -99,21 +99,10 @@ impl CellArgs {
 
     /// Values are given on axes alone.
     fn check_axes(&self, plan: &Plan) -> Result<(), Failure> {
-        let axes = || plan.spec.axes.iter().map(|axis| axis.parameter);
-        match self
-            .at
+        let axes: Vec<_> = plan.spec.axes.iter().map(|axis| axis.parameter).collect();
+        self.at
             .iter()
-            .find(|(at, _)| !axes().any(|axis| axis == *at))
-        {
-            None => Ok(()),
-            Some((at, _)) => Err(Failure::bad_input_with_help(
-                format!("--at: {} is no axis of this map", at.name()),
-                format!(
-                    "its axes: {}",
-                    axes().map(Parameter::name).collect::<Vec<_>>().join(", ")
-                ),
-            )),
-        }
+            .try_for_each(|(at, _)| axis_of(*at, &axes).map(drop))
     }
 
     /// Where on an axis: at the value nearest to the one given.
@@ -132,12 +121,29 @@ impl CellArgs {
             }
             _ => return Err(Failure::bad_input(format!("--at {name} is given twice"))),
         };
-        nearest(&axis.values, value).map_err(|[low, high]| {
-            let message = format!("--at {name}={value} is outside the axis");
-            let help = format!("it goes from {low} to {high}");
-            Failure::bad_input_with_help(message, help)
-        })
+        place_on(axis.parameter, &axis.values, value)
     }
+}
+
+/// The number of an axis among `axes`.
+pub(super) fn axis_of(at: Parameter, axes: &[Parameter]) -> Result<usize, Failure> {
+    let place = axes.iter().position(|axis| *axis == at);
+    place.ok_or_else(|| {
+        let names: Vec<_> = axes.iter().map(|axis| axis.name()).collect();
+        Failure::bad_input_with_help(
+            format!("--at: {} is no axis of this map", at.name()),
+            format!("its axes: {}", names.join(", ")),
+        )
+    })
+}
+
+/// The place on an axis of the value nearest to `value`, which the axis reaches.
+pub(super) fn place_on(of: Parameter, values: &[f64], value: f64) -> Result<usize, Failure> {
+    nearest(values, value).map_err(|[low, high]| {
+        let message = format!("--at {}={value} is outside the axis", of.name());
+        let help = format!("it goes from {low} to {high}");
+        Failure::bad_input_with_help(message, help)
+    })
 }
 
 /// Nothing else says what is asked where a cell or a file does.

@@ -1,22 +1,22 @@
-//! `slipmap info`: what a map holds.
+//! `slipmap info`: what a map or a trace holds.
 
 use std::io::{IsTerminal, Write};
 use std::ops::ControlFlow;
 use std::path::PathBuf;
 
-use serde::{Serialize, Serializer};
+use serde::Serialize;
 use slipmap::linear::curves::StableSide;
 use slipmap::linear::status::FLAGS;
 use slipmap::report::numbers::{bytes, grouped, short, unit_behind};
 use slipmap::store::schema::root;
-use slipmap::store::{MapAxis, MapFile};
+use slipmap::store::{MapAxis, MapFile, trace_reader};
 use slipmap::sweep::Field;
-use slipmap::sweep::input::units::Units;
 
 use super::axis_facts::AxisFacts;
 use super::failure::Failure;
+use super::info_trace::{self, Told};
 use super::open::open;
-use super::say::{self, Rows, visible};
+use super::say::{self, Rows, as_object, visible};
 use super::signals::Signals;
 
 /// What a signal leaves.
@@ -24,10 +24,10 @@ const NOT_TOLD: &str = "not everything is told";
 
 #[derive(Debug, clap::Args)]
 pub(super) struct Args {
-    /// The map
-    #[arg(value_name = "MAP.h5")]
+    /// The map, or the trace of a motion
+    #[arg(value_name = "FILE.h5")]
     map: PathBuf,
-    /// Print the sweep file that made the map, and nothing else
+    /// Print the sweep or case file that it was made from, and nothing else
     #[arg(long)]
     sweep: bool,
     /// One JSON object on standard output
@@ -37,13 +37,21 @@ pub(super) struct Args {
 
 pub(super) fn main(args: &Args) -> Result<(), Failure> {
     let signals = Signals::catch()?;
+    if trace_reader::is_trace(&args.map) {
+        let what = match args.sweep {
+            true => Told::Text,
+            false if args.json => Told::Json,
+            false => Told::Rows,
+        };
+        return signals.or_end(NOT_TOLD, || info_trace::tell(&args.map, what));
+    }
     let map = open(&args.map, &signals, NOT_TOLD)?;
     signals.or_end(NOT_TOLD, || tell(&map, args))
 }
 
 fn tell(map: &MapFile, args: &Args) -> Result<(), Failure> {
     if args.sweep {
-        return tell_sweep(map);
+        return tell_text(&map.sweep_text());
     }
     let facts = Facts::of(map)?;
     if args.json {
@@ -59,13 +67,13 @@ fn tell(map: &MapFile, args: &Args) -> Result<(), Failure> {
     facts.tell_best(&mut rows)
 }
 
-fn tell_sweep(map: &MapFile) -> Result<(), Failure> {
+/// The text of the file that a map or trace was made from.
+pub(super) fn tell_text(text: &str) -> Result<(), Failure> {
     let mut out = std::io::stdout().lock();
-    let sweep = map.sweep_text();
     // Elsewhere than on a terminal it is the file, byte by byte.
     match out.is_terminal() {
-        true => write!(out, "{}", visible(&sweep))?,
-        false => write!(out, "{sweep}")?,
+        true => write!(out, "{}", visible(text))?,
+        false => write!(out, "{text}")?,
     }
     Ok(())
 }
@@ -73,6 +81,7 @@ fn tell_sweep(map: &MapFile) -> Result<(), Failure> {
 /// What there is to say of a map.
 #[derive(Serialize)]
 struct Facts {
+    kind: &'static str,
     /// What the map says of where it comes from, by name.
     #[serde(serialize_with = "as_object")]
     origin: Vec<(&'static str, String)>,
@@ -121,26 +130,17 @@ struct BestFacts {
     shortest_relaxation_time: Option<f64>,
 }
 
-/// Pairs of a name and a value as an object, in their order; names of several words are joined.
-fn as_object<S: Serializer, T: Serialize>(
-    pairs: &[(&'static str, T)],
-    to: S,
-) -> Result<S::Ok, S::Error> {
-    to.collect_map(
-        pairs
-            .iter()
-            .map(|(name, value)| (name.replace(' ', "_"), value)),
-    )
-}
-
 impl Facts {
     fn of(map: &MapFile) -> Result<Self, Failure> {
         let axis = |axis: &MapAxis| AxisFacts::of(axis.parameter, &axis.values);
         let flags = FLAGS.iter().map(|(_, name)| *name);
         let flagged = flags.zip(map.status_counts()?.flagged);
         let scalars = map.scalars().into_iter();
+        let mut told = origin(|name| map.root_text(name));
+        told.extend(assumed_start(map));
         Ok(Self {
-            origin: origin(map),
+            kind: "map",
+            origin: told,
             axes: map.axes().iter().map(axis).collect(),
             fixed: scalars.map(|(p, value)| (p.name(), value)).collect(),
             cells: map.cells(),
@@ -238,28 +238,35 @@ impl FieldFacts {
     }
 }
 
-fn origin(map: &MapFile) -> Vec<(&'static str, String)> {
-    let attributes = [
-        ("title", root::TITLE),
-        ("made by", root::SOURCE),
-        ("revision", root::GIT_REVISION),
-        ("history", root::HISTORY),
-        ("plan", root::PLAN_HASH),
-        ("protocol", root::PROTOCOL),
-        ("friction", root::FRICTION_LAW),
-    ];
-    let told = attributes.into_iter().filter_map(|(name, attribute)| {
-        let text = map.root_text(attribute).filter(|text| !text.is_empty())?;
+/// Names of what a file says of where it comes from, and the attributes that hold it.
+const ORIGIN: [(&str, &str); 7] = [
+    ("title", root::TITLE),
+    ("made by", root::SOURCE),
+    ("revision", root::GIT_REVISION),
+    ("history", root::HISTORY),
+    ("plan", root::PLAN_HASH),
+    ("protocol", root::PROTOCOL),
+    ("friction", root::FRICTION_LAW),
+];
+
+/// What a file says of where it comes from, by name, from its texts.
+pub(super) fn origin(text: impl Fn(&str) -> Option<String>) -> Vec<(&'static str, String)> {
+    let told = ORIGIN.into_iter().filter_map(|(name, attribute)| {
+        let text = text(attribute).filter(|text| !text.is_empty())?;
         Some((name, text))
     });
-    let sweep = map.sweep().ok();
-    let assumed = sweep.and_then(|sweep| sweep.simulation.assumed_start());
-    told.chain(assumed.map(|start| ("start", start))).collect()
+    told.collect()
+}
+
+/// What is said of the start of a map's motions that its sweep does not give.
+fn assumed_start(map: &MapFile) -> Option<(&'static str, String)> {
+    let assumed = map.sweep().ok()?.simulation.assumed_start()?;
+    Some(("start", assumed))
 }
 
 /// Units of parameters are those of the sweep.
 fn units(map: &MapFile) -> Vec<(&'static str, String)> {
-    let of_sweep = map.sweep().map_or_else(|_| Units::default(), |s| s.units);
+    let of_sweep = map.units();
     let axes = map.axes().iter().map(|axis| axis.parameter);
     let scalars = map.scalars().into_iter().map(|(parameter, _)| parameter);
     let parameters = axes.chain(scalars);

@@ -15,7 +15,7 @@ use slipmap::sweep::{Plan, Shard};
 
 use super::failure::Failure;
 use super::output::{provenance, tell_assembled};
-use super::show::{View, nothing_to_do, show};
+use super::show::{nothing_to_do, show};
 use super::signals::Signals;
 use super::{open_files, run, say};
 
@@ -40,16 +40,13 @@ pub(super) struct Args {
 }
 
 /// Shards are merged without their sweep file.
-const VIEW: View = View {
-    named: Named::InMap,
-    quiet: false,
-};
+const NAMED: Named = Named::InMap;
 
 pub(super) fn main(args: &Args) -> Result<(), Failure> {
     let signals = Signals::catch()?;
     let target = args.output.as_ref().unwrap_or(&args.map);
     if shards::settle(&args.map, |hash| maker::is_complete(target, Some(hash)))? {
-        return nothing_to_do(target, "", VIEW, &signals);
+        return nothing_to_do(target, "", NAMED, &signals);
     }
     let folders = folders(args)?;
     if folders.is_empty() {
@@ -59,10 +56,13 @@ pub(super) fn main(args: &Args) -> Result<(), Failure> {
     let (_, plan) = shards::plan(&folders)?;
     if let Some(remark) = run::already_there(target, &plan, args.fresh)? {
         drop(shards::remove_root(target));
-        return nothing_to_do(target, &remark, VIEW, &signals);
+        return nothing_to_do(target, &remark, NAMED, &signals);
     }
     let provenance = provenance("merge", &args.map);
-    let (progress, log) = (Progress::new(false), Log::beside(target, Shard::WHOLE));
+    let (progress, log) = (
+        Progress::new(say::is_quiet()),
+        Log::beside(target, Shard::WHOLE),
+    );
     let observer = Both(&progress, &log);
     let missing = match args.partial {
         true => Missing::Leave,
@@ -84,7 +84,7 @@ pub(super) fn main(args: &Args) -> Result<(), Failure> {
     let merged = maker::merge(&plan, &asked, &provenance, attended);
     let assembled = merged.map_err(|error| failure(error, &args.map, &signals))?;
     tell(target, &plan, &assembled)?;
-    show(target, VIEW, &signals);
+    show(target, NAMED, &signals);
     Ok(())
 }
 
@@ -112,7 +112,7 @@ fn nothing_to_merge(args: &Args, target: &Path, signals: &Signals) -> Result<(),
             true => "; there are no shards that could replace it",
             false => "",
         };
-        return nothing_to_do(target, remark, VIEW, signals);
+        return nothing_to_do(target, remark, NAMED, signals);
     }
     Err(Failure::bad_input_with_help(
         format!(
@@ -125,7 +125,7 @@ fn nothing_to_merge(args: &Args, target: &Path, signals: &Signals) -> Result<(),
 }
 
 fn tell(target: &Path, plan: &Plan, assembled: &Assembled) -> Result<(), Failure> {
-    tell_assembled(assembled, false);
+    tell_assembled(assembled);
     let size = bytes(std::fs::metadata(target).map_or(0, |m| m.len()));
     let cells = grouped(plan.cells());
     let missing = match assembled.cells_missing {

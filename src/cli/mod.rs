@@ -2,16 +2,20 @@
 
 mod axis_facts;
 mod best;
+mod case_facts;
 mod cell;
 mod colours;
+mod export;
 mod failure;
 mod info;
+mod info_trace;
 mod merge;
 mod open;
 mod open_files;
 mod output;
 mod parameters;
 mod plan;
+mod plan_case;
 mod plot;
 mod point;
 mod read_map;
@@ -24,6 +28,7 @@ mod signals;
 mod simulate;
 mod status;
 mod sweep_file;
+mod text_output;
 mod vc;
 mod verify;
 
@@ -46,6 +51,9 @@ struct Cli {
     /// Colours in help, errors, warnings and previews
     #[arg(long, global = true, value_enum, default_value_t = Colours::Auto, value_name = "WHEN")]
     color: Colours,
+    /// Nothing on standard error but errors and warnings: no progress, no remarks
+    #[arg(short, long, global = true)]
+    quiet: bool,
     #[command(subcommand)]
     command: Command,
 }
@@ -58,9 +66,10 @@ enum Command {
     Merge(merge::Args),
     /// Say how far a map is, from another terminal
     Status(status::Args),
-    /// Check a map: its checksums, its schema, and a sample of its cells by other methods
+    /// Check a map: its checksums, its schema, and a sample of its cells by other methods; or
+    /// compute the motion of a trace again
     Verify(verify::Args),
-    /// Say what a sweep would cost, without running it
+    /// Say what a sweep or a motion would cost, without computing it
     Plan(plan::Args),
     /// Everything about one point of parameter space
     Point(point::Args),
@@ -75,9 +84,11 @@ enum Command {
     Vc(vc::Args),
     /// One motion in time: from a case file to HDF5 and a picture, with its events and outcome
     Simulate(simulate::Args),
-    /// Draw a map as PNG, SVG or PDF
+    /// Draw a map or a trace as PNG, SVG or PDF
     Plot(plot::Args),
-    /// Say what a map holds
+    /// Write what a map or a trace holds as text (CSV)
+    Export(export::Args),
+    /// Say what a map or a trace holds
     Info(info::Args),
 }
 
@@ -101,7 +112,10 @@ pub(crate) fn main() -> ExitCode {
     colours.apply();
     let parsed = Cli::command().color(colours.choice()).try_get_matches();
     let command = match parsed.and_then(|matches| Cli::from_arg_matches(&matches)) {
-        Ok(cli) => cli.command,
+        Ok(cli) => {
+            say::set_quiet(cli.quiet);
+            cli.command
+        }
         Err(error) => return say_usage(&error),
     };
     // Caught and not looked at: a limit on file sizes then fails the write instead of ending the
@@ -120,6 +134,7 @@ pub(crate) fn main() -> ExitCode {
         Command::Vc(args) => vc::main(&args),
         Command::Simulate(args) => simulate::main(&args),
         Command::Plot(args) => plot::main(&args),
+        Command::Export(args) => export::main(&args),
         Command::Info(args) => info::main(&args),
     };
     match result {

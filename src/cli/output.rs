@@ -54,7 +54,8 @@ pub(super) fn output_path(
                 "--output {}: a {kind} is written as HDF5, not as {other}",
                 path.display()
             ),
-            "name it like NAME.h5, or NAME.nc for readers of netCDF",
+            "name it like NAME.h5, or NAME.nc for readers of netCDF; `slipmap export` makes tables \
+             of it",
         ));
     }
     if path.to_str().is_none() {
@@ -118,13 +119,10 @@ pub(super) fn warn_of_idle_delay(idle: bool) {
 }
 
 /// Says what besides cells a map holds, on standard error.
-pub(super) fn tell_assembled(assembled: &Assembled, quiet: bool) {
-    if quiet {
-        return;
-    }
+pub(super) fn tell_assembled(assembled: &Assembled) {
     if assembled.curves > 0 {
         let (curves, corners) = (grouped(assembled.curves), grouped(assembled.corners));
-        say::remark(format_args!("{curves} crossing curves, {corners} corners"));
+        say::note(format_args!("{curves} crossing curves, {corners} corners"));
     }
     if assembled.planes_left_out > 0 {
         let planes = grouped(assembled.planes_left_out);
@@ -134,7 +132,7 @@ pub(super) fn tell_assembled(assembled: &Assembled, quiet: bool) {
     }
     match assembled.best_planes {
         0 => {}
-        1 => say::remark("the best setting"),
-        planes => say::remark(format_args!("best settings in {} planes", grouped(planes))),
+        1 => say::note("the best setting"),
+        planes => say::note(format_args!("best settings in {} planes", grouped(planes))),
     }
 }

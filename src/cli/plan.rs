@@ -1,4 +1,5 @@
-//! `slipmap plan`: what a sweep would cost, from a timed sample of its own pieces.
+//! `slipmap plan`: what a sweep would cost, from a timed sample of its own pieces; what
+//! `simulate` would do with a case.
 
 use std::collections::BTreeMap;
 use std::path::PathBuf;
@@ -18,9 +19,10 @@ use slipmap::sweep::{Memory, Piece, Plan};
 use super::axis_facts::AxisFacts;
 use super::failure::Failure;
 use super::output::warn_of_idle_delay;
+use super::plan_case;
 use super::run::{MEMORY, default_threads, parse_memory, parse_threads, threads_within};
 use super::say::{self, Rows};
-use super::sweep_file::read_plan;
+use super::sweep_file::{Described, read_sweep_or_case};
 
 /// A sample ends after so long, once it has this many pieces; or after the longest time, whatever
 /// it has.
@@ -37,10 +39,10 @@ const WITHOUT_CURVES: f64 = 25e3;
 
 #[derive(Debug, clap::Args)]
 pub(super) struct Args {
-    /// The sweep file; - for standard input
+    /// The sweep or case file; - for standard input
     #[arg(value_name = "SWEEP.toml")]
     sweep: PathBuf,
-    /// Threads to plan for [default: as many as the machine offers]
+    /// Threads to plan a sweep for [default: as many as the machine offers]
     #[arg(long, value_name = "N", value_parser = parse_threads)]
     threads: Option<usize>,
     /// The most memory to plan for, such as 500MB or 2GiB: fewer threads compute where so many
@@ -53,7 +55,14 @@ pub(super) struct Args {
 }
 
 pub(super) fn main(args: &Args) -> Result<(), Failure> {
-    let plan = read_plan(&args.sweep)?;
+    let plan = match read_sweep_or_case(&args.sweep)? {
+        Described::Sweep(plan) => plan,
+        Described::Case(_) if args.threads.is_some() => {
+            let message = "--threads has no meaning for a case: one motion takes one thread";
+            return Err(Failure::bad_input(message));
+        }
+        Described::Case(spec) => return plan_case::tell(&args.sweep, &spec, args.json),
+    };
     warn_of_idle_delay(plan.spec.has_idle_delay());
     let asked = args.threads.unwrap_or_else(default_threads);
     let threads = threads_within(&plan, args.memory, asked)?;
@@ -67,6 +76,7 @@ pub(super) fn main(args: &Args) -> Result<(), Failure> {
 /// What there is to say of a plan.
 #[derive(Serialize)]
 struct Facts {
+    kind: &'static str,
     axes: Vec<AxisFacts>,
     /// Units of the axes by name; `1` where there is none.
     units: BTreeMap<&'static str, String>,
@@ -103,6 +113,7 @@ impl Facts {
         let seconds = [(total - spread).max(0.0), total, total + spread];
         let fields = plan.spec.fields.iter().map(|field| field.name());
         Ok(Self {
+            kind: "sweep",
             axes: plan.spec.axes.iter().map(axis).collect(),
             units: plan.spec.axes.iter().map(unit).collect(),
             dimensionless: plan.spec.units.dimensionless(),

@@ -1,5 +1,6 @@
-//! `slipmap plot`: a picture of a map.
+//! `slipmap plot`: a picture of a map or a trace.
 
+use std::io::{IsTerminal, Write};
 use std::path::{Path, PathBuf};
 
 use clap::ValueEnum;
@@ -7,6 +8,7 @@ use clap::builder::{PossibleValuesParser, TypedValueParser};
 use slipmap::report::picture::{
     self, ColourMap, Picture, PictureError, PictureKind, PictureOptions,
 };
+use slipmap::store::{TraceFile, trace_reader};
 use slipmap::sweep::input::field::fields_meant;
 use slipmap::sweep::{Field, Parameter};
 
@@ -15,18 +17,21 @@ use super::failure::Failure;
 use super::open::open;
 use super::say;
 use super::signals::Signals;
+use super::text_output::STANDARD_OUTPUT;
 
 /// What a signal leaves.
 const NOT_DRAWN: &str = "the picture is not drawn";
+/// The name by which a picture on standard output has its format.
+const PIPED: &str = "-.png";
 
 #[derive(Debug, clap::Args)]
 pub(super) struct Args {
-    /// The map
-    #[arg(value_name = "MAP.h5")]
+    /// The map, or the trace of a motion
+    #[arg(value_name = "FILE.h5")]
     map: PathBuf,
-    /// The picture to write, .png, .svg or .pdf [default: beside the map, MAP.png or, with other
-    /// options, their values between, as in MAP.vc.png; only an earlier picture of the same map and
-    /// field is replaced]
+    /// The picture to write, .png, .svg or .pdf; - for a PNG on standard output [default: beside
+    /// the map, MAP.png or, with other options, their values between, as in MAP.vc.png; only an
+    /// earlier picture of the same map and field is replaced]
     #[arg(short, long, value_name = "PICTURE")]
     output: Option<PathBuf>,
     /// What to show, a field of the map [default: the `picture` of its sweep file, else the first
@@ -107,9 +112,18 @@ fn parse_field(name: &str) -> Result<Field, String> {
 
 pub(super) fn main(args: &Args) -> Result<(), Failure> {
     let signals = Signals::catch()?;
-    let map = open(&args.map, &signals, NOT_DRAWN)?;
-    let unasked = || named_after(&args.map, &shown(args));
-    let path = args.output.clone().unwrap_or_else(unasked);
+    let piped = args.output.as_deref() == Some(Path::new(STANDARD_OUTPUT));
+    if piped && std::io::stdout().is_terminal() {
+        return Err(Failure::bad_input_with_help(
+            "--output -: a terminal shows no PNG",
+            "-o NAME.png writes a file; a pipe or a file takes what goes to standard output",
+        ));
+    }
+    let path = match &args.output {
+        Some(_) if piped => PathBuf::from(PIPED),
+        Some(path) => path.clone(),
+        None => named_after(&args.map, &shown(args)),
+    };
     let options = PictureOptions {
         field: args.field,
         kind: args.kind.map(|kind| match kind {
@@ -125,14 +139,47 @@ pub(super) fn main(args: &Args) -> Result<(), Failure> {
         no_legend: args.no_legend,
         ..PictureOptions::default()
     };
-    let drawn = signals.or_end(NOT_DRAWN, || picture::draw(&map, &path, &options));
+    let drawn = if trace_reader::is_trace(&args.map) {
+        refuse_of_maps(args)?;
+        signals.or_end(NOT_DRAWN, || draw_trace(&args.map, &path, &options))
+    } else {
+        let map = open(&args.map, &signals, NOT_DRAWN)?;
+        signals.or_end(NOT_DRAWN, || picture::draw(&map, &path, &options))
+    };
+    if piped {
+        let picture = drawn.map_err(|error| failure(error, args))?;
+        return Ok(std::io::stdout().lock().write_all(picture.bytes())?);
+    }
     let save = match args.output {
         Some(_) => Picture::save,
         None => Picture::save_unasked,
     };
     drawn.and_then(save).map_err(|error| failure(error, args))?;
-    say::result(path.display())?;
-    Ok(())
+    say::result(path.display())
+}
+
+fn draw_trace(
+    trace: &Path,
+    picture: &Path,
+    options: &PictureOptions,
+) -> Result<Picture, PictureError> {
+    picture::draw_trace_file(&TraceFile::open(trace)?, picture, options)
+}
+
+/// A motion has no fields and no axes to choose from.
+fn refuse_of_maps(args: &Args) -> Result<(), Failure> {
+    let given = [
+        ("--field", args.field.is_some()),
+        ("--kind", args.kind.is_some()),
+        ("--at", !args.at.is_empty()),
+    ];
+    match given.into_iter().find(|(_, given)| *given) {
+        None => Ok(()),
+        Some((flag, _)) => Err(Failure::bad_input_with_help(
+            format!("{flag} has no meaning for a trace of one motion"),
+            "its picture shows the motion over time, and its velocity over its elongation",
+        )),
+    }
 }
 
 /// What tells the picture asked for from the one that a run draws, in words for its name.

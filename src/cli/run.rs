@@ -18,7 +18,7 @@ use slipmap::sweep::{Memory, Plan, RunError, Shard};
 use super::failure::Failure;
 use super::output::{self, output_path, provenance, warn_of_idle_delay};
 use super::say;
-use super::show::{View, nothing_to_do, show};
+use super::show::{nothing_to_do, show};
 use super::signals::Signals;
 use super::sweep_file::read_plan;
 
@@ -50,9 +50,6 @@ pub(super) struct Args {
     /// Save what is computed every so many seconds
     #[arg(long, value_name = "SECONDS", default_value = "2", value_parser = parse_seconds)]
     save_every: Duration,
-    /// Show no progress
-    #[arg(short, long)]
-    quiet: bool,
 }
 
 /// The number of threads of a `--threads` flag.
@@ -116,8 +113,7 @@ pub(super) fn main(args: &Args) -> Result<(), Failure> {
     shards::settle(&path, |hash| maker::is_complete(&path, Some(hash)))?;
     if let Some(remark) = already_there(&path, &plan, args.fresh)? {
         drop(shards::remove_root(&path));
-        let view = View::of(&plan, args.quiet);
-        return nothing_to_do(&path, &remark, view, &signals);
+        return nothing_to_do(&path, &remark, plan.spec.picture.into(), &signals);
     }
     match args.shard.filter(|_| args.fresh) {
         Some(shard) => shards::clear_shard(&path, shard)?,
@@ -126,13 +122,13 @@ pub(super) fn main(args: &Args) -> Result<(), Failure> {
     }
     let asked = args.threads.unwrap_or_else(default_threads);
     let threads = threads_within(&plan, args.memory, asked)?;
-    if threads < useful(&plan, asked) && !args.quiet {
+    if threads < useful(&plan, asked) {
         let (memory, one) = (bytes(args.memory), bytes(Memory::of(&plan).per_thread));
-        say::remark(format_args!(
+        say::note(format_args!(
             "{threads} of {asked} threads: each may take {one}, and --memory allows {memory}"
         ));
     }
-    let progress = Progress::new(args.quiet);
+    let progress = Progress::new(say::is_quiet());
     let log = Log::beside(&path, args.shard.unwrap_or(Shard::WHOLE));
     let observers = Both(&progress, &log);
     let provenance = provenance("run", &args.sweep);
@@ -184,13 +180,12 @@ fn run_shard(
 }
 
 fn run_whole(plan: &Arc<Plan>, job: &Job, watched: &Watched, args: &Args) -> Result<(), Failure> {
-    let (fresh, quiet) = (args.fresh, args.quiet);
     refuse_other_way(job.map, Shard::WHOLE)?;
     let made = maker::make(plan, job, watched.attended());
-    let assembled = made.map_err(|error| failure(error, job.map, fresh, watched))?;
+    let assembled = made.map_err(|error| failure(error, job.map, args.fresh, watched))?;
     let observers = watched.observers;
     let (elapsed, cells) = (observers.0.elapsed(), observers.0.computed());
-    output::tell_assembled(&assembled, quiet);
+    output::tell_assembled(&assembled);
     let path = job.map;
     let told = say::result(format_args!(
         "{}: {} cells in {} ({} cells/s), {}",
@@ -200,7 +195,7 @@ fn run_whole(plan: &Arc<Plan>, job: &Job, watched: &Watched, args: &Args) -> Res
         prefixed(cells as f64 / elapsed),
         bytes(std::fs::metadata(path).map_or(0, |m| m.len())),
     ));
-    show(path, View::of(plan, quiet), watched.signals);
+    show(path, plan.spec.picture.into(), watched.signals);
     told
 }
 

@@ -3,8 +3,9 @@
 
 use std::fmt::Display;
 use std::io::{StdoutLock, Write};
+use std::sync::atomic::{AtomicBool, Ordering};
 
-use serde::Serialize;
+use serde::{Serialize, Serializer};
 pub(super) use slipmap::report::visible::{shortened, visible, visible_line};
 
 use super::failure::Failure;
@@ -46,6 +47,18 @@ struct Versioned<'v, T> {
     value: &'v T,
 }
 
+/// Pairs of a name and a value as an object, in their order; names of several words are joined.
+pub(super) fn as_object<S: Serializer, T: Serialize>(
+    pairs: &[(&'static str, T)],
+    to: S,
+) -> Result<S::Ok, S::Error> {
+    to.collect_map(
+        pairs
+            .iter()
+            .map(|(name, value)| (name.replace(' ', "_"), value)),
+    )
+}
+
 /// One JSON object on standard output, with the version of its keys.
 pub(super) fn json(value: &impl Serialize) -> Result<(), Failure> {
     let schema_version = SCHEMA_VERSION;
@@ -58,7 +71,28 @@ pub(super) fn json(value: &impl Serialize) -> Result<(), Failure> {
     Ok(writeln!(std::io::stdout(), "{text}")?)
 }
 
-/// A line on standard error: a remark.
+/// Whether the user asked for nothing on standard error but errors and warnings. It is set once,
+/// before a command begins.
+static QUIET: AtomicBool = AtomicBool::new(false);
+
+/// From now on [`note`] says nothing where `quiet` is set.
+pub(super) fn set_quiet(quiet: bool) {
+    QUIET.store(quiet, Ordering::Relaxed);
+}
+
+/// Whether only errors and warnings are asked for.
+pub(super) fn is_quiet() -> bool {
+    QUIET.load(Ordering::Relaxed)
+}
+
+/// A line on standard error that `--quiet` leaves out: what is neither an error nor a warning.
+pub(super) fn note(line: impl Display) {
+    if !is_quiet() {
+        remark(line);
+    }
+}
+
+/// A line on standard error: an error, a warning, or what [`note`] lets through.
 pub(super) fn remark(line: impl Display) {
     coloured(visible(&line.to_string()));
 }

@@ -85,7 +85,7 @@ impl Args {
     fn tell(&self) {
         match self.place() {
             #[cfg(unix)]
-            Place::Socket { path, port } => say::remark(format_args!(
+            Place::Socket { path, port } => say::note(format_args!(
                 "on the machine with the browser: ssh -L {port}:{} HOST, then open the link; \
                 Ctrl-C ends the server",
                 std::path::absolute(&path).unwrap_or(path).display()
@@ -95,7 +95,7 @@ impl Args {
                 and see its maps, and what is sent is not encrypted; Ctrl-C ends it"
             )),
             Place::Address { .. } => {
-                say::remark("whoever has this link may use the server; Ctrl-C ends it");
+                say::note("whoever has this link may use the server; Ctrl-C ends it");
             }
         }
     }

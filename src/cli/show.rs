@@ -6,7 +6,6 @@ use std::path::Path;
 use slipmap::report::picture::{self, Named, Picture, PictureError, PictureOptions};
 use slipmap::report::preview::preview;
 use slipmap::store::MapFile;
-use slipmap::sweep::Plan;
 
 use super::colours::Colours;
 use super::failure::Failure;
@@ -21,35 +20,16 @@ const PREVIEW_WIDTH: usize = 78;
 pub(super) fn nothing_to_do(
     path: &Path,
     remark: &str,
-    view: View,
+    named: Named,
     signals: &Signals,
 ) -> Result<(), Failure> {
-    if lacks_picture(path, view.named) {
-        show(path, view, signals);
+    if lacks_picture(path, named) {
+        show(path, named, signals);
     }
     say::result(format_args!(
         "{} is already complete{remark}",
         path.display()
     ))
-}
-
-/// How a complete map is shown.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct View {
-    /// What names the field of its picture.
-    pub named: Named,
-    /// Without a preview on the terminal.
-    pub quiet: bool,
-}
-
-impl View {
-    /// As the sweep file of `plan` says.
-    pub(super) fn of(plan: &Plan, quiet: bool) -> Self {
-        Self {
-            named: plan.spec.picture.into(),
-            quiet,
-        }
-    }
 }
 
 /// Whether there is no picture beside a map, or one of what was there before, or of another field
@@ -73,7 +53,7 @@ fn lacks_picture(map: &Path, named: Named) -> bool {
 
 /// Draws a complete map beside it, and on the terminal. What fails here is a warning: the map is
 /// there.
-pub(super) fn show(path: &Path, view: View, signals: &Signals) {
+pub(super) fn show(path: &Path, named: Named, signals: &Signals) {
     let complete = format!("{} is complete, the same command draws it", path.display());
     let map = match signals.or_end(&complete, || MapFile::open(path)) {
         Ok(map) => map,
@@ -81,7 +61,7 @@ pub(super) fn show(path: &Path, view: View, signals: &Signals) {
     };
     let picture = plot::beside(path);
     let options = PictureOptions {
-        named: view.named,
+        named,
         ..PictureOptions::default()
     };
     let drawn = signals.or_end(&complete, || picture::draw(&map, &picture, &options));
@@ -94,7 +74,7 @@ pub(super) fn show(path: &Path, view: View, signals: &Signals) {
         )),
         Err(error) => say::remark(format_args!("warning: no picture: {error}")),
     }
-    if view.quiet || !std::io::stderr().is_terminal() {
+    if say::is_quiet() || !std::io::stderr().is_terminal() {
         return;
     }
     let coloured = Colours::asked().of_terminal();

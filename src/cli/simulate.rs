@@ -6,11 +6,12 @@ use std::path::{Path, PathBuf};
 use serde::Serialize;
 use slipmap::explore::motion::MotionSummary;
 use slipmap::report::numbers::{grouped, unit_behind};
-use slipmap::report::picture::{self, Picture, PictureError};
+use slipmap::report::picture::{self, Picture, PictureError, PictureOptions};
+use slipmap::report::table::write_samples;
 use slipmap::slip::motion::MOST_KEPT;
 use slipmap::slip::outcome::{Outcome, Summary};
 use slipmap::store::describe::Provenance;
-use slipmap::store::{Output, StoreError, trace_file};
+use slipmap::store::{Output, StoreError, trace_file, trace_reader};
 use slipmap::sweep::cells::trace::TraceError;
 use slipmap::sweep::input::setting_text::setting_text;
 use slipmap::sweep::input::simulation::DISTURBED;
@@ -26,6 +27,7 @@ use super::plot;
 use super::say;
 use super::signals::Signals;
 use super::sweep_file::read_case;
+use super::text_output::{STANDARD_OUTPUT, To, is_csv};
 
 /// Events printed for people, the last ones; the JSON output and the trace have them all.
 const EVENTS_SHOWN: usize = 12;
@@ -41,13 +43,14 @@ pub(super) struct Args {
     #[command(flatten)]
     cell: CellArgs,
     /// The trace to write [default: the case file's name with .h5, in the current folder; with
-    /// --map the map's name with -motion.h5, with flags motion.h5]
+    /// --map the map's name with -motion.h5, with flags motion.h5]. A name that ends in .csv: its
+    /// samples as text; - for those on standard output, and nothing else there
     #[arg(short, long, value_name = "TRACE.h5")]
     output: Option<PathBuf>,
     /// The picture to draw, .png or .svg [default: the trace's name with .png, beside it]
     #[arg(long, value_name = "PICTURE")]
     picture: Option<PathBuf>,
-    /// Replace the trace of another case
+    /// Replace the trace of another case, or a text
     #[arg(long)]
     fresh: bool,
     /// One JSON object on standard output; what there is none of is null
@@ -70,36 +73,62 @@ pub(super) fn main(args: &Args) -> Result<(), Failure> {
     // A cell of a map has a delay whatever its gains are; flags are warned of as they are read.
     warn_of_idle_delay(args.case.is_some() && spec.setting.has_idle_delay());
     if spec.start_assumed {
-        say::remark(format_args!(
+        say::note(format_args!(
             "no start is given: the block begins with x_dot0 = {}, {} % faster than it is \
              pulled",
             spec.case.initial_state().0,
             100.0 * DISTURBED,
         ));
     }
+    if let Some(to) = args.text()? {
+        return simulate_to_text(args, to, &spec, &signals);
+    }
     let path = args.output_path()?;
     if let Some(picture) = &args.picture {
         check_picture("--picture", picture, Some(&path))?;
     }
     check_replaced(&path, &spec, args.fresh)?;
-    let trace = signals.or_end("there is no trace", || Trace::of(&spec));
-    let trace = trace.map_err(failure)?;
+    let trace = follow(&spec, &signals)?;
     let output = Output::claim(&path)?;
     trace_file::write(&spec, &trace, output, &args.provenance())?;
-    if args.json {
-        say::json(&MotionOut {
-            summary: MotionSummary::of(&trace),
-            trace: path.display().to_string(),
-        })?;
-    } else {
-        print(&mut std::io::stdout().lock(), &spec, &trace)?;
-        let samples = grouped(trace.samples.len() as u64);
-        say::result(format_args!("{}: {samples} samples", path.display()))?;
+    args.tell(&spec, &trace, &path)?;
+    args.draw_and_tell((&spec, &trace), &path, &signals)
+}
+
+fn follow(spec: &CaseSpec, signals: &Signals) -> Result<Trace, Failure> {
+    let trace = signals.or_end("there is no trace", || Trace::of(spec));
+    trace.map_err(failure)
+}
+
+/// The samples alone, as text.
+fn simulate_to_text(
+    args: &Args,
+    to: To,
+    spec: &CaseSpec,
+    signals: &Signals,
+) -> Result<(), Failure> {
+    if let Some(picture) = &args.picture {
+        let other = match to {
+            To::File(path) => Some(path),
+            To::StandardOutput => None,
+        };
+        check_picture("--picture", picture, other)?;
     }
-    let drawn = draw(args, (&spec, &trace), &path, &signals)?;
-    match drawn.filter(|_| !args.json) {
-        Some(picture) => say::result(picture.display()),
-        None => Ok(()),
+    let trace = follow(spec, signals)?;
+    let quantities: Vec<_> = trace_file::QUANTITIES.iter().collect();
+    to.write(signals, "there is no trace", |out, stop| {
+        write_samples((spec, &trace), &quantities, false, out, stop)
+    })?;
+    match to {
+        To::File(path) => {
+            args.tell(spec, &trace, path)?;
+            args.draw_and_tell((spec, &trace), path, signals)
+        }
+        To::StandardOutput if args.picture.is_some() => {
+            let nameless = Path::new(STANDARD_OUTPUT);
+            draw(args, (spec, &trace), nameless, signals).map(drop)
+        }
+        To::StandardOutput => Ok(()),
     }
 }
 
@@ -141,6 +170,54 @@ impl Args {
         }
     }
 
+    /// Where samples go as text; none where the trace goes to HDF5.
+    fn text(&self) -> Result<Option<To<'_>>, Failure> {
+        let Some(path) = &self.output else {
+            return Ok(None);
+        };
+        let to = match path {
+            path if path == Path::new(STANDARD_OUTPUT) => To::StandardOutput,
+            path if is_csv(path) => To::File(path),
+            _ => return Ok(None),
+        };
+        match to {
+            To::StandardOutput if self.json => Err(Failure::bad_input(
+                "--json and --output - both write to standard output",
+            )),
+            To::File(path) if path.exists() && !self.fresh => Err(Failure::bad_input_with_help(
+                format!("{} is already there", path.display()),
+                "--fresh replaces it; -o writes elsewhere",
+            )),
+            to => Ok(Some(to)),
+        }
+    }
+
+    /// What became of the motion, and where its trace is.
+    fn tell(&self, spec: &CaseSpec, trace: &Trace, path: &Path) -> Result<(), Failure> {
+        if self.json {
+            return say::json(&MotionOut {
+                summary: MotionSummary::of(trace),
+                trace: path.display().to_string(),
+            });
+        }
+        print(&mut std::io::stdout().lock(), spec, trace)?;
+        let samples = grouped(trace.samples.len() as u64);
+        say::result(format_args!("{}: {samples} samples", path.display()))
+    }
+
+    fn draw_and_tell(
+        &self,
+        motion: (&CaseSpec, &Trace),
+        path: &Path,
+        signals: &Signals,
+    ) -> Result<(), Failure> {
+        let drawn = draw(self, motion, path, signals)?;
+        match drawn.filter(|_| !self.json) {
+            Some(picture) => say::result(picture.display()),
+            None => Ok(()),
+        }
+    }
+
     /// The trace to write: by the name of the case, or of the map.
     fn output_path(&self) -> Result<PathBuf, Failure> {
         let map = self.cell.map.as_deref().and_then(Path::file_stem);
@@ -171,7 +248,7 @@ fn check_replaced(path: &Path, spec: &CaseSpec, fresh: bool) -> Result<(), Failu
         return Ok(());
     }
     let name = path.display();
-    match trace_file::case_of(path) {
+    match trace_reader::case_of(path) {
         Ok(text) if fresh || text == spec.text => Ok(()),
         Ok(_) => Err(Failure::bad_input_with_help(
             format!(
@@ -202,8 +279,9 @@ fn draw(
 ) -> Result<Option<PathBuf>, Failure> {
     let draw = |picture: &Path| {
         let complete = format!("{} is complete, its picture is not drawn", path.display());
+        let options = PictureOptions::default();
         signals.or_end(complete, || {
-            picture::draw_trace((spec, trace), path, picture)
+            picture::draw_trace((spec, trace), path, picture, &options)
         })
     };
     if let Some(asked) = &args.picture {

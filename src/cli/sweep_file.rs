@@ -6,6 +6,7 @@ use std::path::Path;
 
 use slipmap::model::Table;
 use slipmap::report::numbers::bytes;
+use slipmap::sweep::input::case_file::is_case_file;
 use slipmap::sweep::input::friction_table::table_of_columns;
 use slipmap::sweep::input::point_file::{PointOf, PointSpec};
 use slipmap::sweep::input::table_file::Inlined;
@@ -21,6 +22,25 @@ const MOST_BYTES: u64 = 16 << 20;
 pub(super) fn read_plan(path: &Path) -> Result<Plan, Failure> {
     read_with_table(path, "sweep", |text| {
         text.parse::<SweepSpec>().and_then(Plan::new)
+    })
+}
+
+/// What a file describes.
+pub(super) enum Described {
+    /// A map.
+    Sweep(Plan),
+    /// One motion.
+    Case(CaseSpec),
+}
+
+/// What the sweep or case file at `path` describes.
+pub(super) fn read_sweep_or_case(path: &Path) -> Result<Described, Failure> {
+    read_with_table(path, "sweep", |text| {
+        if is_case_file(text) {
+            return text.parse().map(Described::Case);
+        }
+        let plan = text.parse::<SweepSpec>().and_then(Plan::new);
+        plan.map(Described::Sweep)
     })
 }
 

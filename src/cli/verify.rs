@@ -1,29 +1,32 @@
 //! `slipmap verify`: whether a map is as it was written, and what other methods say of a sample of
-//! its cells.
+//! its cells; whether a trace is what its case comes to.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use serde_json::{Value, json};
 use slipmap::maps::check::{Effort, Program, Report, check};
+use slipmap::maps::check_trace::{TraceReport, check_trace};
 use slipmap::report::numbers::grouped;
-use slipmap::store::MapFile;
+use slipmap::store::tiles::Survey;
+use slipmap::store::{MapFile, TraceFile, trace_reader};
 
 use super::failure::Failure;
 use super::say::{self, Rows};
+use super::signals::Signals;
 
 /// More cells or tiles than this are not computed again.
 const MOST: u64 = 100_000_000;
 
 #[derive(Debug, clap::Args)]
 pub(super) struct Args {
-    /// The map
-    #[arg(value_name = "MAP.h5")]
+    /// The map, or the trace of a motion
+    #[arg(value_name = "FILE.h5")]
     map: PathBuf,
-    /// Cells at which second methods look, spread over the map
+    /// Cells of a map at which second methods look, spread over the map
     #[arg(long, value_name = "N", default_value_t = 100,
           value_parser = clap::value_parser!(u64).range(..=MOST))]
     cells: u64,
-    /// Tiles that are computed again, to be equal bit by bit
+    /// Tiles of a map that are computed again, to be equal bit by bit
     #[arg(long, value_name = "N", default_value_t = 2,
           value_parser = clap::value_parser!(u64).range(..=MOST))]
     tiles: u64,
@@ -33,29 +36,96 @@ pub(super) struct Args {
 }
 
 pub(super) fn main(args: &Args) -> Result<(), Failure> {
+    let program = Program {
+        version: env!("CARGO_PKG_VERSION"),
+        revision: env!("SLIPMAP_GIT_REVISION"),
+    };
+    if trace_reader::is_trace(&args.map) {
+        return verify_trace(args, program);
+    }
+    refuse_unfinished(&args.map)?;
     let map = MapFile::open(&args.map)?;
     let effort = Effort {
         cells: args.cells,
         tiles: args.tiles,
-    };
-    let program = Program {
-        version: env!("CARGO_PKG_VERSION"),
-        revision: env!("SLIPMAP_GIT_REVISION"),
     };
     let report = check(&map, program, effort)?;
     let told = match args.json {
         true => say::json(&to_json(&report)),
         false => print(&report),
     };
-    // Whether anybody reads on does not change what was found.
-    match report.faults.len() {
+    verdict(&args.map, report.faults.len(), told)
+}
+
+/// Whether anybody reads on does not change what was found.
+fn verdict(path: &Path, faults: usize, told: Result<(), Failure>) -> Result<(), Failure> {
+    let path = path.display();
+    match faults {
         0 => told,
-        1 => Err(Failure::failed(format!("{}: 1 fault", args.map.display()))),
-        n => Err(Failure::failed(format!(
-            "{}: {n} faults",
-            args.map.display()
-        ))),
+        1 => Err(Failure::failed(format!("{path}: 1 fault"))),
+        n => Err(Failure::failed(format!("{path}: {n} faults"))),
     }
+}
+
+/// A map of which there are only tiles is no map yet.
+fn refuse_unfinished(path: &Path) -> Result<(), Failure> {
+    if path.exists() {
+        return Ok(());
+    }
+    let Some(survey) = Survey::of(path)? else {
+        return Ok(());
+    };
+    let (done, cells) = (grouped(survey.cells_done), grouped(survey.plan.cells()));
+    let path = path.display();
+    Err(Failure::bad_input_with_help(
+        format!("{path} is not complete: {done} of {cells} cells are in its tiles"),
+        format!(
+            "the `slipmap run` that began it goes on, and checks every tile as it reads it; \
+             `slipmap merge --partial {path}` makes a map of what is there"
+        ),
+    ))
+}
+
+fn verify_trace(args: &Args, program: Program) -> Result<(), Failure> {
+    let signals = Signals::catch()?;
+    let report = signals.or_end("nothing is verified", || {
+        TraceFile::open(&args.map).map(|file| check_trace(&file, program))
+    })?;
+    let told = match args.json {
+        true => say::json(&trace_to_json(&report)),
+        false => print_trace(&report),
+    };
+    verdict(&args.map, report.faults.len(), told)
+}
+
+fn trace_to_json(report: &TraceReport) -> Value {
+    json!({
+        "kind": "trace", "sound": report.faults.is_empty(), "faults": report.faults,
+        "remarks": report.remarks, "samples": report.samples,
+        "samples_equal": report.samples_equal, "events": report.events,
+        "events_equal": report.events_equal,
+    })
+}
+
+fn print_trace(report: &TraceReport) -> Result<(), Failure> {
+    let mut rows = Rows::begin();
+    for (name, equal, of) in [
+        ("samples", report.samples_equal, report.samples),
+        ("events", report.events_equal, report.events),
+    ] {
+        let (equal, of) = (grouped(equal), grouped(of));
+        let text = format!("{equal} of {of} computed again are the same, bit by bit");
+        rows.row(name, text)?;
+    }
+    print_findings(&mut rows, &report.remarks, &report.faults)
+}
+
+fn print_findings(rows: &mut Rows, remarks: &[String], faults: &[String]) -> Result<(), Failure> {
+    let remarks = remarks.iter().map(|remark| ("remark", remark));
+    let faults = faults.iter().map(|fault| ("fault", fault));
+    remarks
+        .chain(faults)
+        .try_for_each(|(name, text)| rows.row(name, text))
 }
 
 fn to_json(report: &Report) -> Value {
@@ -67,7 +137,8 @@ fn to_json(report: &Report) -> Value {
         })
         .collect();
     json!({
-        "sound": report.faults.is_empty(), "faults": report.faults, "remarks": report.remarks,
+        "kind": "map", "sound": report.faults.is_empty(), "faults": report.faults,
+        "remarks": report.remarks,
         "checksums": report.checksums, "cells": report.cells, "answers": answers,
         "tiles": report.tiles, "tiles_equal": report.tiles_equal,
     })
@@ -92,11 +163,5 @@ fn print(report: &Report) -> Result<(), Failure> {
             format!("{equal} of {of} computed again are the same, bit by bit"),
         )?;
     }
-    for remark in &report.remarks {
-        rows.row("remark", remark)?;
-    }
-    for fault in &report.faults {
-        rows.row("fault", fault)?;
-    }
-    Ok(())
+    print_findings(&mut rows, &report.remarks, &report.faults)
 }

@@ -1,4 +1,4 @@
-//! What a person sees: progress, summaries, pictures.
+//! What a person sees: progress, summaries, pictures, tables.
 
 mod known;
 #[cfg(feature = "cli")]
@@ -9,4 +9,6 @@ pub mod picture;
 pub mod preview;
 #[cfg(feature = "cli")]
 pub mod progress;
+#[cfg(feature = "cli")]
+pub mod table;
 pub mod visible;

@@ -128,6 +128,24 @@ impl Summary {
             ("last_release", self.last_release),
         ]
     }
+
+    /// From its numbers by their names, NaN where there is none; the number of slips in a period is
+    /// not among them.
+    #[must_use]
+    pub fn of_numbers(outcome: Outcome, steps: u64, number: impl Fn(&str) -> f64) -> Self {
+        Self {
+            decided: number("decided"),
+            settle_time: number("settle_time"),
+            n_min: number("n_min"),
+            peak: number("peak_force"),
+            period: number("period"),
+            stick_time: number("stick_time"),
+            slip_time: number("slip_time"),
+            last_release: number("last_release"),
+            steps,
+            ..Self::without(outcome)
+        }
+    }
 }
 
 /// Sees every step of a motion.
@@ -145,4 +163,21 @@ pub trait Observer {
 /// Sees nothing.
 impl Observer for () {
     fn step(&mut self, _: &Motion, _: Option<Event>) {}
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_summary_is_that_of_its_numbers() {
+        let numbers: Vec<_> = (0..8).map(|i| f64::from(i) + 0.5).collect();
+        let names = Summary::without(Outcome::Sliding)
+            .numbers()
+            .map(|(name, _)| name);
+        let number = |asked: &str| numbers[names.iter().position(|n| *n == asked).unwrap()];
+        let made = Summary::of_numbers(Outcome::StickSlip, 7, number);
+        assert_eq!(made.numbers().map(|(_, value)| value)[..], numbers);
+        assert_eq!((made.outcome, made.steps), (Outcome::StickSlip, 7));
+    }
 }

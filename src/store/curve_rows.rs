@@ -10,6 +10,11 @@ use crate::linear::curves::{Corner, CurvePiece};
 use crate::sweep::Plan;
 use crate::sweep::cells::boundaries::BoundaryPlane;
 
+/// How a pair of roots crosses, in words of the map: for −1, 0, 1.
+pub const DIRECTIONS: &str = "to_the_left touch to_the_right";
+/// The side of a curve on which sliding is stable, in words of the map: for −1, 0, 1.
+pub const STABLE_SIDES: &str = "shorter_delays neither longer_delays";
+
 /// What a column has a number for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Per {
@@ -141,7 +146,7 @@ boundary_columns! {
         );
         /// Per curve: −1, 0, 1.
         direction: i8 = BoundaryColumn {
-            flags: Some((&[-1, 0, 1], "to_the_left touch to_the_right")),
+            flags: Some((&[-1, 0, 1], DIRECTIONS)),
             ..column(
                 Per::Curve,
                 Named::Number("direction", "how a pair of roots crosses with growing delay"),
@@ -149,7 +154,7 @@ boundary_columns! {
         };
         /// Per curve: −1 shorter delays, 0 neither, 1 longer ones.
         stable_side: i8 = BoundaryColumn {
-            flags: Some((&[-1, 0, 1], "shorter_delays neither longer_delays")),
+            flags: Some((&[-1, 0, 1], STABLE_SIDES)),
             ..column(
                 Per::Curve,
                 Named::Number(

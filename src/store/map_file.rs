@@ -17,6 +17,7 @@ use super::values::{Chunks, Number, read, whole};
 use crate::sweep::engine::{FEW_FILL, N_UNSTABLE_FILL, STATUS_FILL};
 use crate::sweep::input::axis::{Axis, MOST_POINTS};
 use crate::sweep::input::field::Storage;
+use crate::sweep::input::units::Units;
 use crate::sweep::plan::MOST_CELLS;
 use crate::sweep::{Field, Parameter, SpecError, SweepSpec};
 
@@ -171,6 +172,13 @@ impl MapFile {
             spec.simulation.disturbance = 0.0;
         }
         Ok(spec)
+    }
+
+    /// The units of its parameters, those of the sweep; dimensionless where that cannot be read.
+    #[must_use]
+    pub fn units(&self) -> Units {
+        self.sweep()
+            .map_or_else(|_| Units::default(), |spec| spec.units)
     }
 
     /// The hash of everything besides the cells, as it is now.

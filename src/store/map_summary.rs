@@ -96,28 +96,44 @@ pub(super) fn for_each_chunk<E>(
     mut visit: impl FnMut(&[SliceOrIndex]) -> Result<(), E>,
 ) -> Result<(), E> {
     let shape = dataset.shape();
-    let chunk = piece_shape(dataset);
-    let mut offset = vec![0; shape.len()];
-    loop {
+    for_each_piece(&shape, &piece_shape(dataset), |offset, extent| {
         let slab: Vec<_> = offset
             .iter()
-            .zip(&chunk)
-            .zip(&shape)
-            .map(|((&start, &length), &end)| SliceOrIndex::SliceTo {
+            .zip(extent)
+            .map(|(&start, &length)| SliceOrIndex::SliceTo {
                 start,
                 step: 1,
-                end: (start + length).min(end),
+                end: start + length,
                 block: 1,
             })
             .collect();
-        visit(&slab)?;
+        visit(&slab)
+    })
+}
+
+/// The pieces of a box with these lengths, last axis fastest: the first index along every axis and
+/// the number of cells inside the box.
+pub(super) fn for_each_piece<E>(
+    shape: &[usize],
+    piece: &[usize],
+    mut visit: impl FnMut(&[usize], &[usize]) -> Result<(), E>,
+) -> Result<(), E> {
+    let mut offset = vec![0; shape.len()];
+    loop {
+        let extent: Vec<usize> = offset
+            .iter()
+            .zip(piece)
+            .zip(shape)
+            .map(|((&start, &length), &end)| length.min(end - start))
+            .collect();
+        visit(&offset, &extent)?;
         let mut axis = shape.len();
         loop {
             if axis == 0 {
                 return Ok(());
             }
             axis -= 1;
-            offset[axis] += chunk[axis];
+            offset[axis] += piece[axis];
             if offset[axis] < shape[axis] {
                 break;
             }

@@ -34,8 +34,16 @@ pub mod trace {
     pub const OUTCOME: &str = "outcome";
     /// Group and dimension of the events.
     pub const EVENT: &str = "event";
-    /// The dimension: time.
+    /// The dimension: time. In the group of events: when.
     pub const TIME: &str = "t";
+    /// What the block does from a sample on.
+    pub const MODE: &str = "mode";
+    /// Of events: what happens.
+    pub const KIND: &str = "kind";
+    /// Of events: the elongation then.
+    pub const ELONGATION: &str = "a";
+    /// Root attribute: steps taken until the outcome was known.
+    pub const STEPS: &str = "steps";
 }
 
 /// Root attributes.

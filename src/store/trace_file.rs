@@ -1,22 +1,20 @@
-//! Traces: a motion over time, its events in a group of their own, its outcome and parameters as
-//! attributes and scalars.
-
-use std::path::Path;
+//! Writes traces: a motion over time, its events in a group of their own, its outcome and
+//! parameters as attributes and scalars.
 
 use hdf5::plist::group_create::LinkCreationOrder;
 use hdf5::types::OwnedDynValue;
 use hdf5::{Dataset, File, Group, H5Type};
 
-use super::attributes::{one_number, put_flags, put_numbers, put_text, text};
+use super::attributes::{put_flags, put_numbers, put_text};
 use super::codec::DEFLATE_LEVEL;
 use super::describe::{Provenance, put_friction, put_provenance, put_scalars};
 use super::error::StoreError;
 use super::map_writer::create_file;
 use super::netcdf::{DimensionId, Dimensions, named};
-use super::open;
 use super::output::Output;
 use super::schema::{self, trace};
 use super::variables::FILL_VALUE;
+use crate::slip::case::Case;
 use crate::sweep::cells::trace::{EVENTS, MODES, Sample, TraceEvent};
 use crate::sweep::input::units::Units;
 use crate::sweep::{CaseSpec, Trace};
@@ -25,6 +23,9 @@ use crate::sweep::{CaseSpec, Trace};
 const CHUNK: usize = 1 << 13;
 /// Mode and kind that stand for: no value.
 const FLAG_FILL: u8 = 255;
+
+/// Bytes of a sample before compression: time, the quantities, the mode.
+pub const BYTES_OF_A_SAMPLE: u64 = 8 * (1 + QUANTITIES.len() as u64) + 1;
 
 /// A quantity of a motion, one for each sample.
 pub struct Quantity {
@@ -39,6 +40,12 @@ pub struct Quantity {
 }
 
 impl Quantity {
+    /// Its value at a sample.
+    #[must_use]
+    pub fn of(&self, sample: &Sample) -> f64 {
+        (self.of)(sample)
+    }
+
     /// Its unit, "1" where it has none.
     #[must_use]
     pub fn unit(&self, units: &Units) -> String {
@@ -110,30 +117,6 @@ pub fn write(
     output.commit()
 }
 
-/// The text of the case whose trace stands at `path`.
-///
-/// # Errors
-/// When there is no file, or it is no trace, or one of another format version.
-pub fn case_of(path: &Path) -> Result<String, StoreError> {
-    let file = open::to_read(path, StoreError::not_a_trace)?;
-    let missing = |name: &str| StoreError::not_a_trace(path, format!("it has no {name}"));
-    match one_number::<i32>(&file, trace::FORMAT_VERSION) {
-        Some(schema::OLDEST_TRACE_FORMAT_VERSION..=schema::TRACE_FORMAT_VERSION) => {
-            text(&file, trace::CASE).map_err(|_| missing(trace::CASE))
-        }
-        Some(other) => {
-            let (oldest, newest) = (
-                schema::OLDEST_TRACE_FORMAT_VERSION,
-                schema::TRACE_FORMAT_VERSION,
-            );
-            let why =
-                format!("its format version is {other}, this program reads {oldest} to {newest}");
-            Err(StoreError::not_a_trace(path, why))
-        }
-        None => Err(missing(trace::FORMAT_VERSION)),
-    }
-}
-
 fn fill_file(
     file: &File,
     spec: &CaseSpec,
@@ -166,7 +149,7 @@ fn fill_file(
         .iter()
         .map(|s| number(&MODES, &s.mode))
         .collect();
-    let mode = columns.make("mode", &numbers, FLAG_FILL)?;
+    let mode = columns.make(trace::MODE, &numbers, FLAG_FILL)?;
     put_flags(&mode, "what the block does", &MODES.map(|(_, name)| name))?;
     put_events(file, &mut dimensions, spec, &trace.events)?;
     dimensions.finish()
@@ -182,27 +165,33 @@ fn number<T: PartialEq>(all: &[(T, &str)], value: &T) -> u8 {
     place.map_or(FLAG_FILL, |place| place as u8)
 }
 
-fn put_root(file: &File, spec: &CaseSpec, found: &Trace) -> hdf5::Result<()> {
-    let version = schema::TRACE_FORMAT_VERSION;
-    put_numbers(file, trace::FORMAT_VERSION, &[version])?;
-    put_text(file, trace::CASE, &spec.text)?;
-    put_friction(file, &spec.setting)?;
-    let (case, summary) = (&spec.case, &found.summary);
+/// What stands of a case as attributes of the root, besides its parameters, by name.
+#[must_use]
+pub fn numbers_of_case(case: &Case) -> [(&'static str, f64); 5] {
     let (x_dot0, a0) = case.initial_state();
-    for (name, value) in [
+    [
         ("x_dot0", x_dot0),
         ("a0", a0),
         ("switch_on", case.switch_on),
         ("horizon", case.horizon),
         ("tolerance", case.accuracy.tolerance),
-    ] {
+    ]
+}
+
+fn put_root(file: &File, spec: &CaseSpec, found: &Trace) -> hdf5::Result<()> {
+    let version = schema::TRACE_FORMAT_VERSION;
+    put_numbers(file, trace::FORMAT_VERSION, &[version])?;
+    put_text(file, trace::CASE, &spec.text)?;
+    put_friction(file, &spec.setting)?;
+    let summary = &found.summary;
+    for (name, value) in numbers_of_case(&spec.case) {
         put_numbers(file, name, &[value])?;
     }
     put_text(file, trace::OUTCOME, summary.outcome.name())?;
     for (name, value) in summary.numbers() {
         put_numbers(file, name, &[value])?;
     }
-    put_numbers(file, "steps", &[summary.steps])
+    put_numbers(file, trace::STEPS, &[summary.steps])
 }
 
 fn describe(dataset: &Dataset, quantity: &Quantity, units: &Units) -> hdf5::Result<()> {
@@ -274,14 +263,14 @@ fn put_events(
         coordinates: "",
     };
     let times: Vec<f64> = events.iter().map(|e| e.t).collect();
-    let dataset = columns.make("t", &times, f64::NAN)?;
+    let dataset = columns.make(trace::TIME, &times, f64::NAN)?;
     put_text(&dataset, "long_name", "time of the event")?;
     put_text(&dataset, "units", &TIME.unit(&spec.units))?;
     let kinds: Vec<u8> = events.iter().map(|e| number(&EVENTS, &e.kind)).collect();
-    let dataset = columns.make("kind", &kinds, FLAG_FILL)?;
+    let dataset = columns.make(trace::KIND, &kinds, FLAG_FILL)?;
     put_flags(&dataset, "what happens", &EVENTS.map(|(_, name)| name))?;
     let elongations: Vec<f64> = events.iter().map(|e| e.a).collect();
-    let dataset = columns.make("a", &elongations, f64::NAN)?;
+    let dataset = columns.make(trace::ELONGATION, &elongations, f64::NAN)?;
     put_text(&dataset, "long_name", "elongation of the spring then")?;
     put_text(&dataset, "units", &spec.units.of([0, 1, 0]))
 }

@@ -17,10 +17,10 @@ pub enum PictureError {
         /// The name.
         path: PathBuf,
     },
-    /// The picture would replace the map.
-    #[error("the picture would replace the map {}", path.display())]
+    /// The picture would replace what it shows.
+    #[error("the picture would replace {}, which it shows", path.display())]
     OverMap {
-        /// The map.
+        /// The map or trace.
         path: PathBuf,
     },
     /// A width or height that makes no picture.

@@ -53,6 +53,12 @@ impl Picture {
         })
     }
 
+    /// The bytes of its file.
+    #[must_use]
+    pub fn bytes(&self) -> &[u8] {
+        &self.bytes
+    }
+
     /// Writes the file. It appears when it is complete; one that is there is replaced.
     ///
     /// # Errors

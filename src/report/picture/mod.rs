@@ -62,7 +62,7 @@ mod told_apart;
 use std::path::Path;
 
 use crate::report::visible::visible_line;
-use crate::store::MapFile;
+use crate::store::{MapFile, TraceFile};
 use crate::sweep::{CaseSpec, Trace};
 use choice::Choice;
 pub use error::PictureError;
@@ -82,11 +82,7 @@ use view::{MOST_PANELS, View};
 /// When the options do not fit the map, there is nothing to draw, or the map cannot be read.
 pub fn draw(map: &MapFile, path: &Path, options: &PictureOptions) -> Result<Picture, PictureError> {
     let format = Format::of(path)?;
-    if same_file(map.path(), path) {
-        return Err(PictureError::OverMap {
-            path: path.to_owned(),
-        });
-    }
+    apart(map.path(), path)?;
     options.check()?;
     let scene = compose(map, options, format.most_cells())?;
     let origin = Origin {
@@ -98,22 +94,40 @@ pub fn draw(map: &MapFile, path: &Path, options: &PictureOptions) -> Result<Pict
 
 /// Draws the trace of the file `of` for the file `path`, as [`draw`] does a map: velocities,
 /// elongation and the quantity that is controlled over time, and the velocity over the elongation.
+/// Of the options the size and the title count; the title is the case's by default.
 ///
 /// # Errors
-/// When the name of the file is no picture's.
+/// When the name of the file is no picture's, or options have no meaning for a trace.
 pub fn draw_trace(
     (spec, trace): (&CaseSpec, &Trace),
     of: &Path,
     path: &Path,
+    options: &PictureOptions,
 ) -> Result<Picture, PictureError> {
     let format = Format::of(path)?;
-    let mut scene = Scene::new(PictureOptions::default().size);
-    trace::draw(spec, trace, &mut scene);
+    options.check()?;
+    options.about_values("a trace has no scale of values")?;
+    let mut scene = Scene::new(options.size);
+    let title = options.title.as_deref().unwrap_or(&spec.title);
+    trace::draw((spec, title), trace, &mut scene);
     let origin = Origin {
         of: named(of) + " motion",
         named: "",
     };
     Picture::of(&scene, format, path, origin)
+}
+
+/// [`draw_trace`] of a trace in a file.
+///
+/// # Errors
+/// As there, and when the picture would replace the trace.
+pub fn draw_trace_file(
+    file: &TraceFile,
+    path: &Path,
+    options: &PictureOptions,
+) -> Result<Picture, PictureError> {
+    apart(file.path(), path)?;
+    draw_trace((&file.spec, &file.trace), file.path(), path, options)
 }
 
 /// Draws a point for the file `path`, as [`draw`] does a map: its characteristic roots in the
@@ -138,10 +152,17 @@ fn named(path: &Path) -> String {
     visible_line(&name)
 }
 
-fn same_file(a: &Path, b: &Path) -> bool {
-    match (a.canonicalize(), b.canonicalize()) {
-        (Ok(a), Ok(b)) => a == b,
-        _ => a == b,
+/// The picture is another file than what it shows.
+fn apart(shown: &Path, picture: &Path) -> Result<(), PictureError> {
+    let same = match (shown.canonicalize(), picture.canonicalize()) {
+        (Ok(shown), Ok(picture)) => shown == picture,
+        _ => shown == picture,
+    };
+    let path = picture.to_owned();
+    if same {
+        Err(PictureError::OverMap { path })
+    } else {
+        Ok(())
     }
 }
 

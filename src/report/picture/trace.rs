@@ -42,9 +42,9 @@ struct Strip {
     curves: Vec<Curve>,
 }
 
-/// Draws a trace.
-pub(super) fn draw(spec: &CaseSpec, trace: &Trace, scene: &mut Scene) {
-    let title = match spec.title.trim() {
+/// Draws a trace of a case under a title.
+pub(super) fn draw((spec, title): (&CaseSpec, &str), trace: &Trace, scene: &mut Scene) {
+    let title = match title.trim() {
         "" => "Motion of the block",
         title => title,
     };

@@ -133,7 +133,7 @@ impl View {
                 notes.push(assignment(axis.parameter, axis.values[value], &axis.unit));
             }
         }
-        let units = map.sweep().map(|spec| spec.units).unwrap_or_default();
+        let units = map.units();
         // Only what differs from the default, and the gains, since a gain of 0 means no such
         // control.
         for (parameter, value) in map.scalars() {

@@ -9,7 +9,7 @@ use crate::slip::stop::Stop;
 use crate::sweep::input::case_file::{CaseSpec, Sampling};
 
 /// More samples than this make no trace: some 300 MB.
-const MOST_SAMPLES: usize = 2_000_000;
+pub const MOST_SAMPLES: usize = 2_000_000;
 
 /// Modes by their numbers in a trace, with their names.
 pub const MODES: [(Mode, &str); 3] = [

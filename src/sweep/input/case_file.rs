@@ -47,6 +47,9 @@ const SAMPLES: u32 = 24;
 /// The most samples in a step.
 const MOST_SAMPLES: u64 = 64;
 
+/// Keys of sweep files that case files do not have.
+const OF_SWEEPS: [&str; 5] = ["fields", "axes", "boundaries", "best", "protocol"];
+
 /// How densely a motion is sampled between its events.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Sampling {
@@ -78,6 +81,18 @@ pub struct CaseSpec {
     pub text: String,
 }
 
+/// Whether a text is meant as a case file rather than a sweep file: it has no key of sweeps alone,
+/// and one of cases alone or everything that a case needs.
+#[must_use]
+pub fn is_case_file(text: &str) -> bool {
+    let Ok(document) = parse(text) else {
+        return false;
+    };
+    let entries = entries(document.get_ref(), "");
+    let has = |keys: &[&str]| entries.iter().any(|entry| keys.contains(&entry.key));
+    !has(&OF_SWEEPS) && (has(&["switch_on", "trace"]) || text.parse::<CaseSpec>().is_ok())
+}
+
 impl std::str::FromStr for CaseSpec {
     type Err = SpecError;
 
@@ -100,7 +115,7 @@ impl std::str::FromStr for CaseSpec {
                 "trace" => draft.read_trace(&entry)?,
                 "units" => draft.units = read_units(&entry)?,
                 _ if draft.simulation.read(&entry)? => {}
-                "fields" | "axes" | "boundaries" | "best" | "protocol" => {
+                key if OF_SWEEPS.contains(&key) => {
                     return Err(entry.elsewhere(
                         "it is a key of a sweep file, of a map: `slipmap run` takes it",
                     ));
@@ -267,6 +282,23 @@ mod tests {
         assert_eq!((case.tau, case.horizon), (0.0, 1000.0));
         assert_eq!(case.accuracy, Accuracy::default());
         assert_eq!((spec.until, spec.sampling), (None, Sampling::PerStep(24)));
+    }
+
+    #[test]
+    fn a_case_is_told_from_a_sweep() {
+        for (text, case) in [
+            (PLAIN, true),
+            ("switch_on = 1", true),
+            ("[trace]", true),
+            (&*format!("{PLAIN}[axis]\ntau = [1]"), false),
+            ("", false),
+            ("[fixed]\nv0 = 1", false),
+            ("[axis]\ntau = [1]", false),
+            ("friction = ", false),
+        ] {
+            assert_eq!(is_case_file(text), case, "{text}");
+            assert!(!is_case_file(&format!("axes.tau = [1]\n{text}")));
+        }
     }
 
     #[test]

@@ -1,0 +1,150 @@
+//! What is told of the case of one motion: before it is simulated, and of its trace.
+
+use serde::Serialize;
+use slipmap::model::Control;
+use slipmap::report::numbers::grouped;
+use slipmap::slip::case::Start;
+use slipmap::sweep::{CaseSpec, Parameter};
+
+use super::failure::Failure;
+use super::say::{Rows, as_object};
+
+/// The case of one motion, with everything that its file leaves to defaults.
+#[derive(Debug, Serialize)]
+pub(super) struct CaseFacts {
+    title: String,
+    /// Name of the friction law.
+    friction: &'static str,
+    /// Which gains are not 0: `none`, `velocity`, `load` or `both`.
+    control: &'static str,
+    /// Parameters by name.
+    #[serde(serialize_with = "as_object")]
+    parameters: Vec<(&'static str, f64)>,
+    /// Units of the parameters and of time, length, velocity and force, by name; `1` where there
+    /// is none.
+    #[serde(serialize_with = "as_object")]
+    units: Vec<(&'static str, String)>,
+    start: StartFacts,
+    /// When control is switched on; null where it never is, or at a phase of stick-slip.
+    switch_on: Option<f64>,
+    /// Until when the outcome is looked for.
+    horizon: f64,
+    tolerance: f64,
+    /// The most steps of the integrator.
+    steps: u64,
+    /// End of the samples; null where they end when the outcome is known.
+    until: Option<f64>,
+}
+
+/// The block at t = 0.
+#[derive(Debug, Serialize)]
+struct StartFacts {
+    x_dot0: f64,
+    a0: f64,
+    /// The file does not say where it starts: it slides a little faster than it is pulled.
+    assumed: bool,
+    /// Just released from uncontrolled stick-slip; this long before switch-on.
+    switch_on_phase: Option<f64>,
+}
+
+impl CaseFacts {
+    pub(super) fn of(spec: &CaseSpec) -> Self {
+        let (setting, case) = (&spec.setting, &spec.case);
+        let used = |p: &Parameter| setting.uses(*p) && !p.of_start();
+        let parameters = || Parameter::ALL.into_iter().filter(used);
+        let of_parameters = parameters().map(|p| (p.name(), spec.units.of_parameter(p)));
+        let quantities = [
+            ("time", [0, 0, 1]),
+            ("length", [0, 1, 0]),
+            ("velocity", [0, 1, -1]),
+            ("force", [1, 0, 0]),
+        ];
+        let of_quantities = quantities.map(|(name, powers)| (name, spec.units.of(powers)));
+        let (x_dot0, a0) = case.initial_state();
+        let after_release = case.start == Start::AfterRelease;
+        let switch_on = Some(case.switch_on).filter(|time| time.is_finite());
+        Self {
+            title: spec.title.clone(),
+            friction: setting.law().map_or("", |law| law.name()),
+            control: control(setting.control()),
+            parameters: parameters().map(|p| (p.name(), setting.get(p))).collect(),
+            units: of_parameters.chain(of_quantities).collect(),
+            start: StartFacts {
+                x_dot0,
+                a0,
+                assumed: spec.start_assumed,
+                switch_on_phase: switch_on.filter(|_| after_release),
+            },
+            switch_on: switch_on.filter(|_| !after_release),
+            horizon: case.horizon,
+            tolerance: case.accuracy.tolerance,
+            steps: case.steps,
+            until: spec.until,
+        }
+    }
+
+    /// End of the samples, where the file gives one.
+    pub(super) const fn until(&self) -> Option<f64> {
+        self.until
+    }
+
+    /// A value with the unit of a name.
+    pub(super) fn with_unit(&self, name: &str, value: f64) -> String {
+        let of = self.units.iter().find(|(of, _)| *of == name);
+        match of.filter(|(_, unit)| unit != "1") {
+            Some((_, unit)) => format!("{value} {unit}"),
+            None => value.to_string(),
+        }
+    }
+
+    /// Rows for people.
+    pub(super) fn tell(&self, rows: &mut Rows) -> Result<(), Failure> {
+        if !self.title.trim().is_empty() {
+            rows.row("title", &self.title)?;
+        }
+        rows.row("friction", self.friction)?;
+        rows.row("control", self.control)?;
+        for (name, value) in &self.parameters {
+            rows.row(
+                "fixed",
+                format!("{name:<12} {}", self.with_unit(name, *value)),
+            )?;
+        }
+        let start = &self.start;
+        let state = format!(
+            "x_dot0 = {}, a0 = {}",
+            self.with_unit("velocity", start.x_dot0),
+            self.with_unit("length", start.a0),
+        );
+        let how = match (start.switch_on_phase, start.assumed) {
+            (Some(_), _) => ", just released from uncontrolled stick-slip",
+            (None, true) => ", assumed: the file gives no start",
+            (None, false) => "",
+        };
+        rows.row("start", state + how)?;
+        rows.row("switch_on", self.switched_on())?;
+        let (horizon, steps) = (self.with_unit("time", self.horizon), grouped(self.steps));
+        rows.row("horizon", format!("t = {horizon}, {steps} steps at most"))?;
+        rows.row("tolerance", format!("{:e}", self.tolerance))
+    }
+
+    fn switched_on(&self) -> String {
+        match (self.switch_on, self.start.switch_on_phase) {
+            (Some(time), _) => format!("t = {}", self.with_unit("time", time)),
+            (None, Some(phase)) => {
+                let phase = self.with_unit("time", phase);
+                format!("{phase} after a release, modulo the period")
+            }
+            (None, None) => "never".to_owned(),
+        }
+    }
+}
+
+fn control(gains: Control) -> &'static str {
+    match (gains.alpha_v != 0.0, gains.alpha_n != 0.0) {
+        (false, false) => "none",
+        (true, false) => "velocity",
+        (false, true) => "load",
+        (true, true) => "both",
+    }
+}

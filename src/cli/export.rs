@@ -1,0 +1,236 @@
+//! `slipmap export`: what a map or a trace holds, as text.
+
+use std::io::Write;
+use std::path::PathBuf;
+use std::sync::atomic::AtomicBool;
+
+use clap::ValueEnum;
+use slipmap::report::numbers::grouped;
+use slipmap::report::table::{TableError, write_cells, write_curves, write_events, write_samples};
+use slipmap::store::trace_file::{QUANTITIES, Quantity};
+use slipmap::store::{MapFile, TraceFile, trace_reader};
+use slipmap::sweep::input::field::fields_meant;
+use slipmap::sweep::input::nearest::did_you_mean;
+use slipmap::sweep::{Field, Parameter};
+
+use super::cell::{axis_of, parse_at, place_on};
+use super::failure::Failure;
+use super::open::open;
+use super::say;
+use super::signals::Signals;
+use super::text_output::To;
+
+/// What a signal leaves.
+const NOT_EXPORTED: &str = "not everything is exported";
+
+#[derive(Debug, clap::Args)]
+#[command(after_help = "Examples:
+  slipmap export map.h5 --field abscissa --at mu_prime=-0.3 -o slice.csv
+  slipmap export map.h5 --table boundaries | head
+  slipmap export trace.h5 --table events")]
+pub(super) struct Args {
+    /// The map, or the trace of a motion
+    #[arg(value_name = "FILE.h5")]
+    file: PathBuf,
+    /// The text to write, .csv; - for standard output [default: standard output]
+    #[arg(short, long, value_name = "TABLE.csv")]
+    output: Option<PathBuf>,
+    /// Which table [default: the cells of a map, the samples of a trace]
+    #[arg(long)]
+    table: Option<TableName>,
+    /// A field of the map, or a quantity of the trace; again for more [default: all]
+    #[arg(long, value_name = "NAME")]
+    field: Vec<String>,
+    /// Hold an axis of the map at the value nearest to this; again for other axes
+    #[arg(long, value_name = "AXIS=VALUE", value_parser = parse_at)]
+    at: Vec<(Parameter, f64)>,
+    /// Begin with lines of # that give title, parameters, units and meaning of the columns
+    #[arg(long)]
+    comments: bool,
+}
+
+/// Tables by name.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum TableName {
+    /// Of a map: a row for each cell
+    Cells,
+    /// Of a map: its crossing curves, a row for each vertex
+    Boundaries,
+    /// Of a trace: a row for each sample
+    Samples,
+    /// Of a trace: a row for each event
+    Events,
+}
+
+pub(super) fn main(args: &Args) -> Result<(), Failure> {
+    let signals = Signals::catch()?;
+    let to = To::named(args.output.as_deref(), &args.file)?;
+    let rows = match trace_reader::is_trace(&args.file) {
+        true => of_trace(args, to, &signals)?,
+        false => of_map(args, to, &signals)?,
+    };
+    match to {
+        To::StandardOutput => Ok(()),
+        To::File(path) => {
+            let (path, rows) = (path.display(), grouped(rows));
+            say::result(format_args!("{path}: {rows} rows"))
+        }
+    }
+}
+
+fn of_map(args: &Args, to: To, signals: &Signals) -> Result<u64, Failure> {
+    let table = args.table.unwrap_or(TableName::Cells);
+    if !matches!(table, TableName::Cells | TableName::Boundaries) {
+        return Err(other_table(
+            table,
+            "a map",
+            [TableName::Cells, TableName::Boundaries],
+        ));
+    }
+    let map = open(&args.file, signals, NOT_EXPORTED)?;
+    let held = held(&map, args)?;
+    if table == TableName::Cells {
+        let fields = fields(&map, args)?;
+        return to.write(signals, NOT_EXPORTED, |out, stop| {
+            write_cells(&map, (&fields, &held), args.comments, out, stop)
+        });
+    }
+    refuse_fields(args, table)?;
+    let Some((p, tau)) = map.boundary_plane() else {
+        return Err(Failure::bad_input_with_help(
+            "this map holds no crossing curves",
+            "boundaries = true in a sweep file traces them",
+        ));
+    };
+    if let Some(axis) = [p, tau].into_iter().find(|&axis| held[axis].is_some()) {
+        let name = map.axes()[axis].parameter.name();
+        return Err(Failure::bad_input_with_help(
+            format!("--at: the curves go along {name}"),
+            "an axis outside their planes can be held",
+        ));
+    }
+    let rows = to.write(signals, NOT_EXPORTED, |out, stop| {
+        write_curves(&map, &held, args.comments, out, stop)
+    })?;
+    Ok(rows.unwrap_or(0))
+}
+
+fn of_trace(args: &Args, to: To, signals: &Signals) -> Result<u64, Failure> {
+    let table = args.table.unwrap_or(TableName::Samples);
+    if !matches!(table, TableName::Samples | TableName::Events) {
+        return Err(other_table(
+            table,
+            "a trace",
+            [TableName::Samples, TableName::Events],
+        ));
+    }
+    if let Some((axis, _)) = args.at.first() {
+        let message = format!(
+            "--at {} has no meaning for a trace of one motion",
+            axis.name()
+        );
+        return Err(Failure::bad_input(message));
+    }
+    if table == TableName::Events {
+        refuse_fields(args, table)?;
+    }
+    let quantities = quantities(args)?;
+    let file = TraceFile::open(&args.file)?;
+    let motion = (&file.spec, &file.trace);
+    let write = |out: &mut dyn Write, stop: &AtomicBool| -> Result<u64, TableError> {
+        match table {
+            TableName::Events => write_events(motion, args.comments, out),
+            _ => write_samples(motion, &quantities, args.comments, out, stop),
+        }
+    };
+    to.write(signals, NOT_EXPORTED, write)
+}
+
+fn other_table(table: TableName, kind: &str, tables: [TableName; 2]) -> Failure {
+    let [first, second] = tables.map(name);
+    Failure::bad_input_with_help(
+        format!("--table {} is none of {kind}", name(table)),
+        format!("its tables: {first}, {second}"),
+    )
+}
+
+fn name(table: TableName) -> String {
+    let value = table.to_possible_value();
+    value.map_or_else(String::new, |value| value.get_name().to_owned())
+}
+
+fn refuse_fields(args: &Args, table: TableName) -> Result<(), Failure> {
+    if args.field.is_empty() {
+        return Ok(());
+    }
+    let message = format!("--field has no meaning for --table {}", name(table));
+    Err(Failure::bad_input(message))
+}
+
+/// For every axis the place at which it is held.
+fn held(map: &MapFile, args: &Args) -> Result<Vec<Option<usize>>, Failure> {
+    let axes: Vec<Parameter> = map.axes().iter().map(|axis| axis.parameter).collect();
+    let mut held = vec![None; axes.len()];
+    for &(parameter, value) in &args.at {
+        let axis = axis_of(parameter, &axes)?;
+        let place = place_on(parameter, &map.axes()[axis].values, value)?;
+        if held[axis].replace(place).is_some() {
+            let message = format!("--at {} is given twice", parameter.name());
+            return Err(Failure::bad_input(message));
+        }
+    }
+    Ok(held)
+}
+
+/// The fields that are asked for, in this order; all of them where none is.
+fn fields(map: &MapFile, args: &Args) -> Result<Vec<Field>, Failure> {
+    if args.field.is_empty() {
+        return Ok(map.fields().to_vec());
+    }
+    let field = |name: &String| {
+        let field = Field::from_name(name);
+        let field =
+            field.ok_or_else(|| Failure::bad_input(format!("--field: {}", fields_meant(name))))?;
+        if map.fields().contains(&field) {
+            return Ok(field);
+        }
+        let held: Vec<&str> = map.fields().iter().map(|field| field.name()).collect();
+        Err(Failure::bad_input_with_help(
+            format!("--field: the map does not hold {name}"),
+            format!("it holds {}", held.join(", ")),
+        ))
+    };
+    once(args)?.map(field).collect()
+}
+
+/// The quantities that are asked for, in this order; all of them where none is.
+fn quantities(args: &Args) -> Result<Vec<&'static Quantity>, Failure> {
+    if args.field.is_empty() {
+        return Ok(QUANTITIES.iter().collect());
+    }
+    let quantity = |name: &String| {
+        let found = QUANTITIES.iter().find(|quantity| quantity.name == name);
+        found.ok_or_else(|| {
+            let names = QUANTITIES.each_ref().map(|quantity| quantity.name);
+            let meant = did_you_mean(name, names);
+            let known = names.join(", ");
+            Failure::bad_input(format!(
+                "--field: a trace has no {name}; {meant}known: {known}"
+            ))
+        })
+    };
+    once(args)?.map(quantity).collect()
+}
+
+/// The names of the fields, none of them twice.
+fn once(args: &Args) -> Result<impl Iterator<Item = &String>, Failure> {
+    let names = &args.field;
+    let twice = (1..names.len()).find(|&i| names[..i].contains(&names[i]));
+    match twice {
+        None => Ok(names.iter()),
+        Some(i) => Err(Failure::bad_input(format!(
+            "--field {} is given twice",
+            names[i]
+        ))),
+    }
+}

@@ -1,0 +1,146 @@
+//! `slipmap info` of a trace: the case, what the trace holds, what became of the motion.
+
+use std::path::Path;
+
+use serde::Serialize;
+use slipmap::report::numbers::{grouped, short};
+use slipmap::store::TraceFile;
+use slipmap::store::trace_file::QUANTITIES;
+use slipmap::sweep::cells::trace::EVENTS;
+
+use super::case_facts::CaseFacts;
+use super::failure::Failure;
+use super::info::{origin, tell_text};
+use super::say::{self, Rows, as_object};
+
+/// In what form it is told.
+#[derive(Debug, Clone, Copy)]
+pub(super) enum Told {
+    /// Rows for people.
+    Rows,
+    /// One JSON object.
+    Json,
+    /// The case file alone.
+    Text,
+}
+
+/// What there is to say of a trace.
+#[derive(Serialize)]
+struct Facts {
+    kind: &'static str,
+    /// What the trace says of where it comes from, by name.
+    #[serde(serialize_with = "as_object")]
+    origin: Vec<(&'static str, String)>,
+    case: CaseFacts,
+    samples: u64,
+    /// From the first sample to the last, in time.
+    duration: f64,
+    fields: Vec<FieldFacts>,
+    /// Number of events of each kind, by its name.
+    #[serde(serialize_with = "as_object")]
+    events: Vec<(&'static str, u64)>,
+    outcome: &'static str,
+    /// Numbers of the outcome, by name; null where there is none.
+    #[serde(flatten, serialize_with = "as_object")]
+    numbers: Vec<(&'static str, f64)>,
+    steps: u64,
+}
+
+#[derive(Serialize)]
+struct FieldFacts {
+    name: &'static str,
+    long_name: &'static str,
+    unit: String,
+    /// The smallest and the largest value of the samples.
+    range: (f64, f64),
+}
+
+pub(super) fn tell(path: &Path, what: Told) -> Result<(), Failure> {
+    let file = TraceFile::open(path)?;
+    match what {
+        Told::Text => tell_text(&file.spec.text),
+        Told::Json => say::json(&Facts::of(&file)),
+        Told::Rows => Facts::of(&file).tell(),
+    }
+}
+
+impl Facts {
+    fn of(file: &TraceFile) -> Self {
+        let trace = &file.trace;
+        let of_kind = |(kind, name)| {
+            let events = trace.events.iter().filter(|event| event.kind == kind);
+            (name, events.count() as u64)
+        };
+        let summary = &trace.summary;
+        let ends = trace.samples.first().zip(trace.samples.last());
+        Self {
+            kind: "trace",
+            origin: origin(|name| file.root_text(name)),
+            case: CaseFacts::of(&file.spec),
+            samples: trace.samples.len() as u64,
+            duration: ends.map_or(0.0, |(first, last)| last.t - first.t),
+            fields: fields(file),
+            events: EVENTS.into_iter().map(of_kind).collect(),
+            outcome: summary.outcome.name(),
+            // Not −0.
+            numbers: summary
+                .numbers()
+                .map(|(name, value)| (name, value + 0.0))
+                .to_vec(),
+            steps: summary.steps,
+        }
+    }
+
+    fn tell(&self) -> Result<(), Failure> {
+        let mut rows = Rows::begin();
+        let title = |name: &str| name == "title" || name == "friction";
+        rows.row("kind", "a trace: one motion, by `slipmap simulate`")?;
+        for (name, text) in self.origin.iter().filter(|(name, _)| !title(name)) {
+            rows.row(name, text)?;
+        }
+        self.case.tell(&mut rows)?;
+        let (samples, end) = (
+            grouped(self.samples),
+            self.case.with_unit("time", self.duration),
+        );
+        rows.row("samples", format!("{samples} over {end}"))?;
+        for field in &self.fields {
+            rows.row("field", field.text())?;
+        }
+        for (name, count) in self.events.iter().filter(|(_, count)| *count > 0) {
+            rows.row("events", format!("{name:<12} {}", grouped(*count)))?;
+        }
+        rows.row("outcome", self.outcome)?;
+        for (name, value) in self.numbers.iter().filter(|(_, value)| !value.is_nan()) {
+            rows.row("", format!("{name:<12} {value}"))?;
+        }
+        rows.row("", format!("{:<12} {}", "steps", grouped(self.steps)))
+    }
+}
+
+fn fields(file: &TraceFile) -> Vec<FieldFacts> {
+    let samples = &file.trace.samples;
+    let facts = QUANTITIES.iter().map(|quantity| {
+        let values = samples.iter().map(|sample| quantity.of(sample));
+        let ends = (f64::INFINITY, f64::NEG_INFINITY);
+        FieldFacts {
+            name: quantity.name,
+            long_name: quantity.long_name,
+            unit: quantity.unit(&file.spec.units),
+            range: values.fold(ends, |(low, high), v| (low.min(v), high.max(v))),
+        }
+    });
+    facts.collect()
+}
+
+impl FieldFacts {
+    fn text(&self) -> String {
+        let unit = match self.unit.as_str() {
+            "1" => String::new(),
+            unit => format!(" {unit}"),
+        };
+        let (low, high) = self.range;
+        let (name, what) = (self.name, self.long_name);
+        format!("{name:<12} {what}, {} to {}{unit}", short(low), short(high))
+    }
+}

@@ -1,0 +1,157 @@
+//! The cells of a map as rows: axes, fields, the status.
+
+use std::io::Write;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+use super::{About, Column, Table, TableError, put_number};
+use crate::linear::status::FLAGS;
+use crate::store::cell_blocks::CellBlock;
+use crate::store::schema::{STATUS, root};
+use crate::store::{MapAxis, MapFile};
+use crate::sweep::Field;
+use crate::sweep::engine::STATUS_FILL;
+
+/// Texts of an axis of more values are made again for each cell.
+const MOST_TEXTS: usize = 1 << 16;
+
+/// Writes the cells of a map, those of `held` axes at these indices alone, one row each, the last
+/// axis fastest: all axes, `fields`, the status. Returns the number of rows. Few cells are in
+/// memory at once. Kinds are words, counts and the status whole numbers.
+///
+/// # Errors
+/// When the map cannot be read or the text not be written, and once `stop` is set.
+pub fn write_cells(
+    map: &MapFile,
+    (fields, held): (&[Field], &[Option<usize>]),
+    comments: bool,
+    out: impl Write,
+    stop: &AtomicBool,
+) -> Result<u64, TableError> {
+    let about = comments.then(|| about(map));
+    let mut table = Table::begin(out, about.as_ref(), &columns(map, fields))?;
+    let axes: Vec<AxisTexts> = map.axes().iter().map(AxisTexts::of).collect();
+    let kinds: Vec<Option<Vec<&str>>> = fields.iter().map(|field| field.kinds()).collect();
+    map.for_each_block(fields, held, |block| {
+        write_block(&mut table, block, &axes, &kinds, stop)
+    })?;
+    table.finish()
+}
+
+/// What is said of a map before its columns.
+pub(super) fn about(map: &MapFile) -> About {
+    let texts = [
+        ("title", root::TITLE),
+        ("made by", root::SOURCE),
+        ("revision", root::GIT_REVISION),
+    ];
+    let texts = texts.map(|(name, of)| (name, map.root_text(of).unwrap_or_default()));
+    About {
+        texts: texts
+            .into_iter()
+            .filter(|(_, text)| !text.is_empty())
+            .collect(),
+        fixed: map.scalars(),
+        units: map.units(),
+    }
+}
+
+/// The column of an axis.
+pub(super) fn of_axis(axis: &MapAxis) -> Column {
+    Column::of_parameter(axis.parameter, &axis.unit)
+}
+
+fn columns(map: &MapFile, fields: &[Field]) -> Vec<Column> {
+    let of_field =
+        |field: &Field| Column::of(field.name(), map.field_unit(*field), field.long_name());
+    let flags = FLAGS
+        .map(|(mask, name)| format!("{mask} {name}"))
+        .join(", ");
+    let status = Column::of(
+        STATUS,
+        "",
+        format!("status of the cell, the sum of {flags}"),
+    );
+    let axes = map.axes().iter().map(of_axis);
+    axes.chain(fields.iter().map(of_field))
+        .chain([status])
+        .collect()
+}
+
+/// The values of an axis, as texts where these are few.
+struct AxisTexts<'a> {
+    values: &'a [f64],
+    texts: Vec<String>,
+}
+
+impl<'a> AxisTexts<'a> {
+    fn of(axis: &'a MapAxis) -> Self {
+        let values = &axis.values;
+        let few = if values.len() <= MOST_TEXTS {
+            &values[..]
+        } else {
+            &[]
+        };
+        let text = |value: &f64| {
+            let mut text = String::new();
+            put_number(&mut text, *value);
+            text
+        };
+        Self {
+            values,
+            texts: few.iter().map(text).collect(),
+        }
+    }
+
+    fn write(&self, index: usize, table: &mut Table<impl Write>) -> Result<(), TableError> {
+        match self.texts.get(index) {
+            Some(text) => table.text(text),
+            None => table.number(self.values[index]),
+        }
+    }
+}
+
+fn write_block(
+    table: &mut Table<impl Write>,
+    block: &CellBlock,
+    axes: &[AxisTexts],
+    kinds: &[Option<Vec<&str>>],
+    stop: &AtomicBool,
+) -> Result<(), TableError> {
+    let mut index = block.first.clone();
+    for cell in 0..block.status.len() {
+        // A flag that is looked at now and then.
+        if cell.is_multiple_of(1024) && stop.load(Ordering::Relaxed) {
+            return Err(TableError::Stopped);
+        }
+        for (axis, &place) in axes.iter().zip(&index) {
+            axis.write(place, table)?;
+        }
+        for (values, kinds) in block.fields.iter().zip(kinds) {
+            let value = values[cell];
+            match kinds {
+                Some(names) if !value.is_nan() => {
+                    table.text(names.get(value as usize).copied().unwrap_or(""))?;
+                }
+                _ => table.number(value)?,
+            }
+        }
+        match block.status[cell] {
+            STATUS_FILL => table.text("")?,
+            status => table.whole(u64::from(status))?,
+        }
+        table.end_row()?;
+        advance(&mut index, block);
+    }
+    Ok(())
+}
+
+/// The index of the next cell of a block, last axis fastest.
+fn advance(index: &mut [usize], block: &CellBlock) {
+    for axis in (0..index.len()).rev() {
+        index[axis] += 1;
+        if index[axis] < block.first[axis] + block.extent[axis] {
+            return;
+        }
+        index[axis] = block.first[axis];
+    }
+}

@@ -1,0 +1,127 @@
+//! The crossing curves of a map as rows, one for each vertex.
+
+use std::io::Write;
+use std::ops::ControlFlow;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+use super::cells::{about, of_axis};
+use super::{Column, Table, TableError};
+use crate::linear::Direction;
+use crate::linear::curves::StableSide;
+use crate::store::curve_rows::{DIRECTIONS, STABLE_SIDES};
+use crate::store::map_file::MapCurve;
+use crate::store::schema::DEGREE_OF_STABILITY;
+use crate::store::{MapAxis, MapFile};
+
+/// Writes the curves of a map, those of `held` axes outside their planes at these indices alone:
+/// the number of the curve, the axes outside its plane, its degree of stability, branch, direction
+/// and stable side, then the vertex. Returns the number of rows; none where the map holds no
+/// curves.
+///
+/// # Errors
+/// When the map cannot be read or the text not be written, and once `stop` is set.
+pub fn write_curves(
+    map: &MapFile,
+    held: &[Option<usize>],
+    comments: bool,
+    out: impl Write,
+    stop: &AtomicBool,
+) -> Result<Option<u64>, TableError> {
+    let Some((p, tau)) = map.boundary_plane() else {
+        return Ok(None);
+    };
+    let axes = map.axes();
+    let outer: Vec<usize> = (0..axes.len())
+        .filter(|&axis| axis != p && axis != tau)
+        .collect();
+    let about = comments.then(|| about(map));
+    let columns = columns(map, &outer, [&axes[p], &axes[tau]]);
+    let mut table = Table::begin(out, about.as_ref(), &columns)?;
+    let wanted: Vec<Option<f64>> = outer
+        .iter()
+        .map(|&axis| held[axis].map(|index| axes[axis].values[index]))
+        .collect();
+    let shown = |curve: &MapCurve| {
+        let mut values = curve.outer.iter().zip(&wanted);
+        values.all(|(value, wanted)| wanted.is_none_or(|wanted| wanted == *value))
+    };
+    let mut number = 0;
+    let mut written = Ok(());
+    map.for_each_curve(|curve| {
+        if stop.load(Ordering::Relaxed) {
+            written = Err(TableError::Stopped);
+        } else if shown(&curve) {
+            written = write_curve(&mut table, number, &curve);
+        }
+        number += 1;
+        match written {
+            Ok(()) => ControlFlow::Continue(()),
+            Err(_) => ControlFlow::Break(()),
+        }
+    })?;
+    written?;
+    table.finish().map(Some)
+}
+
+fn columns(map: &MapFile, outer: &[usize], plane: [&MapAxis; 2]) -> Vec<Column> {
+    let degree = "degree of stability: roots on the curve have this real part, negated";
+    let omega = map.units().angular_frequency();
+    let omega = Column::of("omega", omega, "crossing frequency");
+    let of_curve = [
+        Column::of(DEGREE_OF_STABILITY, map.degree_unit(), degree),
+        Column::of("branch", "", "branch number k of the crossing delay"),
+        Column::of(
+            "direction",
+            "",
+            "how a pair of roots crosses with growing delay",
+        ),
+        Column::of(
+            "stable_side",
+            "",
+            "side of the curve on which sliding is stable",
+        ),
+    ];
+    let number = Column::of("curve", "", "number of the curve, in the order of the map");
+    let outer = outer.iter().map(|&axis| of_axis(&map.axes()[axis]));
+    let vertex = plane.map(of_axis).into_iter().chain([omega]);
+    [number]
+        .into_iter()
+        .chain(outer)
+        .chain(of_curve)
+        .chain(vertex)
+        .collect()
+}
+
+fn write_curve(
+    table: &mut Table<impl Write>,
+    number: u64,
+    curve: &MapCurve,
+) -> Result<(), TableError> {
+    let piece = &curve.piece;
+    let direction = match piece.direction {
+        Direction::Left => 0,
+        Direction::Touch => 1,
+        Direction::Right => 2,
+    };
+    let side = match piece.stable_side {
+        StableSide::Shorter => 0,
+        StableSide::Neither => 1,
+        StableSide::Longer => 2,
+    };
+    let word = |words: &'static str, place| words.split(' ').nth(place).unwrap_or("");
+    for vertex in &piece.vertices {
+        table.whole(number)?;
+        for &value in &curve.outer {
+            table.number(value)?;
+        }
+        table.number(curve.degree_of_stability)?;
+        table.whole(piece.branch)?;
+        table.text(word(DIRECTIONS, direction))?;
+        table.text(word(STABLE_SIDES, side))?;
+        for value in [vertex.p, vertex.tau, vertex.omega] {
+            table.number(value)?;
+        }
+        table.end_row()?;
+    }
+    Ok(())
+}

@@ -1,0 +1,194 @@
+//! Tables as text (CSV): one row of names, then one row for each cell, vertex, sample or event.
+//!
+//! Numbers have as many digits as tell them from all others, infinities are `inf` and `-inf`, what
+//! there is not is empty, kinds are words. Comments, where they are asked for, are lines before the
+//! names that begin with `#`.
+
+mod cells;
+mod curves;
+mod motion;
+
+use std::fmt::Write as _;
+use std::io::{self, Write};
+
+pub use cells::write_cells;
+pub use curves::write_curves;
+pub use motion::{write_events, write_samples};
+
+use super::visible::visible_line;
+use crate::store::StoreError;
+use crate::sweep::Parameter;
+use crate::sweep::input::units::Units;
+
+/// Why a table is not complete.
+#[derive(Debug, thiserror::Error)]
+pub enum TableError {
+    /// The map could not be read.
+    #[error(transparent)]
+    Store(#[from] StoreError),
+    /// The text could not be written.
+    #[error("cannot write: {0}")]
+    Write(#[from] io::Error),
+    /// It was asked to stop.
+    #[error("stopped")]
+    Stopped,
+}
+
+impl From<csv::Error> for TableError {
+    fn from(error: csv::Error) -> Self {
+        match error.into_kind() {
+            csv::ErrorKind::Io(error) => Self::Write(error),
+            other => Self::Write(io::Error::other(format!("{other:?}"))),
+        }
+    }
+}
+
+/// A column of a table.
+struct Column {
+    name: String,
+    /// `1` where there is none; empty where a unit has no meaning.
+    unit: String,
+    about: String,
+}
+
+impl Column {
+    fn of(name: impl Into<String>, unit: impl Into<String>, about: impl Into<String>) -> Self {
+        Self {
+            name: name.into(),
+            unit: unit.into(),
+            about: about.into(),
+        }
+    }
+
+    fn of_parameter(parameter: Parameter, unit: &str) -> Self {
+        Self::of(parameter.name(), unit, parameter.long_name())
+    }
+}
+
+/// What comments say besides the columns: texts, and values of parameters.
+struct About {
+    texts: Vec<(&'static str, String)>,
+    fixed: Vec<(Parameter, f64)>,
+    units: Units,
+}
+
+/// A table that is being written.
+struct Table<W: Write> {
+    csv: csv::Writer<W>,
+    text: String,
+    rows: u64,
+}
+
+impl<W: Write> Table<W> {
+    /// Writes comments, where there is something to say, and the names of the columns.
+    fn begin(mut out: W, about: Option<&About>, columns: &[Column]) -> Result<Self, TableError> {
+        if let Some(about) = about {
+            write_comments(&mut out, about, columns)?;
+        }
+        let mut csv = csv::Writer::from_writer(out);
+        csv.write_record(columns.iter().map(|column| &column.name))?;
+        Ok(Self {
+            csv,
+            text: String::new(),
+            rows: 0,
+        })
+    }
+
+    fn text(&mut self, text: &str) -> Result<(), TableError> {
+        Ok(self.csv.write_field(text)?)
+    }
+
+    fn number(&mut self, value: f64) -> Result<(), TableError> {
+        self.text.clear();
+        put_number(&mut self.text, value);
+        Ok(self.csv.write_field(&self.text)?)
+    }
+
+    fn whole(&mut self, value: u64) -> Result<(), TableError> {
+        self.text.clear();
+        let _ = write!(self.text, "{value}");
+        Ok(self.csv.write_field(&self.text)?)
+    }
+
+    fn end_row(&mut self) -> Result<(), TableError> {
+        self.rows += 1;
+        Ok(self.csv.write_record(None::<&[u8]>)?)
+    }
+
+    /// Everything is written; the number of rows.
+    fn finish(mut self) -> Result<u64, TableError> {
+        self.csv.flush()?;
+        Ok(self.rows)
+    }
+}
+
+/// A number with as many digits as tell it from all others; nothing for NaN.
+fn put_number(text: &mut String, value: f64) {
+    // Writing to a string does not fail.
+    let _ = match value {
+        f64::INFINITY => write!(text, "inf"),
+        f64::NEG_INFINITY => write!(text, "-inf"),
+        v if v.is_nan() => Ok(()),
+        v if v == 0.0 || (1e-5..1e16).contains(&v.abs()) => write!(text, "{v}"),
+        v => write!(text, "{v:e}"),
+    };
+}
+
+fn write_comments(out: &mut impl Write, about: &About, columns: &[Column]) -> io::Result<()> {
+    for (name, text) in &about.texts {
+        writeln!(out, "# {name}: {}", visible_line(text))?;
+    }
+    for (parameter, value) in &about.fixed {
+        let mut text = String::new();
+        put_number(&mut text, *value);
+        let unit = in_brackets(&about.units.of_parameter(*parameter));
+        writeln!(out, "# {} = {text}{unit}", parameter.name())?;
+    }
+    for column in columns {
+        let unit = in_brackets(&visible_line(&column.unit));
+        writeln!(out, "# {}{unit}: {}", column.name, column.about)?;
+    }
+    Ok(())
+}
+
+fn in_brackets(unit: &str) -> String {
+    match unit {
+        "" | "1" => String::new(),
+        unit => format!(" [{unit}]"),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_are_read_as_they_were() {
+        let shown = |value: f64| {
+            let mut text = String::new();
+            put_number(&mut text, value);
+            text
+        };
+        for value in [
+            0.1,
+            -1.0 / 3.0,
+            1e300,
+            5e-324,
+            f64::MAX,
+            1e-5,
+            9e15,
+            f64::INFINITY,
+            -0.0,
+        ] {
+            for value in [value, -value] {
+                let read: f64 = shown(value).parse().unwrap();
+                assert_eq!(read.to_bits(), value.to_bits(), "{value}");
+                assert!(shown(value).len() < 26, "{value}");
+            }
+        }
+        assert_eq!(
+            [f64::NAN, 2.0, f64::NEG_INFINITY].map(shown),
+            ["", "2", "-inf"]
+        );
+    }
+}

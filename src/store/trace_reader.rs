@@ -1,0 +1,192 @@
+//! Reads traces: the case, the samples, the events, what became of the motion.
+
+use std::path::{Path, PathBuf};
+
+use hdf5::{File, Group};
+
+use super::attributes::{one_number, text};
+use super::error::StoreError;
+use super::open;
+use super::schema::{self, trace};
+use super::trace_file::{QUANTITIES, TIME};
+use super::values::{Number, whole};
+use crate::slip::outcome::{Outcome, Summary};
+use crate::sweep::cells::trace::{EVENTS, MODES, MOST_SAMPLES, Sample, TraceEvent};
+use crate::sweep::{CaseSpec, Parameter, Trace};
+
+/// A trace that was read, whole.
+#[derive(Debug)]
+pub struct TraceFile {
+    path: PathBuf,
+    file: File,
+    /// The case, from its text in the file.
+    pub spec: CaseSpec,
+    /// Samples, events, and what became of the motion, as they stand in the file; the number of
+    /// slips in a period does not, and is 0.
+    pub trace: Trace,
+}
+
+/// Whether the file at `path` can be opened and is marked as a trace, of whatever version.
+#[must_use]
+pub fn is_trace(path: &Path) -> bool {
+    let file = open::to_read(path, StoreError::not_a_trace);
+    file.is_ok_and(|file| one_number::<i32>(&file, trace::FORMAT_VERSION).is_some())
+}
+
+/// The text of the case whose trace stands at `path`.
+///
+/// # Errors
+/// When there is no file, or it is no trace, or one of another format version.
+pub fn case_of(path: &Path) -> Result<String, StoreError> {
+    case_text(&open::to_read(path, StoreError::not_a_trace)?, path)
+}
+
+fn case_text(file: &File, path: &Path) -> Result<String, StoreError> {
+    let missing = |name: &str| StoreError::not_a_trace(path, format!("it has no {name}"));
+    match one_number::<i32>(file, trace::FORMAT_VERSION) {
+        Some(schema::OLDEST_TRACE_FORMAT_VERSION..=schema::TRACE_FORMAT_VERSION) => {
+            text(file, trace::CASE).map_err(|_| missing(trace::CASE))
+        }
+        Some(other) => {
+            let (oldest, newest) = (
+                schema::OLDEST_TRACE_FORMAT_VERSION,
+                schema::TRACE_FORMAT_VERSION,
+            );
+            let why =
+                format!("its format version is {other}, this program reads {oldest} to {newest}");
+            Err(StoreError::not_a_trace(path, why))
+        }
+        None => Err(missing(trace::FORMAT_VERSION)),
+    }
+}
+
+impl TraceFile {
+    /// Reads the trace at `path`.
+    ///
+    /// # Errors
+    /// When there is no file, or it is no trace, of another format version, or damaged.
+    pub fn open(path: &Path) -> Result<Self, StoreError> {
+        let file = open::to_read(path, StoreError::not_a_trace)?;
+        let spec = case_text(&file, path)?.parse::<CaseSpec>();
+        let spec = spec.map_err(|error| {
+            let why = format!("its case cannot be read: {}", error.message);
+            StoreError::not_a_trace(path, why)
+        })?;
+        let read = || -> hdf5::Result<Trace> {
+            Ok(Trace {
+                samples: samples(&file)?,
+                events: events(&file)?,
+                summary: summary(&file)?,
+            })
+        };
+        let trace = read().map_err(|why| StoreError::not_a_trace(path, why.to_string()))?;
+        Ok(Self {
+            path: path.to_owned(),
+            file,
+            spec,
+            trace,
+        })
+    }
+
+    /// Where it is.
+    #[must_use]
+    pub fn path(&self) -> &Path {
+        &self.path
+    }
+
+    /// A text attribute of the root, see [`schema::root`]; none where it is missing.
+    #[must_use]
+    pub fn root_text(&self, name: &str) -> Option<String> {
+        text(&self.file, name).ok()
+    }
+
+    /// A number that stands as an attribute of the root; none where it is missing.
+    #[must_use]
+    pub fn root_number(&self, name: &str) -> Option<f64> {
+        one_number(&self.file, name)
+    }
+
+    /// The value of a parameter as it stands in the file; none where it is missing.
+    #[must_use]
+    pub fn parameter(&self, parameter: Parameter) -> Option<f64> {
+        let dataset = open::dataset(&self.file, parameter.name()).ok()?;
+        match whole::<f64>(&dataset).ok()?[..] {
+            [value] => Some(value),
+            _ => None,
+        }
+    }
+}
+
+/// A column of a group, with as many values as there are of the first column.
+fn column<T: Number>(of: &Group, name: &str, rows: Option<usize>) -> hdf5::Result<Vec<T>> {
+    let damaged = |why: hdf5::Error| format!("its {name} cannot be read: {why}");
+    let values = open::dataset(of, name).and_then(|dataset| match dataset.shape()[..] {
+        [length] if length <= MOST_SAMPLES => whole::<T>(&dataset),
+        [length] => Err(format!("it has {length} values, {MOST_SAMPLES} are the most").into()),
+        _ => Err("it has other than one dimension".into()),
+    });
+    let values = values.map_err(damaged)?;
+    match rows {
+        Some(rows) if rows != values.len() => {
+            Err(format!("it has {} values of {name} for {rows} times", values.len()).into())
+        }
+        _ => Ok(values),
+    }
+}
+
+/// What stands for a number in a column of kinds.
+fn named<T: Copy>(all: &[(T, &str)], number: u8) -> hdf5::Result<T> {
+    let known = all.get(usize::from(number)).map(|(value, _)| *value);
+    known.ok_or_else(|| format!("it has a kind of number {number}, which there is not").into())
+}
+
+fn samples(file: &File) -> hdf5::Result<Vec<Sample>> {
+    let times = column::<f64>(file, TIME.name, None)?;
+    if times.is_empty() {
+        return Err("it has no samples".into());
+    }
+    let rows = Some(times.len());
+    let modes = column::<u8>(file, trace::MODE, rows)?;
+    let [x, x_dot, a, v, n] = QUANTITIES.map(|of| column::<f64>(file, of.name, rows));
+    let (x, x_dot, a, v, n) = (x?, x_dot?, a?, v?, n?);
+    let sample = |(i, t): (usize, f64)| {
+        Ok(Sample {
+            t,
+            x: x[i],
+            x_dot: x_dot[i],
+            a: a[i],
+            v: v[i],
+            n: n[i],
+            mode: named(&MODES, modes[i])?,
+        })
+    };
+    times.into_iter().enumerate().map(sample).collect()
+}
+
+fn events(file: &File) -> hdf5::Result<Vec<TraceEvent>> {
+    let group = open::group(file, trace::EVENT)?;
+    let times = column::<f64>(&group, trace::TIME, None)?;
+    let kinds = column::<u8>(&group, trace::KIND, Some(times.len()))?;
+    let elongations = column::<f64>(&group, trace::ELONGATION, Some(times.len()))?;
+    let event = |((t, kind), a): ((f64, u8), f64)| {
+        let kind = named(&EVENTS, kind)?;
+        Ok(TraceEvent { t, kind, a })
+    };
+    times
+        .into_iter()
+        .zip(kinds)
+        .zip(elongations)
+        .map(event)
+        .collect()
+}
+
+fn summary(file: &File) -> hdf5::Result<Summary> {
+    let name = text(file, trace::OUTCOME)?;
+    let outcome = Outcome::ALL
+        .into_iter()
+        .find(|outcome| outcome.name() == name);
+    let outcome = outcome.ok_or("its outcome is none that there is")?;
+    let steps = one_number::<u64>(file, trace::STEPS).ok_or("it has no steps")?;
+    let number = |name: &str| one_number::<f64>(file, name).unwrap_or(f64::NAN);
+    Ok(Summary::of_numbers(outcome, steps, number))
+}
