@@ -251,6 +251,28 @@ fn a_trace_of_another_revision_may_differ_by_rounding() {
     );
 }
 
+/// A trace of the first version counts the last release from t = 0, and is sound.
+#[test]
+fn a_trace_of_the_first_version_tells_the_same_times() {
+    let folder = folder();
+    let path = folder.path().join("case.h5");
+    let told = json(&folder, &["info", "case.h5"]);
+    let released = told["last_release"].as_f64().unwrap();
+    let switch_on = told["case"]["switch_on"].as_f64().unwrap();
+    assert!(released > 0.0 && switch_on > 0.0, "{told}");
+    edit(&path, |file| {
+        let version = file.attr("slipmap_trace_format_version").unwrap();
+        version.write_raw(&[1_i32]).unwrap();
+        let last = file.attr("last_release").unwrap();
+        last.write_raw(&[released + switch_on]).unwrap();
+        file.delete_attr("git_revision").unwrap();
+    });
+    let old = json(&folder, &["info", "case.h5"]);
+    let difference = old["last_release"].as_f64().unwrap() - released;
+    assert!(difference.abs() < 1e-12, "{difference}");
+    expect(&folder.run(&["verify", "case.h5"]), 0, "another revision");
+}
+
 /// Whatever stands in a trace, it is drawn or refused in words.
 #[test]
 fn odd_traces_end_no_command_with_a_panic() {

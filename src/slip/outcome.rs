@@ -95,6 +95,27 @@ pub struct Summary {
 }
 
 impl Summary {
+    /// The time `last` of the last release, NaN for none, as counted from `switch_on`, or from
+    /// t = 0 where that never is.
+    #[must_use]
+    pub fn released_after(outcome: Outcome, last: f64, switch_on: f64) -> f64 {
+        match outcome {
+            Outcome::StickSlip => f64::NAN,
+            _ if last.is_nan() => 0.0,
+            _ => Self::after(switch_on, last),
+        }
+    }
+
+    /// How long after `switch_on`, or after t = 0 where that never is, `t` is.
+    pub(super) fn after(switch_on: f64, t: f64) -> f64 {
+        let since = if switch_on.is_finite() {
+            switch_on
+        } else {
+            0.0
+        };
+        (t - since).max(0.0)
+    }
+
     /// Where there is no motion to follow: all numbers are NaN.
     #[must_use]
     pub const fn without(outcome: Outcome) -> Self {

@@ -312,17 +312,11 @@ impl Watch {
             let last = (0..self.fold).map(|back| self.cycle(back));
             (period, slip_time) = last.fold((0.0, 0.0), |(p, s), c| (p + c.period, s + c.slip));
         }
-        let since = if self.switch_on.is_finite() {
-            self.switch_on
-        } else {
-            0.0
-        };
-        let after_switch_on = |t: f64| (t - since).max(0.0);
         Summary {
             outcome,
             decided: motion.t,
             settle_time: match outcome {
-                Outcome::Sliding => after_switch_on(self.unsettled),
+                Outcome::Sliding => Summary::after(self.switch_on, self.unsettled),
                 _ => f64::NAN,
             },
             n_min: self.n_min,
@@ -330,11 +324,7 @@ impl Watch {
             period,
             stick_time: period - slip_time,
             slip_time,
-            last_release: match (outcome, self.last_release) {
-                (Outcome::StickSlip, _) => f64::NAN,
-                (_, last) if last.is_nan() => 0.0,
-                (_, last) => after_switch_on(last),
-            },
+            last_release: Summary::released_after(outcome, self.last_release, self.switch_on),
             slips: self.fold as u32,
             steps: self.steps,
         }

@@ -18,9 +18,11 @@ pub const OLDEST_FORMAT_VERSION: i32 = 1;
 /// Conventions that a map follows.
 pub const CONVENTIONS: &str = "CF-1.11";
 
-/// Version of the layout of a trace, which is written. 2: `last_release` counts from switch-on, as
-/// `settle_time` does.
+/// Version of the layout of a trace, which is written. 2: see [`RELEASED_SINCE_SWITCH_ON`].
 pub const TRACE_FORMAT_VERSION: i32 = 2;
+/// The first version in which `last_release` counts from switch-on, as `settle_time` does. Before,
+/// it counted from t = 0.
+pub const RELEASED_SINCE_SWITCH_ON: i32 = 2;
 /// The oldest version of a trace that is still read.
 pub const OLDEST_TRACE_FORMAT_VERSION: i32 = 1;
 

@@ -76,7 +76,7 @@ impl TraceFile {
             Ok(Trace {
                 samples: samples(&file)?,
                 events: events(&file)?,
-                summary: summary(&file)?,
+                summary: summary(&file, spec.case.switch_on)?,
             })
         };
         let trace = read().map_err(|why| StoreError::not_a_trace(path, why.to_string()))?;
@@ -180,7 +180,7 @@ fn events(file: &File) -> hdf5::Result<Vec<TraceEvent>> {
         .collect()
 }
 
-fn summary(file: &File) -> hdf5::Result<Summary> {
+fn summary(file: &File, switch_on: f64) -> hdf5::Result<Summary> {
     let name = text(file, trace::OUTCOME)?;
     let outcome = Outcome::ALL
         .into_iter()
@@ -188,5 +188,10 @@ fn summary(file: &File) -> hdf5::Result<Summary> {
     let outcome = outcome.ok_or("its outcome is none that there is")?;
     let steps = one_number::<u64>(file, trace::STEPS).ok_or("it has no steps")?;
     let number = |name: &str| one_number::<f64>(file, name).unwrap_or(f64::NAN);
-    Ok(Summary::of_numbers(outcome, steps, number))
+    let mut summary = Summary::of_numbers(outcome, steps, number);
+    let version = one_number::<i32>(file, trace::FORMAT_VERSION);
+    if version.is_some_and(|version| version < schema::RELEASED_SINCE_SWITCH_ON) {
+        summary.last_release = Summary::released_after(outcome, summary.last_release, switch_on);
+    }
+    Ok(summary)
 }
