@@ -119,11 +119,6 @@ fn pictures_show_what_they_say_and_replace_no_other() {
         read(name)
     };
     let named = draw(&["--field", "delay_margin"], "small.delay_margin.png");
-    // What was asked of them stands before.
-    let pixels = |png: &[u8]| {
-        let start = png.windows(4).position(|part| part == b"IDAT").unwrap();
-        png[start..].to_vec()
-    };
     assert!(
         pixels(&named) == pixels(&of_run),
         "the field that the sweep names"
@@ -463,6 +458,12 @@ fn point_has_the_roots_of_the_reference() {
     assert_eq!(checked, 150);
 }
 
+/// The pixels of a picture, without the texts of its file.
+fn pixels(png: &[u8]) -> Vec<u8> {
+    let start = png.windows(4).position(|part| part == b"IDAT").unwrap();
+    png[start..].to_vec()
+}
+
 /// A map with decay rates: planned, run, drawn as such, and listed with the range of its values.
 #[test]
 fn decay_rates_go_through_every_command() {
@@ -492,11 +493,11 @@ fn decay_rates_go_through_every_command() {
         found.unwrap_or_else(|| panic!("{name}: {text}"))
     };
     assert!(line("abscissa").contains(", -") && line("frequency").contains(" to "));
-    let default = std::fs::read(folder.path().join("decay.png")).unwrap();
+    let default = pixels(&std::fs::read(folder.path().join("decay.png")).unwrap());
     let draw = |args: &[&str]| {
         let output = folder.run(&[&["plot", "decay.h5", "-o", "again.png"], args].concat());
         assert_eq!(output.status.code(), Some(0), "{}", err(&output));
-        std::fs::read(folder.path().join("again.png")).unwrap()
+        pixels(&std::fs::read(folder.path().join("again.png")).unwrap())
     };
     assert!(
         default == draw(&["--field", "abscissa"]),

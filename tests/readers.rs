@@ -945,3 +945,64 @@ fn the_compliance_checker_finds_nothing() {
         assert!(report.contains("All tests passed!"), "{sweep}\n{report}");
     }
 }
+
+/// What every command prints with `--json`, each kind of answer once.
+const ANSWERS: [(&str, &str); 14] = [
+    (
+        "point.plain",
+        "point --mu-prime=-0.3 --alpha-v=-0.33 --tau 4.15",
+    ),
+    ("point.idle", "point --mu-prime 0.3 --units SI"),
+    (
+        "vc.follow",
+        "vc --friction weakening --mu0 0.5 --v-s 0.5 --alpha-n=-7 --tau 1",
+    ),
+    (
+        "vc.worst",
+        "vc --friction coulomb --mu0 0.5 --alpha-n=-7 --tau 1 --protocol switch-on --phase worst",
+    ),
+    (
+        "vc.limit",
+        "vc --protocol limit --gamma 0.25 --mu-ratio 0.5",
+    ),
+    ("best.velocity", "best --mu-prime=-0.3 --control velocity"),
+    ("best.none", "best --mu-prime=-2 --control velocity"),
+    ("simulate.case", "simulate case.toml"),
+    ("plan.sweep", "plan sweep.toml"),
+    ("plan.case", "plan case.toml"),
+    ("info.map", "info sweep.h5"),
+    ("info.trace", "info case.h5"),
+    ("status.map", "status sweep.h5"),
+    ("verify.map", "verify sweep.h5"),
+];
+
+#[test]
+fn json_is_as_its_schema_says() {
+    let folder = TempDir::new().unwrap();
+    let file = |name: &str| folder.path().join(name);
+    let sweep = "best = true\nfields = [\"n_unstable\", \"abscissa\", \"vc\", \"outcome\"]\n\
+                 [axes]\nalpha_n = [-7, 1]\ntau = [0.2, 0.5, 1]\n[fixed]\nv0 = 0.118\n[friction]\n\
+                 law = \"weakening\"\nmu0 = 0.5\nv_s = 0.5\n";
+    let case = "units = \"SI\"\n[fixed]\nv0 = 0.35\nalpha_v = -0.33\ntau = 4.15\n[friction]\n\
+                law = \"weakening\"\nmu0 = 0.5\nv_s = 0.5\n";
+    std::fs::write(file("sweep.toml"), sweep).unwrap();
+    std::fs::write(file("case.toml"), case).unwrap();
+    let slipmap = |words: &str| {
+        let mut command = command(env!("CARGO_BIN_EXE_slipmap"), folder.path(), []);
+        run(command.args(words.split(' ')))
+    };
+    slipmap("run --quiet sweep.toml");
+    for (name, words) in ANSWERS {
+        let answer = slipmap(&format!("{words} --json"));
+        std::fs::write(file(&format!("{name}.json")), answer.stdout).unwrap();
+    }
+    let verified = slipmap("verify case.h5 --json");
+    std::fs::write(file("verify.trace.json"), verified.stdout).unwrap();
+    for (name, _) in ANSWERS {
+        let command = name.split('.').next().unwrap();
+        let schema = slipmap(&format!("schema {command}"));
+        std::fs::write(file(&format!("{command}.schema.json")), schema.stdout).unwrap();
+    }
+    let checker = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/readers/check_schemas.py");
+    run(python(folder.path()).arg(checker).arg(folder.path()));
+}

@@ -3,8 +3,10 @@
 use serde::Serialize;
 use slipmap::report::numbers::grouped;
 use slipmap::sweep::Parameter;
+use utoipa::ToSchema;
 
-#[derive(Serialize)]
+/// An axis by its parameter: its number of values, the first and the last.
+#[derive(Serialize, ToSchema)]
 pub(super) struct AxisFacts {
     pub name: &'static str,
     points: u64,

@@ -12,8 +12,10 @@ use slipmap::sweep::cells::best::{
 };
 use slipmap::sweep::input::units::Units;
 use slipmap::sweep::{Field, Parameter, Setting};
+use utoipa::ToSchema;
 
 use super::failure::Failure;
+use super::json::{self, AnswerSchema, Inputs};
 use super::output::tell_dimensionless;
 use super::parameters::ParameterArgs;
 use super::say;
@@ -55,7 +57,7 @@ pub(super) struct Args {
 }
 
 /// Controls by name.
-#[derive(Debug, Clone, Copy, ValueEnum, Serialize)]
+#[derive(Debug, Clone, Copy, ValueEnum, Serialize, ToSchema)]
 #[serde(rename_all = "lowercase")]
 enum Control {
     /// α_v: the pulling velocity follows the delayed elongation
@@ -81,7 +83,7 @@ impl Control {
 }
 
 /// The JSON of a search. Infinite numbers are written as null.
-#[derive(Debug, Serialize)]
+#[derive(Debug, Serialize, ToSchema)]
 struct BestAnswer {
     mu_prime: f64,
     mu_k: f64,
@@ -92,20 +94,22 @@ struct BestAnswer {
     regions_left_out: usize,
 }
 
-#[derive(Debug, Serialize)]
+#[derive(Debug, Serialize, ToSchema)]
 struct RangesOut {
+    #[schema(value_type = [f64; 2])]
     alpha: (f64, f64),
+    #[schema(value_type = [f64; 2])]
     tau: (f64, f64),
 }
 
-#[derive(Debug, Serialize)]
+#[derive(Debug, Serialize, ToSchema)]
 struct RegionOut {
     region: RangesOut,
     #[serde(flatten)]
     best: OptimumOut,
 }
 
-#[derive(Debug, Serialize)]
+#[derive(Debug, Serialize, ToSchema)]
 struct OptimumOut {
     alpha: f64,
     tau: f64,
@@ -157,7 +161,8 @@ pub(super) fn main(args: &Args) -> Result<(), Failure> {
     let ranges = ranges(args, &default_ranges(&setting, gain)?)?;
     let found = best_settings(&setting, gain, &ranges)?;
     if args.json {
-        say::json(&json(args, &setting, &ranges, &found)?)?;
+        let inputs = args.inputs(&setting, &ranges);
+        json::print(&inputs, &answer(args, &setting, &ranges, &found)?)?;
     } else {
         let mut out = std::io::stdout().lock();
         print(&mut out, args, &setting, &ranges, &found)?;
@@ -172,6 +177,24 @@ pub(super) fn main(args: &Args) -> Result<(), Failure> {
     match args.json {
         true => Ok(()),
         false => say::result(path.display()),
+    }
+}
+
+/// What its JSON looks like.
+pub(super) fn described() -> AnswerSchema {
+    AnswerSchema::of("best").or::<BestAnswer>()
+}
+
+impl Args {
+    fn inputs(&self, setting: &Setting, ranges: &Ranges) -> Inputs {
+        let searched = [self.control.parameter(), Parameter::Tau];
+        let given = |parameter| !searched.contains(&parameter);
+        let inputs = Inputs::of_setting(setting, &self.parameters.units(), given);
+        let inputs = inputs.and("control", self.control);
+        let inputs = inputs.and("alpha_from", ranges.gain.0);
+        let inputs = inputs.and("alpha_to", ranges.gain.1);
+        let inputs = inputs.and("tau_from", ranges.tau.0);
+        inputs.and("tau_to", ranges.tau.1)
     }
 }
 
@@ -220,7 +243,7 @@ fn range(
     ))
 }
 
-fn json(
+fn answer(
     args: &Args,
     setting: &Setting,
     ranges: &Ranges,

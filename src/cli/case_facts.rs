@@ -5,12 +5,14 @@ use slipmap::model::Control;
 use slipmap::report::numbers::grouped;
 use slipmap::slip::case::Start;
 use slipmap::sweep::{CaseSpec, Parameter};
+use utoipa::ToSchema;
 
 use super::failure::Failure;
-use super::say::{Rows, as_object};
+use super::json::as_object;
+use super::say::Rows;
 
 /// The case of one motion, with everything that its file leaves to defaults.
-#[derive(Debug, Serialize)]
+#[derive(Debug, Serialize, ToSchema)]
 pub(super) struct CaseFacts {
     title: String,
     /// Name of the friction law.
@@ -19,10 +21,12 @@ pub(super) struct CaseFacts {
     control: &'static str,
     /// Parameters by name.
     #[serde(serialize_with = "as_object")]
+    #[schema(value_type = BTreeMap<String, f64>)]
     parameters: Vec<(&'static str, f64)>,
     /// Units of the parameters and of time, length, velocity and force, by name; `1` where there
     /// is none.
     #[serde(serialize_with = "as_object")]
+    #[schema(value_type = BTreeMap<String, String>)]
     units: Vec<(&'static str, String)>,
     start: StartFacts,
     /// When control is switched on; null where it never is, or at a phase of stick-slip.
@@ -37,7 +41,7 @@ pub(super) struct CaseFacts {
 }
 
 /// The block at t = 0.
-#[derive(Debug, Serialize)]
+#[derive(Debug, Serialize, ToSchema)]
 struct StartFacts {
     x_dot0: f64,
     a0: f64,

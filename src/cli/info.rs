@@ -11,12 +11,14 @@ use slipmap::report::numbers::{bytes, grouped, short, unit_behind};
 use slipmap::store::schema::root;
 use slipmap::store::{MapAxis, MapFile, trace_reader};
 use slipmap::sweep::Field;
+use utoipa::ToSchema;
 
 use super::axis_facts::AxisFacts;
 use super::failure::Failure;
 use super::info_trace::{self, Told};
+use super::json::{self, AnswerSchema, Inputs, as_object};
 use super::open::open;
-use super::say::{self, Rows, as_object, visible};
+use super::say::{Rows, visible};
 use super::signals::Signals;
 
 /// What a signal leaves.
@@ -33,6 +35,13 @@ pub(super) struct Args {
     /// One JSON object on standard output
     #[arg(long, conflicts_with = "sweep")]
     json: bool,
+}
+
+/// What its JSON looks like.
+pub(super) fn described() -> AnswerSchema {
+    AnswerSchema::of("info")
+        .or::<Facts>()
+        .or::<info_trace::Facts>()
 }
 
 pub(super) fn main(args: &Args) -> Result<(), Failure> {
@@ -55,7 +64,7 @@ fn tell(map: &MapFile, args: &Args) -> Result<(), Failure> {
     }
     let facts = Facts::of(map)?;
     if args.json {
-        return say::json(&facts);
+        return json::print(&Inputs::default().and("file", &args.map), &facts);
     }
     let mut rows = Rows::begin();
     for (name, text) in &facts.origin {
@@ -79,44 +88,51 @@ pub(super) fn tell_text(text: &str) -> Result<(), Failure> {
 }
 
 /// What there is to say of a map.
-#[derive(Serialize)]
+#[derive(Serialize, ToSchema)]
+#[schema(as = MapFacts)]
 struct Facts {
     kind: &'static str,
     /// What the map says of where it comes from, by name.
     #[serde(serialize_with = "as_object")]
+    #[schema(value_type = BTreeMap<String, String>)]
     origin: Vec<(&'static str, String)>,
     axes: Vec<AxisFacts>,
     /// Parameters that are no axes, by name.
     #[serde(serialize_with = "as_object")]
+    #[schema(value_type = BTreeMap<String, f64>)]
     fixed: Vec<(&'static str, f64)>,
     /// Units of axes, fixed parameters and fields, by name; `1` where there is none.
     #[serde(serialize_with = "as_object")]
+    #[schema(value_type = BTreeMap<String, String>)]
     units: Vec<(&'static str, String)>,
     cells: u64,
     cells_missing: u64,
     fields: Vec<FieldFacts>,
     /// Cells with each flag that any has, by its name.
     #[serde(serialize_with = "as_object")]
+    #[schema(value_type = BTreeMap<String, u64>)]
     status: Vec<(&'static str, u64)>,
     curves: Option<CurveFacts>,
     best: Option<BestFacts>,
 }
 
-#[derive(Serialize)]
+#[derive(Serialize, ToSchema)]
 struct FieldFacts {
     name: &'static str,
     bytes: u64,
     bytes_on_disk: u64,
     /// The smallest and largest finite value, and how many others there are; of numbers.
+    #[schema(value_type = Option<[f64; 2]>)]
     range: Option<(f64, f64)>,
     infinite: u64,
     without_value: u64,
     /// Cells of each kind that any has, by its name.
     #[serde(serialize_with = "as_object")]
+    #[schema(value_type = BTreeMap<String, u64>)]
     kinds: Vec<(&'static str, u64)>,
 }
 
-#[derive(Serialize)]
+#[derive(Serialize, ToSchema)]
 struct CurveFacts {
     crossing: u64,
     /// Crossing curves that bound a stable region.
@@ -124,7 +140,7 @@ struct CurveFacts {
     degrees_of_stability: u64,
 }
 
-#[derive(Serialize)]
+#[derive(Serialize, ToSchema)]
 struct BestFacts {
     planes: u64,
     shortest_relaxation_time: Option<f64>,

@@ -4,14 +4,17 @@ use std::path::Path;
 
 use serde::Serialize;
 use slipmap::report::numbers::{grouped, short};
+use slipmap::slip::outcome::Summary;
 use slipmap::store::TraceFile;
 use slipmap::store::trace_file::QUANTITIES;
 use slipmap::sweep::cells::trace::EVENTS;
+use utoipa::ToSchema;
 
 use super::case_facts::CaseFacts;
 use super::failure::Failure;
 use super::info::{origin, tell_text};
-use super::say::{self, Rows, as_object};
+use super::json::{self, Inputs, as_object};
+use super::say::Rows;
 
 /// In what form it is told.
 #[derive(Debug, Clone, Copy)]
@@ -25,11 +28,13 @@ pub(super) enum Told {
 }
 
 /// What there is to say of a trace.
-#[derive(Serialize)]
-struct Facts {
+#[derive(Serialize, ToSchema)]
+#[schema(as = TraceFacts)]
+pub(super) struct Facts {
     kind: &'static str,
     /// What the trace says of where it comes from, by name.
     #[serde(serialize_with = "as_object")]
+    #[schema(value_type = BTreeMap<String, String>)]
     origin: Vec<(&'static str, String)>,
     case: CaseFacts,
     samples: u64,
@@ -38,20 +43,61 @@ struct Facts {
     fields: Vec<FieldFacts>,
     /// Number of events of each kind, by its name.
     #[serde(serialize_with = "as_object")]
+    #[schema(value_type = BTreeMap<String, u64>)]
     events: Vec<(&'static str, u64)>,
     outcome: &'static str,
-    /// Numbers of the outcome, by name; null where there is none.
-    #[serde(flatten, serialize_with = "as_object")]
-    numbers: Vec<(&'static str, f64)>,
+    #[serde(flatten)]
+    numbers: Numbers,
     steps: u64,
 }
 
-#[derive(Serialize)]
+/// What became of the motion in numbers; null where there is none. Times count from switch-on, but
+/// `decided`.
+#[derive(Serialize, ToSchema)]
+struct Numbers {
+    /// When the outcome was known.
+    decided: Option<f64>,
+    /// Until ẋ stays within 1 % of v0.
+    settle_time: Option<f64>,
+    /// The smallest load since switch-on.
+    n_min: Option<f64>,
+    /// The largest spring force since switch-on.
+    peak_force: Option<f64>,
+    /// Of stick-slip.
+    period: Option<f64>,
+    /// Time stuck in one period.
+    stick_time: Option<f64>,
+    /// Time in slip in one period.
+    slip_time: Option<f64>,
+    /// Until the last stick ended.
+    last_release: Option<f64>,
+}
+
+impl From<&Summary> for Numbers {
+    fn from(summary: &Summary) -> Self {
+        // Not −0.
+        let told = |value: f64| value.is_finite().then_some(value + 0.0);
+        Self {
+            decided: told(summary.decided),
+            settle_time: told(summary.settle_time),
+            n_min: told(summary.n_min),
+            peak_force: told(summary.peak),
+            period: told(summary.period),
+            stick_time: told(summary.stick_time),
+            slip_time: told(summary.slip_time),
+            last_release: told(summary.last_release),
+        }
+    }
+}
+
+#[derive(Serialize, ToSchema)]
+#[schema(as = QuantityFacts)]
 struct FieldFacts {
     name: &'static str,
     long_name: &'static str,
     unit: String,
     /// The smallest and the largest value of the samples.
+    #[schema(value_type = [f64; 2])]
     range: (f64, f64),
 }
 
@@ -59,8 +105,8 @@ pub(super) fn tell(path: &Path, what: Told) -> Result<(), Failure> {
     let file = TraceFile::open(path)?;
     match what {
         Told::Text => tell_text(&file.spec.text),
-        Told::Json => say::json(&Facts::of(&file)),
-        Told::Rows => Facts::of(&file).tell(),
+        Told::Json => json::print(&Inputs::default().and("file", path), &Facts::of(&file)),
+        Told::Rows => Facts::of(&file).tell(&file.trace.summary),
     }
 }
 
@@ -82,16 +128,12 @@ impl Facts {
             fields: fields(file),
             events: EVENTS.into_iter().map(of_kind).collect(),
             outcome: summary.outcome.name(),
-            // Not −0.
-            numbers: summary
-                .numbers()
-                .map(|(name, value)| (name, value + 0.0))
-                .to_vec(),
+            numbers: summary.into(),
             steps: summary.steps,
         }
     }
 
-    fn tell(&self) -> Result<(), Failure> {
+    fn tell(&self, summary: &Summary) -> Result<(), Failure> {
         let mut rows = Rows::begin();
         let title = |name: &str| name == "title" || name == "friction";
         rows.row("kind", "a trace: one motion, by `slipmap simulate`")?;
@@ -111,8 +153,9 @@ impl Facts {
             rows.row("events", format!("{name:<12} {}", grouped(*count)))?;
         }
         rows.row("outcome", self.outcome)?;
-        for (name, value) in self.numbers.iter().filter(|(_, value)| !value.is_nan()) {
-            rows.row("", format!("{name:<12} {value}"))?;
+        let numbers = summary.numbers().into_iter();
+        for (name, value) in numbers.filter(|(_, value)| !value.is_nan()) {
+            rows.row("", format!("{name:<12} {}", value + 0.0))?;
         }
         rows.row("", format!("{:<12} {}", "steps", grouped(self.steps)))
     }

@@ -9,7 +9,9 @@ mod export;
 mod failure;
 mod info;
 mod info_trace;
+mod json;
 mod merge;
+mod motion_text;
 mod open;
 mod open_files;
 mod output;
@@ -21,6 +23,7 @@ mod point;
 mod read_map;
 mod run;
 mod say;
+mod schema;
 mod serve;
 mod setting;
 mod show;
@@ -90,6 +93,8 @@ enum Command {
     Export(export::Args),
     /// Say what a map or a trace holds
     Info(info::Args),
+    /// Print the JSON Schema of what another command prints with --json
+    Schema(schema::Args),
 }
 
 /// Help, or what is wrong with the arguments, of which some may be names that hold control
@@ -136,6 +141,7 @@ pub(crate) fn main() -> ExitCode {
         Command::Plot(args) => plot::main(&args),
         Command::Export(args) => export::main(&args),
         Command::Info(args) => info::main(&args),
+        Command::Schema(args) => schema::main(&args),
     };
     match result {
         Ok(()) => ExitCode::SUCCESS,

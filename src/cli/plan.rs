@@ -15,13 +15,15 @@ use slipmap::sweep::engine::{Computed, Encode, Worker};
 use slipmap::sweep::input::axis::Axis;
 use slipmap::sweep::plan::pieces::spread;
 use slipmap::sweep::{Memory, Piece, Plan};
+use utoipa::ToSchema;
 
 use super::axis_facts::AxisFacts;
 use super::failure::Failure;
+use super::json::{self, AnswerSchema, Inputs};
 use super::output::warn_of_idle_delay;
 use super::plan_case;
 use super::run::{MEMORY, default_threads, parse_memory, parse_threads, threads_within};
-use super::say::{self, Rows};
+use super::say::Rows;
 use super::sweep_file::{Described, read_sweep_or_case};
 
 /// A sample ends after so long, once it has this many pieces; or after the longest time, whatever
@@ -54,6 +56,13 @@ pub(super) struct Args {
     json: bool,
 }
 
+/// What its JSON looks like.
+pub(super) fn described() -> AnswerSchema {
+    AnswerSchema::of("plan")
+        .or::<Facts>()
+        .or::<plan_case::Facts>()
+}
+
 pub(super) fn main(args: &Args) -> Result<(), Failure> {
     let plan = match read_sweep_or_case(&args.sweep)? {
         Described::Sweep(plan) => plan,
@@ -68,17 +77,23 @@ pub(super) fn main(args: &Args) -> Result<(), Failure> {
     let threads = threads_within(&plan, args.memory, asked)?;
     let facts = Facts::of(&plan, threads)?;
     match args.json {
-        true => say::json(&facts),
+        true => {
+            let inputs = Inputs::default().and("sweep", &args.sweep);
+            let inputs = inputs.and("threads", threads).and("memory", args.memory);
+            json::print(&inputs, &facts)
+        }
         false => facts.tell(),
     }
 }
 
 /// What there is to say of a plan.
-#[derive(Serialize)]
+#[derive(Serialize, ToSchema)]
+#[schema(as = SweepFacts)]
 struct Facts {
     kind: &'static str,
     axes: Vec<AxisFacts>,
     /// Units of the axes by name; `1` where there is none.
+    #[schema(value_type = BTreeMap<String, String>)]
     units: BTreeMap<&'static str, String>,
     dimensionless: bool,
     fields: Vec<&'static str>,

@@ -8,17 +8,20 @@ use slipmap::store::trace_file::BYTES_OF_A_SAMPLE;
 use slipmap::sweep::CaseSpec;
 use slipmap::sweep::cells::trace::MOST_SAMPLES;
 use slipmap::sweep::input::case_file::Sampling;
+use utoipa::ToSchema;
 
 use super::case_facts::CaseFacts;
 use super::failure::Failure;
+use super::json::{self, Inputs};
 use super::output::output_path;
 use super::plot;
-use super::say::{self, Rows};
+use super::say::Rows;
 use super::sweep_file::STANDARD_INPUT;
 
 /// What there is to say of a case.
-#[derive(Serialize)]
-struct Facts {
+#[derive(Serialize, ToSchema)]
+#[schema(as = PlannedCase)]
+pub(super) struct Facts {
     kind: &'static str,
     case: CaseFacts,
     /// Samples in each step of the integrator; null where they have an interval.
@@ -37,7 +40,7 @@ struct Facts {
 pub(super) fn tell(path: &Path, spec: &CaseSpec, json: bool) -> Result<(), Failure> {
     let facts = Facts::of(path, spec)?;
     match json {
-        true => say::json(&facts),
+        true => json::print(&Inputs::default().and("case", path), &facts),
         false => facts.tell(),
     }
 }

@@ -13,6 +13,7 @@ use slipmap::sweep::{Field, Parameter, Setting, relaxation_time};
 
 use super::cell::{CellArgs, alone};
 use super::failure::Failure;
+use super::json::{self, AnswerSchema, Inputs};
 use super::output::{check_picture, tell_dimensionless};
 use super::parameters::ParameterArgs;
 use super::say;
@@ -98,6 +99,11 @@ fn print_spectrum(
     }
 }
 
+/// What its JSON looks like.
+pub(super) fn described() -> AnswerSchema {
+    AnswerSchema::of("point").or::<Point>()
+}
+
 pub(super) fn main(args: &Args) -> Result<(), Failure> {
     if let Some(plot) = &args.plot {
         check_picture("--plot", plot, args.cell.map.as_deref())?;
@@ -109,7 +115,8 @@ pub(super) fn main(args: &Args) -> Result<(), Failure> {
         say::remark(format_args!("warning: {why}"));
     }
     if args.json {
-        say::json(&point)?;
+        let inputs = Inputs::of_setting(&setting, &units, |_| true).and("roots", args.roots);
+        json::print(&inputs, &point)?;
     } else {
         print(&mut std::io::stdout().lock(), &point, &units)?;
     }

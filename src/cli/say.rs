@@ -5,7 +5,6 @@ use std::fmt::Display;
 use std::io::{StdoutLock, Write};
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use serde::{Serialize, Serializer};
 pub(super) use slipmap::report::visible::{shortened, visible, visible_line};
 
 use super::failure::Failure;
@@ -33,42 +32,6 @@ impl Rows<'_> {
         let text = visible_line(text.as_ref());
         Ok(writeln!(self.0, "{name:<12} {text}")?)
     }
-}
-
-/// Version of the keys of the JSON output of all commands: larger where a key is gone or means
-/// something else; new keys may come without that. 2: `last_release` counts from switch-on.
-const SCHEMA_VERSION: u32 = 2;
-
-/// An object with the version of its keys.
-#[derive(Serialize)]
-struct Versioned<'v, T> {
-    schema_version: u32,
-    #[serde(flatten)]
-    value: &'v T,
-}
-
-/// Pairs of a name and a value as an object, in their order; names of several words are joined.
-pub(super) fn as_object<S: Serializer, T: Serialize>(
-    pairs: &[(&'static str, T)],
-    to: S,
-) -> Result<S::Ok, S::Error> {
-    to.collect_map(
-        pairs
-            .iter()
-            .map(|(name, value)| (name.replace(' ', "_"), value)),
-    )
-}
-
-/// One JSON object on standard output, with the version of its keys.
-pub(super) fn json(value: &impl Serialize) -> Result<(), Failure> {
-    let schema_version = SCHEMA_VERSION;
-    let value = Versioned {
-        schema_version,
-        value,
-    };
-    let text = serde_json::to_string(&value).map_err(std::io::Error::from)?;
-    let text = slipmap::report::visible::visible_json(&text);
-    Ok(writeln!(std::io::stdout(), "{text}")?)
 }
 
 /// Whether the user asked for nothing on standard error but errors and warnings. It is set once,

@@ -1,36 +1,32 @@
 //! `slipmap simulate`: one motion in time, from a case file to its events, a trace and a picture.
 
-use std::io::Write;
 use std::path::{Path, PathBuf};
 
 use serde::Serialize;
 use slipmap::explore::motion::MotionSummary;
-use slipmap::report::numbers::{grouped, unit_behind};
+use slipmap::report::numbers::grouped;
 use slipmap::report::picture::{self, Picture, PictureError, PictureOptions};
 use slipmap::report::table::write_samples;
-use slipmap::slip::motion::MOST_KEPT;
-use slipmap::slip::outcome::{Outcome, Summary};
 use slipmap::store::describe::Provenance;
 use slipmap::store::{Output, StoreError, trace_file, trace_reader};
 use slipmap::sweep::cells::trace::TraceError;
 use slipmap::sweep::input::setting_text::setting_text;
 use slipmap::sweep::input::simulation::DISTURBED;
-use slipmap::sweep::{CaseSpec, Field, Trace};
+use slipmap::sweep::{CaseSpec, Trace};
+use utoipa::ToSchema;
 
+use super::case_facts::CaseFacts;
 use super::cell::{CellArgs, alone};
 use super::failure::Failure;
-use super::output::{
-    check_picture, output_path, provenance, tell_dimensionless, warn_of_idle_delay,
-};
+use super::json::{self, AnswerSchema, Inputs};
+use super::motion_text;
+use super::output::{check_picture, output_path, provenance, warn_of_idle_delay};
 use super::parameters::ParameterArgs;
 use super::plot;
 use super::say;
 use super::signals::Signals;
 use super::sweep_file::read_case;
 use super::text_output::{STANDARD_OUTPUT, To, is_csv};
-
-/// Events printed for people, the last ones; the JSON output and the trace have them all.
-const EVENTS_SHOWN: usize = 12;
 
 #[derive(Debug, clap::Args)]
 #[command(after_help = "Example: slipmap simulate sweeps/fig3a.toml")]
@@ -59,11 +55,16 @@ pub(super) struct Args {
 }
 
 /// The JSON of a motion, with the file of its trace.
-#[derive(Debug, Serialize)]
+#[derive(Debug, Serialize, ToSchema)]
 struct MotionOut {
     #[serde(flatten)]
     summary: MotionSummary,
     trace: String,
+}
+
+/// What its JSON looks like.
+pub(super) fn described() -> AnswerSchema {
+    AnswerSchema::of("simulate").or::<MotionOut>()
 }
 
 pub(super) fn main(args: &Args) -> Result<(), Failure> {
@@ -195,12 +196,14 @@ impl Args {
     /// What became of the motion, and where its trace is.
     fn tell(&self, spec: &CaseSpec, trace: &Trace, path: &Path) -> Result<(), Failure> {
         if self.json {
-            return say::json(&MotionOut {
+            let inputs = Inputs::default().and("case", CaseFacts::of(spec));
+            let answer = MotionOut {
                 summary: MotionSummary::of(trace),
                 trace: path.display().to_string(),
-            });
+            };
+            return json::print(&inputs, &answer);
         }
-        print(&mut std::io::stdout().lock(), spec, trace)?;
+        motion_text::print(&mut std::io::stdout().lock(), spec, trace)?;
         let samples = grouped(trace.samples.len() as u64);
         say::result(format_args!("{}: {samples} samples", path.display()))
     }
@@ -318,74 +321,5 @@ fn failure(error: TraceError) -> Failure {
             error.to_string(),
             "a larger tolerance takes fewer steps, [trace] until = … ends it earlier",
         ),
-    }
-}
-
-fn print(out: &mut impl Write, spec: &CaseSpec, trace: &Trace) -> std::io::Result<()> {
-    let summary = &trace.summary;
-    writeln!(out, "{}", verdict(summary, spec))?;
-    let units = &spec.units;
-    for (name, value) in summary.numbers() {
-        if value.is_finite() {
-            let field = Field::from_name(name).map(|field| field.unit(units));
-            let unit = unit_behind(&field.unwrap_or_else(|| units.time()));
-            let name = if name == "decided" {
-                "decided at"
-            } else {
-                name
-            };
-            writeln!(out, "  {name:<16} {}{unit}", digits(value))?;
-        }
-    }
-    writeln!(out, "  {:<16} {}", "steps", summary.steps)?;
-    tell_dimensionless(out, units)?;
-    let events = &trace.events;
-    let hidden = events.len().saturating_sub(EVENTS_SHOWN);
-    if events.is_empty() {
-        return Ok(());
-    }
-    let [t, a] = [("t", [0, 0, 1]), ("a", [0, 1, 0])]
-        .map(|(name, dimension)| format!("{name}{}", unit_behind(&units.of(dimension))));
-    writeln!(out, "{t:>18}{a:>18}  event")?;
-    if hidden > 0 {
-        writeln!(
-            out,
-            "{hidden:>18} earlier ones, in the trace and with --json"
-        )?;
-    }
-    for event in &events[hidden..] {
-        let (t, a) = (digits(event.t), digits(event.a));
-        writeln!(out, "{t:>18}{a:>18}  {}", event.name())?;
-    }
-    Ok(())
-}
-
-/// A number with nine digits behind the point where it is of common size.
-fn digits(value: f64) -> String {
-    match value.abs() {
-        0.0 => "0".into(),
-        1e-4..1e6 => format!("{value:.9}"),
-        _ => format!("{value:.9e}"),
-    }
-}
-
-/// What became of the motion, in words.
-fn verdict(summary: &Summary, spec: &CaseSpec) -> String {
-    match summary.outcome {
-        Outcome::Sliding => "the block comes to slide continuously".into(),
-        Outcome::StickSlip => "the block sticks and slips periodically".into(),
-        Outcome::Oscillation => "the block oscillates periodically without sticking".into(),
-        Outcome::LiftOff => "the block lifts off: the load reaches 0, where the model ends".into(),
-        Outcome::Diverged => "the motion grows beyond all bounds".into(),
-        Outcome::Undecided if summary.steps >= spec.case.steps => {
-            format!("undecided after {} steps", grouped(summary.steps))
-        }
-        Outcome::Undecided if summary.decided < spec.case.horizon => format!(
-            "undecided at t = {}: two delays take more than {MOST_KEPT} steps, the most that are \
-            kept",
-            digits(summary.decided)
-        ),
-        Outcome::Undecided => format!("undecided at the horizon, t = {}", spec.case.horizon),
-        Outcome::NoCycle => "there is no uncontrolled stick-slip to start from".into(),
     }
 }

@@ -1,20 +1,23 @@
 //! `slipmap status`: how far a map is, from another terminal.
 
+use std::collections::BTreeMap;
 use std::fs::File;
 use std::io::{BufRead, BufReader, Read};
 use std::path::{Path, PathBuf};
 use std::time::SystemTime;
 
-use serde_json::{Value, json};
+use serde::Serialize;
 use slipmap::linear::status::FLAGS;
 use slipmap::report::log::{self, Entry, LogLine};
 use slipmap::report::numbers::{grouped, prefixed, seconds};
 use slipmap::store::tiles::Survey;
 use slipmap::store::tiles::survey::ShardSurvey;
 use slipmap::store::{MapFile, StatusCounts};
+use utoipa::ToSchema;
 
 use super::failure::Failure;
-use super::say::{self, Rows};
+use super::json::{self, AnswerSchema, Inputs};
+use super::say::Rows;
 
 /// A run tells its rate from so many bytes of its log at most.
 const MOST_OF_LOG: u64 = 64 << 20;
@@ -35,9 +38,64 @@ pub(super) fn main(args: &Args) -> Result<(), Failure> {
         None => of_map(&args.map)?,
     };
     if args.json {
-        return say::json(&status.json());
+        return json::print(&Inputs::default().and("map", &args.map), &status.answer());
     }
     status.print(&args.map)
+}
+
+/// What its JSON looks like.
+pub(super) fn described() -> AnswerSchema {
+    AnswerSchema::of("status").or::<StatusAnswer>()
+}
+
+/// How far a map is.
+#[derive(Serialize, ToSchema)]
+struct StatusAnswer {
+    complete: bool,
+    /// Whether a run works on it.
+    running: bool,
+    cells: u64,
+    cells_done: u64,
+    /// Of the runs that work on it; null where none does.
+    cells_per_second: Option<f64>,
+    /// Until the slowest of them is done; null where that is not known.
+    seconds_left: Option<f64>,
+    /// Cells with each flag, and `unflagged` ones.
+    #[schema(value_type = BTreeMap<String, u64>)]
+    cells_by_status: BTreeMap<&'static str, u64>,
+    shards: Vec<ShardAnswer>,
+}
+
+/// How far a shard of a map is.
+#[derive(Serialize, ToSchema)]
+struct ShardAnswer {
+    /// Which of how many: `1/4`.
+    shard: String,
+    running: bool,
+    cells: u64,
+    cells_done: u64,
+    /// Tiles, planes of curves and of best settings.
+    pieces: u64,
+    pieces_done: u64,
+    damaged_files: u64,
+    cells_per_second: Option<f64>,
+    seconds_left: Option<f64>,
+}
+
+impl ShardAnswer {
+    fn of(shard: &ShardStatus) -> Self {
+        Self {
+            shard: shard.shard.clone(),
+            running: shard.running,
+            cells: shard.cells,
+            cells_done: shard.cells_done,
+            pieces: shard.pieces,
+            pieces_done: shard.pieces_done,
+            damaged_files: shard.damaged_files,
+            cells_per_second: shard.rate,
+            seconds_left: shard.seconds_left(),
+        }
+    }
 }
 
 /// What is told of a map.
@@ -143,32 +201,20 @@ impl Status {
         left.reduce(f64::max)
     }
 
-    fn json(&self) -> Value {
+    fn answer(&self) -> StatusAnswer {
         let flags = FLAGS.iter().zip(self.statuses.flagged);
-        let mut by_status: serde_json::Map<String, Value> = flags
-            .map(|((_, name), count)| ((*name).to_owned(), count.into()))
-            .collect();
-        by_status.insert("unflagged".to_owned(), self.statuses.unflagged.into());
-        let shards: Vec<Value> = self
-            .shards
-            .iter()
-            .map(|s| {
-                json!({
-                    "shard": s.shard, "running": s.running, "cells": s.cells,
-                    "cells_done": s.cells_done,
-                    "pieces": s.pieces, "pieces_done": s.pieces_done,
-                    "damaged_files": s.damaged_files,
-                    "cells_per_second": s.rate, "seconds_left": s.seconds_left(),
-                })
-            })
-            .collect();
-        json!({
-            "complete": self.complete, "running": self.running(), "cells": self.cells,
-            "cells_done": self.cells_done,
-            "cells_per_second": self.rate(), "seconds_left": self.seconds_left(),
-            "cells_by_status": by_status,
-            "shards": shards,
-        })
+        let flagged = flags.map(|((_, name), count)| (*name, count));
+        let unflagged = [("unflagged", self.statuses.unflagged)];
+        StatusAnswer {
+            complete: self.complete,
+            running: self.running(),
+            cells: self.cells,
+            cells_done: self.cells_done,
+            cells_per_second: self.rate(),
+            seconds_left: self.seconds_left(),
+            cells_by_status: flagged.chain(unflagged).collect(),
+            shards: self.shards.iter().map(ShardAnswer::of).collect(),
+        }
     }
 
     fn print(&self, map: &Path) -> Result<(), Failure> {

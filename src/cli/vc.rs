@@ -15,8 +15,8 @@ use slipmap::sweep::{Field, Parameter, Setting};
 
 use super::cell::{CellArgs, alone};
 use super::failure::Failure;
+use super::json::{self, AnswerSchema, Inputs};
 use super::parameters::{LimitArgs, ParameterArgs, flag};
-use super::say;
 use super::setting::SettingArgs;
 
 #[derive(Debug, clap::Args)]
@@ -64,10 +64,23 @@ pub(super) fn main(args: &Args) -> Result<(), Failure> {
         let by_flags = args.protocol != ProtocolName::Follow || args.phase.is_some();
         alone("--map", by_flags || args.parameters.any_given())?;
         let found = CriticalVelocity::of(&point.setting, point.protocol, &Stop::default())?;
-        return print_found(args.json, &found, &point.units);
+        let inputs = inputs(&point.setting, &point.units, point.protocol);
+        return print_found(args.json.then_some(&inputs), &found, &point.units);
     }
     match args.protocol {
-        ProtocolName::Limit => print(args.json, &args.limit()?, None, &Units::default()),
+        ProtocolName::Limit => {
+            let found = args.limit()?;
+            let inputs = Inputs::default().and("protocol", found.protocol);
+            let inputs = inputs
+                .and("gamma", found.gamma)
+                .and("mu_ratio", found.mu_ratio);
+            print(
+                args.json.then_some(&inputs),
+                &found,
+                None,
+                &Units::default(),
+            )
+        }
         protocol => {
             let (setting, units) = args.read()?;
             let protocol = match protocol {
@@ -76,8 +89,26 @@ pub(super) fn main(args: &Args) -> Result<(), Failure> {
             };
             let found = CriticalVelocity::of(&setting, protocol, &Stop::default());
             let found = found.map_err(|e| args.parameters.refused(&e))?;
-            print_found(args.json, &found, &units)
+            let inputs = inputs(&setting, &units, protocol);
+            print_found(args.json.then_some(&inputs), &found, &units)
         }
+    }
+}
+
+/// What its JSON looks like.
+pub(super) fn described() -> AnswerSchema {
+    AnswerSchema::of("vc")
+        .or::<CriticalVelocity>()
+        .or::<ShortDelay>()
+}
+
+fn inputs(setting: &Setting, units: &Units, protocol: search::Protocol) -> Inputs {
+    let inputs = Inputs::of_setting(setting, units, |p| p != Parameter::V0);
+    let inputs = inputs.and("protocol", protocol.name());
+    match protocol {
+        search::Protocol::Follow => inputs,
+        search::Protocol::SwitchOn(Phase::After(phase)) => inputs.and("phase", phase),
+        search::Protocol::SwitchOn(Phase::Worst(_)) => inputs.and("phase", "worst"),
     }
 }
 
@@ -93,20 +124,24 @@ fn not_known(found: &CriticalVelocity, units: &Units) -> Option<String> {
     (!found.decided).then(|| format!("not known{ends}"))
 }
 
-fn print_found(json: bool, found: &CriticalVelocity, units: &Units) -> Result<(), Failure> {
+fn print_found(
+    json: Option<&Inputs>,
+    found: &CriticalVelocity,
+    units: &Units,
+) -> Result<(), Failure> {
     print(json, found, not_known(found, units).as_deref(), units)
 }
 
-/// The object as one line of JSON, or its entries one below the other. Where v_c is `not_known`
-/// neither it, the velocity of lift-off nor a window is shown to people.
+/// The object as one line of JSON with its inputs, or its entries one below the other. Where v_c is
+/// `not_known` neither it, the velocity of lift-off nor a window is shown to people.
 fn print(
-    json: bool,
+    json: Option<&Inputs>,
     found: &impl Serialize,
     not_known: Option<&str>,
     units: &Units,
 ) -> Result<(), Failure> {
-    if json {
-        return say::json(found);
+    if let Some(inputs) = json {
+        return json::print(inputs, found);
     }
     let mut out = std::io::stdout().lock();
     let value = serde_json::to_value(found).map_err(std::io::Error::from)?;

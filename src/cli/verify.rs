@@ -3,15 +3,18 @@
 
 use std::path::{Path, PathBuf};
 
-use serde_json::{Value, json};
+use serde::Serialize;
 use slipmap::maps::check::{Effort, Program, Report, check};
 use slipmap::maps::check_trace::{TraceReport, check_trace};
 use slipmap::report::numbers::grouped;
 use slipmap::store::tiles::Survey;
 use slipmap::store::{MapFile, TraceFile, trace_reader};
+use slipmap::sweep::cells::second_look::Question;
+use utoipa::ToSchema;
 
 use super::failure::Failure;
-use super::say::{self, Rows};
+use super::json::{self, AnswerSchema, Inputs};
+use super::say::Rows;
 use super::signals::Signals;
 
 /// More cells or tiles than this are not computed again.
@@ -35,6 +38,20 @@ pub(super) struct Args {
     json: bool,
 }
 
+/// What its JSON looks like.
+pub(super) fn described() -> AnswerSchema {
+    AnswerSchema::of("verify")
+        .or::<MapAnswer>()
+        .or::<TraceAnswer>()
+}
+
+impl Args {
+    fn inputs(&self) -> Inputs {
+        let inputs = Inputs::default().and("file", &self.map);
+        inputs.and("cells", self.cells).and("tiles", self.tiles)
+    }
+}
+
 pub(super) fn main(args: &Args) -> Result<(), Failure> {
     let program = Program {
         version: env!("CARGO_PKG_VERSION"),
@@ -51,7 +68,7 @@ pub(super) fn main(args: &Args) -> Result<(), Failure> {
     };
     let report = check(&map, program, effort)?;
     let told = match args.json {
-        true => say::json(&to_json(&report)),
+        true => json::print(&args.inputs(), &MapAnswer::from(&report)),
         false => print(&report),
     };
     verdict(&args.map, report.faults.len(), told)
@@ -92,19 +109,44 @@ fn verify_trace(args: &Args, program: Program) -> Result<(), Failure> {
         TraceFile::open(&args.map).map(|file| check_trace(&file, program))
     })?;
     let told = match args.json {
-        true => say::json(&trace_to_json(&report)),
+        true => json::print(
+            &Inputs::default().and("file", &args.map),
+            &TraceAnswer::from(&report),
+        ),
         false => print_trace(&report),
     };
     verdict(&args.map, report.faults.len(), told)
 }
 
-fn trace_to_json(report: &TraceReport) -> Value {
-    json!({
-        "kind": "trace", "sound": report.faults.is_empty(), "faults": report.faults,
-        "remarks": report.remarks, "samples": report.samples,
-        "samples_equal": report.samples_equal, "events": report.events,
-        "events_equal": report.events_equal,
-    })
+/// What was found out about a trace.
+#[derive(Serialize, ToSchema)]
+struct TraceAnswer {
+    /// `trace`.
+    kind: &'static str,
+    sound: bool,
+    faults: Vec<String>,
+    remarks: Vec<String>,
+    /// Samples of the motion that was computed again, and those that are in the trace, bit by bit.
+    samples: u64,
+    samples_equal: u64,
+    /// Events likewise.
+    events: u64,
+    events_equal: u64,
+}
+
+impl From<&TraceReport> for TraceAnswer {
+    fn from(report: &TraceReport) -> Self {
+        Self {
+            kind: "trace",
+            sound: report.faults.is_empty(),
+            faults: report.faults.clone(),
+            remarks: report.remarks.clone(),
+            samples: report.samples,
+            samples_equal: report.samples_equal,
+            events: report.events,
+            events_equal: report.events_equal,
+        }
+    }
 }
 
 fn print_trace(report: &TraceReport) -> Result<(), Failure> {
@@ -128,20 +170,55 @@ fn print_findings(rows: &mut Rows, remarks: &[String], faults: &[String]) -> Res
         .try_for_each(|(name, text)| rows.row(name, text))
 }
 
-fn to_json(report: &Report) -> Value {
-    let answers: Vec<Value> = report
-        .answers
-        .iter()
-        .map(|(question, [agree, differ, open])| {
-            json!({"question": question.name(), "agree": agree, "differ": differ, "open": open})
-        })
-        .collect();
-    json!({
-        "kind": "map", "sound": report.faults.is_empty(), "faults": report.faults,
-        "remarks": report.remarks,
-        "checksums": report.checksums, "cells": report.cells, "answers": answers,
-        "tiles": report.tiles, "tiles_equal": report.tiles_equal,
-    })
+/// What was found out about a map.
+#[derive(Serialize, ToSchema)]
+struct MapAnswer {
+    /// `map`.
+    kind: &'static str,
+    sound: bool,
+    faults: Vec<String>,
+    remarks: Vec<String>,
+    /// Checksums that fit.
+    checksums: u64,
+    /// Cells at which second methods looked.
+    cells: u64,
+    answers: Vec<MethodAnswer>,
+    /// Tiles that were computed again, and those of which all bytes are equal.
+    tiles: u64,
+    tiles_equal: u64,
+}
+
+/// What second methods say about a field: the number of cells at which they agree, differ, and do
+/// not know.
+#[derive(Serialize, ToSchema)]
+struct MethodAnswer {
+    question: &'static str,
+    agree: u64,
+    differ: u64,
+    open: u64,
+}
+
+impl From<&Report> for MapAnswer {
+    fn from(report: &Report) -> Self {
+        let answers = report.answers.iter();
+        let answer = |(question, [agree, differ, open]): &(Question, [u64; 3])| MethodAnswer {
+            question: question.name(),
+            agree: *agree,
+            differ: *differ,
+            open: *open,
+        };
+        Self {
+            kind: "map",
+            sound: report.faults.is_empty(),
+            faults: report.faults.clone(),
+            remarks: report.remarks.clone(),
+            checksums: report.checksums,
+            cells: report.cells,
+            answers: answers.map(answer).collect(),
+            tiles: report.tiles,
+            tiles_equal: report.tiles_equal,
+        }
+    }
 }
 
 fn print(report: &Report) -> Result<(), Failure> {

@@ -34,13 +34,17 @@ pub struct Point {
     pub stable: bool,
     /// Whether that is within rounding of a boundary.
     pub marginal: bool,
-    /// All intervals of delays in which sliding is stable, by shortest delay; the last one may have
-    /// no end.
+    /// All intervals of delays in which sliding is stable, by shortest delay; the end of the last
+    /// one is null where it has none.
     pub stable_delays: Vec<[Option<f64>; 2]>,
     /// Some are left out.
     pub stable_delays_truncated: bool,
-    /// The distance in τ to the nearest change of stability, positive where stable.
+    /// The distance in τ to the nearest change of stability, positive where stable; null where it
+    /// never changes.
     pub delay_margin: Option<f64>,
+    /// The sign of that distance, also of an infinite one: 1 where stable, −1 where unstable, 0 on
+    /// a boundary.
+    pub delay_margin_sign: i8,
     /// Where roots cross the imaginary axis as the delay grows.
     pub crossings: Vec<PointCrossing>,
     /// The rightmost roots.
@@ -64,7 +68,7 @@ pub struct PointCrossing {
 #[derive(Debug, Clone, Serialize)]
 #[cfg_attr(feature = "serve", derive(utoipa::ToSchema))]
 pub struct Spectrum {
-    /// The spectral abscissa.
+    /// The spectral abscissa; null where no root converged.
     pub abscissa: Option<f64>,
     /// |Im λ| of the rightmost root.
     pub frequency: Option<f64>,
@@ -134,6 +138,7 @@ impl Point {
         let count = crossings.count(tau, MarginalTolerance::default());
         let mut intervals = crossings.stable_delays();
         let stable: Vec<StableInterval> = intervals.by_ref().take(MOST_INTERVALS).collect();
+        let delay_margin = crossings.delay_margin(tau);
         Ok(Self {
             mu_prime: sliding.mu_prime,
             mu_k: sliding.mu_k,
@@ -148,7 +153,11 @@ impl Point {
                 .map(|s| [Some(s.from), finite(s.to)])
                 .collect(),
             stable_delays_truncated: intervals.next().is_some(),
-            delay_margin: finite(crossings.delay_margin(tau)),
+            delay_margin: finite(delay_margin),
+            delay_margin_sign: match delay_margin {
+                0.0 => 0,
+                margin => margin.signum() as i8,
+            },
             crossings: crossings
                 .iter()
                 .map(|c| PointCrossing {

@@ -18,7 +18,8 @@ use crate::sweep::input::source::Source;
 #[derive(Debug, Clone, Serialize)]
 #[cfg_attr(feature = "serve", derive(utoipa::ToSchema))]
 pub struct CriticalVelocity {
-    /// v_c.
+    /// v_c; null where `outcome` says why there is none: stick-slip persists up to the largest v0
+    /// that is tried, or the block lifts off.
     pub vc: Option<f64>,
     /// A lower bound of v_c, below the ends that all searches came to by a margin; v_c where that
     /// is decided.
@@ -106,5 +107,42 @@ impl ShortDelay {
             mu_ratio,
             fields: fields.collect(),
         })
+    }
+}
+
+/// The fields are those of the table, so their schema is too.
+#[cfg(feature = "serve")]
+mod schema {
+    use utoipa::openapi::schema::{Object, ObjectBuilder, SchemaType, Type};
+    use utoipa::openapi::{RefOr, Schema};
+    use utoipa::{PartialSchema, ToSchema};
+
+    use super::ShortDelay;
+    use crate::sweep::input::field::Field;
+
+    impl ToSchema for ShortDelay {}
+
+    impl PartialSchema for ShortDelay {
+        fn schema() -> RefOr<Schema> {
+            let object = |kind: SchemaType, about: &str| -> Object {
+                let builder = ObjectBuilder::new().schema_type(kind);
+                builder.description(Some(about)).build()
+            };
+            let number = || SchemaType::Type(Type::Number);
+            let or_null = || SchemaType::from_iter([Type::Number, Type::Null]);
+            let protocol = object(SchemaType::Type(Type::String), "`limit`");
+            let mut whole = ObjectBuilder::new()
+                .property("protocol", protocol)
+                .property("gamma", object(number(), "γ"))
+                .property("mu_ratio", object(number(), "μ_K/μ_S"));
+            for name in ["protocol", "gamma", "mu_ratio"] {
+                whole = whole.required(name);
+            }
+            for field in Field::ALL.into_iter().filter(|field| field.of_limit()) {
+                let value = object(or_null(), field.long_name());
+                whole = whole.property(field.name(), value).required(field.name());
+            }
+            whole.into()
+        }
     }
 }

@@ -1,0 +1,142 @@
+//! What commands print with `--json`: one object, with what was asked, and the schemas of those
+//! objects.
+
+use std::collections::BTreeMap;
+use std::io::Write;
+
+use serde::{Serialize, Serializer};
+use serde_json::{Map, Value, json};
+use slipmap::report::visible::visible_json;
+use slipmap::sweep::input::law_kind::LawKind;
+use slipmap::sweep::input::setting_text::of_point;
+use slipmap::sweep::input::units::Units;
+use slipmap::sweep::{Parameter, Setting};
+use utoipa::ToSchema;
+use utoipa::openapi::{RefOr, Schema};
+
+use super::failure::Failure;
+
+/// Version of the keys of the JSON output of all commands: larger where a key is gone or means
+/// something else; new keys may come without that. 2: `last_release` counts from switch-on.
+const SCHEMA_VERSION: u32 = 2;
+
+/// An answer with the version of its keys and what was asked.
+#[derive(Serialize)]
+struct Answer<'a, T> {
+    schema_version: u32,
+    inputs: &'a Inputs,
+    #[serde(flatten)]
+    value: &'a T,
+}
+
+/// What was asked, with defaults filled in: enough to ask the same again. Keys are those of flags,
+/// with `_` in the place of `-`.
+#[derive(Debug, Clone, Default, Serialize)]
+#[serde(transparent)]
+pub(super) struct Inputs(Map<String, Value>);
+
+impl Inputs {
+    /// The `wanted` parameters of a point, its friction law and its units.
+    pub(super) fn of_setting(
+        setting: &Setting,
+        units: &Units,
+        wanted: impl Fn(Parameter) -> bool,
+    ) -> Self {
+        let parameters = Parameter::ALL.into_iter();
+        let parameters = parameters.filter(|&p| of_point(setting, p) && wanted(p));
+        let mut inputs = Self::default();
+        for parameter in parameters {
+            inputs = inputs.and(parameter.name(), setting.get(parameter));
+        }
+        if let Some(law) = setting.law() {
+            inputs = inputs.and("friction", law.name());
+            if let LawKind::Table(points) = law {
+                inputs = inputs.and("speeds", points.speeds());
+                inputs = inputs.and("mu_k", points.mu_k());
+            }
+        }
+        inputs.and("units", &units.force_length_time)
+    }
+
+    /// The same with one input more.
+    pub(super) fn and(mut self, name: &str, value: impl Serialize) -> Self {
+        // Numbers, texts and lists of them are always written.
+        let value = serde_json::to_value(value).unwrap_or_default();
+        self.0.insert(name.to_owned(), value);
+        self
+    }
+}
+
+/// Prints an answer as one JSON object on standard output.
+pub(super) fn print(inputs: &Inputs, value: &impl Serialize) -> Result<(), Failure> {
+    let answer = Answer {
+        schema_version: SCHEMA_VERSION,
+        inputs,
+        value,
+    };
+    let text = serde_json::to_string(&answer).map_err(std::io::Error::from)?;
+    let text = visible_json(&text);
+    Ok(writeln!(std::io::stdout(), "{text}")?)
+}
+
+/// Pairs of a name and a value as an object, in their order; names of several words are joined.
+pub(super) fn as_object<S: Serializer, T: Serialize>(
+    pairs: &[(&'static str, T)],
+    to: S,
+) -> Result<S::Ok, S::Error> {
+    to.collect_map(
+        pairs
+            .iter()
+            .map(|(name, value)| (name.replace(' ', "_"), value)),
+    )
+}
+
+/// The JSON Schema (2020-12) of what a command prints, one of several kinds of answers.
+pub(super) struct AnswerSchema {
+    command: &'static str,
+    answers: Vec<Value>,
+    parts: BTreeMap<String, RefOr<Schema>>,
+}
+
+impl AnswerSchema {
+    pub(super) fn of(command: &'static str) -> Self {
+        Self {
+            command,
+            answers: Vec::new(),
+            parts: BTreeMap::new(),
+        }
+    }
+
+    /// An answer may be of this type.
+    pub(super) fn or<T: ToSchema>(mut self) -> Self {
+        let mut parts = vec![(T::name().into_owned(), T::schema())];
+        T::schemas(&mut parts);
+        self.parts.extend(parts);
+        let part = format!("#/components/schemas/{}", T::name());
+        self.answers.push(json!({ "$ref": part }));
+        self
+    }
+
+    /// The whole schema.
+    pub(super) fn schema(&self) -> Value {
+        json!({
+            "$schema": "https://json-schema.org/draft/2020-12/schema",
+            "title": format!("slipmap {} --json", self.command),
+            "type": "object",
+            "required": ["schema_version", "inputs"],
+            "properties": {
+                "schema_version": {
+                    "description": "Version of the keys of all answers",
+                    "const": SCHEMA_VERSION,
+                },
+                "inputs": {
+                    "description": "What was asked, with defaults filled in; keys as in flags",
+                    "type": "object",
+                },
+            },
+            "oneOf": self.answers,
+            "unevaluatedProperties": false,
+            "components": { "schemas": self.parts },
+        })
+    }
+}

@@ -1,0 +1,83 @@
+//! What became of a motion, in words and numbers for people.
+
+use std::io::Write;
+
+use slipmap::report::numbers::{grouped, unit_behind};
+use slipmap::slip::motion::MOST_KEPT;
+use slipmap::slip::outcome::{Outcome, Summary};
+use slipmap::sweep::{CaseSpec, Field, Trace};
+
+use super::output::tell_dimensionless;
+
+/// Events printed for people, the last ones; the JSON output and the trace have them all.
+const EVENTS_SHOWN: usize = 12;
+
+/// Writes what became of a motion, its numbers and its last events.
+pub(super) fn print(out: &mut impl Write, spec: &CaseSpec, trace: &Trace) -> std::io::Result<()> {
+    let summary = &trace.summary;
+    writeln!(out, "{}", verdict(summary, spec))?;
+    let units = &spec.units;
+    for (name, value) in summary.numbers() {
+        if value.is_finite() {
+            let field = Field::from_name(name).map(|field| field.unit(units));
+            let unit = unit_behind(&field.unwrap_or_else(|| units.time()));
+            let name = if name == "decided" {
+                "decided at"
+            } else {
+                name
+            };
+            writeln!(out, "  {name:<16} {}{unit}", digits(value))?;
+        }
+    }
+    writeln!(out, "  {:<16} {}", "steps", summary.steps)?;
+    tell_dimensionless(out, units)?;
+    let events = &trace.events;
+    let hidden = events.len().saturating_sub(EVENTS_SHOWN);
+    if events.is_empty() {
+        return Ok(());
+    }
+    let [t, a] = [("t", [0, 0, 1]), ("a", [0, 1, 0])]
+        .map(|(name, dimension)| format!("{name}{}", unit_behind(&units.of(dimension))));
+    writeln!(out, "{t:>18}{a:>18}  event")?;
+    if hidden > 0 {
+        writeln!(
+            out,
+            "{hidden:>18} earlier ones, in the trace and with --json"
+        )?;
+    }
+    for event in &events[hidden..] {
+        let (t, a) = (digits(event.t), digits(event.a));
+        writeln!(out, "{t:>18}{a:>18}  {}", event.name())?;
+    }
+    Ok(())
+}
+
+/// A number with nine digits behind the point where it is of common size.
+fn digits(value: f64) -> String {
+    match value.abs() {
+        0.0 => "0".into(),
+        1e-4..1e6 => format!("{value:.9}"),
+        _ => format!("{value:.9e}"),
+    }
+}
+
+/// What became of the motion, in words.
+fn verdict(summary: &Summary, spec: &CaseSpec) -> String {
+    match summary.outcome {
+        Outcome::Sliding => "the block comes to slide continuously".into(),
+        Outcome::StickSlip => "the block sticks and slips periodically".into(),
+        Outcome::Oscillation => "the block oscillates periodically without sticking".into(),
+        Outcome::LiftOff => "the block lifts off: the load reaches 0, where the model ends".into(),
+        Outcome::Diverged => "the motion grows beyond all bounds".into(),
+        Outcome::Undecided if summary.steps >= spec.case.steps => {
+            format!("undecided after {} steps", grouped(summary.steps))
+        }
+        Outcome::Undecided if summary.decided < spec.case.horizon => format!(
+            "undecided at t = {}: two delays take more than {MOST_KEPT} steps, the most that are \
+            kept",
+            digits(summary.decided)
+        ),
+        Outcome::Undecided => format!("undecided at the horizon, t = {}", spec.case.horizon),
+        Outcome::NoCycle => "there is no uncontrolled stick-slip to start from".into(),
+    }
+}

@@ -1,0 +1,49 @@
+//! `slipmap schema`: what the JSON of another command looks like.
+
+use clap::ValueEnum;
+
+use super::failure::Failure;
+use super::json::AnswerSchema;
+use super::{best, info, plan, point, say, simulate, status, vc, verify};
+
+#[derive(Debug, clap::Args)]
+pub(super) struct Args {
+    /// The command whose --json is described
+    #[arg(value_enum)]
+    command: Command,
+}
+
+/// Commands with `--json`.
+#[derive(Debug, Clone, Copy, ValueEnum)]
+enum Command {
+    Best,
+    Info,
+    Plan,
+    Point,
+    Simulate,
+    Status,
+    Vc,
+    Verify,
+}
+
+impl Command {
+    fn described(self) -> AnswerSchema {
+        match self {
+            Self::Best => best::described(),
+            Self::Info => info::described(),
+            Self::Plan => plan::described(),
+            Self::Point => point::described(),
+            Self::Simulate => simulate::described(),
+            Self::Status => status::described(),
+            Self::Vc => vc::described(),
+            Self::Verify => verify::described(),
+        }
+    }
+}
+
+/// Prints the schema.
+pub(super) fn main(args: &Args) -> Result<(), Failure> {
+    let schema = args.command.described().schema();
+    let text = serde_json::to_string_pretty(&schema).map_err(std::io::Error::from)?;
+    say::result(text)
+}
