@@ -431,3 +431,33 @@ fn units_have_presets() {
     assert!(text.contains("unknown units \"S.I.\""), "{text}");
     assert!(text.contains("known: SI, dimensionless"), "{text}");
 }
+
+/// Pictures of maps with best settings mark them, and say what the mark means.
+#[test]
+fn best_settings_are_marked_in_pictures() {
+    let sweep = "fields = [\"abscissa\"]\n[axes]\nalpha_n = { from = -4, to = 1, points = 11 }\n\
+                 tau = { from = 0, to = 9, points = 11 }\n[fixed]\nmu_prime = -0.3\n";
+    let folder = Folder::with(&[
+        ("plain.toml", sweep),
+        ("best.toml", &format!("best = true\n{sweep}")),
+    ]);
+    let drawn = |name: &str| {
+        expect(
+            &folder.run(&["run", &format!("{name}.toml")]),
+            0,
+            "121 cells",
+        );
+        let svg = format!("{name}.svg");
+        expect(
+            &folder.run(&["plot", &format!("{name}.h5"), "-o", &svg]),
+            0,
+            &svg,
+        );
+        std::fs::read_to_string(folder.path().join(svg)).unwrap()
+    };
+    let [plain, best] = ["plain", "best"].map(drawn);
+    assert!(best.contains("fastest decay") && !plain.contains("fastest decay"));
+    // A diamond in the plane and one in the legend, each with paper around it.
+    let lines = |svg: &str| svg.matches("<polyline").count();
+    assert_eq!(lines(&best) - lines(&plain), 4);
+}
