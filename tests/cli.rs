@@ -10,7 +10,7 @@ mod map;
 mod program;
 
 use map::{edit, settle};
-use program::{Folder, err, expect, out};
+use program::{Folder, err, expect, out, pixels};
 
 const SMALL: &str = "title = \"small\"\n[axes]\nmu_prime = [-0.1, -0.3]\nalpha_n = { from = -3, to = 1, points = 41 }\ntau = { from = 0, to = 12, points = 61 }\n";
 /// Large enough to be interrupted on any machine.
@@ -456,12 +456,6 @@ fn point_has_the_roots_of_the_reference() {
         checked += 1;
     }
     assert_eq!(checked, 150);
-}
-
-/// The pixels of a picture, without the texts of its file.
-fn pixels(png: &[u8]) -> Vec<u8> {
-    let start = png.windows(4).position(|part| part == b"IDAT").unwrap();
-    png[start..].to_vec()
 }
 
 /// A map with decay rates: planned, run, drawn as such, and listed with the range of its values.

@@ -161,9 +161,9 @@ fn a_cell_of_a_map_is_drawn_in_its_units() {
     }
     let before = folder.files();
     expect(
-        &plot("cell.pdf"),
+        &plot("cell.jpg"),
         2,
-        "--plot cell.pdf is no name for a picture",
+        "--plot cell.jpg is no name for a picture",
     );
     expect(&plot("map.h5"), 2, "no name for a picture");
     expect(&plot("no/cell.png"), 1, "no/cell.png");

@@ -38,7 +38,7 @@ pub(super) struct Args {
     #[arg(long, value_name = "K", default_value_t = 4, allow_hyphen_values = true,
           value_parser = parse_roots)]
     roots: u8,
-    /// Draw the roots in the complex plane and the stable delays, as .png or .svg
+    /// Draw the roots in the complex plane and the stable delays, as .png, .svg or .pdf
     #[arg(long, value_name = "PICTURE")]
     plot: Option<PathBuf>,
     /// One JSON object on standard output; infinities are null

@@ -43,7 +43,7 @@ pub(super) struct Args {
     /// samples as text; - for those on standard output, and nothing else there
     #[arg(short, long, value_name = "TRACE.h5")]
     output: Option<PathBuf>,
-    /// The picture to draw, .png or .svg [default: the trace's name with .png, beside it]
+    /// The picture to draw, .png, .svg or .pdf [default: the trace's name with .png, beside it]
     #[arg(long, value_name = "PICTURE")]
     picture: Option<PathBuf>,
     /// Replace the trace of another case, or a text

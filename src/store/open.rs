@@ -72,8 +72,12 @@ pub(super) fn to_read(
         let why = "the HDF5 library here cannot be kept from opening other files";
         return Err(refuse(path, why.into()));
     }
-    let file = File::open(path).map_err(|_| {
-        // The library locks what it writes.
+    // The library locks what it writes. A lock that is gone by now may have been there a moment ago.
+    let once_more = |refused| match lock::is_held(path) {
+        true => Err(refused),
+        false => File::open(path),
+    };
+    let file = File::open(path).or_else(once_more).map_err(|_| {
         if lock::is_held(path) {
             return StoreError::InUse {
                 path: path.to_owned(),

@@ -78,3 +78,9 @@ pub(crate) fn expect(output: &Output, code: i32, says: &str) {
     );
     assert!(!text.contains("panicked"), "{text}");
 }
+
+/// The pixels of a picture, without the texts of its file.
+pub(crate) fn pixels(png: &[u8]) -> Vec<u8> {
+    let start = png.windows(4).position(|part| part == b"IDAT").unwrap();
+    png[start..].to_vec()
+}
