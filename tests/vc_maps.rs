@@ -488,9 +488,13 @@ fn vc_names_flags() {
 fn vc_needs_no_delay_without_control() {
     let folder = Folder::new();
     let coulomb = ["vc", "--json", "--friction=coulomb", "--mu0=0.5"];
-    let said = out(&folder.run(&coulomb));
-    let value: Value = serde_json::from_str(&said).unwrap();
-    assert_eq!(value["outcome"], "persists");
-    let with = [&coulomb[..], &["--alpha-v=0", "--tau=3"]].concat();
-    assert_eq!(out(&folder.run(&with)), said);
+    let answer = |more: &[&str]| {
+        let said = out(&folder.run(&[&coulomb[..], more].concat()));
+        let mut value: Value = serde_json::from_str(&said).unwrap();
+        let inputs = value.as_object_mut().unwrap().remove("inputs").unwrap();
+        (inputs["tau"].as_f64().unwrap(), value)
+    };
+    let (without, value) = answer(&[]);
+    assert_eq!((without, &value["outcome"]), (0.0, &"persists".into()));
+    assert_eq!(answer(&["--alpha-v=0", "--tau=3"]), (3.0, value));
 }
