@@ -72,7 +72,7 @@ pub(super) fn to_read(
         let why = "the HDF5 library here cannot be kept from opening other files";
         return Err(refuse(path, why.into()));
     }
-    // The library locks what it writes. A lock that is gone by now may have been there a moment ago.
+    // The library locks what it writes. A lock that is gone now may have been there a moment ago.
     let once_more = |refused| match lock::is_held(path) {
         true => Err(refused),
         false => File::open(path),
