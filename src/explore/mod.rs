@@ -5,6 +5,7 @@
 //!   the same as bytes, laid out as in [`encoded`]
 //! - [`point`]: linear stability at a point, with its roots; [`along_delay`]: over its delays
 //! - [`vc`]: the critical velocity at a point
+//! - [`basin`]: the share of starts from which control ends in sliding
 //! - [`motion`]: one motion in time; [`motion_bytes`]: the same as bytes
 //! - [`law`]: a friction law as a curve
 //! - [`known`]: all parameters, friction laws and fields
@@ -15,6 +16,7 @@
 
 pub mod along_delay;
 pub mod answer;
+pub mod basin;
 pub mod chart;
 pub mod chart_bytes;
 pub mod encoded;

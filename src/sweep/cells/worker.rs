@@ -3,6 +3,7 @@
 use std::ops::Range;
 use std::sync::atomic::{AtomicBool, Ordering};
 
+use super::basin_columns::BasinColumns;
 use super::buffers::{Column, FEW_FILL, N_UNSTABLE_FILL, TileBuffers, one_zero_and_one_nan};
 use super::limit_columns;
 use super::line::{Numbers, Places, SlowLine};
@@ -44,6 +45,8 @@ pub struct Worker<'p> {
     roots: Option<RootColumns>,
     /// Follows motions, where a field needs them.
     slip: Option<SlipColumns<'p>>,
+    /// Follows many starts, where a field needs them.
+    basin: Option<BasinColumns<'p>>,
     /// Looks for critical velocities, where a field needs them.
     vc: Option<VcColumns>,
     /// Cells between neighbours along each axis in the whole map.
@@ -156,6 +159,7 @@ impl<'p> Worker<'p> {
             },
             roots: RootColumns::new(&plan.spec.fields),
             slip: SlipColumns::new(&plan.spec),
+            basin: BasinColumns::new(&plan.spec),
             vc: VcColumns::new(&plan.spec),
             map_strides: strides_of(plan.shape()),
             slides: plan.spec.has_sliding(),
@@ -211,8 +215,12 @@ impl<'p> Worker<'p> {
             };
             self.fill_slowly(&tile.offset, inside, at, groups, stop);
         });
-        let complete = self.slip.is_none() && self.vc.is_none();
-        complete || !stop.load(Ordering::Relaxed)
+        self.all_at_once() || !stop.load(Ordering::Relaxed)
+    }
+
+    /// Whether nothing takes so long that a stop is heeded within a tile.
+    fn all_at_once(&self) -> bool {
+        self.slip.is_none() && self.basin.is_none() && self.vc.is_none()
     }
 
     /// Computes the cells of a line into the buffers from place `at` on.
@@ -323,7 +331,7 @@ impl<'p> Worker<'p> {
         groups: Option<Groups>,
         stop: &AtomicBool,
     ) {
-        if self.slip.is_none() && self.vc.is_none() {
+        if self.all_at_once() {
             return;
         }
         let index = offset.iter().zip(inside).map(|(o, i)| o + i);
@@ -345,6 +353,9 @@ impl<'p> Worker<'p> {
         };
         if let (Some(slip), Some(groups)) = (&mut self.slip, groups) {
             slip.fill(&line, groups, &mut self.buffers);
+        }
+        if let Some(basin) = &mut self.basin {
+            basin.fill(&line, &mut self.buffers);
         }
         if let Some(vc) = &mut self.vc {
             vc.fill(&line, &mut self.buffers);

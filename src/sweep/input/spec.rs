@@ -44,6 +44,14 @@
 //! tolerance = 1e-12
 //! steps = 1000000
 //!
+//! # optional, for fields of many starts: 256 in the whole range of what a block at rest can come to
+//! # by default; or over = "phase", the uncontrolled cycle, in which control is switched on
+//! [basin]
+//! over = "state"
+//! starts = 256                            # a power of two
+//! x_dot0 = { from = 0.0, to = 1.5 }
+//! a0 = { from = -1.0, to = 1.0 }
+//!
 //! [units]                                 # optional: names for the map, dimensionless without
 //! force = "N"
 //! length = "m"
@@ -54,6 +62,7 @@
 //! ```
 
 use super::axis::Axis;
+use super::basin::Basin;
 use super::field::Field;
 use super::parameter::Parameter;
 use super::search::Search;
@@ -88,6 +97,8 @@ pub struct SweepSpec {
     pub tolerance: MarginalTolerance,
     /// How far and how exactly motions are followed.
     pub simulation: Simulation,
+    /// Of which starts the share is taken that ends in sliding; none where no field asks for it.
+    pub basin: Option<Basin>,
     /// How critical velocities are looked for; none where no field asks for them.
     pub critical: Option<Search>,
     /// Units of the parameters.

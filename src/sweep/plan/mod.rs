@@ -30,6 +30,8 @@ const CELLS_PER_TILE: usize = 1 << 18;
 const CELLS_PER_ROOT_TILE: usize = 1 << 14;
 /// Cells in a tile where motions are followed, which takes about a millisecond a cell.
 const CELLS_PER_MOTION_TILE: usize = 1 << 8;
+/// Motions in a tile where each cell has many, about a second's work.
+const MOTIONS_PER_TILE: usize = 1 << 11;
 /// Cells in a tile where critical velocities are looked for, which takes up to a second a cell.
 const CELLS_PER_CRITICAL_TILE: usize = 1 << 6;
 /// Delays in a tile at most, so that memory stays bounded on the longest line.
@@ -72,6 +74,8 @@ impl Plan {
     pub fn new(spec: SweepSpec) -> Result<Self, SpecError> {
         let cells = if spec.critical.is_some() {
             CELLS_PER_CRITICAL_TILE
+        } else if let Some(basin) = &spec.basin {
+            (MOTIONS_PER_TILE / basin.starts as usize).max(1)
         } else if spec.follows_motions() {
             CELLS_PER_MOTION_TILE
         } else if follows_roots(&spec) {
@@ -271,7 +275,16 @@ impl Plan {
             };
             facts.push((protocol.name(), vec![phases, search.verify].into()));
         }
-        if spec.follows_motions() {
+        if let Some(basin) = &spec.basin {
+            facts.push((basin.over.name(), one(f64::from(basin.starts))));
+            let ranges = [("x_dot0 of starts", basin.x_dot0), ("a0 of starts", basin.a0)];
+            for (name, range) in ranges {
+                if let Some(range) = range {
+                    facts.push((name, range.to_vec().into()));
+                }
+            }
+        }
+        if spec.follows_motions() || spec.basin.is_some() {
             let how = &spec.simulation;
             let horizon = how.horizon.unwrap_or(0.0);
             let numbers = vec![horizon, how.tolerance, how.steps as f64];
@@ -343,7 +356,7 @@ fn block(spec: &SweepSpec) -> usize {
         _ if follows_roots(spec) => BLOCK_OF_DELAYS,
         Some(Protocol::Follow) => BLOCK_OF_VC,
         Some(Protocol::SwitchOn(_)) => 1,
-        None if spec.follows_motions() => 1,
+        None if spec.follows_motions() || spec.basin.is_some() => 1,
         None => BLOCK_OF_DELAYS,
     }
 }
