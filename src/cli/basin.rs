@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use clap::ValueEnum;
 use slipmap::explore::basin::{BasinError, BasinShare, Followed};
 use slipmap::model::Shown;
-use slipmap::report::numbers::{grouped, short, unit_behind};
+use slipmap::report::numbers::{grouped, unit_behind};
 use slipmap::report::table::write_starts;
 use slipmap::slip::case::CaseError;
 use slipmap::sweep::input::basin::{Basin, Over};
@@ -34,13 +34,11 @@ const STARTS: u32 = 4096;
 --over phase
 
 Two questions: over states, a block is found with any velocity and elongation of a box, and control \
-acts from then on;
-over phases, control is switched on at any time of uncontrolled stick-slip. The box is by default \
-velocities from 0 to
-v0 + √(v0² + μ_S² N0²/(κM)), what a block at rest can come to, and elongations of ±μ_S N0/κ, at \
-which it stays at rest.
-The error comes from 16 independent scramblings of a Sobol sequence; starts whose end is undecided \
-are counted by themselves.")]
+acts from then on; over phases, control is switched on at any time of uncontrolled stick-slip.
+By default the box has velocities from 0 to v0 + √(v0² + μ_S² N0²/(κM)), what a block at rest can \
+come to, and elongations of ±μ_S N0/κ, at which it stays at rest.
+The error is that of 16 independent scramblings of a Sobol sequence. Starts whose end is undecided \
+are no part of the share: they widen the interval.")]
 pub(super) struct Args {
     #[command(flatten)]
     parameters: ParameterArgs,
@@ -160,7 +158,10 @@ impl Args {
                 alone("--setting", by_flags)?;
                 (point.setting, point.units)
             }
-            None => (self.parameters.setting_of_motions()?, self.parameters.units()),
+            None => (
+                self.parameters.setting_of_motions()?,
+                self.parameters.units(),
+            ),
         };
         if setting.law().is_none() {
             return Err(self.refused(&BasinError::NoLaw));
@@ -207,7 +208,8 @@ impl Args {
                 None => Ok(()),
             };
         }
-        let [velocities, elongations] = Followed::ranges(setting, basin)?;
+        let velocities = basin.velocities(setting)?;
+        let elongations = basin.elongations(setting)?;
         basin.x_dot0 = Some(range(Parameter::XDot0, &ends[..2], velocities)?);
         basin.a0 = Some(range(Parameter::A0, &ends[2..], elongations)?);
         Ok(())
@@ -247,9 +249,13 @@ fn range(
             *end = checked.map_err(|error| Failure::out_of_range(flag, &error))?;
         }
     }
-    Basin::check_range(of, range).map_err(|why| {
-        let flags: Vec<_> = ends.iter().map(|(flag, _)| *flag).collect();
-        Failure::bad_input_with_help(why, format!("{} say it", flags.join(" and ")))
+    Basin::check_range(of, range).map_err(|_| {
+        let told = |((flag, given), value): (&(&str, Option<f64>), f64)| match given {
+            Some(_) => format!("{flag} {}", Shown(value)),
+            None => format!("{flag}, {} by default", Shown(value)),
+        };
+        let [from, to] = [0, 1].map(|end| told((&ends[end], range[end])));
+        Failure::bad_input(format!("{from} is larger than {to}"))
     })
 }
 
@@ -258,7 +264,7 @@ impl Question {
         let mut inputs = Inputs::of_setting(&self.setting, &self.units, |_| true)
             .and("over", share.over)
             .and("starts", self.basin.starts)
-            .and("horizon", self.simulation.horizon);
+            .and("horizon", share.horizon);
         let ranges = [("x_dot0", share.x_dot0), ("a0", share.a0)];
         for (name, range) in ranges {
             if let Some([from, to]) = range {
@@ -274,23 +280,24 @@ fn tell(share: &BasinShare, units: &Units, output: Option<&Path>) -> Result<(), 
     let mut rows = Rows::begin();
     let unit = |parameter| unit_behind(&units.of_parameter(parameter));
     rows.row("over", over(share))?;
-    for (parameter, range) in [
-        (Parameter::XDot0, share.x_dot0),
-        (Parameter::A0, share.a0),
-    ] {
+    for (parameter, range) in [(Parameter::XDot0, share.x_dot0), (Parameter::A0, share.a0)] {
         if let Some([from, to]) = range {
-            let text = format!("{} to {}{}", short(from), short(to), unit(parameter));
+            let text = format!("{} to {}{}", six(from), six(to), unit(parameter));
             rows.row(parameter.name(), text)?;
         }
     }
     if let Some(period) = share.period {
-        let text = format!("0 to {}{}", short(period), unit(Parameter::SwitchOnPhase));
+        let text = format!("0 to {}{}", six(period), unit(Parameter::SwitchOnPhase));
         rows.row("phase", text)?;
     }
     let (starts, scramblings) = (grouped(u64::from(share.starts)), share.scramblings);
     rows.row("starts", format!("{starts} in {scramblings} scramblings"))?;
     rows.row("sliding", sliding(share))?;
-    for of in share.outcomes.iter().filter(|of| of.outcome != "sliding" && of.starts > 0) {
+    for of in share
+        .outcomes
+        .iter()
+        .filter(|of| of.outcome != "sliding" && of.starts > 0)
+    {
         let (share, error) = (of.share, of.error);
         rows.row(of.outcome, format!("{share:.5} ± {error:.5} of the starts"))?;
     }
@@ -302,6 +309,12 @@ fn tell(share: &BasinShare, units: &Units, output: Option<&Path>) -> Result<(), 
         Some(path) => say::result(format_args!("{}: {starts} starts", path.display())),
         None => Ok(()),
     }
+}
+
+/// A number with six digits at most.
+fn six(value: f64) -> String {
+    let rounded = format!("{value:.5e}").parse().unwrap_or(value);
+    format!("{}", Shown(rounded))
 }
 
 /// Which question is answered.

@@ -5,7 +5,6 @@ use std::convert::Infallible;
 use serde::Serialize;
 
 use super::finite;
-use crate::model::ModelError;
 use crate::slip::case::CaseError;
 use crate::slip::outcome::Outcome;
 use crate::sweep::Setting;
@@ -102,6 +101,8 @@ pub struct BasinShare {
     pub a0: Option<[f64; 2]>,
     /// The period of the uncontrolled cycle; null over states.
     pub period: Option<f64>,
+    /// Until how long after switch-on outcomes were looked for.
+    pub horizon: f64,
     /// Shares of all outcomes.
     pub outcomes: Vec<OutcomeShare>,
 }
@@ -159,18 +160,8 @@ impl BasinShare {
             x_dot0,
             a0,
             period,
+            horizon: followed.asked.horizon(),
             outcomes: outcomes.map(share_of).collect(),
         }
-    }
-}
-
-/// The ranges by default are those of a setting, too.
-impl Followed {
-    /// Velocities and elongations of the starts of a setting.
-    ///
-    /// # Errors
-    /// When a parameter is outside the model's range.
-    pub fn ranges(setting: &Setting, basin: &Basin) -> Result<[[f64; 2]; 2], ModelError> {
-        Ok([basin.velocities(setting)?, basin.elongations(setting)?])
     }
 }

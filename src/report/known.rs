@@ -211,9 +211,7 @@ fn concerning(field: Field, open: bool, status: u8, with_roots: bool) -> u8 {
         Source::Motion(_)
         | Source::MotionOrCritical(..)
         | Source::Critical(_)
-        | Source::Basin(_) => {
-            NOT_CONVERGED | DISAGREE
-        }
+        | Source::Basin(_) => NOT_CONVERGED | DISAGREE,
         Source::Limit(_) => NOT_CONVERGED,
     }
 }

@@ -119,6 +119,7 @@ pub(super) fn put_search(dataset: &Dataset, search: &Search) -> hdf5::Result<()>
 /// Of which starts the share is.
 pub(super) fn put_basin(dataset: &Dataset, basin: &Basin) -> hdf5::Result<()> {
     put_text(dataset, schema::basin::OVER, basin.over.name())?;
+    put_text(dataset, schema::basin::REGION, &basin.described())?;
     put_numbers(dataset, schema::basin::STARTS, &[basin.starts])?;
     put_numbers(dataset, schema::basin::SCRAMBLINGS, &[SCRAMBLINGS])?;
     let ranges = [

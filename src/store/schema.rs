@@ -153,6 +153,8 @@ pub mod basin {
     pub const STARTS: &str = "starts";
     /// Independent scramblings of their sequence.
     pub const SCRAMBLINGS: &str = "scramblings";
+    /// What there is of them, in words.
+    pub const REGION: &str = "region";
     /// Their velocities from and to, where the sweep gives these.
     pub const X_DOT0: &str = "x_dot0_range";
     /// Their elongations from and to, where the sweep gives these.

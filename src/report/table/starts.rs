@@ -25,9 +25,15 @@ pub fn write_starts(
         Region::Phase { .. } | Region::None => &[Parameter::SwitchOnPhase],
     };
     let scrambling = Column::of("scrambling", "", "which of the independent sequences");
-    let starts = of.iter().map(|p| Column::of_parameter(*p, &units.of_parameter(*p)));
+    let starts = of
+        .iter()
+        .map(|p| Column::of_parameter(*p, &units.of_parameter(*p)));
     let outcome = Column::of(Field::Outcome.name(), "", Field::Outcome.long_name());
-    let columns: Vec<_> = [scrambling].into_iter().chain(starts).chain([outcome]).collect();
+    let columns: Vec<_> = [scrambling]
+        .into_iter()
+        .chain(starts)
+        .chain([outcome])
+        .collect();
     let mut table = Table::begin(out, None, &columns)?;
     for (place, start, outcome) in followed.starts() {
         if stop.load(Ordering::Relaxed) {

@@ -125,6 +125,12 @@ impl Asked {
         }
     }
 
+    /// Until how long after switch-on outcomes are looked for.
+    #[must_use]
+    pub fn horizon(&self) -> f64 {
+        self.case.horizon
+    }
+
     /// Where starts lie.
     #[must_use]
     pub fn region(&self) -> Region {
@@ -174,6 +180,7 @@ impl Asked {
     }
 
     /// All starts, one scrambling after the other.
+    #[must_use]
     pub fn places(&self) -> impl ExactSizeIterator<Item = Place> + use<> {
         let each = self.starts / SCRAMBLINGS;
         (0..self.starts()).map(move |start| Place {

@@ -1,5 +1,6 @@
 //! Of which starts the share is taken that ends in sliding: the table `[basin]` of a sweep file.
 
+use std::borrow::Cow;
 use std::ops::Range;
 
 use super::parameter::Parameter;
@@ -65,6 +66,46 @@ impl Default for Basin {
 }
 
 impl Basin {
+    /// Everything on which shares depend, by name, with numbers: for the plan's hash.
+    pub(in crate::sweep) fn facts(&self) -> Vec<(&str, Cow<'_, [f64]>)> {
+        let mut facts = vec![("starts over", Cow::Borrowed(&[][..]))];
+        facts.push((self.over.name(), vec![f64::from(self.starts)].into()));
+        let ranges = [("x_dot0 of starts", self.x_dot0), ("a0 of starts", self.a0)];
+        let given = ranges
+            .into_iter()
+            .filter_map(|(name, range)| Some((name, range?)));
+        facts.extend(given.map(|(name, range)| (name, range.to_vec().into())));
+        facts
+    }
+
+    /// In words, for plans and maps.
+    #[must_use]
+    pub fn described(&self) -> String {
+        let starts = self.starts;
+        let range = |name: &str, range: Option<[f64; 2]>, by_default: &str| match range {
+            Some([from, to]) => format!("{name} from {from} to {to}"),
+            None => format!("{name} from {by_default}"),
+        };
+        match self.over {
+            Over::State => format!(
+                "{starts} states, control on from t = 0: {}; {}",
+                range(
+                    Parameter::XDot0.name(),
+                    self.x_dot0,
+                    "0 to v0 + sqrt(v0^2 + (mu_s normal_load)^2/(stiffness mass))"
+                ),
+                range(
+                    Parameter::A0.name(),
+                    self.a0,
+                    "-mu_s normal_load/stiffness to mu_s normal_load/stiffness"
+                ),
+            ),
+            Over::Phase => format!(
+                "{starts} phases of uncontrolled stick-slip at which control is switched on"
+            ),
+        }
+    }
+
     /// `starts` if there can be so many.
     ///
     /// # Errors
@@ -241,7 +282,11 @@ mod tests {
         assert_eq!(Basin::check_starts(64), Ok(64));
         assert_eq!(Basin::check_starts(1 << 20), Ok(1 << 20));
         for wrong in [0, 1, 32, 65, 1 << 21, u64::MAX] {
-            assert!(Basin::check_starts(wrong).unwrap_err().contains("64 to 1048576"));
+            assert!(
+                Basin::check_starts(wrong)
+                    .unwrap_err()
+                    .contains("64 to 1048576")
+            );
         }
     }
 }

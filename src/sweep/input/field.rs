@@ -965,9 +965,10 @@ mod tests {
              abscissa_8, frequency, frequency_2 … frequency_8, relaxation_time, \
              d_abscissa_d_tau, d_abscissa_d_alpha_v, d_abscissa_d_alpha_n, \
              d_abscissa_d_mu_prime, certificate_margin, settle_time, last_release, n_min, \
-             peak_force, basin_share, basin_share_error, basin_share_upper, vc, vc_lower, vc_upper, v_liftoff, stick_time, slip_time, v_smooth, \
-             vc_over_vtilde, omega0_T, liftoff_over_vtilde, vc_weak_control, vc_strong_control, \
-             weak_control_error, strong_control_error"
+             peak_force, basin_share, basin_share_error, basin_share_upper, vc, vc_lower, \
+             vc_upper, v_liftoff, stick_time, slip_time, v_smooth, vc_over_vtilde, omega0_T, \
+             liftoff_over_vtilde, vc_weak_control, vc_strong_control, weak_control_error, \
+             strong_control_error"
         );
     }
 }

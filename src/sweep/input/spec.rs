@@ -140,6 +140,13 @@ impl SweepSpec {
         !self.limit && !gain && setting.has_idle_delay()
     }
 
+    /// What is said of the starts of motions: of many, or of one that is not given.
+    #[must_use]
+    pub fn said_of_starts(&self) -> Option<String> {
+        let many = self.basin.as_ref().map(Basin::described);
+        many.or_else(|| self.simulation.assumed_start())
+    }
+
     /// Whether motions from a start are followed.
     #[must_use]
     pub fn follows_motions(&self) -> bool {

@@ -13,6 +13,7 @@ use self::tile::{Tile, TileGrid};
 use crate::critical::switch_on::Phase;
 use crate::model::table::TableColumn;
 use crate::sweep::input::axis::{Axis, plane_of_curves};
+use crate::sweep::input::basin::Basin;
 use crate::sweep::input::best_plane::gain_plane;
 use crate::sweep::input::law_kind::LawKind;
 use crate::sweep::input::parameter::Parameter;
@@ -275,15 +276,7 @@ impl Plan {
             };
             facts.push((protocol.name(), vec![phases, search.verify].into()));
         }
-        if let Some(basin) = &spec.basin {
-            facts.push((basin.over.name(), one(f64::from(basin.starts))));
-            let ranges = [("x_dot0 of starts", basin.x_dot0), ("a0 of starts", basin.a0)];
-            for (name, range) in ranges {
-                if let Some(range) = range {
-                    facts.push((name, range.to_vec().into()));
-                }
-            }
-        }
+        facts.extend(spec.basin.iter().flat_map(Basin::facts));
         if spec.follows_motions() || spec.basin.is_some() {
             let how = &spec.simulation;
             let horizon = how.horizon.unwrap_or(0.0);
