@@ -33,10 +33,10 @@ const STARTS: u32 = 4096;
   slipmap basin --friction weakening --mu0 0.5 --v-s 0.5 --v0 0.35 --alpha-v=-0.33 --tau 4.15 \
 --over phase
 
-Two questions: over states, a block is found with any velocity and elongation of a box, and control \
-acts from then on; over phases, control is switched on at any time of uncontrolled stick-slip.
-By default the box has velocities from 0 to v0 + √(v0² + μ_S² N0²/(κM)), what a block at rest can \
-come to, and elongations of ±μ_S N0/κ, at which it stays at rest.
+Two questions: over states, a block is found with any velocity and elongation of a box, and \
+control acts from then on; over phases, control is switched on at any time of uncontrolled \
+stick-slip. By default the box has velocities from 0 to v0 + √(v0² + μ_S² N0²/(κM)), what a block \
+at rest can come to, and elongations of ±μ_S N0/κ, at which it stays at rest.
 The error is that of 16 independent scramblings of a Sobol sequence. Starts whose end is undecided \
 are no part of the share: they widen the interval.")]
 pub(super) struct Args {

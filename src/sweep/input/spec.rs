@@ -44,10 +44,9 @@
 //! tolerance = 1e-12
 //! steps = 1000000
 //!
-//! # optional, for fields of many starts: 256 in the whole range of what a block at rest can come to
-//! # by default; or over = "phase", the uncontrolled cycle, in which control is switched on
+//! # optional, for fields of many starts: by default over all that a block at rest can come to
 //! [basin]
-//! over = "state"
+//! over = "state"                          # or "phase" of the uncontrolled cycle, at switch-on
 //! starts = 256                            # a power of two
 //! x_dot0 = { from = 0.0, to = 1.5 }
 //! a0 = { from = -1.0, to = 1.0 }
