@@ -177,6 +177,13 @@ fn facts_come_as_json_with_a_version() {
             ]
             .concat(),
         ),
+        json(
+            &[
+                &["basin", "--v0", "0.3", "--starts", "64", "--json"],
+                &law[..],
+            ]
+            .concat(),
+        ),
     ];
     assert!(
         all.iter().all(|told| told["schema_version"] == 2),

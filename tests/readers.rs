@@ -947,7 +947,7 @@ fn the_compliance_checker_finds_nothing() {
 }
 
 /// What every command prints with `--json`, each kind of answer once.
-const ANSWERS: [(&str, &str); 14] = [
+const ANSWERS: [(&str, &str); 16] = [
     (
         "point.plain",
         "point --mu-prime=-0.3 --alpha-v=-0.33 --tau 4.15",
@@ -964,6 +964,14 @@ const ANSWERS: [(&str, &str); 14] = [
     (
         "vc.limit",
         "vc --protocol limit --gamma 0.25 --mu-ratio 0.5",
+    ),
+    (
+        "basin.state",
+        "basin --friction weakening --mu0 0.5 --v-s 0.5 --v0 0.1 --alpha-n=-10 --tau 0.5 --starts 64",
+    ),
+    (
+        "basin.phase",
+        "basin --friction coulomb --mu0 0.5 --v0 0.1 --alpha-n=-1 --tau 0.5 --starts 64 --over phase",
     ),
     ("best.velocity", "best --mu-prime=-0.3 --control velocity"),
     ("best.none", "best --mu-prime=-2 --control velocity"),

@@ -40,11 +40,12 @@ mod switch_on;
 #[path = "referee/tables.rs"]
 mod tables;
 
+use slipmap::explore::basin::Followed;
 use slipmap::slip::outcome::Outcome;
 use slipmap::sweep::Plan;
 
 use against::Verdict;
-use block::Event;
+use block::{Block, Event};
 use crowd::{Tally, ask};
 use law::{Friction, Law};
 use random::{Chance, Start};
@@ -203,6 +204,75 @@ fn chance_leaves_nothing_out() {
     // Four laws, three controls, five events.
     assert_eq!(counts.len(), 12);
     assert!(counts.values().all(|n| *n >= 10), "{counts:?}");
+}
+
+/// Starts of basins of attraction, over states and over phases: what becomes of each, under velocity
+/// and load control.
+#[test]
+fn starts_of_basins() {
+    let law = || Friction {
+        law: Law::Weakening { mu0: 0.5, v_s: 0.5 },
+        mu_s: 1.0,
+    };
+    let mut starts = Vec::new();
+    for (alpha_v, alpha_n, tau, v0) in [
+        (-0.33, 0.0, 4.15, 0.35),
+        (0.0, -10.0, 0.5, 0.1),
+        (0.0, -7.0, 1.0, 0.118),
+        (-0.33, 0.0, 4.15, 0.3),
+    ] {
+        let setting = Setting {
+            friction: law(),
+            mass: 1.0,
+            stiffness: 1.0,
+            load: 1.0,
+            alpha_v,
+            alpha_n,
+            tau,
+            v0,
+            switch_on: 0.0,
+        };
+        for over in ["state", "phase"] {
+            let sweep = format!(
+                "fields = [\"basin_share\"]\n[axes]\nmass = [1]\n[basin]\nover = \"{over}\"\n\
+                 starts = 64\n{}",
+                asked::law_and_parameters(&setting)
+            );
+            let plan = Plan::new(sweep.parse().unwrap()).unwrap();
+            let basin = plan.spec.basin.unwrap();
+            let followed = Followed::of(&plan.setting(&[0]), &plan.spec.simulation, &basin, 2);
+            for (_, start, outcome) in followed.unwrap().starts().step_by(2) {
+                starts.push((setting.clone(), over, start, outcome));
+            }
+        }
+    }
+    let tally = ask("starts of basins", starts.len(), |number| {
+        let (setting, over, [first, second], outcome) = &starts[number];
+        let (setting, pace) = (setting.clone(), Pace::of(2.0));
+        let of_state = |setting| {
+            let mut block = Block::at_rest_or_sliding(setting, pace, *first, *second);
+            Some(switch_on::after(&mut block, 400.0))
+        };
+        let referee = match *over {
+            "phase" => switch_on::fate(&setting, pace, *first, 40.0),
+            _ => of_state(setting),
+        };
+        match (referee, against::fate_of(*outcome)) {
+            (Some(one), Some(other)) if one == other => Verdict::Agree(1),
+            (Some(one), Some(other)) => {
+                Verdict::Differ(format!("{one:?}, {other:?}: {:?}", starts[number]))
+            }
+            _ => Verdict::Undecided,
+        }
+    });
+    holds(&tally, 0.0, 0.02);
+    let ends = |outcome| starts.iter().filter(|start| start.3 == outcome).count();
+    let [sliding, sticking, lifting] =
+        [Outcome::Sliding, Outcome::StickSlip, Outcome::LiftOff].map(ends);
+    assert!(
+        sliding > 80 && sticking > 10 && lifting > 20,
+        "{sliding} {sticking} {lifting}"
+    );
 }
 
 /// What slipmap claims of the critical velocity, against two ramps of v0.

@@ -2,24 +2,20 @@
 
 use std::path::PathBuf;
 
-use clap::ValueEnum;
-use serde::Serialize;
 use slipmap::explore::margins::Margins;
 use slipmap::explore::vc::CriticalVelocity;
 use slipmap::linear::best::SearchedGain;
 use slipmap::slip::stop::Stop;
-use slipmap::sweep::cells::best::{
-    BestSettings, Ranges, RobustSetting, best_settings, default_ranges, robust_setting,
-};
+use slipmap::sweep::cells::best::{Ranges, best_settings, default_ranges, robust_setting};
 use slipmap::sweep::input::search::Protocol;
 use slipmap::sweep::{Parameter, Setting};
-use utoipa::ToSchema;
 
 use super::best_answer::BestAnswer;
 use super::best_text;
 use super::failure::Failure;
 use super::json::{self, AnswerSchema, Inputs};
 use super::parameters::ParameterArgs;
+use super::recommended::{Control, Recommended};
 use super::say;
 use super::setting;
 
@@ -33,10 +29,10 @@ control from 4(1 + |b|) κ/μ_K below the weakest negative one that
 stabilises, -(|b| + b²/2) κ/μ_K, to 4(1 + |b|) κ/μ_K.")]
 pub(super) struct Args {
     #[command(flatten)]
-    pub(super) parameters: ParameterArgs,
+    parameters: ParameterArgs,
     /// The gain that is searched; the other one is given as usual
     #[arg(long, value_enum, default_value_t = Control::Velocity)]
-    pub(super) control: Control,
+    control: Control,
     /// Smallest gain to search
     #[arg(long, allow_hyphen_values = true, value_name = "A")]
     alpha_from: Option<f64>,
@@ -52,7 +48,7 @@ pub(super) struct Args {
     /// Also find the setting whose slowest decay is fastest when gain, delay and μ′ may all be off
     /// by this part of them, such as 0.05
     #[arg(long, value_name = "SPREAD", allow_hyphen_values = true, value_parser = parse_spread)]
-    pub(super) robust: Option<f64>,
+    robust: Option<f64>,
     /// Write the best setting, with --robust that one, to a file that point and vc take with --setting, and simulate as a
     /// case file
     #[arg(long, value_name = "SETTING.toml")]
@@ -62,48 +58,10 @@ pub(super) struct Args {
     json: bool,
 }
 
-/// Controls by name.
-#[derive(Debug, Clone, Copy, ValueEnum, Serialize, ToSchema)]
-#[serde(rename_all = "lowercase")]
-pub(super) enum Control {
-    /// α_v: the pulling velocity follows the delayed elongation
-    Velocity,
-    /// α_N: the normal load does
-    Load,
-}
-
 fn parse_spread(text: &str) -> Result<f64, String> {
     let spread = text.trim().parse().ok();
     let spread = spread.filter(|s: &f64| (1e-6..=0.9).contains(s));
     spread.ok_or_else(|| "expected a part, from 1e-6 to 0.9, such as 0.05 for 5 %".to_owned())
-}
-
-/// What was found, and what there is to know of the setting that is recommended.
-pub(super) struct Recommended {
-    pub(super) found: BestSettings,
-    /// None where it is not asked for, or where no setting stays stable.
-    pub(super) robust: Option<RobustSetting>,
-    /// The setting itself: the robust one, where there is one.
-    pub(super) setting: Setting,
-    pub(super) margins: Margins,
-    /// v_c, where there is a friction law.
-    pub(super) vc: Option<CriticalVelocity>,
-}
-
-impl Control {
-    pub(super) fn parameter(self) -> Parameter {
-        match self {
-            Self::Velocity => Parameter::AlphaV,
-            Self::Load => Parameter::AlphaN,
-        }
-    }
-
-    fn searched(self) -> SearchedGain {
-        match self {
-            Self::Velocity => SearchedGain::Velocity,
-            Self::Load => SearchedGain::Load,
-        }
-    }
 }
 
 pub(super) fn main(args: &Args) -> Result<(), Failure> {
@@ -121,10 +79,10 @@ pub(super) fn main(args: &Args) -> Result<(), Failure> {
     let told = args.recommend(&setting, gain, &ranges)?;
     if args.json {
         let inputs = args.inputs(&setting, &ranges);
-        json::print(&inputs, &BestAnswer::of(args.control, &ranges, &told)?)?;
+        json::print(&inputs, &BestAnswer::of(&told)?)?;
     } else {
         let mut out = std::io::stdout().lock();
-        best_text::print(&mut out, args, &ranges, &told)?;
+        best_text::print(&mut out, &told, &args.parameters.units())?;
     }
     let Some(path) = &args.save else {
         return Ok(());
@@ -180,6 +138,9 @@ impl Args {
             None => None,
         };
         Ok(Recommended {
+            control: self.control,
+            ranges: *ranges,
+            spread: self.robust,
             found,
             robust,
             margins: Margins::at(&best, 0.0)?,

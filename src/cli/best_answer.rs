@@ -8,8 +8,8 @@ use slipmap::sweep::cells::best::{BestRegion, Ranges, RobustSetting};
 use slipmap::sweep::relaxation_time;
 use utoipa::ToSchema;
 
-use super::best::{Control, Recommended};
 use super::failure::Failure;
+use super::recommended::{Control, Recommended};
 
 /// The JSON of a search. Infinite numbers are written as null.
 #[derive(Debug, Serialize, ToSchema)]
@@ -123,15 +123,11 @@ impl From<&Optimum> for OptimumOut {
 }
 
 impl BestAnswer {
-    /// What was found within `ranges`.
+    /// What was found.
     ///
     /// # Errors
     /// When a parameter of the setting is outside the model's range.
-    pub(super) fn of(
-        control: Control,
-        ranges: &Ranges,
-        told: &Recommended,
-    ) -> Result<Self, Failure> {
+    pub(super) fn of(told: &Recommended) -> Result<Self, Failure> {
         let sliding = told.setting.sliding_point()?;
         let region = |region: &BestRegion| RegionOut {
             region: (&region.ranges).into(),
@@ -141,8 +137,8 @@ impl BestAnswer {
         Ok(Self {
             mu_prime: sliding.mu_prime,
             mu_k: sliding.mu_k,
-            control,
-            searched: ranges.into(),
+            control: told.control,
+            searched: (&told.ranges).into(),
             best: (&found.overall).into(),
             regions: found.regions.iter().map(region).collect(),
             regions_left_out: found.regions_left_out,

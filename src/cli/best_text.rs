@@ -3,13 +3,13 @@
 use std::io::Write;
 
 use slipmap::report::numbers::unit_behind;
-use slipmap::sweep::cells::best::{BestRegion, BestSettings, Ranges};
+use slipmap::sweep::cells::best::{BestRegion, BestSettings};
 use slipmap::sweep::input::units::Units;
 use slipmap::sweep::{Field, Parameter};
 
-use super::best::{Args, Control, Recommended};
 use super::failure::Failure;
 use super::output::tell_dimensionless;
+use super::recommended::{Control, Recommended};
 use super::{margins, vc};
 
 /// A number with as many digits as a person can use, the same on every machine.
@@ -20,14 +20,12 @@ fn short(value: f64) -> String {
 
 pub(super) fn print(
     out: &mut impl Write,
-    args: &Args,
-    ranges: &Ranges,
     told: &Recommended,
+    units: &Units,
 ) -> Result<(), Failure> {
-    let units = args.parameters.units();
-    let (setting, found) = (&told.setting, &told.found);
-    if let Some(spread) = args.robust {
-        print_robust(out, args, spread, told)?;
+    let (setting, found, ranges) = (&told.setting, &told.found, &told.ranges);
+    if let Some(spread) = told.spread {
+        print_robust(out, spread, told, units)?;
     }
     let best = &found.overall;
     let time = unit_behind(&units.time());
@@ -42,7 +40,7 @@ pub(super) fn print(
             "no stable setting in the ranges; the least unstable one is"
         )?,
     }
-    let (searched, other) = match args.control {
+    let (searched, other) = match told.control {
         Control::Velocity => (Parameter::AlphaV, Parameter::AlphaN),
         Control::Load => (Parameter::AlphaN, Parameter::AlphaV),
     };
@@ -56,7 +54,7 @@ pub(super) fn print(
         (Field::Abscissa, best.abscissa),
         (Field::Frequency, best.frequency()),
     ] {
-        let unit = unit_behind(&field.unit(&units));
+        let unit = unit_behind(&field.unit(units));
         row(field.name(), format!("{}{unit}", short(value)))?;
     }
     row("kind", best.kind.name().into())?;
@@ -79,27 +77,26 @@ pub(super) fn print(
             range(ranges.tau, &time)
         ),
     )?;
-    tell_dimensionless(out, &units)?;
-    print_regions(out, searched, found, &units)?;
-    print_recommended(out, args, told)
+    tell_dimensionless(out, units)?;
+    print_regions(out, searched, found, units)?;
+    print_recommended(out, told, units)
 }
 
 /// The robust setting, beside what the best one is worth within the same spread.
 fn print_robust(
     out: &mut impl Write,
-    args: &Args,
     spread: f64,
     told: &Recommended,
+    units: &Units,
 ) -> Result<(), Failure> {
     let percent = 100.0 * spread;
     let Some(of) = &told.robust else {
         let none = "no setting stays stable when gain, delay and mu_prime may each be off by";
         return Ok(writeln!(out, "{none} {percent} %")?);
     };
-    let units = args.parameters.units();
     let unit = |parameter: Parameter| unit_behind(&units.of_parameter(parameter));
     let rate = unit_behind(&units.rate());
-    let searched = args.control.parameter();
+    let searched = told.control.parameter();
     let lost = |worst: f64, abscissa: f64| match worst < 0.0 {
         true => format!("{:.1} % slower", 100.0 * (1.0 - worst / abscissa)),
         false => "unstable".into(),
@@ -140,17 +137,20 @@ fn print_robust(
 }
 
 /// Margins of the setting that is recommended, and v_c where there is a friction law.
-fn print_recommended(out: &mut impl Write, args: &Args, told: &Recommended) -> Result<(), Failure> {
-    let units = args.parameters.units();
+fn print_recommended(
+    out: &mut impl Write,
+    told: &Recommended,
+    units: &Units,
+) -> Result<(), Failure> {
     let which = if told.robust.is_some() {
         "robust"
     } else {
         "best"
     };
     writeln!(out, "at the {which} setting")?;
-    margins::print(out, &told.margins, &told.setting, &units)?;
+    margins::print(out, &told.margins, &told.setting, units)?;
     match &told.vc {
-        Some(found) => vc::print_short(out, found, &units),
+        Some(found) => vc::print_short(out, found, units),
         None => Ok(()),
     }
 }

@@ -5,8 +5,10 @@ use std::path::{Path, PathBuf};
 use slipmap::maps::look::as_text::CellTexts;
 use slipmap::store::MapFile;
 use slipmap::sweep::input::axis::{Axis, nearest};
+use slipmap::sweep::input::basin::Basin;
 use slipmap::sweep::input::nearest::did_you_mean;
 use slipmap::sweep::input::point_file::{PointOf, PointSpec};
+use slipmap::sweep::input::simulation::Simulation;
 use slipmap::sweep::{Parameter, Plan};
 
 use super::failure::Failure;
@@ -84,6 +86,16 @@ impl CellArgs {
         let read = PointSpec::read(&text, of);
         read.map(Some)
             .map_err(|error| Failure::in_file(error, "the cell", &text))
+    }
+
+    /// Of which starts the shares of the map are, and how these are followed; none where no map is
+    /// given or it has no shares.
+    pub(super) fn basin(&self) -> Result<Option<(Basin, Simulation)>, Failure> {
+        let Some(path) = &self.map else {
+            return Ok(None);
+        };
+        let spec = plan_of(path)?.spec;
+        Ok(spec.basin.map(|basin| (basin, spec.simulation)))
     }
 
     /// The case of the motion at the cell.

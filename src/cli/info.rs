@@ -153,7 +153,7 @@ impl Facts {
         let flagged = flags.zip(map.status_counts()?.flagged);
         let scalars = map.scalars().into_iter();
         let mut told = origin(|name| map.root_text(name));
-        told.extend(assumed_start(map));
+        told.extend(said_of_starts(map));
         Ok(Self {
             kind: "map",
             origin: told,
@@ -274,10 +274,10 @@ pub(super) fn origin(text: impl Fn(&str) -> Option<String>) -> Vec<(&'static str
     told.collect()
 }
 
-/// What is said of the start of a map's motions that its sweep does not give.
-fn assumed_start(map: &MapFile) -> Option<(&'static str, String)> {
-    let assumed = map.sweep().ok()?.simulation.assumed_start()?;
-    Some(("start", assumed))
+/// What is said of the start of a map's motions that its sweep does not give, and of many starts.
+fn said_of_starts(map: &MapFile) -> Option<(&'static str, String)> {
+    let said = map.sweep().ok()?.said_of_starts()?;
+    Some(("start", said))
 }
 
 /// Units of parameters are those of the sweep.

@@ -1,6 +1,7 @@
 //! The command line: one file per subcommand, each thin.
 
 mod axis_facts;
+mod basin;
 mod best;
 mod best_answer;
 mod best_text;
@@ -25,6 +26,7 @@ mod plot;
 mod point;
 mod point_args;
 mod read_map;
+mod recommended;
 mod run;
 mod say;
 mod schema;
@@ -91,6 +93,8 @@ enum Command {
     ReadMap(read_map::Args),
     /// The critical velocity at one point
     Vc(vc::Args),
+    /// The share of starts from which control ends in sliding, with its error
+    Basin(basin::Args),
     /// One motion in time: from a case file to HDF5 and a picture, with its events and outcome
     Simulate(simulate::Args),
     /// Draw a map or a trace as PNG, SVG or PDF
@@ -144,6 +148,7 @@ pub(crate) fn main() -> ExitCode {
         Command::Serve(args) => serve::main(&args),
         Command::ReadMap(args) => read_map::main(&args),
         Command::Vc(args) => vc::main(&args),
+        Command::Basin(args) => basin::main(&args),
         Command::Simulate(args) => simulate::main(&args),
         Command::Plot(args) => plot::main(&args),
         Command::Export(args) => export::main(&args),

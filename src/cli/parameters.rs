@@ -227,6 +227,17 @@ impl ParameterArgs {
         Ok(setting)
     }
 
+    /// The setting of motions: a friction law and v0, and a delay only where control acts.
+    pub(super) fn setting_of_motions(&self) -> Result<Setting, Failure> {
+        match self.law.friction {
+            Some(_) => self.setting(),
+            None => Err(Failure::bad_input_with_help(
+                "--friction is not given: motions stick and slip by a friction law",
+                "for example: --friction weakening --mu0 0.5 --v-s 0.5 --v0 0.1",
+            )),
+        }
+    }
+
     /// The units of all numbers.
     pub(super) fn units(&self) -> Units {
         self.law.units.clone().unwrap_or_default()

@@ -97,7 +97,7 @@ struct Facts {
     units: BTreeMap<&'static str, String>,
     dimensionless: bool,
     fields: Vec<&'static str>,
-    /// What is said of the start of motions that no key gives.
+    /// What is said of the start of motions that no key gives, and of many starts.
     start: Option<String>,
     cells: u64,
     tiles: u64,
@@ -133,7 +133,7 @@ impl Facts {
             units: plan.spec.axes.iter().map(unit).collect(),
             dimensionless: plan.spec.units.dimensionless(),
             fields: fields.chain([STATUS]).collect(),
-            start: plan.spec.simulation.assumed_start(),
+            start: plan.spec.said_of_starts(),
             cells: plan.cells(),
             tiles: plan.tiles.len() as u64,
             cells_of_a_tile: plan.tiles.tile_cells() as u64,

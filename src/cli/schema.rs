@@ -4,7 +4,7 @@ use clap::ValueEnum;
 
 use super::failure::Failure;
 use super::json::AnswerSchema;
-use super::{best, info, margins, plan, point, say, simulate, status, vc, verify};
+use super::{basin, best, info, margins, plan, point, say, simulate, status, vc, verify};
 
 #[derive(Debug, clap::Args)]
 pub(super) struct Args {
@@ -16,6 +16,7 @@ pub(super) struct Args {
 /// Commands with `--json`.
 #[derive(Debug, Clone, Copy, ValueEnum)]
 enum Command {
+    Basin,
     Best,
     Info,
     Margins,
@@ -30,6 +31,7 @@ enum Command {
 impl Command {
     fn described(self) -> AnswerSchema {
         match self {
+            Self::Basin => basin::described(),
             Self::Best => best::described(),
             Self::Info => info::described(),
             Self::Margins => margins::described(),

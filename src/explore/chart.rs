@@ -147,7 +147,9 @@ impl Limits {
     /// The most cells of a sweep with these fields.
     fn most(&self, plan: &Plan) -> u64 {
         let spec = &plan.spec;
-        let most = if spec.follows_motions() || spec.critical.is_some() {
+        let most = if let Some(basin) = &spec.basin {
+            self.followed / u64::from(basin.starts)
+        } else if spec.follows_motions() || spec.critical.is_some() {
             self.followed
         } else if spec
             .fields

@@ -6,6 +6,7 @@
 //! - [`point`]: linear stability at a point, with its roots; [`along_delay`]: over its delays
 //! - [`margins`]: how far a point is from the boundary of stability
 //! - [`vc`]: the critical velocity at a point
+//! - [`basin`]: the share of starts from which control ends in sliding
 //! - [`motion`]: one motion in time; [`motion_bytes`]: the same as bytes
 //! - [`law`]: a friction law as a curve
 //! - [`known`]: all parameters, friction laws and fields
@@ -16,6 +17,7 @@
 
 pub mod along_delay;
 pub mod answer;
+pub mod basin;
 pub mod chart;
 pub mod chart_bytes;
 pub mod encoded;

@@ -209,9 +209,12 @@ fn concerning(field: Field, open: bool, status: u8, with_roots: bool) -> u8 {
         Source::Critical(_) if matches!(field, Field::VcLower | Field::VcUpper) && !open => {
             DISAGREE
         }
-        Source::Motion(_) | Source::MotionOrCritical(..) | Source::Critical(_) => {
-            NOT_CONVERGED | DISAGREE
-        }
+        // It is what is known where the share is not.
+        Source::Basin(_) if field != Field::BasinShare => DISAGREE,
+        Source::Motion(_)
+        | Source::MotionOrCritical(..)
+        | Source::Critical(_)
+        | Source::Basin(_) => NOT_CONVERGED | DISAGREE,
         Source::Limit(_) => NOT_CONVERGED,
     }
 }

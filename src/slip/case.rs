@@ -1,6 +1,6 @@
 //! A motion in physical units: what is given, and what comes out.
 
-use super::cycle::{NoCycle, after_release, restart_after_release};
+use super::cycle::{NoCycle, UncontrolledCycle, after_release, restart_after_release};
 use super::motion::{Accuracy, Motion, Parameters};
 use super::outcome::{Limits, Observer, Summary};
 use super::watch::{REPEATED, follow};
@@ -140,6 +140,21 @@ impl Case {
             }
         }
         Ok(())
+    }
+
+    /// The uncontrolled cycle of stick and slip of this setting, whatever the start: its times.
+    ///
+    /// # Errors
+    /// As [`Case::motion`] where that starts after a release.
+    pub fn uncontrolled_cycle(&self) -> Result<UncontrolledCycle, CaseError> {
+        self.check()?;
+        let (_, cycle) =
+            after_release(&self.parameters(), self.accuracy, 0.0).map_err(CaseError::NoCycle)?;
+        let unit = self.units().time;
+        Ok(UncontrolledCycle {
+            slip_time: cycle.slip_time * unit,
+            stick_time: cycle.stick_time * unit,
+        })
     }
 
     /// ẋ and the elongation at t = 0.

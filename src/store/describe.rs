@@ -6,6 +6,7 @@ use super::attributes::{put_numbers, put_text};
 use super::netcdf::named;
 use super::schema::{self, root};
 use crate::critical::switch_on::Phase;
+use crate::sweep::input::basin::{Basin, SCRAMBLINGS};
 use crate::sweep::input::law_kind::LawKind;
 use crate::sweep::input::search::{LIMIT, Protocol, Search};
 use crate::sweep::input::units::Units;
@@ -113,4 +114,22 @@ pub(super) fn put_search(dataset: &Dataset, search: &Search) -> hdf5::Result<()>
     let unit = "mu_s * normal_load / sqrt(stiffness * mass)";
     put_text(dataset, schema::vc::V_MAX_UNIT, unit)?;
     put_numbers(dataset, schema::vc::PRECISION, &[protocol.precision()])
+}
+
+/// Of which starts the share is.
+pub(super) fn put_basin(dataset: &Dataset, basin: &Basin) -> hdf5::Result<()> {
+    put_text(dataset, schema::basin::OVER, basin.over.name())?;
+    put_text(dataset, schema::basin::REGION, &basin.described())?;
+    put_numbers(dataset, schema::basin::STARTS, &[basin.starts])?;
+    put_numbers(dataset, schema::basin::SCRAMBLINGS, &[SCRAMBLINGS])?;
+    let ranges = [
+        (schema::basin::X_DOT0, basin.x_dot0),
+        (schema::basin::A0, basin.a0),
+    ];
+    for (name, range) in ranges {
+        if let Some(range) = range {
+            put_numbers(dataset, name, &range)?;
+        }
+    }
+    Ok(())
 }

@@ -145,6 +145,22 @@ pub const DEGREE_OF_STABILITY: &str = "degree_of_stability";
 /// σ of the curves that meet in a corner.
 pub const CORNER_DEGREE_OF_STABILITY: &str = "corner_degree_of_stability";
 
+/// Attributes of fields of many starts.
+pub mod basin {
+    /// Which starts there are: states, or phases of the uncontrolled cycle.
+    pub const OVER: &str = "over";
+    /// How many.
+    pub const STARTS: &str = "starts";
+    /// Independent scramblings of their sequence.
+    pub const SCRAMBLINGS: &str = "scramblings";
+    /// What there is of them, in words.
+    pub const REGION: &str = "region";
+    /// Their velocities from and to, where the sweep gives these.
+    pub const X_DOT0: &str = "x_dot0_range";
+    /// Their elongations from and to, where the sweep gives these.
+    pub const A0: &str = "a0_range";
+}
+
 /// Attributes of fields of the critical velocity.
 pub mod vc {
     /// Name of the protocol.

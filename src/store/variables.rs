@@ -4,7 +4,7 @@ use hdf5::{Dataset, Group, H5Type};
 
 use super::attributes::{put_flags, put_numbers, put_text};
 use super::codec::DEFLATE_LEVEL;
-use super::describe::put_search;
+use super::describe::{put_basin, put_search};
 use super::netcdf::{DimensionId, Dimensions, named};
 use super::schema::STATUS;
 use crate::linear::status::FLAGS;
@@ -59,6 +59,9 @@ impl Variables<'_> {
         }
         if let Some(search) = spec.critical.filter(|_| !field.of_sliding()) {
             put_search(&dataset, &search)?;
+        }
+        if let Some(basin) = spec.basin.filter(|_| field.of_basin()) {
+            put_basin(&dataset, &basin)?;
         }
         put_text(&dataset, "ancillary_variables", STATUS)?;
         Ok(dataset)

@@ -1,10 +1,12 @@
 //! The sweep engine: the pieces of a sweep computed over threads, handed one by one to a sink.
 
+use std::convert::Infallible;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{Receiver, RecvTimeoutError, SyncSender, sync_channel};
 use std::time::{Duration, Instant};
 
+use rayon::iter::{IndexedParallelIterator, IntoParallelIterator, ParallelIterator};
 use rayon::{ThreadPool, ThreadPoolBuilder};
 
 use super::cells::best::{BestSettings, best_of_plane, best_plane};
@@ -189,6 +191,33 @@ fn conduct<S: Sink>(
     flushed?;
     observer.event(&Event::Finished);
     Ok(())
+}
+
+/// Things that are done one after the other before another thread may take them.
+const TOGETHER: usize = 16;
+
+/// Does `work` on each of `items`, on `threads` threads, of which each has a memory that `begin`
+/// makes; gives what comes out in their order. No result may depend on the memory.
+///
+/// # Errors
+/// When the threads cannot be started.
+pub fn each<I: Send, M, T: Send>(
+    items: Vec<I>,
+    threads: usize,
+    begin: impl Fn() -> M + Sync + Send,
+    work: impl Fn(&mut M, I) -> T + Sync + Send,
+) -> Result<Vec<T>, RunError<Infallible>> {
+    if cfg!(target_family = "wasm") {
+        let mut memory = begin();
+        return Ok(items.into_iter().map(|i| work(&mut memory, i)).collect());
+    }
+    let pool = ThreadPoolBuilder::new().num_threads(threads).build();
+    let pool = pool.map_err(|error| RunError::Threads {
+        threads,
+        reason: error.to_string(),
+    })?;
+    let items = items.into_par_iter().with_min_len(TOGETHER);
+    Ok(pool.install(|| items.map_init(begin, work).collect()))
 }
 
 /// A computed piece, or why it cannot be.

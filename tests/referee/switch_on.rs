@@ -68,7 +68,7 @@ fn to_release(block: &mut Block, longest: f64) -> Option<f64> {
 }
 
 /// Follows a block for a time.
-fn after(block: &mut Block, time: f64) -> Fate {
+pub(crate) fn after(block: &mut Block, time: f64) -> Fate {
     let start = block.t;
     let mut stuck = start;
     while block.t < start + time {

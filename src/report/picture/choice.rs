@@ -94,6 +94,8 @@ fn untitled(field: Field) -> &'static str {
         "Critical velocity as the delay vanishes"
     } else if field.of_vc() {
         "The critical velocity"
+    } else if field.of_basin() {
+        "The basin of attraction of sliding"
     } else if field.of_motion() {
         "Motions of the block"
     } else {

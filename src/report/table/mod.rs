@@ -7,6 +7,7 @@
 mod cells;
 mod curves;
 mod motion;
+mod starts;
 
 use std::fmt::Write as _;
 use std::io::{self, Write};
@@ -14,6 +15,7 @@ use std::io::{self, Write};
 pub use cells::write_cells;
 pub use curves::write_curves;
 pub use motion::{write_events, write_samples};
+pub use starts::write_starts;
 
 use super::visible::visible_line;
 use crate::store::StoreError;

@@ -1,5 +1,7 @@
 //! The cells of a tile, and what belongs to planes of cells: one thread's work.
 
+pub mod basin;
+mod basin_columns;
 pub mod best;
 pub mod boundaries;
 pub mod buffers;

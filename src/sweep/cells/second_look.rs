@@ -1,5 +1,6 @@
 //! A cell of a map, looked at once more by methods that did not compute it.
 
+use super::basin::{Asked, STUDENT_95, Tally};
 use super::vc;
 use crate::critical::switch_on::Phase;
 use crate::critical::{CriticalVelocity, Method, Regime, Transition};
@@ -31,6 +32,8 @@ pub enum Question {
     Abscissa,
     /// What becomes of the motion, followed by collocation.
     Outcome,
+    /// The share of starts that slides, from other starts, followed by collocation.
+    BasinShare,
     /// The critical velocity, by simulation with collocation and steps of v0 of its own.
     CriticalVelocity,
     /// The critical velocity by switching on: what becomes of stick-slip just below and just above
@@ -40,10 +43,11 @@ pub enum Question {
 
 impl Question {
     /// All.
-    pub const ALL: [Self; 5] = [
+    pub const ALL: [Self; 6] = [
         Self::Count,
         Self::Abscissa,
         Self::Outcome,
+        Self::BasinShare,
         Self::CriticalVelocity,
         Self::SwitchOn,
     ];
@@ -55,6 +59,7 @@ impl Question {
             Self::Count => "n_unstable, by the argument principle",
             Self::Abscissa => "abscissa, by the argument principle",
             Self::Outcome => "outcome, by collocation",
+            Self::BasinShare => "basin_share, by collocation from other starts",
             Self::CriticalVelocity => "vc, by simulation with collocation",
             Self::SwitchOn => "vc of switch-on, by collocation below and above it",
         }
@@ -97,6 +102,9 @@ pub fn second_look(
     }
     if plan.spec.follows_motions() && holds(Field::Outcome) {
         answers.push((Question::Outcome, outcome(plan, &setting, stored)?));
+    }
+    if plan.spec.basin.is_some() && holds(Field::BasinShare) {
+        answers.push((Question::BasinShare, basin_share(plan, &setting, stored)));
     }
     if let Some(search) = plan.spec.critical
         && holds(Field::Vc)
@@ -181,6 +189,37 @@ fn outcome(plan: &Plan, setting: &Setting, stored: &Stored) -> Result<Answer, Mo
         Ok(found) => told(f64::from(found as u8) == number),
         Err(_) => told(number == f64::from(Outcome::NoCycle as u8)),
     })
+}
+
+/// Starts of a second look at a share, at most.
+const SECOND_STARTS: u32 = 64;
+/// How far two shares may be apart: so many times what one in twenty is. Of a thousand pairs none
+/// is, and a look at a hundred cells must not cry wolf.
+const APART: f64 = 3.0;
+
+fn basin_share(plan: &Plan, setting: &Setting, stored: &Stored) -> Answer {
+    let value = |field| (stored.value)(field);
+    let share = value(Field::BasinShare);
+    let Some(basin) = &plan.spec.basin else {
+        return Answer::Open;
+    };
+    let Ok(Some(asked)) = Asked::of(setting, &plan.spec.simulation, basin) else {
+        return Answer::Open;
+    };
+    // That it is 0 follows from the number of unstable roots, which is another question.
+    if let Some(known) = asked.known() {
+        return told(share == known.share || (share.is_nan() && known.share.is_nan()));
+    }
+    let asked = asked.again(SECOND_STARTS, SECOND_TOLERANCE);
+    let (mut tally, mut follower, mut motion) = (Tally::default(), asked.follower(), None);
+    for place in asked.places() {
+        tally.count(place, follower.follow(place, &mut motion));
+    }
+    let (other, upper) = (asked.cell(&tally), value(Field::BasinShareUpper));
+    let error = value(Field::BasinShareError);
+    let error = (error * error + other.error * other.error).sqrt();
+    let apart = (share - other.upper).max(other.share - upper);
+    told(apart <= APART * STUDENT_95 * error)
 }
 
 fn critical_velocity(

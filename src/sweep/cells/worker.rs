@@ -3,6 +3,7 @@
 use std::ops::Range;
 use std::sync::atomic::{AtomicBool, Ordering};
 
+use super::basin_columns::BasinColumns;
 use super::buffers::{Column, FEW_FILL, N_UNSTABLE_FILL, TileBuffers, one_zero_and_one_nan};
 use super::limit_columns;
 use super::line::{Numbers, Places, SlowLine};
@@ -47,6 +48,8 @@ pub struct Worker<'p> {
     margins: Option<MarginColumns>,
     /// Follows motions, where a field needs them.
     slip: Option<SlipColumns<'p>>,
+    /// Follows many starts, where a field needs them.
+    basin: Option<BasinColumns<'p>>,
     /// Looks for critical velocities, where a field needs them.
     vc: Option<VcColumns>,
     /// Cells between neighbours along each axis in the whole map.
@@ -160,6 +163,7 @@ impl<'p> Worker<'p> {
             roots: RootColumns::new(&plan.spec.fields),
             margins: MarginColumns::new(&plan.spec.fields),
             slip: SlipColumns::new(&plan.spec),
+            basin: BasinColumns::new(&plan.spec),
             vc: VcColumns::new(&plan.spec),
             map_strides: strides_of(plan.shape()),
             slides: plan.spec.has_sliding(),
@@ -171,8 +175,8 @@ impl<'p> Worker<'p> {
         self.compute_until(tile, &AtomicBool::new(false));
     }
 
-    /// Computes the cells of `tile`, as [`Worker::compute`] does, but no further cell that takes long is
-    /// begun once `stop` is set. False if the tile is not complete.
+    /// Computes the cells of `tile`, as [`Worker::compute`] does, but no further cell that takes long
+    /// is begun once `stop` is set. False if the tile is not complete.
     pub fn compute_until(&mut self, tile: &Tile, stop: &AtomicBool) -> bool {
         let complete = self.fill_until(tile, stop);
         for column in &mut self.buffers.columns {
@@ -318,7 +322,8 @@ impl<'p> Worker<'p> {
 
     /// Whether cells take so long that a stop is heeded between them.
     fn is_slow(&self) -> bool {
-        self.margins.is_some() || self.slip.is_some() || self.vc.is_some()
+        let follows = self.slip.is_some() || self.basin.is_some();
+        self.margins.is_some() || follows || self.vc.is_some()
     }
 
     /// Computes margins and the fields of motions and of the critical velocity, in a line whose
@@ -356,6 +361,9 @@ impl<'p> Worker<'p> {
         }
         if let (Some(slip), Some(groups)) = (&mut self.slip, groups) {
             slip.fill(&line, groups, &mut self.buffers);
+        }
+        if let Some(basin) = &mut self.basin {
+            basin.fill(&line, &mut self.buffers);
         }
         if let Some(vc) = &mut self.vc {
             vc.fill(&line, &mut self.buffers);

@@ -5,6 +5,7 @@ mod checks;
 use std::ops::Range;
 
 use super::axis::{Axis, MOST_POINTS};
+use super::basin::BasinKeys;
 use super::field::Field;
 use super::given::{GivenParameters, read_units};
 use super::limit_spec::LimitDraft;
@@ -61,6 +62,7 @@ impl SweepSpec {
                 "friction" => draft.given.read_friction(&entry)?,
                 "start" => draft.given.read_start(&entry)?,
                 "simulation" => draft.read_simulation(&entry)?,
+                "basin" => draft.basin.read(&entry)?,
                 "units" => draft.units = read_units(&entry)?,
                 "tolerance" => draft.tolerance = read_tolerance(&entry)?,
                 _ if draft.vc.read(&entry)? => {}
@@ -78,7 +80,7 @@ impl SweepSpec {
 }
 
 /// The keys of a sweep file.
-const KEYS: [&str; 16] = [
+const KEYS: [&str; 17] = [
     "title",
     "picture",
     "fields",
@@ -93,6 +95,7 @@ const KEYS: [&str; 16] = [
     "friction",
     "start",
     "simulation",
+    "basin",
     "units",
     "tolerance",
 ];
@@ -110,6 +113,9 @@ struct Draft {
     motion_place: Option<Range<usize>>,
     /// The first of these that depends on where a motion starts, with its name.
     start_place: Option<(&'static str, Range<usize>)>,
+    /// Where the first field of many starts is asked for, if one is, with its name.
+    basin_place: Option<(&'static str, Range<usize>)>,
+    basin: BasinKeys,
     /// Where the first field of the critical velocity is asked for, if one is.
     vc_place: Option<Range<usize>>,
     vc: VcKeys,
@@ -142,9 +148,12 @@ impl Draft {
             if field.of_motion() {
                 self.motion_place = self.motion_place.take().or_else(place);
             }
+            let named = || Some((field.name(), element.span.clone()));
             if field.of_motion() && field != Field::Outcome {
-                let named = || Some((field.name(), element.span.clone()));
                 self.start_place = self.start_place.take().or_else(named);
+            }
+            if field.of_basin() {
+                self.basin_place = self.basin_place.take().or_else(named);
             }
         }
         Ok(())
@@ -210,6 +219,10 @@ impl Draft {
             simulation.disturbance = DISTURBED;
         }
         let fields = self.fields.unwrap_or(default_fields);
+        let basin = match &self.basin_place {
+            Some(_) => Some(self.basin.basin()?),
+            None => None,
+        };
         Ok(SweepSpec {
             title: self.title,
             picture: picture(self.picture, &fields)?,
@@ -222,6 +235,7 @@ impl Draft {
             best: self.best.is_some(),
             tolerance: self.tolerance,
             simulation,
+            basin,
             critical,
             units: self.units,
             text: text.to_owned(),

@@ -503,6 +503,39 @@ catalogue! {
             comment: Some(UNTIL_KNOWN),
             ..ROW
         };
+        /// The share of starts from which control ends in sliding.
+        BasinShare = Row {
+            name: "basin_share",
+            long_name: "share of starts from which control ends in sliding",
+            short_name: "share that slides",
+            source: Source::Basin(|cell| cell.share),
+            comment: Some(
+                "of those whose end is known: not_converged in status where some are undecided, \
+                 which count in basin_share_upper alone; 0 where sliding is linearly unstable; no \
+                 value where there is no uncontrolled stick-slip to switch on in",
+            ),
+            ..ROW
+        };
+        /// Its standard error.
+        BasinShareError = Row {
+            name: "basin_share_error",
+            long_name: "standard error of basin_share and basin_share_upper",
+            short_name: "error of the share",
+            source: Source::Basin(|cell| cell.error),
+            comment: Some(
+                "from the spread between independent scramblings of the sequence of starts, at \
+                 least one start in all; 0 where sliding is linearly unstable",
+            ),
+            ..ROW
+        };
+        /// The share if all undecided starts came to slide.
+        BasinShareUpper = Row {
+            name: "basin_share_upper",
+            long_name: "share of starts from which control ends in sliding or nothing is decided",
+            short_name: "share that may slide",
+            source: Source::Basin(|cell| cell.upper),
+            ..ROW
+        };
         /// The critical velocity; 0 where stick-slip is never sustained.
         Vc = Row {
             name: "vc",
@@ -834,6 +867,12 @@ impl Field {
         )
     }
 
+    /// True for fields of many motions, which need a friction law and no start.
+    #[must_use]
+    pub const fn of_basin(self) -> bool {
+        matches!(self.source(), Source::Basin(_))
+    }
+
     /// True for fields of the limit of a short delay, which only sweeps of it have.
     #[must_use]
     pub const fn of_limit(self) -> bool {
@@ -998,9 +1037,10 @@ mod tests {
              d_abscissa_d_tau, d_abscissa_d_alpha_v, d_abscissa_d_alpha_n, \
              d_abscissa_d_mu_prime, certificate_margin, gain_margin_lower, gain_margin_upper, \
              phase_margin, latency_margin, stability_radius, settle_time, last_release, n_min, \
-             peak_force, vc, vc_lower, vc_upper, v_liftoff, stick_time, slip_time, v_smooth, \
-             vc_over_vtilde, omega0_T, liftoff_over_vtilde, vc_weak_control, vc_strong_control, \
-             weak_control_error, strong_control_error"
+             peak_force, basin_share, basin_share_error, basin_share_upper, vc, vc_lower, \
+             vc_upper, v_liftoff, stick_time, slip_time, v_smooth, vc_over_vtilde, omega0_T, \
+             liftoff_over_vtilde, vc_weak_control, vc_strong_control, weak_control_error, \
+             strong_control_error"
         );
     }
 }

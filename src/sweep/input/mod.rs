@@ -1,6 +1,7 @@
 //! What the user wrote: parameters, axes, fields, and the files that name them.
 
 pub mod axis;
+pub mod basin;
 pub mod best_plane;
 pub mod case_file;
 mod catalogue;

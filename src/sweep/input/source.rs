@@ -22,6 +22,8 @@ pub enum Source {
     Critical(fn(&VcCell) -> f64),
     /// The motion or, beside fields of the critical velocity, that.
     MotionOrCritical(fn(&Summary) -> f64, fn(&VcCell) -> f64),
+    /// The motions from many starts, which need a friction law.
+    Basin(fn(&BasinCell) -> f64),
     /// The limit of a short delay.
     Limit(fn(&LimitCell) -> f64),
 }
@@ -103,4 +105,16 @@ pub struct VcCell<'a> {
     /// The velocity above which sliding is linearly stable and free of stick-slip; NaN where no
     /// field asks.
     pub v_smooth: f64,
+}
+
+/// What is known in a cell of the starts from which control ends in sliding; NaN where there is no
+/// uncontrolled cycle to start in.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct BasinCell {
+    /// Their share of all.
+    pub share: f64,
+    /// Its standard error, or that of `upper`, whichever is larger.
+    pub error: f64,
+    /// The share if all that are undecided came to slide.
+    pub upper: f64,
 }

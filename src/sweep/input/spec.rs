@@ -44,6 +44,13 @@
 //! tolerance = 1e-12
 //! steps = 1000000
 //!
+//! # optional, for fields of many starts: by default over all that a block at rest can come to
+//! [basin]
+//! over = "state"                          # or "phase" of the uncontrolled cycle, at switch-on
+//! starts = 256                            # a power of two
+//! x_dot0 = { from = 0.0, to = 1.5 }
+//! a0 = { from = -1.0, to = 1.0 }
+//!
 //! [units]                                 # optional: names for the map, dimensionless without
 //! force = "N"
 //! length = "m"
@@ -54,6 +61,7 @@
 //! ```
 
 use super::axis::Axis;
+use super::basin::Basin;
 use super::field::Field;
 use super::parameter::Parameter;
 use super::search::Search;
@@ -88,6 +96,8 @@ pub struct SweepSpec {
     pub tolerance: MarginalTolerance,
     /// How far and how exactly motions are followed.
     pub simulation: Simulation,
+    /// Of which starts the share is taken that ends in sliding; none where no field asks for it.
+    pub basin: Option<Basin>,
     /// How critical velocities are looked for; none where no field asks for them.
     pub critical: Option<Search>,
     /// Units of the parameters.
@@ -127,6 +137,13 @@ impl SweepSpec {
             setting.set(Parameter::Tau, 1.0);
         }
         !self.limit && !gain && setting.has_idle_delay()
+    }
+
+    /// What is said of the starts of motions: of many, or of one that is not given.
+    #[must_use]
+    pub fn said_of_starts(&self) -> Option<String> {
+        let many = self.basin.as_ref().map(Basin::described);
+        many.or_else(|| self.simulation.assumed_start())
     }
 
     /// Whether motions from a start are followed.

@@ -113,7 +113,12 @@ pub(super) fn read_fields(entry: &Entry) -> Result<Vec<Field>, SpecError> {
     if fields.contains(&Field::Abscissa) && !fields.contains(&Field::CertificateMargin) {
         fields.push(Field::CertificateMargin);
     }
+    // Likewise a share without its error, and without what is not known of it.
+    if fields.contains(&Field::BasinShare) {
+        fields.extend([Field::BasinShareError, Field::BasinShareUpper]);
+    }
     fields.sort_unstable();
+    fields.dedup();
     Ok(fields)
 }
 

@@ -76,7 +76,8 @@ impl Memory {
 
 /// What motions are remembered of, in one thread.
 fn pasts(plan: &Plan) -> u64 {
-    let count = match (plan.spec.critical.is_some(), plan.spec.follows_motions()) {
+    let follows = plan.spec.follows_motions() || plan.spec.basin.is_some();
+    let count = match (plan.spec.critical.is_some(), follows) {
         (true, _) => PASTS_OF_CRITICAL,
         (false, true) => PASTS_OF_OUTCOMES,
         (false, false) => return 0,

@@ -98,6 +98,18 @@ impl Draft {
 
     /// Fields of the critical velocity or of motions have what they need; what is looked for.
     fn check_nonlinear(&self, fixed: &Setting) -> Result<Option<Search>, SpecError> {
+        if let Some((name, place)) = &self.basin_place {
+            self.check_no_search()?;
+            self.check_basin(fixed, name, place)?;
+            return Ok(None);
+        }
+        if let Some(place) = self.basin.place() {
+            let message = "basin has no effect on the fields that are asked for";
+            return Err(SpecError::at(place.clone(), message).help(format!(
+                "starts are followed for the field {}",
+                Field::BasinShare.name()
+            )));
+        }
         if let Some(place) = &self.vc_place {
             return self.critical_search(fixed, place).map(Some);
         }
@@ -140,6 +152,38 @@ impl Draft {
         let latest = phases.into_iter().fold(0.0, f64::max);
         let name = Parameter::SwitchOnPhase.name();
         self.simulation.check_horizon(name, latest)
+    }
+
+    /// Fields of many starts, the first of which is `name`, have what they need.
+    fn check_basin(
+        &self,
+        fixed: &Setting,
+        name: &str,
+        place: &Range<usize>,
+    ) -> Result<(), SpecError> {
+        if self.motion_place.is_some() || self.vc_place.is_some() {
+            let others = match self.vc_place {
+                Some(_) => "fields of the critical velocity",
+                None => "fields of one motion",
+            };
+            let message = format!("{name} cannot stand beside {others}");
+            return Err(SpecError::at(place.clone(), message).help(
+                "it is about motions from many starts: make a sweep of its own for it; fields of \
+                 linear stability can stand beside it",
+            ));
+        }
+        self.check_law_is_there(place, "motions stick and slip by it")?;
+        self.check_delays(fixed, place)?;
+        let mut start = Parameter::ALL.into_iter().filter(|p| p.of_start());
+        match start.find_map(|p| Some((p, self.given.place(p)?))) {
+            Some((parameter, place)) => {
+                let message = format!("{} says one start", parameter.name());
+                Err(SpecError::at(place.clone(), message).help(format!(
+                    "{name} is of many: [basin] says their ranges, or over = \"phase\""
+                )))
+            }
+            None => Ok(()),
+        }
     }
 
     fn check_no_motions(&self) -> Result<(), SpecError> {

@@ -1,0 +1,349 @@
+//! `slipmap basin`: the share of starts from which control ends in sliding.
+
+use std::path::{Path, PathBuf};
+
+use clap::ValueEnum;
+use slipmap::explore::basin::{BasinError, BasinShare, Followed};
+use slipmap::model::Shown;
+use slipmap::report::numbers::{grouped, unit_behind};
+use slipmap::report::table::write_starts;
+use slipmap::slip::case::CaseError;
+use slipmap::sweep::input::basin::{Basin, Over};
+use slipmap::sweep::input::point_file::PointOf;
+use slipmap::sweep::input::simulation::Simulation;
+use slipmap::sweep::input::units::Units;
+use slipmap::sweep::{Parameter, Setting};
+
+use super::cell::{CellArgs, alone};
+use super::failure::Failure;
+use super::json::{self, AnswerSchema, Inputs};
+use super::parameters::ParameterArgs;
+use super::run::{default_threads, parse_threads};
+use super::say::{self, Rows};
+use super::setting::SettingArgs;
+use super::signals::Signals;
+use super::text_output::{To, is_csv};
+
+/// Starts where none are asked for.
+const STARTS: u32 = 4096;
+
+#[derive(Debug, clap::Args)]
+#[command(after_help = "Examples:
+  slipmap basin --friction weakening --mu0 0.5 --v-s 0.5 --v0 0.35 --alpha-v=-0.33 --tau 4.15
+  slipmap basin --friction weakening --mu0 0.5 --v-s 0.5 --v0 0.35 --alpha-v=-0.33 --tau 4.15 \
+--over phase
+
+Two questions: over states, a block is found with any velocity and elongation of a box, and \
+control acts from then on; over phases, control is switched on at any time of uncontrolled \
+stick-slip. By default the box has velocities from 0 to v0 + √(v0² + μ_S² N0²/(κM)), what a block \
+at rest can come to, and elongations of ±μ_S N0/κ, at which it stays at rest.
+The error is that of 16 independent scramblings of a Sobol sequence. Starts whose end is undecided \
+are no part of the share: they widen the interval.")]
+pub(super) struct Args {
+    #[command(flatten)]
+    parameters: ParameterArgs,
+    #[command(flatten)]
+    cell: CellArgs,
+    #[command(flatten)]
+    file: SettingArgs,
+    /// Which starts there are [default: state, or those of --map]
+    #[arg(long, value_enum)]
+    over: Option<OverName>,
+    /// How many, a power of two from 64 to 1048576 [default: 4096]
+    #[arg(long, value_name = "N", value_parser = parse_starts)]
+    starts: Option<u32>,
+    /// Smallest velocity of the block at t = 0
+    #[arg(long, value_name = "V", allow_hyphen_values = true)]
+    x_dot0_from: Option<f64>,
+    /// Largest velocity of the block at t = 0
+    #[arg(long, value_name = "V", allow_hyphen_values = true)]
+    x_dot0_to: Option<f64>,
+    /// Smallest elongation of the spring at t = 0 and before
+    #[arg(long, value_name = "A", allow_hyphen_values = true)]
+    a0_from: Option<f64>,
+    /// Largest elongation of the spring at t = 0 and before
+    #[arg(long, value_name = "A", allow_hyphen_values = true)]
+    a0_to: Option<f64>,
+    /// Until how long after switch-on the outcome is looked for [default: 1000 √(M/κ)]
+    #[arg(long, value_name = "T", allow_hyphen_values = true)]
+    horizon: Option<f64>,
+    /// Write all starts with their outcomes, as text
+    #[arg(short, long, value_name = "STARTS.csv")]
+    output: Option<PathBuf>,
+    /// Threads to compute on [default: as many as the machine offers]
+    #[arg(long, value_name = "N", value_parser = parse_threads)]
+    threads: Option<usize>,
+    /// One JSON object on standard output; what there is not is null
+    #[arg(long)]
+    json: bool,
+}
+
+/// Kinds of starts by name.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum OverName {
+    /// Velocity and elongation in a box, with control on from t = 0
+    State,
+    /// Control switched on at a phase of uncontrolled stick-slip
+    Phase,
+}
+
+/// The number of a `--starts` flag.
+fn parse_starts(text: &str) -> Result<u32, String> {
+    let starts = text.parse().map_err(|_| "expected a whole number");
+    Basin::check_starts(starts?)
+}
+
+/// What is asked.
+struct Question {
+    setting: Setting,
+    units: Units,
+    basin: Basin,
+    simulation: Simulation,
+}
+
+/// What its JSON looks like.
+pub(super) fn described() -> AnswerSchema {
+    AnswerSchema::of("basin").or::<BasinShare>()
+}
+
+/// Runs the subcommand.
+pub(super) fn main(args: &Args) -> Result<(), Failure> {
+    let signals = Signals::catch()?;
+    let output = args.output()?;
+    let question = args.read()?;
+    let threads = args.threads.unwrap_or_else(default_threads);
+    let followed = signals.or_end("there is no share", || {
+        let Question {
+            setting,
+            basin,
+            simulation,
+            ..
+        } = &question;
+        Followed::of(setting, simulation, basin, threads)
+    });
+    let followed = followed.map_err(|error| args.refused(&error))?;
+    let share = BasinShare::of(&followed);
+    if let Some(to) = output {
+        to.write(&signals, "there are no starts", |out, stop| {
+            write_starts(&followed, &question.units, out, stop)
+        })?;
+    }
+    match args.json {
+        true => json::print(&question.inputs(&share), &share),
+        false => tell(&share, &question.units, args.output.as_deref()),
+    }
+}
+
+impl Args {
+    /// What is asked, from a map, a file or flags.
+    fn read(&self) -> Result<Question, Failure> {
+        let by_flags = self.parameters.any_given();
+        let mut basin = Basin {
+            starts: STARTS,
+            ..Basin::default()
+        };
+        let mut simulation = Simulation::default();
+        let point = match self.cell.point(PointOf::Sliding)? {
+            Some(point) => {
+                alone("--map", by_flags)?;
+                if let Some(of_map) = self.cell.basin()? {
+                    (basin, simulation) = of_map;
+                }
+                Some(point)
+            }
+            None => self.file.point(PointOf::Sliding)?,
+        };
+        let (setting, units) = match point {
+            Some(point) => {
+                alone("--setting", by_flags)?;
+                (point.setting, point.units)
+            }
+            None => (
+                self.parameters.setting_of_motions()?,
+                self.parameters.units(),
+            ),
+        };
+        if setting.law().is_none() {
+            return Err(self.refused(&BasinError::NoLaw));
+        }
+        self.put_starts(&mut basin, &setting)?;
+        if let Some(horizon) = self.horizon {
+            if !(1e-12..=1e12).contains(&horizon) {
+                let message = format!("--horizon {} is outside its range", Shown(horizon));
+                let help = "a time greater than 0, between 1e-12 and 1e12";
+                return Err(Failure::bad_input_with_help(message, help));
+            }
+            simulation.horizon = Some(horizon);
+        }
+        Ok(Question {
+            setting,
+            units,
+            basin,
+            simulation,
+        })
+    }
+
+    /// What flags say of the starts.
+    fn put_starts(&self, basin: &mut Basin, setting: &Setting) -> Result<(), Failure> {
+        if let Some(over) = self.over {
+            basin.over = match over {
+                OverName::State => Over::State,
+                OverName::Phase => Over::Phase,
+            };
+        }
+        basin.starts = self.starts.unwrap_or(basin.starts);
+        let ends = [
+            ("--x-dot0-from", self.x_dot0_from),
+            ("--x-dot0-to", self.x_dot0_to),
+            ("--a0-from", self.a0_from),
+            ("--a0-to", self.a0_to),
+        ];
+        if basin.over == Over::Phase {
+            (basin.x_dot0, basin.a0) = (None, None);
+            return match ends.iter().find(|(_, end)| end.is_some()) {
+                Some((flag, _)) => Err(Failure::bad_input_with_help(
+                    format!("{flag} has no meaning over phases"),
+                    "it belongs to --over state",
+                )),
+                None => Ok(()),
+            };
+        }
+        let velocities = basin.velocities(setting)?;
+        let elongations = basin.elongations(setting)?;
+        basin.x_dot0 = Some(range(Parameter::XDot0, &ends[..2], velocities)?);
+        basin.a0 = Some(range(Parameter::A0, &ends[2..], elongations)?);
+        Ok(())
+    }
+
+    /// Where starts are written, if they are.
+    fn output(&self) -> Result<Option<To<'_>>, Failure> {
+        match self.output.as_deref() {
+            Some(path) if is_csv(path) => Ok(Some(To::File(path))),
+            Some(path) => Err(Failure::bad_input_with_help(
+                format!("--output {}: a table is written as CSV", path.display()),
+                "name it like NAME.csv",
+            )),
+            None => Ok(None),
+        }
+    }
+
+    fn refused(&self, error: &BasinError) -> Failure {
+        match error {
+            BasinError::Case(CaseError::Model(error)) => self.parameters.refused(error),
+            BasinError::Threads(error) => Failure::failed(error.to_string()),
+            error => Failure::bad_input(error.to_string()),
+        }
+    }
+}
+
+/// The ends that flags give a range, else those by default.
+fn range(
+    of: Parameter,
+    ends: &[(&str, Option<f64>)],
+    by_default: [f64; 2],
+) -> Result<[f64; 2], Failure> {
+    let mut range = by_default;
+    for ((flag, given), end) in ends.iter().zip(&mut range) {
+        if let Some(value) = given {
+            let checked = of.check(*value);
+            *end = checked.map_err(|error| Failure::out_of_range(flag, &error))?;
+        }
+    }
+    Basin::check_range(of, range).map_err(|_| {
+        let told = |((flag, given), value): (&(&str, Option<f64>), f64)| match given {
+            Some(_) => format!("{flag} {}", Shown(value)),
+            None => format!("{flag}, {} by default", Shown(value)),
+        };
+        let [from, to] = [0, 1].map(|end| told((&ends[end], range[end])));
+        Failure::bad_input(format!("{from} is larger than {to}"))
+    })
+}
+
+impl Question {
+    fn inputs(&self, share: &BasinShare) -> Inputs {
+        let mut inputs = Inputs::of_setting(&self.setting, &self.units, |_| true)
+            .and("over", share.over)
+            .and("starts", self.basin.starts)
+            .and("horizon", share.horizon);
+        let ranges = [("x_dot0", share.x_dot0), ("a0", share.a0)];
+        for (name, range) in ranges {
+            if let Some([from, to]) = range {
+                inputs = inputs.and(&format!("{name}_from"), from);
+                inputs = inputs.and(&format!("{name}_to"), to);
+            }
+        }
+        inputs
+    }
+}
+
+fn tell(share: &BasinShare, units: &Units, output: Option<&Path>) -> Result<(), Failure> {
+    let mut rows = Rows::begin();
+    let unit = |parameter| unit_behind(&units.of_parameter(parameter));
+    rows.row("over", over(share))?;
+    for (parameter, range) in [(Parameter::XDot0, share.x_dot0), (Parameter::A0, share.a0)] {
+        if let Some([from, to]) = range {
+            let text = format!("{} to {}{}", six(from), six(to), unit(parameter));
+            rows.row(parameter.name(), text)?;
+        }
+    }
+    if let Some(period) = share.period {
+        let text = format!("0 to {}{}", six(period), unit(Parameter::SwitchOnPhase));
+        rows.row("phase", text)?;
+    }
+    let (starts, scramblings) = (grouped(u64::from(share.starts)), share.scramblings);
+    rows.row("starts", format!("{starts} in {scramblings} scramblings"))?;
+    rows.row("sliding", sliding(share))?;
+    for of in share
+        .outcomes
+        .iter()
+        .filter(|of| of.outcome != "sliding" && of.starts > 0)
+    {
+        let (share, error) = (of.share, of.error);
+        rows.row(of.outcome, format!("{share:.5} ± {error:.5} of the starts"))?;
+    }
+    if units.dimensionless() {
+        rows.row("units", "none: dimensionless")?;
+    }
+    drop(rows);
+    match output {
+        Some(path) => say::result(format_args!("{}: {starts} starts", path.display())),
+        None => Ok(()),
+    }
+}
+
+/// A number with six digits at most.
+fn six(value: f64) -> String {
+    let rounded = format!("{value:.5e}").parse().unwrap_or(value);
+    format!("{}", Shown(rounded))
+}
+
+/// Which question is answered.
+fn over(share: &BasinShare) -> &'static str {
+    match share.over {
+        "state" => "states of the block, control on from t = 0",
+        _ => "phases of uncontrolled stick-slip at which control is switched on",
+    }
+}
+
+/// The share that slides, in words.
+fn sliding(share: &BasinShare) -> String {
+    let (Some(least), Some(error), Some(most), Some([low, high])) = (
+        share.basin_share,
+        share.basin_share_error,
+        share.basin_share_upper,
+        share.interval,
+    ) else {
+        return "no share: there is no uncontrolled stick-slip to switch on in".into();
+    };
+    if share.linearly_unstable {
+        return "0 of the starts: sliding is linearly unstable".into();
+    }
+    let undecided = match most > least {
+        true => format!(", {most:.5} if all that are undecided slide"),
+        false => String::new(),
+    };
+    format!(
+        "{least:.5} ± {error:.5} of the starts{undecided}; {low:.4} to {high:.4} with 95 % \
+         confidence"
+    )
+}

@@ -1,0 +1,52 @@
+//! What `slipmap best` recommends.
+
+use clap::ValueEnum;
+use serde::Serialize;
+use slipmap::explore::margins::Margins;
+use slipmap::explore::vc::CriticalVelocity;
+use slipmap::linear::best::SearchedGain;
+use slipmap::sweep::cells::best::{BestSettings, Ranges, RobustSetting};
+use slipmap::sweep::{Parameter, Setting};
+use utoipa::ToSchema;
+
+/// Controls by name.
+#[derive(Debug, Clone, Copy, ValueEnum, Serialize, ToSchema)]
+#[serde(rename_all = "lowercase")]
+pub(super) enum Control {
+    /// α_v: the pulling velocity follows the delayed elongation
+    Velocity,
+    /// α_N: the normal load does
+    Load,
+}
+
+/// What was found, and what there is to know of the setting that is recommended.
+pub(super) struct Recommended {
+    pub(super) control: Control,
+    pub(super) ranges: Ranges,
+    /// How far gain, delay and μ′ may be off, where that is asked.
+    pub(super) spread: Option<f64>,
+    pub(super) found: BestSettings,
+    /// None where it is not asked for, or where no setting stays stable.
+    pub(super) robust: Option<RobustSetting>,
+    /// The setting itself: the robust one, where there is one.
+    pub(super) setting: Setting,
+    pub(super) margins: Margins,
+    /// v_c, where there is a friction law.
+    pub(super) vc: Option<CriticalVelocity>,
+}
+
+impl Control {
+    pub(super) fn parameter(self) -> Parameter {
+        match self {
+            Self::Velocity => Parameter::AlphaV,
+            Self::Load => Parameter::AlphaN,
+        }
+    }
+
+    pub(super) fn searched(self) -> SearchedGain {
+        match self {
+            Self::Velocity => SearchedGain::Velocity,
+            Self::Load => SearchedGain::Load,
+        }
+    }
+}

@@ -1,0 +1,167 @@
+//! The share of starts from which control ends in sliding, at a point of parameter space.
+
+use std::convert::Infallible;
+
+use serde::Serialize;
+
+use super::finite;
+use crate::slip::case::CaseError;
+use crate::slip::outcome::Outcome;
+use crate::sweep::Setting;
+use crate::sweep::cells::basin::{Asked, Place, Region, STUDENT_95, Tally};
+use crate::sweep::engine::{RunError, each};
+use crate::sweep::input::basin::{Basin, SCRAMBLINGS};
+use crate::sweep::input::simulation::Simulation;
+
+/// Why there is no share.
+#[derive(Debug, thiserror::Error)]
+pub enum BasinError {
+    /// The setting has no friction law.
+    #[error("a share of starts needs a friction law: motions stick and slip by it")]
+    NoLaw,
+    /// A value is out of range, or the delay is too long.
+    #[error(transparent)]
+    Case(#[from] CaseError),
+    /// The threads could not be started.
+    #[error(transparent)]
+    Threads(#[from] RunError<Infallible>),
+}
+
+/// Starts that were followed.
+#[derive(Debug, Clone)]
+pub struct Followed {
+    basin: Basin,
+    asked: Asked,
+    outcomes: Vec<Outcome>,
+}
+
+impl Followed {
+    /// Follows the starts of a setting on `threads` threads; no bit depends on how many.
+    ///
+    /// # Errors
+    /// See [`BasinError`].
+    pub fn of(
+        setting: &Setting,
+        simulation: &Simulation,
+        basin: &Basin,
+        threads: usize,
+    ) -> Result<Self, BasinError> {
+        let asked = Asked::of(setting, simulation, basin)?.ok_or(BasinError::NoLaw)?;
+        let begin = || (asked.follower(), None);
+        let places: Vec<Place> = asked.places().collect();
+        let outcomes = each(places, threads, begin, |(follower, motion), place| {
+            follower.follow(place, motion)
+        })?;
+        Ok(Self {
+            basin: *basin,
+            asked,
+            outcomes,
+        })
+    }
+
+    /// Where the starts lie.
+    #[must_use]
+    pub fn region(&self) -> Region {
+        self.asked.region()
+    }
+
+    /// Every start: ẋ and elongation, or the phase of switch-on and 0; and what became of it.
+    pub fn starts(&self) -> impl Iterator<Item = (Place, [f64; 2], Outcome)> {
+        let places = self.asked.places().zip(&self.outcomes);
+        places.map(|(place, outcome)| (place, self.asked.start(place), *outcome))
+    }
+}
+
+/// The share of starts from which control ends in sliding, in units of the setting.
+#[derive(Debug, Clone, Serialize)]
+#[cfg_attr(feature = "serve", derive(utoipa::ToSchema))]
+pub struct BasinShare {
+    /// The share of those that are known to slide; null where there is no uncontrolled stick-slip
+    /// to switch on in.
+    pub basin_share: Option<f64>,
+    /// The standard error of it and of `basin_share_upper`, from the spread between scramblings:
+    /// one start of all at least. 0 where sliding is linearly unstable.
+    pub basin_share_error: Option<f64>,
+    /// The share if all that are undecided came to slide.
+    pub basin_share_upper: Option<f64>,
+    /// In which the share lies with 95 % confidence, undecided starts taken either way.
+    pub interval: Option<[f64; 2]>,
+    /// Whether sliding is linearly unstable: then none but exceptional starts end in it, and the
+    /// share is 0.
+    pub linearly_unstable: bool,
+    /// Which starts there are: `state` or `phase`.
+    pub over: &'static str,
+    /// How many were followed.
+    pub starts: u32,
+    /// Independent scramblings of their sequence, each with as many.
+    pub scramblings: u32,
+    /// Velocities at t = 0, from and to; null over phases.
+    pub x_dot0: Option<[f64; 2]>,
+    /// Elongations at t = 0 and before, from and to; null over phases.
+    pub a0: Option<[f64; 2]>,
+    /// The period of the uncontrolled cycle; null over states.
+    pub period: Option<f64>,
+    /// Until how long after switch-on outcomes were looked for.
+    pub horizon: f64,
+    /// Shares of all outcomes.
+    pub outcomes: Vec<OutcomeShare>,
+}
+
+/// The share of starts that came to an outcome.
+#[derive(Debug, Clone, Serialize)]
+#[cfg_attr(feature = "serve", derive(utoipa::ToSchema))]
+pub struct OutcomeShare {
+    /// The outcome.
+    pub outcome: &'static str,
+    /// How many starts came to it.
+    pub starts: u32,
+    /// Their share of all.
+    pub share: f64,
+    /// Its standard error.
+    pub error: f64,
+}
+
+impl BasinShare {
+    /// Of starts that were followed.
+    #[must_use]
+    pub fn of(followed: &Followed) -> Self {
+        let mut tally = Tally::default();
+        for (place, outcome) in followed.asked.places().zip(&followed.outcomes) {
+            tally.count(place, *outcome);
+        }
+        let cell = followed.asked.cell(&tally);
+        let half = STUDENT_95 * cell.error;
+        let share_of = |outcome: Outcome| {
+            let share = tally.share(&[outcome]);
+            OutcomeShare {
+                outcome: outcome.name(),
+                starts: tally.starts(outcome),
+                share: share.share,
+                error: share.error,
+            }
+        };
+        let outcomes = Outcome::ALL.into_iter();
+        let outcomes = outcomes.filter(|of| *of != Outcome::NoCycle && !cell.share.is_nan());
+        let (x_dot0, a0, period) = match followed.region() {
+            Region::State { x_dot0, a0 } => (Some(x_dot0), Some(a0), None),
+            Region::Phase { period } => (None, None, Some(period)),
+            Region::None => (None, None, None),
+        };
+        Self {
+            basin_share: finite(cell.share),
+            basin_share_error: finite(cell.error),
+            basin_share_upper: finite(cell.upper),
+            interval: finite(cell.share)
+                .map(|share| [(share - half).max(0.0), (cell.upper + half).min(1.0)]),
+            linearly_unstable: followed.asked.unstable(),
+            over: followed.basin.over.name(),
+            starts: followed.outcomes.len() as u32,
+            scramblings: SCRAMBLINGS,
+            x_dot0,
+            a0,
+            period,
+            horizon: followed.asked.horizon(),
+            outcomes: outcomes.map(share_of).collect(),
+        }
+    }
+}

@@ -1,0 +1,381 @@
+//! The share of starts from which control ends in sliding: a basin of attraction as a number. Its
+//! name elsewhere is basin stability (Menck et al., Nature Physics 9, 89, 2013).
+//!
+//! Starts are points of a Sobol sequence, which fills a box more evenly than chance does, in
+//! [`SCRAMBLINGS`] independent scramblings by Owen's method: each of them alone gives the share
+//! without bias, so their mean has the standard error that their spread tells. (From one sequence
+//! that is not scrambled no error could be told.) The scramblings are the same in all cells, so
+//! that shares depend on the setting alone, and neighbouring ones differ by less than their errors.
+//!
+//! What is not decided is not counted as sliding: it makes the interval wider in which the share
+//! lies. Where sliding is linearly unstable the share is 0, whatever is undecided: only exceptional
+//! starts come to an unstable state.
+
+use crate::linear::{Crossings, MarginalTolerance};
+use crate::model::Control;
+use crate::slip::case::{Case, CaseError, Start};
+use crate::slip::cycle::NoCycle;
+use crate::slip::motion::{Integrator, Motion};
+use crate::slip::outcome::Outcome;
+use crate::sweep::input::basin::{Basin, Over, SCRAMBLINGS};
+use crate::sweep::input::setting::Setting;
+use crate::sweep::input::simulation::Simulation;
+use crate::sweep::input::source::BasinCell;
+
+/// 95 % of Student's distribution lie within so many standard errors, where these come from
+/// [`SCRAMBLINGS`] values.
+pub const STUDENT_95: f64 = 2.131_449_545_559_323;
+
+/// Where starts lie, in units of the setting.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Region {
+    /// In a box of states, with control on from t = 0.
+    State {
+        /// ẋ at t = 0, from and to.
+        x_dot0: [f64; 2],
+        /// The elongation at t = 0 and before, from and to.
+        a0: [f64; 2],
+    },
+    /// Anywhere in the uncontrolled cycle, where control is switched on.
+    Phase {
+        /// Its period, of which all times are as likely.
+        period: f64,
+    },
+    /// There is no uncontrolled cycle.
+    None,
+}
+
+/// What is asked of a setting, and what is known before any start is followed.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Asked {
+    /// The motion, but for its start.
+    case: Case,
+    region: Region,
+    /// Re λ of the rightmost root of sliding, if it is stable.
+    abscissa: Option<f64>,
+    unstable: bool,
+    starts: u32,
+    /// Number of the first of the scramblings.
+    first: u32,
+}
+
+/// One of the starts.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Place {
+    /// In which of the [`SCRAMBLINGS`].
+    pub scrambling: u32,
+    /// Its number in that.
+    pub number: u32,
+}
+
+impl Asked {
+    /// Of a setting; none where it has no friction law.
+    ///
+    /// # Errors
+    /// When a parameter is outside the model's range, or the delay has too many cycles.
+    pub fn of(
+        setting: &Setting,
+        simulation: &Simulation,
+        basin: &Basin,
+    ) -> Result<Option<Self>, CaseError> {
+        let Some(case) = simulation.case(setting, 0.0)? else {
+            return Ok(None);
+        };
+        let region = match basin.over {
+            Over::State => Region::State {
+                x_dot0: basin.velocities(setting)?,
+                a0: basin.elongations(setting)?,
+            },
+            Over::Phase => match case.uncontrolled_cycle() {
+                Ok(cycle) => Region::Phase {
+                    period: cycle.period(),
+                },
+                Err(CaseError::NoCycle(NoCycle::NoStickSlip)) => Region::None,
+                Err(error) => return Err(error),
+            },
+        };
+        let (groups, unit) = setting.groups()?;
+        let tau = match case.control == Control::default() {
+            true => 0.0,
+            false => case.tau / unit,
+        };
+        let count = Crossings::of(groups).count(tau, MarginalTolerance::default());
+        Ok(Some(Self {
+            abscissa: case.stable_abscissa()?,
+            case,
+            region,
+            unstable: count.n_unstable > 0 && !count.marginal,
+            starts: basin.starts,
+            first: 0,
+        }))
+    }
+
+    /// The same of fewer starts, at most so many, that are others, by collocation in the place of
+    /// Taylor's method, with an error of `tolerance` in a step at least.
+    #[must_use]
+    pub fn again(self, most: u32, tolerance: f64) -> Self {
+        let mut case = self.case;
+        case.accuracy.integrator = Integrator::Collocation;
+        case.accuracy.tolerance = case.accuracy.tolerance.max(tolerance);
+        Self {
+            case,
+            starts: self.starts.min(most),
+            first: SCRAMBLINGS,
+            ..self
+        }
+    }
+
+    /// Until how long after switch-on outcomes are looked for.
+    #[must_use]
+    pub fn horizon(&self) -> f64 {
+        self.case.horizon
+    }
+
+    /// Where starts lie.
+    #[must_use]
+    pub fn region(&self) -> Region {
+        self.region
+    }
+
+    /// Whether sliding is linearly unstable beyond doubt, so that none but exceptional starts end
+    /// in it.
+    #[must_use]
+    pub fn unstable(&self) -> bool {
+        self.unstable
+    }
+
+    /// What is known of the share before any start is followed, if it is.
+    #[must_use]
+    pub fn known(&self) -> Option<BasinCell> {
+        let all = |share| BasinCell {
+            share,
+            error: share,
+            upper: share,
+        };
+        match self.region {
+            Region::None => Some(all(f64::NAN)),
+            _ => self.unstable.then(|| all(0.0)),
+        }
+    }
+
+    /// What is known of the share once all starts were followed.
+    #[must_use]
+    pub fn cell(&self, tally: &Tally) -> BasinCell {
+        let least = tally.share(&[Outcome::Sliding]);
+        let most = tally.share(&[Outcome::Sliding, Outcome::Undecided]);
+        self.known().unwrap_or(BasinCell {
+            share: least.share,
+            error: least.error.max(most.error),
+            upper: most.share,
+        })
+    }
+
+    /// How many starts there are; none where there is no uncontrolled cycle.
+    #[must_use]
+    pub fn starts(&self) -> u32 {
+        match self.region {
+            Region::None => 0,
+            _ => self.starts,
+        }
+    }
+
+    /// All starts, one scrambling after the other.
+    #[must_use]
+    pub fn places(&self) -> impl ExactSizeIterator<Item = Place> + use<> {
+        let each = self.starts / SCRAMBLINGS;
+        (0..self.starts()).map(move |start| Place {
+            scrambling: start / each,
+            number: start % each,
+        })
+    }
+
+    /// ẋ and elongation of a start, or the phase of switch-on and 0.
+    #[must_use]
+    pub fn start(&self, place: Place) -> [f64; 2] {
+        let seed = self.first + place.scrambling;
+        let along = |dimension, [from, to]: [f64; 2]| {
+            let part = f64::from(sobol_burley::sample(place.number, dimension, seed));
+            from + part * (to - from)
+        };
+        match self.region {
+            Region::State { x_dot0, a0 } => [along(0, x_dot0), along(1, a0)],
+            Region::Phase { period } => [along(0, [0.0, period]), 0.0],
+            Region::None => [f64::NAN; 2],
+        }
+    }
+
+    /// Follows starts one after the other.
+    #[must_use]
+    pub fn follower(&self) -> Follower<'_> {
+        Follower {
+            asked: self,
+            case: self.case.clone(),
+        }
+    }
+}
+
+/// Follows starts one after the other.
+pub struct Follower<'a> {
+    asked: &'a Asked,
+    case: Case,
+}
+
+impl Follower<'_> {
+    /// What becomes of a start, in the memory of another motion, if there is one.
+    pub fn follow(&mut self, place: Place, motion: &mut Option<Motion>) -> Outcome {
+        let [first, second] = self.asked.start(place);
+        let case = &mut self.case;
+        match self.asked.region {
+            Region::State { .. } => {
+                let (x_dot0, a0) = (first, second);
+                case.start = Start::State { x_dot0, a0 };
+            }
+            Region::Phase { .. } => {
+                case.start = Start::AfterRelease;
+                if case.switch_on.is_finite() {
+                    case.switch_on = first;
+                    // As long after switch-on as where that is at t = 0.
+                    case.horizon = self.asked.case.horizon + first;
+                }
+            }
+            Region::None => return Outcome::NoCycle,
+        }
+        let begun = match motion {
+            Some(motion) => case.restart(motion).map(|()| motion),
+            none => case.motion().map(|new| none.insert(new)),
+        };
+        // What is refused here is beyond what can be followed.
+        begun.map_or(Outcome::Undecided, |motion| {
+            case.follow(motion, self.asked.abscissa, &mut ()).outcome
+        })
+    }
+}
+
+/// A share of the starts, with its standard error.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Share {
+    /// Between 0 and 1.
+    pub share: f64,
+    /// Its standard error, from the spread between scramblings: one start of all at least, since
+    /// what no start lies in is not seen.
+    pub error: f64,
+}
+
+/// How many starts of each scrambling came to each outcome.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub struct Tally([[u32; Outcome::ALL.len()]; SCRAMBLINGS as usize]);
+
+impl Tally {
+    /// One more start.
+    pub fn count(&mut self, place: Place, outcome: Outcome) {
+        self.0[place.scrambling as usize][outcome as usize] += 1;
+    }
+
+    /// How many starts came to an outcome.
+    #[must_use]
+    pub fn starts(&self, outcome: Outcome) -> u32 {
+        self.0.iter().map(|counts| counts[outcome as usize]).sum()
+    }
+
+    /// The share of starts that came to one of these outcomes; NaN where there is no start. All
+    /// scramblings have as many.
+    #[must_use]
+    pub fn share(&self, of: &[Outcome]) -> Share {
+        let all: u32 = self.0.iter().flatten().sum();
+        let scramblings = f64::from(SCRAMBLINGS);
+        let each = f64::from(all) / scramblings;
+        let counted = |counts: &[u32; Outcome::ALL.len()]| {
+            let counted: u32 = of.iter().map(|outcome| counts[*outcome as usize]).sum();
+            f64::from(counted)
+        };
+        let sum: f64 = self.0.iter().map(counted).sum();
+        let mean = sum / scramblings;
+        let squared = |counts| {
+            let off = counted(counts) - mean;
+            off * off
+        };
+        let squares: f64 = self.0.iter().map(squared).sum();
+        let error = (squares / (scramblings * (scramblings - 1.0))).sqrt() / each;
+        Share {
+            share: sum / f64::from(all),
+            error: error.max(1.0 / f64::from(all)),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn asked(text: &str) -> Asked {
+        let spec: crate::sweep::SweepSpec = text.parse().unwrap();
+        let plan = crate::sweep::Plan::new(spec).unwrap();
+        let basin = plan.spec.basin.unwrap();
+        let asked = Asked::of(&plan.setting(&[0]), &plan.spec.simulation, &basin);
+        asked.unwrap().unwrap()
+    }
+
+    fn of_box(starts: u32) -> Asked {
+        asked(&format!(
+            "fields = [\"basin_share\"]\n[axes]\nv0 = [0.3]\n[basin]\nstarts = {starts}\n\
+             x_dot0 = {{ from = -1.0, to = 3.0 }}\na0 = {{ from = 2.0, to = 4.0 }}\n[friction]\n\
+             law = \"coulomb\"\nmu0 = 0.5\n[fixed]\nalpha_n = -1.0\ntau = 1.0\n"
+        ))
+    }
+
+    /// A quarter of a disk, whose area is known: the error falls faster than by chance, and is what
+    /// it says it is.
+    #[test]
+    fn errors_of_shares_are_what_they_say() {
+        let exact = std::f64::consts::FRAC_PI_4;
+        let (mut errors, mut beyond) = (Vec::new(), 0);
+        for power in 6..=16 {
+            for first in 0..40 {
+                let asked = Asked {
+                    first: first * SCRAMBLINGS,
+                    ..of_box(1 << power)
+                };
+                let mut tally = Tally::default();
+                for place in asked.places() {
+                    let [x, a] = asked.start(place);
+                    assert!((-1.0..3.0).contains(&x) && (2.0..4.0).contains(&a));
+                    let inside = ((x + 1.0) / 4.0).powi(2) + ((a - 2.0) / 2.0).powi(2) < 1.0;
+                    let ends = [Outcome::StickSlip, Outcome::Sliding];
+                    tally.count(place, ends[usize::from(inside)]);
+                }
+                let found = tally.share(&[Outcome::Sliding]);
+                beyond += u32::from((found.share - exact).abs() > STUDENT_95 * found.error);
+                errors.push(found.error);
+            }
+        }
+        // 5 % of 440 are 22, with a deviation of 4.6.
+        assert!((8..=40).contains(&beyond), "{beyond}");
+        let mean = |of: &[f64]| of.iter().sum::<f64>() / of.len() as f64;
+        let (few, many) = (mean(&errors[..40]), mean(&errors[400..]));
+        // By chance √(p(1 − p)/N): 0.051 and 0.0016.
+        assert!(few < 0.04 && many < 0.0003, "{few} {many}");
+    }
+
+    #[test]
+    fn the_error_is_one_start_at_least() {
+        let mut tally = Tally::default();
+        for place in of_box(64).places() {
+            tally.count(place, Outcome::Sliding);
+        }
+        let found = tally.share(&[Outcome::Sliding]);
+        assert_eq!((found.share, found.error), (1.0, 1.0 / 64.0));
+        assert!(Tally::default().share(&[Outcome::Sliding]).share.is_nan());
+    }
+
+    #[test]
+    fn undecided_starts_widen_the_interval() {
+        let (asked, mut tally) = (of_box(64), Tally::default());
+        for (i, place) in asked.places().enumerate() {
+            let outcome = [Outcome::Sliding, Outcome::Undecided, Outcome::StickSlip][i.min(2)];
+            tally.count(place, outcome);
+        }
+        let cell = asked.cell(&tally);
+        assert_eq!((cell.share, cell.upper), (1.0 / 64.0, 2.0 / 64.0));
+        assert!(cell.error >= tally.share(&[Outcome::Sliding, Outcome::Undecided]).error);
+    }
+}

@@ -1,0 +1,83 @@
+//! The fields that come from motions from many starts.
+
+use std::sync::atomic::{AtomicBool, Ordering};
+
+use super::basin::{Asked, Tally};
+use super::buffers::TileBuffers;
+use super::line::SlowLine;
+use crate::linear::status::NOT_CONVERGED;
+use crate::slip::case::CaseError;
+use crate::slip::motion::Motion;
+use crate::sweep::input::basin::Basin;
+use crate::sweep::input::setting::Setting;
+use crate::sweep::input::simulation::Simulation;
+use crate::sweep::input::source::{BasinCell, Source};
+use crate::sweep::input::spec::SweepSpec;
+
+/// Fills the columns of one thread's tiles.
+pub(super) struct BasinColumns<'p> {
+    basin: &'p Basin,
+    simulation: &'p Simulation,
+    /// The memory of all motions.
+    motion: Option<Motion>,
+}
+
+/// Of a cell that cannot be followed.
+const UNKNOWN: BasinCell = BasinCell {
+    share: 0.0,
+    error: 0.0,
+    upper: 1.0,
+};
+
+impl<'p> BasinColumns<'p> {
+    /// For the fields of a sweep; none where none of them is of many starts.
+    pub(super) fn new(spec: &'p SweepSpec) -> Option<Self> {
+        Some(Self {
+            basin: spec.basin.as_ref()?,
+            simulation: &spec.simulation,
+            motion: None,
+        })
+    }
+
+    /// Follows the starts of each cell of a line into `buffers`. The status gains [`NOT_CONVERGED`]
+    /// where some stay undecided.
+    pub(super) fn fill(&mut self, line: &SlowLine, buffers: &mut TileBuffers) {
+        line.each(|here| {
+            let Some(cell) = self.cell(here.setting, line.stop) else {
+                return;
+            };
+            // The sweep's values were checked: what is refused is beyond what can be followed.
+            let cell = cell.unwrap_or(UNKNOWN);
+            if cell.upper > cell.share {
+                buffers.status[here.place] |= NOT_CONVERGED;
+            }
+            buffers.put(here.place, |field| match field.source() {
+                Source::Basin(value) => Some(value(&cell)),
+                _ => None,
+            });
+        });
+    }
+
+    /// What is known of a cell; none after a stop.
+    fn cell(
+        &mut self,
+        setting: &Setting,
+        stop: &AtomicBool,
+    ) -> Option<Result<BasinCell, CaseError>> {
+        let asked = match Asked::of(setting, self.simulation, self.basin) {
+            Ok(asked) => asked?,
+            Err(error) => return Some(Err(error)),
+        };
+        if let Some(known) = asked.known() {
+            return Some(Ok(known));
+        }
+        let (mut tally, mut follower) = (Tally::default(), asked.follower());
+        for place in asked.places() {
+            if stop.load(Ordering::Relaxed) {
+                return None;
+            }
+            tally.count(place, follower.follow(place, &mut self.motion));
+        }
+        Some(Ok(asked.cell(&tally)))
+    }
+}

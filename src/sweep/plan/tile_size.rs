@@ -1,0 +1,131 @@
+//! How large tiles are, and where lines of delays may be cut.
+
+use crate::sweep::input::field::Field;
+use crate::sweep::input::search::Protocol;
+use crate::sweep::input::spec::SweepSpec;
+
+/// Cells in a tile, about: small enough for a processor's cache, large enough to compress and write
+/// well.
+const CELLS_PER_TILE: usize = 1 << 18;
+/// Cells in a tile where roots are followed from cell to cell: each cell costs thousands of times
+/// as much, and tiles of about the same time keep all threads busy to the end and a run quick to
+/// stop.
+const CELLS_PER_ROOT_TILE: usize = 1 << 14;
+/// Cells in a tile where motions are followed, which takes about a millisecond a cell.
+const CELLS_PER_MOTION_TILE: usize = 1 << 8;
+/// Motions in a tile where each cell has many, about a second's work.
+const MOTIONS_PER_TILE: usize = 1 << 11;
+/// Cells in a tile where critical velocities are looked for, which takes up to a second a cell.
+const CELLS_PER_CRITICAL_TILE: usize = 1 << 6;
+/// Delays in a tile at most, so that memory stays bounded on the longest line.
+const DELAYS_PER_TILE: usize = 1 << 17;
+/// Lines of delays are cut at multiples of this only: there tracking starts anew, and no value
+/// depends on the tiles.
+pub const BLOCK_OF_DELAYS: usize = crate::linear::track::BLOCK;
+/// Lines are cut at multiples of this where critical velocities start from their neighbours;
+/// divides the one of roots.
+const BLOCK_OF_VC: usize = crate::critical::along_delay::BLOCK;
+const _: () = assert!(BLOCK_OF_DELAYS.is_multiple_of(BLOCK_OF_VC));
+/// Cells in a tile, about: those of a tile take about the same time, whatever is computed.
+pub(super) fn cells_per_tile(spec: &SweepSpec) -> usize {
+    if spec.critical.is_some() {
+        CELLS_PER_CRITICAL_TILE
+    } else if let Some(basin) = &spec.basin {
+        (MOTIONS_PER_TILE / basin.starts as usize).max(1)
+    } else if spec.follows_motions() || proves_radii(spec) {
+        CELLS_PER_MOTION_TILE
+    } else if follows_roots(spec) || has_margins(spec) {
+        CELLS_PER_ROOT_TILE
+    } else {
+        CELLS_PER_TILE
+    }
+}
+
+/// Lines are cut at multiples of so many delays. What starts from the delay before goes on in its
+/// block only; motions, and stick-slip that control is switched on in, know nothing of it.
+pub(super) fn block(spec: &SweepSpec) -> usize {
+    let critical = spec.critical.map(|search| search.protocol);
+    match critical {
+        _ if follows_roots(spec) => BLOCK_OF_DELAYS,
+        Some(Protocol::Follow) => BLOCK_OF_VC,
+        Some(Protocol::SwitchOn(_)) => 1,
+        None if spec.follows_motions() || spec.basin.is_some() || has_margins(spec) => 1,
+        None => BLOCK_OF_DELAYS,
+    }
+}
+
+fn follows_roots(spec: &SweepSpec) -> bool {
+    spec.fields.iter().any(|f| f.roots_needed() > 0)
+}
+
+fn has_margins(spec: &SweepSpec) -> bool {
+    spec.fields.iter().any(|f| f.of_margins())
+}
+
+fn proves_radii(spec: &SweepSpec) -> bool {
+    spec.fields.contains(&Field::StabilityRadius)
+}
+
+/// Whole lines as far as they go, else whole blocks of so many delays; then as many neighbouring
+/// lines as fit into `cells`.
+pub(super) fn tile_shape(
+    shape: &[usize],
+    tau_axis: Option<usize>,
+    block: usize,
+    cells: usize,
+) -> Vec<usize> {
+    let mut tile = vec![1; shape.len()];
+    let mut room = cells;
+    if let Some(axis) = tau_axis {
+        let blocks = (cells.min(DELAYS_PER_TILE) / block).max(1);
+        let delays = part(shape[axis].div_ceil(block), blocks) * block;
+        tile[axis] = delays.min(shape[axis]);
+        room /= tile[axis];
+    }
+    for axis in (0..shape.len()).rev().filter(|&a| Some(a) != tau_axis) {
+        tile[axis] = part(shape[axis], room);
+        room /= tile[axis];
+    }
+    tile
+}
+
+/// The size of about equal parts of `length`, each at most `most` (or 1).
+fn part(length: usize, most: usize) -> usize {
+    length.div_ceil(length.div_ceil(most.max(1)))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    proptest! {
+        /// However long the axes and small the tiles, lines are cut between blocks only, and tiles
+        /// stay within their room.
+        #[test]
+        fn delays_are_cut_between_blocks(
+            delays in prop_oneof![1_usize..10_000, 1_usize..10_000_000],
+            lines in 1_usize..3000,
+            place in 0_usize..3,
+            cells in prop_oneof![1_usize..100_000, Just(CELLS_PER_TILE), Just(CELLS_PER_ROOT_TILE)],
+        ) {
+            let mut shape = vec![lines, 7];
+            shape.insert(place, delays);
+            let tile = tile_shape(&shape, Some(place), BLOCK_OF_DELAYS, cells);
+            prop_assert!(tile[place] == delays || tile[place].is_multiple_of(BLOCK_OF_DELAYS));
+            prop_assert!(tile.iter().zip(&shape).all(|(t, n)| (1..=*n).contains(t)));
+            let block = delays.min(BLOCK_OF_DELAYS);
+            prop_assert!(tile.iter().product::<usize>() <= cells.max(block));
+        }
+    }
+
+    #[test]
+    fn tiles_without_delays_hold_as_many_cells() {
+        let shape = |shape: &[usize], tau| tile_shape(shape, tau, BLOCK_OF_DELAYS, 1 << 14);
+        assert_eq!(shape(&[600, 700], None), [23, 700]);
+        assert_eq!(shape(&[5, 1001, 4097], Some(2)), [1, 3, 4097]);
+        assert_eq!(shape(&[1001, 20_000], Some(1)), [1, 12_288]);
+        assert_eq!(tile_shape(&[300, 1000], Some(1), 1, 256), [1, 250]);
+        assert_eq!(tile_shape(&[300, 100], Some(1), 1, 256), [2, 100]);
+    }
+}
