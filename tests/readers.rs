@@ -977,6 +977,18 @@ const ANSWERS: [(&str, &str); 16] = [
     ("best.none", "best --mu-prime=-2 --control velocity"),
     ("simulate.case", "simulate case.toml"),
     ("plan.sweep", "plan sweep.toml"),
+    (
+        "margins.law",
+        "margins --friction weakening --mu0 0.5 --v-s 0.5 --v0 0.35 --alpha-v -0.33 --tau 4.15",
+    ),
+    (
+        "margins.unstable",
+        "margins --mu-prime -0.3 --alpha-n -0.1 --tau 0.465",
+    ),
+    (
+        "best.robust",
+        "best --mu-prime -0.3 --control load --robust 0.05",
+    ),
     ("plan.case", "plan case.toml"),
     ("info.map", "info sweep.h5"),
     ("info.trace", "info case.h5"),

@@ -175,8 +175,8 @@ impl<'p> Worker<'p> {
         self.compute_until(tile, &AtomicBool::new(false));
     }
 
-    /// Computes the cells of `tile`, as [`Worker::compute`] does, but no further cell that takes long
-    /// is begun once `stop` is set. False if the tile is not complete.
+    /// Computes the cells of `tile`, as [`Worker::compute`] does, but no further cell that takes
+    /// long is begun once `stop` is set. False if the tile is not complete.
     pub fn compute_until(&mut self, tile: &Tile, stop: &AtomicBool) -> bool {
         let complete = self.fill_until(tile, stop);
         for column in &mut self.buffers.columns {
