@@ -4,7 +4,7 @@ use clap::ValueEnum;
 
 use super::failure::Failure;
 use super::json::AnswerSchema;
-use super::{best, info, plan, point, say, simulate, status, vc, verify};
+use super::{best, info, plan, point, reproduce, say, simulate, status, vc, verify};
 
 #[derive(Debug, clap::Args)]
 pub(super) struct Args {
@@ -20,6 +20,7 @@ enum Command {
     Info,
     Plan,
     Point,
+    Reproduce,
     Simulate,
     Status,
     Vc,
@@ -33,6 +34,7 @@ impl Command {
             Self::Info => info::described(),
             Self::Plan => plan::described(),
             Self::Point => point::described(),
+            Self::Reproduce => reproduce::described(),
             Self::Simulate => simulate::described(),
             Self::Status => status::described(),
             Self::Vc => vc::described(),
