@@ -172,7 +172,7 @@ impl LoadGains {
              slopes from −{from} to −{to} √(κM)/N0, and none at weaker ones."
         );
         let at = (
-            "paragraph below Fig. 3",
+            "paragraph of Eq. (8)",
             "In pure load control there is always a stable region.",
         );
         let how = "Crossings exist from the gain −(b²/2 + |b|) κ/μ_K on, b being the slope; all \
@@ -187,7 +187,7 @@ impl LoadGains {
              down to μ′ = {until:.9} it belongs to a positive gain, in lobes of their own."
         );
         let at = (
-            "paragraph below Fig. 3",
+            "paragraph of Eq. (8)",
             "Only the minimal value of |α_N| increases with increasing |μ′_K|",
         );
         let how = "The weakest negative gain −(b²/2 + |b|) and, down to the end of its first lobe, \
@@ -282,15 +282,18 @@ impl ShortDelays {
         }
     }
 
-    /// The least of those delays over its slope, |μ′|N0/κ.
-    fn least(&self) -> f64 {
-        let ratios = self.velocity.iter().map(|(b, tau, _)| tau / b.abs());
-        ratios.fold(f64::INFINITY, f64::min)
+    /// The least of those delays over its slope, |μ′|N0/κ, and its error.
+    fn least(&self) -> (f64, f64) {
+        let ratios = self.velocity.iter();
+        let ratios = ratios.map(|(b, tau, error)| (tau / b.abs(), error / b.abs()));
+        ratios.fold((f64::INFINITY, 0.0), |one, other| {
+            if other.0 < one.0 { other } else { one }
+        })
     }
 
     /// Every slope has a delay below which no gain stabilises, and not one that shrinks faster.
     fn velocity_verdict(&self) -> Verdict {
-        Verdict::of(!self.velocity.is_empty() && self.least() > 1.0)
+        Verdict::of(!self.velocity.is_empty() && self.least().0 > 1.0)
     }
 
     /// How far the gain is from the letter's at a delay, at most.
@@ -316,7 +319,7 @@ impl ShortDelays {
         let because = format!(
             "At every slope there is a shortest delay below which no gain makes sliding stable: {:.4} \
              |μ′_K|N0/κ or longer. From μ′_K = {} on no delay is stable at all.",
-            self.least(),
+            self.least().0,
             LobeControl::Velocity.lobe_end(0).b,
         );
         let at = (
@@ -330,7 +333,7 @@ impl ShortDelays {
             Value::of(format!("shortest at {b}"), meaning, *tau).within(*error)
         });
         let least = "shortest stable delay at any gain and slope, |μ′_K|N0/κ";
-        let least = Value::of("shortest", least, self.least());
+        let least = Value::of("shortest", least, self.least().0).within(self.least().1);
         let velocity = Claim::new("short_velocity", at, self.velocity_verdict(), because, how)
             .by(std::iter::once(least).chain(shortest))
             .from(&["fig2a"])

@@ -42,7 +42,7 @@ pub use workshop::{Figure, Workshop};
 /// The letter with what this program finds.
 #[derive(Debug, Clone, PartialEq, Serialize, ToSchema)]
 pub struct Reproduction {
-    /// Every claim, in the order of the letter.
+    /// Every claim, linear stability first.
     pub claims: Vec<Claim>,
     /// The maps and traces behind them.
     pub figures: Vec<Figure>,

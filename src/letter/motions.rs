@@ -124,7 +124,7 @@ fn stability(panels: &[Motion; 2]) -> Claim {
     let how = "The exact count, and the rightmost characteristic root with a certificate by the \
         argument principle that none lies farther right.";
     let at = (
-        "Fig. 3 and the paragraph below it",
+        "Fig. 3 and the paragraph below Eq. (8)",
         "We have confirmed our analytical results by numerical simulations",
     );
     let values = [("Fig. 3(a)", a), ("Fig. 3(b)", b)].map(|(name, panel)| {
@@ -202,7 +202,7 @@ impl NotDestroyed {
             self.stable,
         );
         let at = (
-            "paragraph below Fig. 3",
+            "paragraph below Eq. (8)",
             "stick-slip motion can not be destroyed by pure velocity control",
         );
         let how = "Motions from uncontrolled stick-slip, control switched on at three phases of it, \
@@ -253,7 +253,7 @@ impl Basins {
             self.load.told(),
         );
         let at = (
-            "paragraph below Fig. 3",
+            "paragraph below Eq. (8)",
             "the basin of attraction … can be quite large",
         );
         let how = "The outcome from every elongation and velocity of a grid, control acting from \

@@ -44,8 +44,6 @@ impl Reproduction {
                     main {
                         (self.contents())
                         @for claim in &self.claims { (self.claim(claim)) }
-                        h2 #figures { "Maps and motions" }
-                        @for figure in &self.figures { (self.figure(figure)) }
                     }
                 }
             }
@@ -89,7 +87,7 @@ impl Reproduction {
                     table {
                         thead {
                             tr {
-                                th { "value" } th { "found" } th { "the letter" }
+                                th { "value" } th { "found" } th {}
                                 th { "what it is" }
                             }
                         }
@@ -99,7 +97,7 @@ impl Reproduction {
                                     td { (value.name) }
                                     td.number { (value.shown()) }
                                     td.number {
-                                        @if let Some(letter) = value.letter { (letter) }
+                                        @if let Some(letter) = value.letter { "the letter: " (letter) }
                                     }
                                     td { (value.meaning) }
                                 }
@@ -118,8 +116,20 @@ impl Reproduction {
                         @for name in &claim.evidence { a href={ "#figure-" (name) } { (name) } " " }
                     }
                 }
+                @for figure in self.figures.iter().filter(|figure| self.home(figure) == claim.name) {
+                    (self.figure(figure))
+                }
             }
         }
+    }
+
+    /// The claim under which a figure stands: the one that rests on it most.
+    fn home(&self, figure: &Figure) -> &'static str {
+        let first = |claim: &&Claim| claim.evidence.first() == Some(&figure.name);
+        let any = |claim: &&Claim| claim.evidence.contains(&figure.name);
+        let home = self.claims.iter().find(first);
+        let home = home.or_else(|| self.claims.iter().find(any));
+        home.map_or("", |claim| claim.name)
     }
 
     fn figure(&self, figure: &Figure) -> Markup {

@@ -78,7 +78,7 @@ impl AtFig3 {
             self.vc[0], self.v0[0], self.vc[1], self.v0[1],
         );
         let at = (
-            "paragraph below Fig. 3",
+            "paragraph below Eq. (8)",
             "survives if the applied velocity v0 is below some critical value v_c",
         );
         let how = "Stick-slip under control is followed from low v0 on to the largest one at which \
@@ -131,7 +131,7 @@ impl RuleOfThumb {
             self.lowest, self.at.0, self.at.1, self.velocity, self.load,
         );
         let at = (
-            "paragraph below Fig. 3",
+            "paragraph below Eq. (8)",
             "the sticking time has to be of the same order or less than the slipping time",
         );
         let how = "v_smooth, above which sliding is stable and free of stick-slip, over gains and \
@@ -203,7 +203,7 @@ impl LessRobust {
             self.measures.len(),
         );
         let at = (
-            "paragraph below Fig. 3, and the last but one",
+            "paragraph below Eq. (8), and the last but one",
             "velocity control is less robust than load control",
         );
         let how = "Measures of one kind for both controls: slopes that can be stabilised, shares \
@@ -230,8 +230,11 @@ impl LessRobust {
     }
 }
 
-/// v_smooth of the cells of a map that are decided, else NaN; with the gain and delay of each.
-fn smooth(map: &MapFile) -> Result<Vec<(f64, (f64, f64))>, LetterError> {
+/// v_smooth of a cell, NaN where it is not decided, and its gain and delay.
+type Smooth = (f64, (f64, f64));
+
+/// The cells of a map.
+fn smooth(map: &MapFile) -> Result<Vec<Smooth>, LetterError> {
     let axes = map.axes();
     let of = axes.len();
     let (gains, delays) = (&axes[of - 2].values, &axes[of - 1].values);
@@ -248,12 +251,12 @@ fn smooth(map: &MapFile) -> Result<Vec<(f64, (f64, f64))>, LetterError> {
 }
 
 /// The share of cells that are smooth at a velocity.
-fn share(cells: &[(f64, (f64, f64))], v0: f64) -> f64 {
+fn share(cells: &[Smooth], v0: f64) -> f64 {
     cells.iter().filter(|(smooth, _)| *smooth <= v0).count() as f64 / cells.len() as f64
 }
 
 /// The lowest of them.
-fn lowest(cells: &[(f64, (f64, f64))]) -> (f64, (f64, f64)) {
+fn lowest(cells: &[Smooth]) -> Smooth {
     let none = (f64::INFINITY, (f64::NAN, f64::NAN));
     cells
         .iter()

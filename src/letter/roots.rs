@@ -9,6 +9,7 @@ use super::workshop::Workshop;
 use crate::linear::best::SearchedGain;
 use crate::linear::certificate::UnstableCount;
 use crate::linear::characteristic::{characteristic, unstable_root_bound};
+use crate::linear::newton::Root;
 use crate::linear::spectrum::RootFinder;
 use crate::linear::{Crossings, MarginalTolerance};
 use crate::model::Groups;
@@ -67,7 +68,7 @@ impl UnstableRoots {
             found.settings += 1;
             let count = crossings.n_unstable(tau);
             let roots = finder.right_of(groups, tau, 0.0).unwrap_or_default();
-            let listed: u64 = roots.iter().map(|root| root.count()).sum();
+            let listed: u64 = roots.iter().map(Root::count).sum();
             let counted = UnstableCount::new(groups).at(tau);
             found.agree += u32::from(listed == count && counted == Some(count));
             found.most = found.most.max(count);
@@ -174,7 +175,7 @@ impl Uncontrolled {
             self.weakening, self.strengthening,
         );
         let at = (
-            "introduction, fourth paragraph",
+            "introduction, third paragraph",
             "It is unstable for velocity-weakening friction laws",
         );
         let how = "The exact count at four slopes of either sign.";
@@ -207,7 +208,8 @@ impl Relaxation {
             (SearchedGain::Load, [-0.1, -0.2, -0.3, -0.5]),
         ] {
             for mu_prime in slopes {
-                shop.step(&format!("the fastest decay at a slope of {mu_prime}"))?;
+                let control = names(gain)[0].0;
+                shop.step(&format!("the fastest decay under {control} at {mu_prime}"))?;
                 let mut setting = Setting::new(None);
                 setting.set(Parameter::MuPrime, mu_prime);
                 let found = best_settings(&setting, gain, &default_ranges(&setting, gain)?)?;

@@ -344,7 +344,7 @@ impl Overdamped {
             self.motions.len(),
         );
         let at = (
-            "second paragraph below Fig. 3",
+            "paragraph of Eq. (9)",
             "possible to turn stick-slip motion into continuous sliding for arbitrary small values \
              of v0",
         );

@@ -142,7 +142,7 @@ impl<'a> Workshop<'a> {
 
     /// The map of a sweep, computed and drawn.
     pub(super) fn map(&mut self, source: &Source) -> Result<MapFile, LetterError> {
-        self.step(source.name)?;
+        self.step(&format!("the map {}", source.name))?;
         let text = source.text(self.quick);
         let path = self.written(source, &text)?;
         let spec: SweepSpec = text.parse().map_err(LetterError::spec(source.name))?;
@@ -160,7 +160,7 @@ impl<'a> Workshop<'a> {
 
     /// The motion of a case, computed and drawn.
     pub(super) fn motion(&mut self, source: &Source) -> Result<(CaseSpec, Trace), LetterError> {
-        self.step(source.name)?;
+        self.step(&format!("the motion {}", source.name))?;
         let text = source.text(self.quick);
         let path = self.written(source, &text)?;
         let spec: CaseSpec = text.parse().map_err(LetterError::spec(source.name))?;
@@ -200,8 +200,8 @@ impl<'a> Workshop<'a> {
     /// # Errors
     /// When a name is taken by another file.
     pub(super) fn look(&self, sources: &[&Source]) -> Result<(), LetterError> {
-        let places = sources.iter().map(|source| self.place(source));
-        places.map(|place| place.map(drop)).collect()
+        let mut places = sources.iter().map(|source| self.place(source));
+        places.try_for_each(|place| place.map(drop))
     }
 
     /// Writes the text of a source into the folder; the name of its map or trace.
@@ -266,11 +266,11 @@ fn replaceable(path: &Path, plan: &Plan) -> Result<(), LetterError> {
     }
 }
 
+/// The values of the axes before a plane.
+type Place = Vec<(Parameter, f64)>;
+
 /// The planes of a field over the last two axes of a map, with the values of the axes before them.
-pub(super) fn planes(
-    map: &MapFile,
-    field: Field,
-) -> Result<Vec<(Vec<(Parameter, f64)>, Plane)>, LetterError> {
+pub(super) fn planes(map: &MapFile, field: Field) -> Result<Vec<(Place, Plane)>, LetterError> {
     let axes = map.axes();
     let of = axes.len();
     let plane = (of.saturating_sub(2), of - 1);
