@@ -15,6 +15,7 @@
 //! - [`decay`]: curves of a given degree of stability in such a plane: where max Re λ = −σ
 //! - [`lobes`]: where the stable regions of pure control end
 //! - [`best`]: the settings of fastest decay, for every stable region
+//! - [`margins`]: how far a setting is from the boundary of stability, in every direction
 
 pub mod best;
 mod branches;
@@ -27,6 +28,7 @@ pub mod curves;
 pub mod decay;
 pub mod gains;
 pub mod lobes;
+pub mod margins;
 pub mod newton;
 pub mod rightmost;
 pub(crate) mod roots;

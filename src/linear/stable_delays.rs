@@ -58,6 +58,14 @@ impl Crossings {
         }
     }
 
+    /// The stable interval that holds the delay `tau` ≥ 0, if one does.
+    #[must_use]
+    pub fn stable_interval_at(&self, tau: f64) -> Option<StableInterval> {
+        let number = self.interval_below(tau)?;
+        let interval = self.stable_interval(number)?;
+        (interval.from <= tau && tau < interval.to).then_some(interval)
+    }
+
     /// Signed distance in τ to the nearest change of stability: positive where stable, negative
     /// where not, infinite where stability never changes, and 0 at every delay where all of them
     /// are marginal. Same time unit as the crossings.

@@ -15,6 +15,7 @@
 pub mod elementary;
 mod error;
 pub mod friction;
+mod friction_ranges;
 mod groups;
 pub mod known_cases;
 mod oscillator;

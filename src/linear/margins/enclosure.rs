@@ -1,0 +1,145 @@
+//! The characteristic function over boxes: all its values for frequencies, gains, delays, slopes
+//! and latencies within intervals.
+//!
+//! ```text
+//! D = λ² + bλ + 1 − k A (1 − e^(−λτ)) e^(−λδ),   A = a_n + a_v (b + λ),   λ = −σ + iω       (1)
+//! ```
+//!
+//! Both gains are k times as large as at the centre, δ is a latency of the feedback. A friction
+//! law makes b and a_n functions of the sliding velocity.
+
+use num_complex::Complex64;
+
+use super::affine::Affine;
+use crate::model::{Control, FrictionLaw, Groups, Oscillator, SlidingPoint};
+
+/// What (1) depends on.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Point<const V: usize> {
+    pub lambda: Affine<V>,
+    pub factor: Affine<V>,
+    pub tau: Affine<V>,
+    pub b: Affine<V>,
+    pub a_n: Affine<V>,
+    pub a_v: f64,
+    /// δ, where it is not 0.
+    pub latency: Option<Affine<V>>,
+    /// The variable on which b and a_n depend by a law that is not straight.
+    pub law: Option<usize>,
+}
+
+/// D over a box.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Enclosed<const V: usize> {
+    pub value: Affine<V>,
+    /// How much each variable does to it: the one to halve.
+    pub weights: [f64; V],
+}
+
+impl<const V: usize> Point<V> {
+    /// D, (1).
+    pub(super) fn enclosed(&self) -> Enclosed<V> {
+        let Self {
+            lambda, factor, b, ..
+        } = *self;
+        let one = Affine::constant(1.0.into());
+        let angle = lambda * self.tau;
+        let feedback = factor * (self.a_n + (b + lambda).scaled(self.a_v));
+        let mut control = feedback * (one - angle.scaled(-1.0).exponential());
+        let mut turns = angle;
+        if let Some(latency) = self.latency {
+            let late = lambda * latency;
+            control = control * late.scaled(-1.0).exponential();
+            turns = turns + late;
+        }
+        let value = lambda * (lambda + b) + one - control;
+        // A wide angle leaves no parts to judge by.
+        let strength = feedback.centre.l1_norm() + feedback.spread();
+        let mut weights = [0.0; V];
+        for (i, weight) in weights.iter_mut().enumerate() {
+            *weight = value.part[i].l1_norm() + strength * turns.part[i].l1_norm();
+        }
+        // Nor does a wide range of a law.
+        if let Some(variable) = self.law {
+            let by_b = lambda.centre.l1_norm() + lambda.spread() + 2.0 * self.a_v.abs();
+            weights[variable] += b.rest * by_b + 2.0 * self.a_n.rest;
+        }
+        Enclosed { value, weights }
+    }
+
+    /// λ = −σ + iω.
+    pub(super) fn on_line(decay: f64, omega: (f64, f64)) -> Affine<V> {
+        let lambda = Affine::between(omega, 0).turned();
+        lambda - Affine::constant(decay.into())
+    }
+}
+
+/// A bound on the size of any root with Re λ ≥ −σ, for groups up to these sizes: |1 − E| times the
+/// size of a latency's factor is at most `control`.
+pub(super) fn root_bound(b: f64, a_v: f64, a_n: f64, control: f64) -> f64 {
+    let linear = b.abs() + control * a_v.abs();
+    let constant = 1.0 + control * (b.abs() * a_v.abs() + a_n.abs());
+    0.5 * (linear + (linear * linear + 4.0 * constant).sqrt())
+}
+
+/// How b and a_n depend on the sliding velocity.
+#[derive(Debug, Clone, Copy)]
+pub struct SlidingLaw<'a> {
+    /// μ_K(v).
+    pub law: &'a FrictionLaw,
+    /// The block.
+    pub oscillator: &'a Oscillator,
+    /// Its gains.
+    pub control: Control,
+}
+
+impl SlidingLaw<'_> {
+    /// The groups at the sliding velocity `v0` > 0.
+    #[must_use]
+    pub fn groups(&self, v0: f64) -> Groups {
+        let sliding = SlidingPoint {
+            mu_k: self.law.mu_k(v0),
+            mu_prime: self.law.mu_prime(v0),
+        };
+        self.oscillator.groups(sliding, self.control)
+    }
+
+    /// b and a_n over velocities in `between`, the variable number `variable`.
+    pub(super) fn enclosed<const V: usize>(
+        &self,
+        between: (f64, f64),
+        variable: usize,
+    ) -> [Affine<V>; 2] {
+        let middle = 0.5 * (between.0 + between.1);
+        let half = 0.5 * (between.1 - between.0);
+        let at = self.groups(middle);
+        // The groups are linear in μ_K and μ_K′: these are their units.
+        let unit = |mu_k, mu_prime| {
+            let sliding = SlidingPoint { mu_k, mu_prime };
+            self.oscillator.groups(sliding, self.control)
+        };
+        let within = |unit: f64, (low, high): (f64, f64)| {
+            let mut number = Affine::constant((0.5 * unit * (low + high)).into());
+            number.rest = 0.5 * unit.abs() * (high - low) * (1.0 + 1e-12);
+            number
+        };
+        let along = |value: f64, unit: f64, (low, high): (f64, f64)| {
+            let mut number = Affine::constant(value.into());
+            let (steep, spread) = (0.5 * (low + high), 0.5 * (high - low));
+            number.part[variable] = Complex64::from(unit * steep * half);
+            let rounding = 64.0 * f64::EPSILON * (value.abs() + (unit * steep * half).abs());
+            // The slope over the box may lie anywhere between both.
+            number.rest = unit.abs() * spread * half * (1.0 + 1e-12) + rounding;
+            number
+        };
+        let slopes = self.law.slopes_between(between.0, between.1);
+        let bends = self.law.curvatures_between(between.0, between.1);
+        let slope = unit(0.0, 1.0).b;
+        let b = match bends.0.is_finite() {
+            true => along(at.b, slope, bends),
+            // The slope jumps: all that is known is its range.
+            false => within(slope, slopes),
+        };
+        [b, along(at.a_n, unit(1.0, 0.0).a_n, slopes)]
+    }
+}

@@ -1,0 +1,226 @@
+//! Where a root lies on the line λ = −σ + iω, as one real equation in ω for each way in which a
+//! setting can change.
+//!
+//! With S = 1 − E = 1 − e^(−λτ) and the loop L = −A S/B, in the symbols of
+//! [`characteristic`](crate::linear::characteristic),
+//!
+//! ```text
+//! gains k A:    k A S = B              Im[A S B*] = 0,    k = |B|²/Re[A S B*]               (1)
+//! slope b:      N + b M = 0            Im[N M*] = 0,      b = −Re[N M*]/|M|²                (2)
+//!               N = λ² + 1 − (a_n + a_v λ) S,  M = λ − a_v S
+//! loop e^(iφ) L:  |L| = 1              |A|²|S|² = |B|²,   φ = arg(−1/L)                     (3)
+//! ```
+//!
+//! On the imaginary axis S = 2i e^(−iωτ/2) sin(ωτ/2): (1) loses the factor sin(ωτ/2), at whose
+//! zeros no gain acts, and the letter's Eq. (4) gives k.
+//!
+//! ```text
+//! P_r cos(ωτ/2) + P_i sin(ωτ/2) = 0,   P = A B*,   k = |B|²/(2 P_r)                         (4)
+//! ```
+
+use num_complex::Complex64;
+
+use super::trig_polynomial::{Polynomial, TrigPolynomial};
+use crate::linear::characteristic::{Jet, root_bound};
+use crate::model::Groups;
+use crate::model::elementary::exp;
+
+/// D on the line Re λ = −σ.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Line {
+    pub groups: Groups,
+    /// τ ≥ 0.
+    pub tau: f64,
+    /// σ ≥ 0.
+    pub decay: f64,
+}
+
+/// A polynomial in ω with complex coefficients.
+#[derive(Debug, Clone, Copy)]
+struct Complex {
+    re: Polynomial,
+    im: Polynomial,
+}
+
+impl Complex {
+    fn of<const N: usize>(re: [f64; N], im: [f64; N]) -> Self {
+        Self {
+            re: Polynomial::of(re),
+            im: Polynomial::of(im),
+        }
+    }
+
+    /// For real ω.
+    fn conjugate(self) -> Self {
+        Self {
+            im: Polynomial::default().plus(self.im, -1.0),
+            ..self
+        }
+    }
+
+    fn times(self, other: Self) -> Self {
+        Self {
+            re: self.re.times(other.re).plus(self.im.times(other.im), -1.0),
+            im: self.re.times(other.im).plus(self.im.times(other.re), 1.0),
+        }
+    }
+}
+
+impl Line {
+    /// λ.
+    fn lambda(&self) -> Complex {
+        Complex::of([-self.decay, 0.0], [0.0, 1.0])
+    }
+
+    /// A.
+    fn feedback(&self) -> Complex {
+        let Groups { b, a_v, a_n } = self.groups;
+        Complex::of([a_n + a_v * (b - self.decay), 0.0], [0.0, a_v])
+    }
+
+    /// B.
+    fn open_loop(&self) -> Complex {
+        let (b, s) = (self.groups.b, self.decay);
+        Complex::of([1.0 + s * (s - b), 0.0, -1.0], [0.0, b - 2.0 * s, 0.0])
+    }
+
+    /// e^(στ), the size of E.
+    fn size_of_delayed(&self) -> f64 {
+        exp(self.decay * self.tau)
+    }
+
+    /// The left side of (1), or of (4) on the imaginary axis.
+    pub(super) fn gain(&self) -> TrigPolynomial {
+        let product = self.feedback().times(self.open_loop().conjugate());
+        if self.decay == 0.0 {
+            return TrigPolynomial {
+                free: Polynomial::default(),
+                cosine: product.re,
+                sine: product.im,
+                t: 0.5 * self.tau,
+            };
+        }
+        let q = self.size_of_delayed();
+        // S = 1 − q cos ωτ + i q sin ωτ.
+        TrigPolynomial {
+            free: product.im,
+            cosine: Polynomial::default().plus(product.im, -q),
+            sine: Polynomial::default().plus(product.re, q),
+            t: self.tau,
+        }
+    }
+
+    /// The factor k of the gains that a zero of [`Line::gain`] belongs to.
+    pub(super) fn gain_factor(&self, omega: f64) -> f64 {
+        let at = self.at(omega);
+        let product = at.feedback * at.open_loop.conj();
+        let size = at.open_loop.norm_sqr();
+        if self.decay == 0.0 {
+            return size / (2.0 * product.re);
+        }
+        size / (product * at.difference).re
+    }
+
+    /// The left side of (2).
+    pub(super) fn slope(&self) -> TrigPolynomial {
+        let Groups { a_v, a_n, .. } = self.groups;
+        let (s, q) = (self.decay, self.size_of_delayed());
+        let lambda = self.lambda();
+        let square = Complex::of([1.0 + s * s, 0.0, -1.0], [0.0, -2.0 * s, 0.0]);
+        let gains = Complex::of([a_n - a_v * s, 0.0], [0.0, a_v]);
+        // N M* = u λ* − a_v u S* − w λ* S + a_v w |S|².
+        let free = square.times(lambda.conjugate());
+        let mixed = gains.times(lambda.conjugate());
+        let [u, w] = [square, gains];
+        let scaled = |polynomial: Polynomial, by: f64| Polynomial::default().plus(polynomial, by);
+        // Im[z S] = z_i (1 − q cos) + z_r q sin, Im[z S*] = z_i (1 − q cos) − z_r q sin.
+        let even = scaled(u.im, -a_v).plus(mixed.im, -1.0);
+        let square_of_s = scaled(w.im, a_v);
+        TrigPolynomial {
+            free: free.im.plus(even, 1.0).plus(square_of_s, 1.0 + q * q),
+            cosine: scaled(even, -q).plus(square_of_s, -2.0 * q),
+            sine: scaled(u.re, a_v * q).plus(mixed.re, -q),
+            t: self.tau,
+        }
+    }
+
+    /// The slope b that a zero of [`Line::slope`] belongs to.
+    pub(super) fn slope_at(&self, omega: f64) -> f64 {
+        let Groups { a_v, a_n, .. } = self.groups;
+        let at = self.at(omega);
+        let lambda = at.lambda;
+        let n = lambda * lambda + 1.0 - (a_n + a_v * lambda) * at.difference;
+        let m = lambda - a_v * at.difference;
+        -(n * m.conj()).re / m.norm_sqr()
+    }
+
+    /// The left side minus the right side of (3).
+    pub(super) fn unit_loop(&self) -> TrigPolynomial {
+        let q = self.size_of_delayed();
+        let size = |z: Complex| z.re.times(z.re).plus(z.im.times(z.im), 1.0);
+        let feedback = size(self.feedback());
+        let open = size(self.open_loop());
+        let none = Polynomial::default();
+        TrigPolynomial {
+            free: none.plus(open, -1.0).plus(feedback, 1.0 + q * q),
+            cosine: none.plus(feedback, -2.0 * q),
+            sine: none,
+            t: self.tau,
+        }
+    }
+
+    /// −L.
+    pub(super) fn negative_loop(&self, omega: f64) -> Complex64 {
+        let at = self.at(omega);
+        at.feedback * at.difference / at.open_loop
+    }
+
+    /// No root of any slope b lies on the line beyond this ω.
+    ///
+    /// In (2) |uλ* + …| is ω³ and more, all the rest at most quadratic in ω.
+    pub(super) fn slope_bound(&self) -> f64 {
+        let f = self.slope();
+        let rest = |i: usize| {
+            let waves = f.cosine.0[i].abs() + f.sine.0[i].abs();
+            waves + if i < 3 { f.free.0[i].abs() } else { 0.0 }
+        };
+        // f = ∓ω³ + lower powers: Cauchy's bound on the zeros.
+        debug_assert_eq!((f.cosine.0[3], f.sine.0[3], f.free.0[4]), (0.0, 0.0, 0.0));
+        1.0 + (0..3).map(rest).fold(0.0, f64::max) / f.free.0[3].abs()
+    }
+
+    /// No root with gains of up to `factor` times as much lies on the line beyond this ω.
+    pub(super) fn gain_bound(&self, factor: f64) -> f64 {
+        let Groups { b, a_v, a_n } = self.groups;
+        let groups = Groups::new(b, factor * a_v, factor * a_n);
+        root_bound(groups, self.tau, -self.decay)
+    }
+
+    /// No zero of (3) lies beyond this ω.
+    pub(super) fn unit_loop_bound(&self) -> f64 {
+        // |B| = |A||S| ≤ |A|(1 + q) is what the bound on roots is made of.
+        self.gain_bound(1.0)
+    }
+
+    fn at(&self, omega: f64) -> Values {
+        let lambda = Complex64::new(-self.decay, omega);
+        let jet = Jet::at(self.groups, self.tau, lambda);
+        Values {
+            lambda,
+            difference: jet.difference,
+            feedback: jet.feedback,
+            open_loop: lambda * (lambda + self.groups.b) + 1.0,
+        }
+    }
+}
+
+/// What equations are made of at one λ.
+struct Values {
+    lambda: Complex64,
+    /// S.
+    difference: Complex64,
+    /// A.
+    feedback: Complex64,
+    /// B.
+    open_loop: Complex64,
+}

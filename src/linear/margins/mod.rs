@@ -1,0 +1,456 @@
+//! How far a stable setting is from the boundary of stability, in every direction.
+//!
+//! A setting is stable while all roots are left of the line Re λ = −σ; σ = 0 is stability itself,
+//! σ > 0 a decay rate that is required. Along one parameter the nearest change is the nearest
+//! value at which a root lies on the line:
+//!
+//! | parameter | equation |
+//! |---|---|
+//! | gain: both gains k times as large | zeros in ω of `equations` (1) |
+//! | delay τ | closed form of [`stable_delays`](super::stable_delays); for σ > 0 `nearest` |
+//! | slope b | zeros in ω of `equations` (2) |
+//! | sliding velocity, with a friction law | `nearest` |
+//! | phase of the loop L, latency δ of the feedback | zeros in ω of `equations` (3) |
+//!
+//! ```text
+//! phase margin   = min |arg(−L(iω))|,   latency margin = min arg(−L(iω))/ω, arg in (0, 2π],
+//!                  over all ω > 0 with |L(iω)| = 1                                          (1)
+//! ```
+//!
+//! and for σ > 0 the latency margin is the least δ with 1 + L(−σ + iω) e^(−(−σ + iω)δ) = 0. All
+//! zeros are found, none is stepped over. The exact count decides whether stability changes there:
+//! where a pair only touches the axis, the search goes on.
+//!
+//! What holds for several parameters at once tells the [`Radius`].
+
+mod affine;
+mod enclosure;
+mod equations;
+mod nearest;
+mod radius;
+mod trig_polynomial;
+
+use std::f64::consts::TAU;
+
+use self::affine::Affine;
+use self::enclosure::{Enclosed, Point, root_bound};
+use self::equations::Line;
+use self::nearest::{Family, Nearest, nearest};
+use self::radius::{Surroundings, Third, is_stable};
+use self::trig_polynomial::{Intervals, TooMany};
+use super::Crossings;
+use crate::model::Groups;
+use crate::model::elementary::{arg, exp};
+
+pub use self::enclosure::SlidingLaw;
+pub use self::radius::{Changes, Radius};
+
+/// Where stability is lost on both sides of a setting.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Limits {
+    /// The value below; that of the parameter's range where it is not lost.
+    pub lower: f64,
+    /// The value above; infinite where it is not lost.
+    pub upper: f64,
+}
+
+impl Limits {
+    const UNDECIDED: Self = Self {
+        lower: f64::NAN,
+        upper: f64::NAN,
+    };
+}
+
+/// Margins of the loop: (1) of the module.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct LoopMargins {
+    /// In radians; infinite where |L| is 1 nowhere.
+    pub phase: f64,
+    /// In units of √(M/κ); infinite where no latency matters.
+    pub latency: f64,
+}
+
+/// A setting whose margins are asked for, in dimensionless numbers.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Setting {
+    /// b, a_v and a_n.
+    pub groups: Groups,
+    /// τ ≥ 0, in units of √(M/κ).
+    pub tau: f64,
+    /// σ ≥ 0, the required decay rate, in their inverse.
+    pub decay: f64,
+}
+
+/// Searches for margins, with the room that they share.
+///
+/// All answers are for settings that are stable; NaN where a search was given up.
+#[derive(Debug, Default)]
+pub struct Margins {
+    intervals: Intervals,
+    changes: Vec<f64>,
+}
+
+/// One side of a setting.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Side {
+    Below,
+    Above,
+}
+
+/// Decay rates above this are not told from infinity.
+const LARGEST_EXPONENT: f64 = 300.0;
+/// How many times as large a sliding velocity is looked at.
+const MOST_VELOCITIES: f64 = 1024.0;
+/// How many times as large gains are looked at, where no bound on them is known.
+const MOST_GAINS: f64 = 1e12;
+
+impl Setting {
+    /// Whether all roots are left of the line, beyond doubt.
+    #[must_use]
+    pub fn stable(&self) -> bool {
+        is_stable(self.groups, self.tau, self.decay)
+    }
+
+    fn line(&self) -> Line {
+        let Self { groups, tau, decay } = *self;
+        Line { groups, tau, decay }
+    }
+
+    /// No control acts, whatever its gains and its phase are.
+    fn idle(&self) -> bool {
+        self.groups.uncontrolled() || self.tau == 0.0
+    }
+
+    fn with_gains(&self, factor: f64) -> Self {
+        let Groups { b, a_v, a_n } = self.groups;
+        let groups = Groups::new(b, factor * a_v, factor * a_n);
+        Self { groups, ..*self }
+    }
+
+    fn with_slope(&self, b: f64) -> Self {
+        let groups = Groups { b, ..self.groups };
+        Self { groups, ..*self }
+    }
+}
+
+impl Margins {
+    /// The gain margin: the factors of both gains at which stability is lost. 0 below where any
+    /// smaller gain is stable too.
+    pub fn gain(&mut self, setting: &Setting) -> Limits {
+        let free = Limits {
+            lower: 0.0,
+            upper: f64::INFINITY,
+        };
+        if setting.idle() {
+            return free;
+        }
+        self.gain_limits(setting).unwrap_or(Limits::UNDECIDED)
+    }
+
+    fn gain_limits(&mut self, setting: &Setting) -> Result<Limits, TooMany> {
+        let line = setting.line();
+        let highest = highest_with_gain(setting);
+        let f = line.gain();
+        // The greatest factor whose crossings are all among those found.
+        let mut most = if highest.is_finite() {
+            f64::INFINITY
+        } else {
+            2.0
+        };
+        let mut lower = None;
+        loop {
+            let end = line.gain_bound(most).min(highest);
+            self.changes.clear();
+            let changes = &mut self.changes;
+            let mut keep = |omega| {
+                let factor = line.gain_factor(omega);
+                if factor > 0.0 && factor <= most {
+                    changes.push(factor);
+                }
+            };
+            self.intervals.zeros(f, (0.0, end), &mut keep)?;
+            // A real root on the line; on the imaginary axis there is none.
+            if setting.decay > 0.0 {
+                keep(0.0);
+            }
+            let stable = |factor: f64| setting.with_gains(factor).stable();
+            let below = || nearest_change(&self.changes, 1.0, Side::Below, 0.0, stable);
+            let lower = *lower.get_or_insert_with(|| below().unwrap_or(0.0));
+            let above = nearest_change(&self.changes, 1.0, Side::Above, most, stable);
+            // No crossing has a frequency beyond `highest`.
+            let last = end >= highest || most >= MOST_GAINS;
+            if above.is_some() || last {
+                let upper = above.unwrap_or(f64::INFINITY);
+                return Ok(Limits { lower, upper });
+            }
+            most *= 4.0;
+        }
+    }
+
+    /// The slopes b at which stability is lost, μ_K fixed; −∞ below where it never is.
+    pub fn slope(&mut self, setting: &Setting) -> Limits {
+        let line = setting.line();
+        let f = line.slope();
+        self.changes.clear();
+        let changes = &mut self.changes;
+        let mut keep = |omega| {
+            let slope = line.slope_at(omega);
+            if slope.is_finite() {
+                changes.push(slope);
+            }
+        };
+        let end = line.slope_bound();
+        if self.intervals.zeros(f, (0.0, end), &mut keep).is_err() {
+            return Limits::UNDECIDED;
+        }
+        if setting.decay > 0.0 {
+            keep(0.0);
+        }
+        let stable = |b: f64| setting.with_slope(b).stable();
+        let from = setting.groups.b;
+        let nearest = |side, last| nearest_change(&self.changes, from, side, last, stable);
+        Limits {
+            lower: nearest(Side::Below, f64::NEG_INFINITY).unwrap_or(f64::NEG_INFINITY),
+            upper: nearest(Side::Above, f64::INFINITY).unwrap_or(f64::INFINITY),
+        }
+    }
+
+    /// The phase margin and the latency margin.
+    pub fn of_loop(&mut self, setting: &Setting) -> LoopMargins {
+        let line = setting.line();
+        let mut margins = LoopMargins {
+            phase: f64::INFINITY,
+            latency: f64::INFINITY,
+        };
+        if setting.idle() {
+            return margins;
+        }
+        let end = line.unit_loop_bound();
+        let searched = self.intervals.zeros(line.unit_loop(), (0.0, end), |omega| {
+            let angle = arg(line.negative_loop(omega));
+            margins.phase = margins.phase.min(angle.abs());
+            let ahead = if angle > 0.0 { angle } else { angle + TAU };
+            margins.latency = margins.latency.min(ahead / omega);
+        });
+        if setting.decay > 0.0 {
+            margins.latency = latency_with_decay(setting);
+        }
+        if searched.is_err() {
+            margins.phase = f64::NAN;
+            margins.latency = f64::NAN;
+        }
+        margins
+    }
+}
+
+/// The delays at which stability is lost, 0 below where none is.
+#[must_use]
+pub fn delay(setting: &Setting) -> Limits {
+    let Setting { groups, tau, decay } = *setting;
+    if decay == 0.0 {
+        let interval = Crossings::of(groups).stable_interval_at(tau);
+        return interval.map_or(Limits::UNDECIDED, |found| Limits {
+            lower: found.from,
+            upper: found.to,
+        });
+    }
+    if groups.uncontrolled() {
+        return Limits {
+            lower: 0.0,
+            upper: f64::INFINITY,
+        };
+    }
+    let family = Along::delay(setting);
+    let longest = (LARGEST_EXPONENT / decay).max(2.0 * tau);
+    Limits {
+        lower: found_or(nearest(&family, tau, 0.0), 0.0),
+        upper: outwards(&family, tau, tau.max(1.0), longest),
+    }
+}
+
+/// The sliding velocities at which stability is lost on the way from `v0`, physical; 0 below and ∞
+/// above where it is not, up to 1024 times `v0`.
+#[must_use]
+pub fn velocity(setting: &Setting, law: &SlidingLaw<'_>, v0: f64) -> Limits {
+    let family = Along {
+        setting: *setting,
+        what: Varied::Velocity(*law),
+    };
+    let change = |to: f64| {
+        let mut from = v0;
+        loop {
+            match nearest(&family, from, to) {
+                Nearest::At(v) => {
+                    // Where a pair only touches the line, the search goes on beyond.
+                    let beyond = v + 1e-6 * (to - v).clamp(-v, v);
+                    let groups = law.groups(beyond);
+                    if beyond == v || !is_stable(groups, setting.tau, setting.decay) {
+                        return Nearest::At(v);
+                    }
+                    from = beyond;
+                }
+                other => return other,
+            }
+        }
+    };
+    Limits {
+        lower: found_or(change(0.0), 0.0),
+        upper: found_or(change(v0 * MOST_VELOCITIES), f64::INFINITY),
+    }
+}
+
+/// The stability radius in gain, delay and slope.
+#[must_use]
+pub fn radius(setting: &Setting) -> Radius {
+    let around = Surroundings {
+        line: setting.line(),
+        third: Third::Slope,
+    };
+    around.radius()
+}
+
+/// The stability radius in gain, delay and sliding velocity; `setting` is the one at `v0`.
+#[must_use]
+pub fn radius_with_law(setting: &Setting, law: &SlidingLaw<'_>, v0: f64) -> Radius {
+    let around = Surroundings {
+        line: setting.line(),
+        third: Third::Velocity(v0, *law),
+    };
+    around.radius()
+}
+
+/// No crossing at any factor of the gains has a frequency beyond this: on the imaginary axis P_r =
+/// c − a_n x has to be positive, c = a_n + a_v b.
+fn highest_with_gain(setting: &Setting) -> f64 {
+    let Groups { b, a_v, a_n } = setting.groups;
+    let c = a_n + a_v * b;
+    match setting.decay {
+        0.0 if a_n > 0.0 => (c / a_n).max(0.0).sqrt(),
+        0.0 if a_n == 0.0 && c <= 0.0 => 0.0,
+        _ => f64::INFINITY,
+    }
+}
+
+/// The nearest of `changes` on one side of `from` beyond which a setting is not stable. All changes
+/// up to `last` are among them.
+fn nearest_change(
+    changes: &[f64],
+    from: f64,
+    side: Side,
+    last: f64,
+    stable: impl Fn(f64) -> bool,
+) -> Option<f64> {
+    let sign = if side == Side::Above { 1.0 } else { -1.0 };
+    let mut at = from;
+    loop {
+        let farther = |than: f64| {
+            let ahead = changes.iter().copied().filter(|c| sign * (c - than) > 0.0);
+            ahead.min_by(|a, b| (sign * a).total_cmp(&(sign * b)))
+        };
+        let next = farther(at)?;
+        let end = farther(next).unwrap_or(last);
+        let beyond = if end.is_finite() {
+            0.5 * (next + end)
+        } else {
+            next + sign * (1.0 + next.abs())
+        };
+        if !stable(beyond) {
+            return Some(next);
+        }
+        at = next;
+    }
+}
+
+fn found_or(nearest: Nearest, none: f64) -> f64 {
+    match nearest {
+        Nearest::At(value) => value,
+        Nearest::None => none,
+        Nearest::Undecided => f64::NAN,
+    }
+}
+
+/// The nearest value above `from`, looked for in steps that grow; infinite where there is none up
+/// to `last`.
+fn outwards(family: &Along<'_>, from: f64, step: f64, last: f64) -> f64 {
+    let (mut start, mut step) = (from, step);
+    while start < last {
+        let end = (start + step).min(last);
+        match nearest(family, start, end) {
+            Nearest::None => (start, step) = (end, 4.0 * step),
+            found => return found_or(found, f64::INFINITY),
+        }
+    }
+    f64::INFINITY
+}
+
+/// The latency margin where a decay rate is required.
+fn latency_with_decay(setting: &Setting) -> f64 {
+    let family = Along {
+        setting: *setting,
+        what: Varied::Latency,
+    };
+    outwards(&family, 0.0, 1.0, LARGEST_EXPONENT / setting.decay)
+}
+
+/// Settings that differ in one parameter.
+struct Along<'a> {
+    setting: Setting,
+    what: Varied<'a>,
+}
+
+enum Varied<'a> {
+    Delay,
+    Latency,
+    Velocity(SlidingLaw<'a>),
+}
+
+impl Along<'_> {
+    fn delay(setting: &Setting) -> Self {
+        Self {
+            setting: *setting,
+            what: Varied::Delay,
+        }
+    }
+}
+
+impl Family for Along<'_> {
+    fn enclosed(&self, omega: (f64, f64), parameter: (f64, f64)) -> Enclosed<2> {
+        let Setting { groups, tau, decay } = self.setting;
+        let constant = |value: f64| Affine::constant(value.into());
+        let mut point = Point {
+            lambda: Point::on_line(decay, omega),
+            factor: constant(1.0),
+            tau: constant(tau),
+            b: constant(groups.b),
+            a_n: constant(groups.a_n),
+            a_v: groups.a_v,
+            latency: None,
+            law: matches!(self.what, Varied::Velocity(_)).then_some(1),
+        };
+        match &self.what {
+            Varied::Delay => point.tau = Affine::between(parameter, 1),
+            Varied::Latency => point.latency = Some(Affine::between(parameter, 1)),
+            Varied::Velocity(law) => [point.b, point.a_n] = law.enclosed(parameter, 1),
+        }
+        point.enclosed()
+    }
+
+    fn bound(&self, parameter: (f64, f64)) -> f64 {
+        let Setting { groups, tau, decay } = self.setting;
+        let Groups { b, a_v, a_n } = groups;
+        let delayed = |tau: f64| 1.0 + exp(decay * tau);
+        let bound = match &self.what {
+            Varied::Delay => root_bound(b, a_v, a_n, delayed(parameter.1)),
+            Varied::Latency => {
+                let control = delayed(tau) * exp(decay * parameter.1);
+                root_bound(b, a_v, a_n, control)
+            }
+            Varied::Velocity(law) => {
+                let [b, a_n] = law.enclosed::<1>(parameter, 0);
+                let reach = |z: &Affine<1>| z.centre.l1_norm() + z.spread() + z.rest;
+                root_bound(reach(&b), a_v, reach(&a_n), delayed(tau))
+            }
+        };
+        bound * (1.0 + 1e-12)
+    }
+}
