@@ -3,12 +3,11 @@
 
 use super::LetterError;
 use super::claim::{Claim, Value, Verdict};
+use super::measures::{Measure, linear_measures};
 use super::workshop::{Source, Workshop, column, source};
 use crate::critical::{Options, Problem, critical_velocity};
-use crate::linear::Crossings;
-use crate::linear::lobes::LobeControl;
 use crate::linear::status::NOT_CONVERGED;
-use crate::model::{FrictionLaw, Groups};
+use crate::model::FrictionLaw;
 use crate::slip::cycle::after_release;
 use crate::slip::motion::Accuracy;
 use crate::slip::stop::Stop;
@@ -146,31 +145,14 @@ impl RuleOfThumb {
                 Value::of("at Fig. 3(b), load control", meaning, self.fig3[1]).within(1e-9),
                 Value::of("at v_c of Fig. 3(b)", meaning, self.load)
                     .within(10.0 * VC_ERROR * self.load),
-                Value::of("lowest", "lowest smooth velocity, √(N0²/(κM))", self.lowest)
-                    .within(VC_ERROR * self.lowest),
+                Value::of(
+                    "lowest",
+                    "lowest smooth velocity of the map, √(N0²/(κM))",
+                    self.lowest,
+                )
+                .within(VC_ERROR * self.lowest),
             ])
             .from(&["velocity_smooth"])
-    }
-}
-
-/// One measure of how robust a control is, of both controls.
-#[derive(Debug, Clone, PartialEq)]
-struct Measure {
-    name: String,
-    meaning: &'static str,
-    velocity: f64,
-    load: f64,
-    /// More of it is more robust.
-    more: bool,
-    error: f64,
-}
-
-impl Measure {
-    fn load_wins(&self) -> bool {
-        match self.more {
-            true => self.load > self.velocity,
-            false => self.load < self.velocity,
-        }
     }
 }
 
@@ -209,7 +191,8 @@ impl LessRobust {
         let how = "Measures of one kind for both controls: slopes that can be stabilised, shares \
             of two decades of the gain and of delays of 0.1 to 6.3 √(M/κ) that are stable, or \
             stable and free of stick-slip, the widest stable interval of delays, the lowest smooth \
-            velocity.";
+            velocity; margins of the settings of Fig. 3, and the largest ones of gains and delays \
+            at a slope.";
         let ahead = "measures by which load control is more robust";
         let ahead = Value::of("measures", ahead, self.ahead() as f64);
         let values = self.measures.iter().flat_map(|m| {
@@ -265,62 +248,6 @@ fn lowest(cells: &[Smooth]) -> Smooth {
             true => other,
             false => one,
         })
-}
-
-/// Gains of two decades, evenly in their logarithm; delays up to a period of free oscillation.
-const GAINS: u32 = 2000;
-const DELAYS: (f64, f64) = (0.1, 6.3);
-
-/// The share of the logarithms of gains and delays that is stable at a slope, and the widest
-/// stable interval of delays as their ratio.
-fn stable_share(groups: impl Fn(f64) -> Groups) -> (f64, f64) {
-    let all = (DELAYS.1 / DELAYS.0).ln();
-    let (mut stable, mut widest) = (0.0, 1.0_f64);
-    for i in 0..GAINS {
-        let gain = -0.1 * 100.0_f64.powf((f64::from(i) + 0.5) / f64::from(GAINS));
-        for interval in Crossings::of(groups(gain)).stable_delays() {
-            if interval.from > DELAYS.1 {
-                break;
-            }
-            let (from, to) = (interval.from.max(DELAYS.0), interval.to.min(DELAYS.1));
-            stable += (to / from).ln().max(0.0);
-            widest = widest.max(to / from);
-        }
-    }
-    (stable / all / f64::from(GAINS), widest)
-}
-
-/// Measures of linear stability.
-fn linear_measures() -> Vec<Measure> {
-    let mut measures = vec![Measure {
-        name: "steepest slope".into(),
-        meaning: "largest |μ′| that can be stabilised, √(κM)/N0; none: there is no limit",
-        velocity: -LobeControl::Velocity.lobe_end(0).b,
-        load: f64::INFINITY,
-        more: true,
-        error: 1e-12,
-    }];
-    for b in [-0.1, -0.3, -0.6] {
-        let velocity = stable_share(|gain| Groups::new(b, gain, 0.0));
-        let load = stable_share(|gain| Groups::new(b, 0.0, gain));
-        measures.push(Measure {
-            name: format!("stable share at {b}"),
-            meaning: "share of gains and delays, in their logarithms, that is stable",
-            velocity: velocity.0,
-            load: load.0,
-            more: true,
-            error: 2.0 / f64::from(GAINS),
-        });
-        measures.push(Measure {
-            name: format!("stable delays at {b}"),
-            meaning: "longest over shortest delay of the widest stable interval",
-            velocity: velocity.1,
-            load: load.1,
-            more: true,
-            error: 2.0 / f64::from(GAINS),
-        });
-    }
-    measures
 }
 
 /// Everything here.
