@@ -80,8 +80,8 @@ impl Motion {
 
     fn claim(&self, name: &'static str, place: &'static str) -> Claim {
         let because = format!(
-            "The block sticks {} times before the control begins to act, the last stick ends at t = \
-             {:.6}, and the motion is {} in the end. The load stays above {:.4}.",
+            "The block sticks {} times before the control begins to act, the last stick ends at t \
+             = {:.6}, and the motion is {} in the end. The load stays above {:.4}.",
             self.sticks_before,
             self.last_release,
             self.outcome.name(),
