@@ -457,7 +457,7 @@ mod tests {
             (Verdict::Confirmed, Verdict::Confirmed)
         );
         assert_eq!(
-            of(0.5, load(0)),
+            of(0.1, load(0)),
             (Verdict::Contradicted, Verdict::Contradicted)
         );
         let mut uneven = load(2);

@@ -88,8 +88,8 @@ impl Motion {
             self.n_min,
         );
         let quotation = "stick-slip oscillations disappear after the control is switched on";
-        let how = "The motion of Eqs. (1) and (2), event by event, by Taylor's method with an error \
-            of 1e-12 in a step, until the linear count and the decay of what is left decide.";
+        let how = "The motion of Eqs. (1) and (2), event by event, by Taylor's method with an \
+            error of 1e-12 in a step, until the linear count and the decay of what is left decide.";
         let values = [
             Value::of(
                 "last_release",
