@@ -317,8 +317,8 @@ impl ShortDelays {
 
     fn claims(&self) -> [Claim; 2] {
         let because = format!(
-            "At every slope there is a shortest delay below which no gain makes sliding stable: {:.4} \
-             |μ′_K|N0/κ or longer. From μ′_K = {} on no delay is stable at all.",
+            "At every slope there is a shortest delay below which no gain makes sliding stable: \
+             {:.4} |μ′_K|N0/κ or longer. From μ′_K = {} on no delay is stable at all.",
             self.least().0,
             LobeControl::Velocity.lobe_end(0).b,
         );

@@ -9,7 +9,7 @@
 //! - `stability`, `limits`: linear stability, the letter's Fig. 2; where controls end, short delays
 //! - `roots`: characteristic roots, their bounds and how fast they decay
 //! - `motions`: the motions of its Fig. 3, what becomes of stick-slip, basins
-//! - `robustness`, `measures`: critical velocities at finite delays; both controls beside one another
+//! - `robustness`, `measures`: critical velocities at finite delays; both controls compared
 //! - `short_delay`: Coulomb friction as the delay vanishes, its Fig. 4
 //!
 //! Each of these has structures of evidence, filled by a run. A claim is a pure function of one of

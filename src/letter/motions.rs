@@ -195,8 +195,8 @@ impl NotDestroyed {
     fn claim(&self) -> Claim {
         let slid = self.outcomes.number(Outcome::Sliding);
         let because = format!(
-            "Wherever velocity control is switched on at this velocity, {slid} of {} motions come to \
-             slide ({}); sliding is stable in {} of these cells.",
+            "Wherever velocity control is switched on at this velocity, {slid} of {} motions come \
+             to slide ({}); sliding is stable in {} of these cells.",
             self.outcomes.cells(),
             self.outcomes.told(),
             self.stable,
@@ -205,8 +205,8 @@ impl NotDestroyed {
             "paragraph below Eq. (8)",
             "stick-slip motion can not be destroyed by pure velocity control",
         );
-        let how = "Motions from uncontrolled stick-slip, control switched on at three phases of it, \
-            over gains and delays; undecided ones are irregular stick-slip, and large positive \
+        let how = "Motions from uncontrolled stick-slip, control switched on at three phases of \
+            it, over gains and delays; undecided ones are irregular stick-slip, and large positive \
             gains diverge.";
         let count = Value::of("sliding", "cells that come to slide", slid as f64);
         let stable = Value::of(
@@ -245,8 +245,8 @@ impl Basins {
 
     fn claim(&self) -> Claim {
         let because = format!(
-            "Of all starts in a window that holds the whole cycle of stick-slip, at Fig. 3(a) {:.1} % \
-             come to slide ({}), at Fig. 3(b) {:.1} % ({}).",
+            "Of all starts in a window that holds the whole cycle of stick-slip, at Fig. 3(a) \
+             {:.1} % come to slide ({}), at Fig. 3(b) {:.1} % ({}).",
             100.0 * Self::share(&self.velocity),
             self.velocity.told(),
             100.0 * Self::share(&self.load),

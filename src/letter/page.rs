@@ -87,7 +87,7 @@ impl Reproduction {
                     table {
                         thead {
                             tr {
-                                th { "value" } th { "found" } th {}
+                                th { "value" } th { "found" } th { "the letter" }
                                 th { "what it is" }
                             }
                         }
@@ -97,7 +97,9 @@ impl Reproduction {
                                     td { (value.name) }
                                     td.number { (value.shown()) }
                                     td.number {
-                                        @if let Some(letter) = value.letter { "the letter: " (letter) }
+                                        @if let Some(number) = value.letter {
+                                            "the letter: " (number)
+                                        }
                                     }
                                     td { (value.meaning) }
                                 }
@@ -116,8 +118,8 @@ impl Reproduction {
                         @for name in &claim.evidence { a href={ "#figure-" (name) } { (name) } " " }
                     }
                 }
-                @for figure in self.figures.iter().filter(|figure| self.home(figure) == claim.name) {
-                    (self.figure(figure))
+                @for figure in &self.figures {
+                    @if self.home(figure) == claim.name { (self.figure(figure)) }
                 }
             }
         }
@@ -135,7 +137,9 @@ impl Reproduction {
     fn figure(&self, figure: &Figure) -> Markup {
         html! {
             figure #{ "figure-" (figure.name) } {
-                div.picture role="group" tabindex="0" aria-label=(figure.title) { (PreEscaped(&figure.svg)) }
+                div.picture role="group" tabindex="0" aria-label=(figure.title) {
+                    (PreEscaped(&figure.svg))
+                }
                 figcaption {
                     b { (figure.name) } " " (figure.title) ". Behind "
                     @for claim in &self.claims {

@@ -239,8 +239,8 @@ impl LiftOff {
 
     fn claim(&self) -> Claim {
         let because = format!(
-            "On the curves of Fig. 4 lift-off lies at {:.4} v_c or above, at {} other γ and μ_K/μ_S \
-             at {:.4} v_c or above.",
+            "On the curves of Fig. 4 lift-off lies at {:.4} v_c or above, at {} other γ and \
+             μ_K/μ_S at {:.4} v_c or above.",
             self.on_curve, self.looked_at, self.anywhere,
         );
         let at = ("Fig. 4", "the lift-off curve is always above v_c");

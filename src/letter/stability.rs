@@ -112,8 +112,8 @@ impl Panel {
         let cells = self.regions.iter().map(|region| region.cells);
         let without = self.regions.iter().map(|region| region.uncontrolled);
         let because = format!(
-            "{what} makes sliding stable at all {} slopes of the friction law shown, in {} cells or \
-             more; without it there are {} unstable roots at each.",
+            "{what} makes sliding stable at all {} slopes of the friction law shown, in {} cells \
+             or more; without it there are {} unstable roots at each.",
             self.regions.len(),
             cells.min().unwrap_or(0),
             without.fold(f64::INFINITY, f64::min),
