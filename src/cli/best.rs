@@ -1,22 +1,24 @@
 //! `slipmap best`: the settings of fastest decay.
 
-use std::io::Write;
 use std::path::PathBuf;
 
 use clap::ValueEnum;
 use serde::Serialize;
-use slipmap::linear::best::{Optimum, SearchedGain};
-use slipmap::report::numbers::unit_behind;
+use slipmap::explore::margins::Margins;
+use slipmap::explore::vc::CriticalVelocity;
+use slipmap::linear::best::SearchedGain;
+use slipmap::slip::stop::Stop;
 use slipmap::sweep::cells::best::{
-    BestRegion, BestSettings, Ranges, best_settings, default_ranges,
+    BestSettings, Ranges, RobustSetting, best_settings, default_ranges, robust_setting,
 };
-use slipmap::sweep::input::units::Units;
-use slipmap::sweep::{Field, Parameter, Setting};
+use slipmap::sweep::input::search::Protocol;
+use slipmap::sweep::{Parameter, Setting};
 use utoipa::ToSchema;
 
+use super::best_answer::BestAnswer;
+use super::best_text;
 use super::failure::Failure;
 use super::json::{self, AnswerSchema, Inputs};
-use super::output::tell_dimensionless;
 use super::parameters::ParameterArgs;
 use super::say;
 use super::setting;
@@ -31,10 +33,10 @@ control from 4(1 + |b|) κ/μ_K below the weakest negative one that
 stabilises, -(|b| + b²/2) κ/μ_K, to 4(1 + |b|) κ/μ_K.")]
 pub(super) struct Args {
     #[command(flatten)]
-    parameters: ParameterArgs,
+    pub(super) parameters: ParameterArgs,
     /// The gain that is searched; the other one is given as usual
     #[arg(long, value_enum, default_value_t = Control::Velocity)]
-    control: Control,
+    pub(super) control: Control,
     /// Smallest gain to search
     #[arg(long, allow_hyphen_values = true, value_name = "A")]
     alpha_from: Option<f64>,
@@ -47,7 +49,11 @@ pub(super) struct Args {
     /// Longest delay to search
     #[arg(long, allow_hyphen_values = true, value_name = "T")]
     tau_to: Option<f64>,
-    /// Write the best setting to a file that point and vc take with --setting, and simulate as a
+    /// Also find the setting whose slowest decay is fastest when gain, delay and μ′ may all be off
+    /// by this part of them, such as 0.05
+    #[arg(long, value_name = "SPREAD", allow_hyphen_values = true, value_parser = parse_spread)]
+    pub(super) robust: Option<f64>,
+    /// Write the best setting, with --robust that one, to a file that point and vc take with --setting, and simulate as a
     /// case file
     #[arg(long, value_name = "SETTING.toml")]
     save: Option<PathBuf>,
@@ -59,15 +65,33 @@ pub(super) struct Args {
 /// Controls by name.
 #[derive(Debug, Clone, Copy, ValueEnum, Serialize, ToSchema)]
 #[serde(rename_all = "lowercase")]
-enum Control {
+pub(super) enum Control {
     /// α_v: the pulling velocity follows the delayed elongation
     Velocity,
     /// α_N: the normal load does
     Load,
 }
 
+fn parse_spread(text: &str) -> Result<f64, String> {
+    let spread = text.trim().parse().ok();
+    let spread = spread.filter(|s: &f64| (1e-6..=0.9).contains(s));
+    spread.ok_or_else(|| "expected a part, from 1e-6 to 0.9, such as 0.05 for 5 %".to_owned())
+}
+
+/// What was found, and what there is to know of the setting that is recommended.
+pub(super) struct Recommended {
+    pub(super) found: BestSettings,
+    /// None where it is not asked for, or where no setting stays stable.
+    pub(super) robust: Option<RobustSetting>,
+    /// The setting itself: the robust one, where there is one.
+    pub(super) setting: Setting,
+    pub(super) margins: Margins,
+    /// v_c, where there is a friction law.
+    pub(super) vc: Option<CriticalVelocity>,
+}
+
 impl Control {
-    fn parameter(self) -> Parameter {
+    pub(super) fn parameter(self) -> Parameter {
         match self {
             Self::Velocity => Parameter::AlphaV,
             Self::Load => Parameter::AlphaN,
@@ -78,71 +102,6 @@ impl Control {
         match self {
             Self::Velocity => SearchedGain::Velocity,
             Self::Load => SearchedGain::Load,
-        }
-    }
-}
-
-/// The JSON of a search. Infinite numbers are written as null.
-#[derive(Debug, Serialize, ToSchema)]
-struct BestAnswer {
-    mu_prime: f64,
-    mu_k: f64,
-    control: Control,
-    searched: RangesOut,
-    best: OptimumOut,
-    regions: Vec<RegionOut>,
-    regions_left_out: usize,
-}
-
-#[derive(Debug, Serialize, ToSchema)]
-struct RangesOut {
-    #[schema(value_type = [f64; 2])]
-    alpha: (f64, f64),
-    #[schema(value_type = [f64; 2])]
-    tau: (f64, f64),
-}
-
-#[derive(Debug, Serialize, ToSchema)]
-struct RegionOut {
-    region: RangesOut,
-    #[serde(flatten)]
-    best: OptimumOut,
-}
-
-#[derive(Debug, Serialize, ToSchema)]
-struct OptimumOut {
-    alpha: f64,
-    tau: f64,
-    abscissa: f64,
-    frequency: f64,
-    frequencies: Vec<f64>,
-    relaxation_time: Option<f64>,
-    kind: &'static str,
-    certified: bool,
-    margin: f64,
-}
-
-impl From<&Ranges> for RangesOut {
-    fn from(ranges: &Ranges) -> Self {
-        Self {
-            alpha: ranges.gain,
-            tau: ranges.tau,
-        }
-    }
-}
-
-impl From<&Optimum> for OptimumOut {
-    fn from(found: &Optimum) -> Self {
-        Self {
-            alpha: found.gain,
-            tau: found.tau,
-            abscissa: found.abscissa,
-            frequency: found.frequency(),
-            frequencies: found.frequencies.clone(),
-            relaxation_time: found.relaxation_time(),
-            kind: found.kind.name(),
-            certified: found.certified,
-            margin: found.margin,
         }
     }
 }
@@ -159,21 +118,18 @@ pub(super) fn main(args: &Args) -> Result<(), Failure> {
         .setting_but(&[args.control.parameter(), Parameter::Tau], help)?;
     setting.sliding_point()?;
     let ranges = ranges(args, &default_ranges(&setting, gain)?)?;
-    let found = best_settings(&setting, gain, &ranges)?;
+    let told = args.recommend(&setting, gain, &ranges)?;
     if args.json {
         let inputs = args.inputs(&setting, &ranges);
-        json::print(&inputs, &answer(args, &setting, &ranges, &found)?)?;
+        json::print(&inputs, &BestAnswer::of(args.control, &ranges, &told)?)?;
     } else {
         let mut out = std::io::stdout().lock();
-        print(&mut out, args, &setting, &ranges, &found)?;
+        best_text::print(&mut out, args, &ranges, &told)?;
     }
     let Some(path) = &args.save else {
         return Ok(());
     };
-    let mut best = setting;
-    best.set(args.control.parameter(), found.overall.gain);
-    best.set(Parameter::Tau, found.overall.tau);
-    setting::save(&best, &args.parameters.units(), path)?;
+    setting::save(&told.setting, &args.parameters.units(), path)?;
     match args.json {
         true => Ok(()),
         false => say::result(path.display()),
@@ -194,7 +150,42 @@ impl Args {
         let inputs = inputs.and("alpha_from", ranges.gain.0);
         let inputs = inputs.and("alpha_to", ranges.gain.1);
         let inputs = inputs.and("tau_from", ranges.tau.0);
-        inputs.and("tau_to", ranges.tau.1)
+        let inputs = inputs.and("tau_to", ranges.tau.1);
+        inputs.and("robust", self.robust)
+    }
+
+    fn recommend(
+        &self,
+        setting: &Setting,
+        gain: SearchedGain,
+        ranges: &Ranges,
+    ) -> Result<Recommended, Failure> {
+        let (found, robust) = match self.robust {
+            Some(spread) => robust_setting(setting, gain, ranges, spread)?,
+            None => (best_settings(setting, gain, ranges)?, None),
+        };
+        let (gain, tau) = match &robust {
+            Some(of) => (of.robust.gain, of.robust.tau),
+            None => (found.overall.gain, found.overall.tau),
+        };
+        let mut best = setting.clone();
+        best.set(self.control.parameter(), gain);
+        best.set(Parameter::Tau, tau);
+        let vc = match best.law() {
+            Some(_) => Some(CriticalVelocity::of(
+                &best,
+                Protocol::Follow,
+                &Stop::default(),
+            )?),
+            None => None,
+        };
+        Ok(Recommended {
+            found,
+            robust,
+            margins: Margins::at(&best, 0.0)?,
+            vc,
+            setting: best,
+        })
     }
 }
 
@@ -241,145 +232,4 @@ fn range(
         ),
         format!("{from_flag} must be at most {to_flag}"),
     ))
-}
-
-fn answer(
-    args: &Args,
-    setting: &Setting,
-    ranges: &Ranges,
-    found: &BestSettings,
-) -> Result<BestAnswer, Failure> {
-    let sliding = setting.sliding_point()?;
-    let region = |region: &BestRegion| RegionOut {
-        region: (&region.ranges).into(),
-        best: (&region.best).into(),
-    };
-    Ok(BestAnswer {
-        mu_prime: sliding.mu_prime,
-        mu_k: sliding.mu_k,
-        control: args.control,
-        searched: ranges.into(),
-        best: (&found.overall).into(),
-        regions: found.regions.iter().map(region).collect(),
-        regions_left_out: found.regions_left_out,
-    })
-}
-
-/// A number with as many digits as a person can use, the same on every machine.
-fn short(value: f64) -> String {
-    let rounded = format!("{value:.8e}").parse::<f64>();
-    rounded.unwrap_or(value).to_string()
-}
-
-fn print(
-    out: &mut impl Write,
-    args: &Args,
-    setting: &Setting,
-    ranges: &Ranges,
-    found: &BestSettings,
-) -> Result<(), Failure> {
-    let units = args.parameters.units();
-    let best = &found.overall;
-    let time = unit_behind(&units.time());
-    match best.relaxation_time() {
-        Some(relaxation) => writeln!(
-            out,
-            "sliding relaxes fastest, with the relaxation time {}{time}, at",
-            short(relaxation)
-        )?,
-        None => writeln!(
-            out,
-            "no stable setting in the ranges; the least unstable one is"
-        )?,
-    }
-    let (searched, other) = match args.control {
-        Control::Velocity => (Parameter::AlphaV, Parameter::AlphaN),
-        Control::Load => (Parameter::AlphaN, Parameter::AlphaV),
-    };
-    let sliding = setting.sliding_point()?;
-    let mut row = |name: &str, value: String| writeln!(out, "  {name:<16} {value}");
-    let of = |parameter: Parameter| unit_behind(&units.of_parameter(parameter));
-    let with = |parameter: Parameter, value: f64| format!("{}{}", short(value), of(parameter));
-    row(searched.name(), with(searched, best.gain))?;
-    row("tau", with(Parameter::Tau, best.tau))?;
-    for (field, value) in [
-        (Field::Abscissa, best.abscissa),
-        (Field::Frequency, best.frequency()),
-    ] {
-        let unit = unit_behind(&field.unit(&units));
-        row(field.name(), format!("{}{unit}", short(value)))?;
-    }
-    row("kind", best.kind.name().into())?;
-    row(
-        "certified",
-        if best.certified { "yes" } else { "no" }.into(),
-    )?;
-    row("mu_prime", with(Parameter::MuPrime, sliding.mu_prime))?;
-    row("mu_k", short(sliding.mu_k))?;
-    row(other.name(), with(other, setting.get(other)))?;
-    let range = |(from, to): (f64, f64), unit: &str| {
-        format!("{}{unit} to {}{unit}", short(from), short(to))
-    };
-    row(
-        "searched",
-        format!(
-            "{} {}, tau {}",
-            searched.name(),
-            range(ranges.gain, &of(searched)),
-            range(ranges.tau, &time)
-        ),
-    )?;
-    tell_dimensionless(out, &units)?;
-    print_regions(out, searched, found, &units)
-}
-
-/// One line for each stable region.
-fn print_regions(
-    out: &mut impl Write,
-    searched: Parameter,
-    found: &BestSettings,
-    units: &Units,
-) -> Result<(), Failure> {
-    if found.regions.is_empty() {
-        return Ok(());
-    }
-    writeln!(out, "the best setting of every stable region, by delay")?;
-    let mut line = |cells: [&str; 6]| {
-        let [gain, tau, time, frequency, certified, kind] = cells;
-        let text =
-            format!("  {gain:>14} {tau:>14} {time:>15} {frequency:>14} {certified:>9}  {kind}");
-        writeln!(out, "{}", text.trim_end())
-    };
-    line([
-        searched.name(),
-        "tau",
-        "relaxation_time",
-        "frequency",
-        "certified",
-        "kind",
-    ])?;
-    if !units.dimensionless() {
-        let gain = units.of_parameter(searched);
-        let (time, frequency) = (units.time(), units.angular_frequency());
-        line([&gain, &time, &time, &frequency, "", ""])?;
-    }
-    for BestRegion { best, .. } in &found.regions {
-        let time = best.relaxation_time().map_or("none".into(), short);
-        line([
-            &short(best.gain),
-            &short(best.tau),
-            &time,
-            &short(best.frequency()),
-            if best.certified { "yes" } else { "no" },
-            best.kind.name(),
-        ])?;
-    }
-    if found.regions_left_out > 0 {
-        let more = found.regions_left_out;
-        writeln!(
-            out,
-            "  and {more} regions at longer delays, which were not searched"
-        )?;
-    }
-    Ok(())
 }

@@ -2,6 +2,8 @@
 
 mod axis_facts;
 mod best;
+mod best_answer;
+mod best_text;
 mod case_facts;
 mod cell;
 mod colours;
@@ -10,6 +12,7 @@ mod failure;
 mod info;
 mod info_trace;
 mod json;
+mod margins;
 mod merge;
 mod motion_text;
 mod open;
@@ -20,6 +23,7 @@ mod plan;
 mod plan_case;
 mod plot;
 mod point;
+mod point_args;
 mod read_map;
 mod reproduce;
 mod run;
@@ -77,6 +81,8 @@ enum Command {
     Plan(plan::Args),
     /// Everything about one point of parameter space
     Point(point::Args),
+    /// How far one point is from the boundary of stability, in every direction
+    Margins(margins::Args),
     /// The gain and delay of fastest decay, for every stable region
     Best(best::Args),
     /// Show charts in a browser, computed while you look
@@ -136,6 +142,7 @@ pub(crate) fn main() -> ExitCode {
         Command::Verify(args) => verify::main(&args),
         Command::Plan(args) => plan::main(&args),
         Command::Point(args) => point::main(&args),
+        Command::Margins(args) => margins::main(&args),
         Command::Best(args) => best::main(&args),
         Command::Serve(args) => serve::main(&args),
         Command::ReadMap(args) => read_map::main(&args),

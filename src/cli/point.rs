@@ -7,17 +7,14 @@ use slipmap::explore::along_delay::AlongDelay;
 use slipmap::explore::point::{Point, Spectrum};
 use slipmap::report::numbers::unit_behind;
 use slipmap::report::picture::{self, Picture, PointPicture};
-use slipmap::sweep::input::point_file::PointOf;
 use slipmap::sweep::input::units::Units;
 use slipmap::sweep::{Field, Parameter, Setting, relaxation_time};
 
-use super::cell::{CellArgs, alone};
 use super::failure::Failure;
 use super::json::{self, AnswerSchema, Inputs};
 use super::output::{check_picture, tell_dimensionless};
-use super::parameters::ParameterArgs;
+use super::point_args::PointArgs;
 use super::say;
-use super::setting::SettingArgs;
 
 /// Roots in a picture, pairs counted once: enough to see how they lie.
 const ROOTS_DRAWN: u8 = 14;
@@ -29,11 +26,7 @@ const INTERVALS_SHOWN: usize = 12;
 #[command(after_help = "Example: slipmap point --mu-prime -0.7 --alpha-v -0.3174 --tau 4.313")]
 pub(super) struct Args {
     #[command(flatten)]
-    parameters: ParameterArgs,
-    #[command(flatten)]
-    cell: CellArgs,
-    #[command(flatten)]
-    file: SettingArgs,
+    point: PointArgs,
     /// How many characteristic roots to list, from the right; pairs count once
     #[arg(long, value_name = "K", default_value_t = 4, allow_hyphen_values = true,
           value_parser = parse_roots)]
@@ -106,9 +99,9 @@ pub(super) fn described() -> AnswerSchema {
 
 pub(super) fn main(args: &Args) -> Result<(), Failure> {
     if let Some(plot) = &args.plot {
-        check_picture("--plot", plot, args.cell.map.as_deref())?;
+        check_picture("--plot", plot, args.point.map())?;
     }
-    let (setting, units) = args.read()?;
+    let (setting, units) = args.point.read()?;
     let point = Point::at(&setting, args.roots)?;
     let spectrum = &point.spectrum;
     if let Some(why) = spectrum.fewer.as_ref().filter(|_| spectrum.incomplete) {
@@ -127,22 +120,6 @@ pub(super) fn main(args: &Args) -> Result<(), Failure> {
     match args.json {
         true => Ok(()),
         false => say::result(plot.display()),
-    }
-}
-
-impl Args {
-    /// The setting, from a map or from flags, and its units.
-    fn read(&self) -> Result<(Setting, Units), Failure> {
-        let given = self.parameters.any_given();
-        if let Some(point) = self.file.point(PointOf::Sliding)? {
-            alone("--setting", given)?;
-            return Ok((point.setting, point.units));
-        }
-        if let Some(point) = self.cell.point(PointOf::Sliding)? {
-            alone("--map", given)?;
-            return Ok((point.setting, point.units));
-        }
-        Ok((self.parameters.setting()?, self.parameters.units()))
     }
 }
 

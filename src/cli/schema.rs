@@ -4,7 +4,7 @@ use clap::ValueEnum;
 
 use super::failure::Failure;
 use super::json::AnswerSchema;
-use super::{best, info, plan, point, reproduce, say, simulate, status, vc, verify};
+use super::{best, info, margins, plan, point, reproduce, say, simulate, status, vc, verify};
 
 #[derive(Debug, clap::Args)]
 pub(super) struct Args {
@@ -18,6 +18,7 @@ pub(super) struct Args {
 enum Command {
     Best,
     Info,
+    Margins,
     Plan,
     Point,
     Reproduce,
@@ -32,6 +33,7 @@ impl Command {
         match self {
             Self::Best => best::described(),
             Self::Info => info::described(),
+            Self::Margins => margins::described(),
             Self::Plan => plan::described(),
             Self::Point => point::described(),
             Self::Reproduce => reproduce::described(),

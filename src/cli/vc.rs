@@ -124,6 +124,25 @@ fn not_known(found: &CriticalVelocity, units: &Units) -> Option<String> {
     (!found.decided).then(|| format!("not known{ends}"))
 }
 
+/// v_c in a line or two, with the velocity of lift-off.
+pub(super) fn print_short(
+    out: &mut impl Write,
+    found: &CriticalVelocity,
+    units: &Units,
+) -> Result<(), Failure> {
+    let unit = unit_behind(&Field::Vc.unit(units));
+    let vc = match (not_known(found, units), found.vc) {
+        (Some(text), _) => text,
+        (None, Some(vc)) => format!("{vc}{unit}"),
+        (None, None) => format!("none: {}", found.outcome),
+    };
+    writeln!(out, "  {:<16} {vc}", Field::Vc.name())?;
+    if let Some(v) = found.v_liftoff.filter(|_| found.decided) {
+        writeln!(out, "  {:<16} {v}{unit}", Field::VLiftoff.name())?;
+    }
+    Ok(())
+}
+
 fn print_found(
     json: Option<&Inputs>,
     found: &CriticalVelocity,

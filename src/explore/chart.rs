@@ -149,7 +149,11 @@ impl Limits {
         let spec = &plan.spec;
         let most = if spec.follows_motions() || spec.critical.is_some() {
             self.followed
-        } else if spec.fields.iter().any(|field| field.roots_needed() > 0) {
+        } else if spec
+            .fields
+            .iter()
+            .any(|field| field.roots_needed() > 0 || field.of_margins())
+        {
             self.rooted
         } else {
             self.counted

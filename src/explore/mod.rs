@@ -4,6 +4,7 @@
 //! - [`chart`]: cells and curves of a sweep, computed into memory within limits; [`chart_bytes`]:
 //!   the same as bytes, laid out as in [`encoded`]
 //! - [`point`]: linear stability at a point, with its roots; [`along_delay`]: over its delays
+//! - [`margins`]: how far a point is from the boundary of stability
 //! - [`vc`]: the critical velocity at a point
 //! - [`motion`]: one motion in time; [`motion_bytes`]: the same as bytes
 //! - [`law`]: a friction law as a curve
@@ -20,6 +21,7 @@ pub mod chart_bytes;
 pub mod encoded;
 pub mod known;
 pub mod law;
+pub mod margins;
 pub mod motion;
 pub mod motion_bytes;
 pub mod point;

@@ -3,6 +3,7 @@
 use serde::Serialize;
 
 use super::finite;
+use super::margins::Margins;
 use crate::linear::certificate::roots_right_of;
 use crate::linear::rightmost::Rightmost;
 use crate::linear::stable_delays::StableInterval;
@@ -50,6 +51,9 @@ pub struct Point {
     /// The rightmost roots.
     #[serde(flatten)]
     pub spectrum: Spectrum,
+    /// How far it is from the boundary of stability.
+    #[serde(flatten)]
+    pub margins: Margins,
 }
 
 /// A crossing frequency, with its delays `first_delay` + 2πk/ω.
@@ -171,6 +175,7 @@ impl Point {
                 })
                 .collect(),
             spectrum: Spectrum::at(setting, wanted)?,
+            margins: Margins::at(setting, 0.0)?,
         })
     }
 }

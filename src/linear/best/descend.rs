@@ -43,22 +43,23 @@ impl Frame {
 }
 
 /// Goes down from `start` by steps from `largest` to `smallest` times the frame's size; the place
-/// reached and the abscissa there.
+/// reached and the value there. `of` gives the value at a place; where that is above a bound, the
+/// second argument, anything above it does.
 pub(super) fn descend(
-    evaluator: &mut Evaluator,
+    mut of: impl FnMut(Place, f64) -> f64,
     search: &Search,
     start: Place,
     frame: &Frame,
     (largest, smallest): (f64, f64),
 ) -> (Place, f64) {
-    let mut best = (start, evaluator.abscissa(search, start));
+    let mut best = (start, of(start, f64::INFINITY));
     let (mut radius, mut turn) = (largest, 0.0);
     for _ in 0..MOST_TRIES {
         let found = (0..DIRECTIONS)
             .map(|i| turn + f64::from(i) * std::f64::consts::TAU / f64::from(DIRECTIONS))
             .find_map(|angle| {
                 let place = search.clamp(frame.around(best.0, radius, angle));
-                let value = evaluator.abscissa(search, place);
+                let value = of(place, best.1);
                 (value < best.1).then_some(((place, value), angle))
             });
         if let Some((better, angle)) = found {
@@ -76,7 +77,7 @@ pub(super) fn descend(
     }
     // Steps grow too small to arrive at an edge that is approached at a slant.
     let edge = search.nearest_edge(best.0, (frame.gain, frame.tau));
-    let there = evaluator.abscissa(search, edge);
+    let there = of(edge, best.1);
     if there <= best.1 { (edge, there) } else { best }
 }
 

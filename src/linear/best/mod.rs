@@ -20,8 +20,10 @@ mod condition;
 mod descend;
 mod polish;
 mod regions;
+mod robust;
 mod search;
 
+pub use robust::{Robust, robust, worst_around};
 pub use search::{Search, SearchedGain};
 
 use condition::along_double_roots;
@@ -208,7 +210,7 @@ fn region(evaluator: &mut Evaluator, search: &Search, stretches: &Stretches) -> 
     };
     let gains = hull(&|i| (stretches[i].gain, stretches[i].gain));
     let delays = hull(&|i| (stretches[i].from, stretches[i].to));
-    let starts = lattice(evaluator, search, stretches, gains);
+    let starts = lattice(stretches, gains, |place| evaluator.abscissa(search, place));
     Region {
         gains,
         delays,
@@ -216,13 +218,12 @@ fn region(evaluator: &mut Evaluator, search: &Search, stretches: &Stretches) -> 
     }
 }
 
-/// The abscissa on a lattice of the region: over its gains as [`chosen_gains`] has them, evenly
-/// over the stable delays of each.
+/// A value on a lattice of the region: over its gains as [`chosen_gains`] has them, evenly over the
+/// stable delays of each.
 fn lattice(
-    evaluator: &mut Evaluator,
-    search: &Search,
     stretches: &Stretches,
     gains: (f64, f64),
+    mut of: impl FnMut(Place) -> f64,
 ) -> Vec<Start> {
     let chosen = chosen_gains(stretches, gains);
     let middle = |gain: f64| {
@@ -248,7 +249,7 @@ fn lattice(
             };
             for j in 0..=LATTICE_PLACES {
                 let place = stretch.at(j as f64 / LATTICE_PLACES as f64);
-                starts.push((evaluator.abscissa(search, place), place, frame));
+                starts.push((of(place), place, frame));
             }
         }
     }
@@ -283,8 +284,8 @@ fn positive(length: f64, value: f64) -> f64 {
     }
 }
 
-/// The lowest place to which descents from the best of `starts` lead.
-fn lowest(evaluator: &mut Evaluator, search: &Search, mut starts: Vec<Start>) -> Optimum {
+/// The best of these starts that are not close to one another.
+fn far_apart(mut starts: Vec<Start>) -> Vec<Start> {
     starts.sort_by(|p, q| p.0.total_cmp(&q.0));
     let mut chosen: Vec<Start> = Vec::new();
     for start in starts {
@@ -299,8 +300,13 @@ fn lowest(evaluator: &mut Evaluator, search: &Search, mut starts: Vec<Start>) ->
             break;
         }
     }
+    chosen
+}
+
+/// The lowest place to which descents from the best of `starts` lead.
+fn lowest(evaluator: &mut Evaluator, search: &Search, starts: Vec<Start>) -> Optimum {
     let mut best: Option<Optimum> = None;
-    for (_, place, frame) in chosen {
+    for (_, place, frame) in far_apart(starts) {
         let found = optimum_near(evaluator, search, place, &frame);
         if best.as_ref().is_none_or(|b| found.abscissa < b.abscissa) {
             best = Some(found);
@@ -319,7 +325,8 @@ fn optimum_near(
 ) -> Optimum {
     let mut restarts = 0;
     loop {
-        let coarse = descend(evaluator, search, start, frame, (1.0, COARSE));
+        let of = |place, _| evaluator.abscissa(search, place);
+        let coarse = descend(of, search, start, frame, (1.0, COARSE));
         let found = polished(evaluator, search, coarse, frame).unwrap_or_else(|| {
             let along = follow_valley(evaluator, search, coarse.0, frame);
             let near = if along.1 < coarse.1 {
@@ -327,7 +334,8 @@ fn optimum_near(
             } else {
                 coarse.0
             };
-            let fine = descend(evaluator, search, near, frame, (10.0 * COARSE, FINE));
+            let of = |place, _| evaluator.abscissa(search, place);
+            let fine = descend(of, search, near, frame, (10.0 * COARSE, FINE));
             let edge = search.nearest_edge(fine.0, (frame.gain, frame.tau));
             polished(evaluator, search, fine, frame)
                 .or_else(|| polished(evaluator, search, (edge, fine.1), frame))

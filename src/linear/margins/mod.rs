@@ -306,7 +306,17 @@ pub fn radius(setting: &Setting) -> Radius {
         line: setting.line(),
         third: Third::Slope,
     };
-    around.radius()
+    around.radius(1.0)
+}
+
+/// The stability radius in gain, delay and slope, or `most` < 1 where it is larger.
+#[must_use]
+pub fn radius_up_to(setting: &Setting, most: f64) -> Radius {
+    let around = Surroundings {
+        line: setting.line(),
+        third: Third::Slope,
+    };
+    around.radius(most)
 }
 
 /// The stability radius in gain, delay and sliding velocity; `setting` is the one at `v0`.
@@ -316,7 +326,7 @@ pub fn radius_with_law(setting: &Setting, law: &SlidingLaw<'_>, v0: f64) -> Radi
         line: setting.line(),
         third: Third::Velocity(v0, *law),
     };
-    around.radius()
+    around.radius(1.0)
 }
 
 /// No crossing at any factor of the gains has a frequency beyond this: on the imaginary axis P_r =

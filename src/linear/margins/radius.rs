@@ -137,11 +137,11 @@ impl Surroundings<'_> {
         [self.line.groups.uncontrolled(), self.line.tau == 0.0, third]
     }
 
-    /// The stability radius of a setting that is stable.
-    pub(super) fn radius(&self) -> Radius {
+    /// The stability radius of a setting that is stable, at most `limit`.
+    pub(super) fn radius(&self, limit: f64) -> Radius {
         let fixed = self.fixed();
-        let mut unstable = self.nearest_along_directions(fixed);
-        let mut bound = unstable.map_or(1.0, largest);
+        let mut unstable = self.nearest_along_directions(fixed, limit);
+        let mut bound = unstable.map_or(limit, largest);
         let most = bound;
         let side = |fixed: bool| if fixed { (0.0, 0.0) } else { (-most, most) };
         let [gain, delay, third] = fixed.map(side);
@@ -156,7 +156,8 @@ impl Surroundings<'_> {
                 break;
             };
             proved = part.distance.min(bound);
-            if proved >= TIGHT * bound {
+            // Where nothing is known not to be stable, all of the box is proved.
+            if unstable.is_some() && proved >= TIGHT * bound {
                 break;
             }
             let Some(variable) = self.to_halve(&part) else {
@@ -300,8 +301,8 @@ impl Surroundings<'_> {
         root_bound(b, groups.a_v, a_n, control) * (1.0 + 1e-12)
     }
 
-    /// Of the settings in some directions, the nearest found that is not stable.
-    fn nearest_along_directions(&self, fixed: [bool; 3]) -> Option<Changes> {
+    /// Of the settings in some directions, the nearest found that is not stable, up to `limit`.
+    fn nearest_along_directions(&self, fixed: [bool; 3], limit: f64) -> Option<Changes> {
         let mut nearest: Option<Changes> = None;
         for number in 0..27 {
             let direction = [number / 9, number / 3 % 3, number % 3].map(|i| f64::from(i) - 1.0);
@@ -309,7 +310,7 @@ impl Surroundings<'_> {
             if moves_fixed || number == 13 {
                 continue;
             }
-            let most = nearest.map_or(1.0, largest);
+            let most = nearest.map_or(limit, largest);
             let along = |s: f64| direction.map(|d| s * d);
             let steps = (1..=STEPS).map(|i| most * f64::from(i) / f64::from(STEPS));
             if let Some(s) = steps.into_iter().find(|s| !self.stable(along(*s))) {

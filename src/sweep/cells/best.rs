@@ -2,7 +2,7 @@
 //! of a sweep.
 
 use super::boundaries::plane_spanned;
-use crate::linear::best::{self, Optimum, Search, SearchedGain};
+use crate::linear::best::{self, Best, Optimum, Region, Robust, Search, SearchedGain};
 use crate::linear::lobes::minimal_negative_load_gain;
 use crate::model::{Groups, ModelError};
 use crate::sweep::input::best_plane::searched_gain;
@@ -137,28 +137,84 @@ pub fn best_settings(
     ranges: &Ranges,
 ) -> Result<BestSettings, ModelError> {
     let scales = Scales::of(setting, gain)?;
-    let fixed = moderate_slope(setting)?;
-    let found = best::best(&Search {
-        fixed,
-        gain,
-        gains: scaled(ranges.gain, 1.0 / scales.gain),
-        delays: scaled(ranges.tau, 1.0 / scales.time),
+    let found = best::best(&scales.search(setting, gain, ranges)?);
+    Ok(scales.settings(&found, ranges))
+}
+
+/// A setting that is best where gain, delay and μ′ may be off together.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct RobustSetting {
+    /// How far they may be off, as a part of each.
+    pub spread: f64,
+    /// The setting, with its slowest decay; in the units of the parameters.
+    pub robust: Robust,
+    /// The slowest decay within the same spread around the setting of fastest decay, and whether
+    /// that is proved.
+    pub worst_of_best: (f64, bool),
+}
+
+/// The best settings within `ranges`, as [`best_settings`] has them, and the most robust one for
+/// changes of up to `spread`, 0 < `spread` < 1, of gain, delay and μ′; none where no setting stays
+/// stable.
+///
+/// # Errors
+/// When a parameter of `setting` is outside the model's range.
+pub fn robust_setting(
+    setting: &Setting,
+    gain: SearchedGain,
+    ranges: &Ranges,
+    spread: f64,
+) -> Result<(BestSettings, Option<RobustSetting>), ModelError> {
+    let scales = Scales::of(setting, gain)?;
+    let search = scales.search(setting, gain, ranges)?;
+    let found = best::best(&search);
+    let robust = best::robust(&search, &found, spread).map(|robust| {
+        let best = &found.overall;
+        let (worst, proved) = best::worst_around(&search, best.gain, best.tau, spread);
+        RobustSetting {
+            spread,
+            robust: Robust {
+                gain: robust.gain * scales.gain,
+                tau: robust.tau * scales.time,
+                abscissa: robust.abscissa / scales.time,
+                worst_abscissa: robust.worst_abscissa / scales.time,
+                ..robust
+            },
+            worst_of_best: (worst / scales.time, proved),
+        }
     });
-    Ok(BestSettings {
-        overall: scales.optimum(&found.overall, ranges),
-        regions: found
-            .regions
-            .into_iter()
-            .map(|region| BestRegion {
-                ranges: Ranges {
-                    gain: scaled(region.gains, scales.gain),
-                    tau: scaled(region.delays, scales.time),
-                },
-                best: scales.optimum(&region.best, ranges),
-            })
-            .collect(),
-        regions_left_out: found.regions_left_out,
-    })
+    Ok((scales.settings(&found, ranges), robust))
+}
+
+impl Scales {
+    fn search(
+        &self,
+        setting: &Setting,
+        gain: SearchedGain,
+        ranges: &Ranges,
+    ) -> Result<Search, ModelError> {
+        Ok(Search {
+            fixed: moderate_slope(setting)?,
+            gain,
+            gains: scaled(ranges.gain, 1.0 / self.gain),
+            delays: scaled(ranges.tau, 1.0 / self.time),
+        })
+    }
+
+    fn settings(&self, found: &Best, ranges: &Ranges) -> BestSettings {
+        let region = |region: &Region| BestRegion {
+            ranges: Ranges {
+                gain: scaled(region.gains, self.gain),
+                tau: scaled(region.delays, self.time),
+            },
+            best: self.optimum(&region.best, ranges),
+        };
+        BestSettings {
+            overall: self.optimum(&found.overall, ranges),
+            regions: found.regions.iter().map(region).collect(),
+            regions_left_out: found.regions_left_out,
+        }
+    }
 }
 
 /// Where the plane of number `number` whose best settings are looked for lies, as indices along

@@ -5,6 +5,8 @@ pub mod boundaries;
 pub mod buffers;
 mod limit_columns;
 mod line;
+mod margin_columns;
+pub mod margins;
 pub mod root_columns;
 pub mod samples;
 pub mod second_look;

@@ -6,6 +6,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use super::buffers::{Column, FEW_FILL, N_UNSTABLE_FILL, TileBuffers, one_zero_and_one_nan};
 use super::limit_columns;
 use super::line::{Numbers, Places, SlowLine};
+use super::margin_columns::MarginColumns;
 use super::root_columns::{Line, RootColumns};
 use super::slip_columns::SlipColumns;
 use super::vc_columns::VcColumns;
@@ -42,6 +43,8 @@ pub struct Worker<'p> {
     row: RowBuffers,
     /// Follows roots, where a field needs them.
     roots: Option<RootColumns>,
+    /// Looks for margins, where a field needs them.
+    margins: Option<MarginColumns>,
     /// Follows motions, where a field needs them.
     slip: Option<SlipColumns<'p>>,
     /// Looks for critical velocities, where a field needs them.
@@ -155,6 +158,7 @@ impl<'p> Worker<'p> {
                 delay_margin: vec![0.0; longest],
             },
             roots: RootColumns::new(&plan.spec.fields),
+            margins: MarginColumns::new(&plan.spec.fields),
             slip: SlipColumns::new(&plan.spec),
             vc: VcColumns::new(&plan.spec),
             map_strides: strides_of(plan.shape()),
@@ -167,8 +171,8 @@ impl<'p> Worker<'p> {
         self.compute_until(tile, &AtomicBool::new(false));
     }
 
-    /// Computes the cells of `tile`, as [`Worker::compute`] does, but no further motion is followed
-    /// once `stop` is set. False if the tile is not complete.
+    /// Computes the cells of `tile`, as [`Worker::compute`] does, but no further cell that takes long is
+    /// begun once `stop` is set. False if the tile is not complete.
     pub fn compute_until(&mut self, tile: &Tile, stop: &AtomicBool) -> bool {
         let complete = self.fill_until(tile, stop);
         for column in &mut self.buffers.columns {
@@ -211,8 +215,7 @@ impl<'p> Worker<'p> {
             };
             self.fill_slowly(&tile.offset, inside, at, groups, stop);
         });
-        let complete = self.slip.is_none() && self.vc.is_none();
-        complete || !stop.load(Ordering::Relaxed)
+        !self.is_slow() || !stop.load(Ordering::Relaxed)
     }
 
     /// Computes the cells of a line into the buffers from place `at` on.
@@ -313,8 +316,13 @@ impl<'p> Worker<'p> {
         }
     }
 
-    /// Computes the fields of motions and of the critical velocity, in a line whose status is
-    /// there; motions where there is a sliding state, with its groups.
+    /// Whether cells take so long that a stop is heeded between them.
+    fn is_slow(&self) -> bool {
+        self.margins.is_some() || self.slip.is_some() || self.vc.is_some()
+    }
+
+    /// Computes margins and the fields of motions and of the critical velocity, in a line whose
+    /// status is there; margins and motions where there is a sliding state, with its groups.
     fn fill_slowly(
         &mut self,
         offset: &[usize],
@@ -323,7 +331,7 @@ impl<'p> Worker<'p> {
         groups: Option<Groups>,
         stop: &AtomicBool,
     ) {
-        if self.slip.is_none() && self.vc.is_none() {
+        if !self.is_slow() {
             return;
         }
         let index = offset.iter().zip(inside).map(|(o, i)| o + i);
@@ -343,6 +351,9 @@ impl<'p> Worker<'p> {
             },
             stop,
         };
+        if let (Some(margins), Some(_)) = (&mut self.margins, groups) {
+            margins.fill(&line, &mut self.buffers);
+        }
         if let (Some(slip), Some(groups)) = (&mut self.slip, groups) {
             slip.fill(&line, groups, &mut self.buffers);
         }

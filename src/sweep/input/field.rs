@@ -5,7 +5,7 @@
 use super::catalogue::catalogue;
 use super::nearest::did_you_mean;
 use super::regime_at_v0::RegimeAtV0;
-use super::source::{OfRoots, Slope, Source};
+use super::source::{OfMargins, OfRoots, Slope, Source};
 use super::units::Units;
 use crate::critical::{CriticalVelocity, Method, Transition};
 use crate::slip::outcome::Outcome;
@@ -94,6 +94,7 @@ impl Spread {
 enum Measure {
     Powers([i32; 3]),
     AngularFrequency,
+    Angle,
 }
 
 const NUMBER: Measure = Measure::Powers([0, 0, 0]);
@@ -187,6 +188,14 @@ const fn slope(of: Slope) -> Row {
         measure: Measure::Powers([-force, -length, -1 - time]),
         source: Source::Roots(OfRoots::Derivative(of)),
         spread: Spread::BetterBelow,
+        ..ROW
+    }
+}
+
+/// A margin.
+const fn margin(of: OfMargins) -> Row {
+    Row {
+        source: Source::Margins(of),
         ..ROW
     }
 }
@@ -390,6 +399,58 @@ catalogue! {
             source: Source::Roots(OfRoots::CertificateMargin),
             comment: Some("in units of max(1/t, |abscissa|), t = sqrt(mass/stiffness)"),
             ..ROW
+        };
+        /// The factor of both gains, below 1, at which sliding is no longer stable.
+        GainMarginLower = Row {
+            name: "gain_margin_lower",
+            long_name: "factor of both gains, below 1, at which sliding is no longer stable",
+            short_name: "lower gain margin",
+            comment: Some("0 where every smaller gain is stable; no value where sliding is not"),
+            ..margin(OfMargins::GainLower)
+        };
+        /// The factor of both gains, above 1, at which sliding is no longer stable.
+        GainMarginUpper = Row {
+            name: "gain_margin_upper",
+            long_name: "factor of both gains, above 1, at which sliding is no longer stable",
+            short_name: "upper gain margin",
+            comment: Some(
+                "infinity where every larger gain is stable; no value where sliding is not",
+            ),
+            spread: Spread::LongTail,
+            ..margin(OfMargins::GainUpper)
+        };
+        /// The least angle by which the loop may turn.
+        PhaseMargin = Row {
+            name: "phase_margin",
+            long_name: "least angle of either sign by which the loop of the feedback may turn",
+            short_name: "phase margin",
+            measure: Measure::Angle,
+            comment: Some("infinity where the loop is nowhere as large as 1; 0 where unstable"),
+            stable: Some(|value| value > 0.0),
+            ..margin(OfMargins::Phase)
+        };
+        /// The largest further latency of the feedback.
+        LatencyMargin = Row {
+            name: "latency_margin",
+            long_name: "largest further latency of the feedback up to which sliding stays stable",
+            short_name: "latency margin",
+            measure: TIME,
+            comment: Some("infinity where no latency matters; 0 where unstable"),
+            spread: Spread::LongTail,
+            stable: Some(|value| value > 0.0),
+            ..margin(OfMargins::Latency)
+        };
+        /// The largest relative box of gain, delay and μ_K′ (or v0) in which sliding is stable.
+        StabilityRadius = Row {
+            name: "stability_radius",
+            long_name: "largest relative change of gain, delay and mu_prime (with a friction law: \
+                        v0) together up to which sliding is proved to be stable",
+            short_name: "stability radius",
+            comment: Some(
+                "within 1 % of the largest; not_converged in status where not; 0 where unstable",
+            ),
+            stable: Some(|value| value > 0.0),
+            ..margin(OfMargins::StabilityRadius)
         };
         /// From switch-on until ẋ stays within 1 % of v0; NaN where the motion does not come to
         /// slide.
@@ -719,6 +780,7 @@ impl Field {
         match self.row().measure {
             Measure::Powers(powers) => units.of(powers),
             Measure::AngularFrequency => units.angular_frequency(),
+            Measure::Angle => "rad".into(),
         }
     }
 
@@ -750,7 +812,16 @@ impl Field {
     /// True for fields of linear stability at v0 or at a given slope.
     #[must_use]
     pub const fn of_sliding(self) -> bool {
-        matches!(self.source(), Source::Line | Source::Roots(_))
+        matches!(
+            self.source(),
+            Source::Line | Source::Roots(_) | Source::Margins(_)
+        )
+    }
+
+    /// True for margins.
+    #[must_use]
+    pub const fn of_margins(self) -> bool {
+        matches!(self.source(), Source::Margins(_))
     }
 
     /// True for fields of the motion of the block, which need a friction law and depend on its
@@ -925,7 +996,8 @@ mod tests {
             "n_unstable, outcome, method, regime, windows, delay_margin, abscissa, abscissa_2 … \
              abscissa_8, frequency, frequency_2 … frequency_8, relaxation_time, \
              d_abscissa_d_tau, d_abscissa_d_alpha_v, d_abscissa_d_alpha_n, \
-             d_abscissa_d_mu_prime, certificate_margin, settle_time, last_release, n_min, \
+             d_abscissa_d_mu_prime, certificate_margin, gain_margin_lower, gain_margin_upper, \
+             phase_margin, latency_margin, stability_radius, settle_time, last_release, n_min, \
              peak_force, vc, vc_lower, vc_upper, v_liftoff, stick_time, slip_time, v_smooth, \
              vc_over_vtilde, omega0_T, liftoff_over_vtilde, vc_weak_control, vc_strong_control, \
              weak_control_error, strong_control_error"

@@ -14,6 +14,8 @@ pub enum Source {
     Line,
     /// The characteristic roots of a cell.
     Roots(OfRoots),
+    /// How far a cell is from the boundary of stability.
+    Margins(OfMargins),
     /// The motion of the block, which needs a friction law and depends on its start.
     Motion(fn(&Summary) -> f64),
     /// The critical velocity, which needs a friction law.
@@ -38,6 +40,21 @@ pub enum OfRoots {
     Derivative(Slope),
     /// How far right of the spectral abscissa no root is certified to lie.
     CertificateMargin,
+}
+
+/// A margin of a cell, see [`margins`](crate::linear::margins).
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum OfMargins {
+    /// The factor of both gains below 1 at which stability is lost.
+    GainLower,
+    /// The one above 1.
+    GainUpper,
+    /// The least angle of the loop.
+    Phase,
+    /// The largest further latency of the feedback.
+    Latency,
+    /// The largest relative box of parameters.
+    StabilityRadius,
 }
 
 impl OfRoots {

@@ -14,6 +14,7 @@ use crate::critical::switch_on::Phase;
 use crate::model::table::TableColumn;
 use crate::sweep::input::axis::{Axis, plane_of_curves};
 use crate::sweep::input::best_plane::gain_plane;
+use crate::sweep::input::field::Field;
 use crate::sweep::input::law_kind::LawKind;
 use crate::sweep::input::parameter::Parameter;
 use crate::sweep::input::search::Protocol;
@@ -72,9 +73,9 @@ impl Plan {
     pub fn new(spec: SweepSpec) -> Result<Self, SpecError> {
         let cells = if spec.critical.is_some() {
             CELLS_PER_CRITICAL_TILE
-        } else if spec.follows_motions() {
+        } else if spec.follows_motions() || proves_radii(&spec) {
             CELLS_PER_MOTION_TILE
-        } else if follows_roots(&spec) {
+        } else if follows_roots(&spec) || has_margins(&spec) {
             CELLS_PER_ROOT_TILE
         } else {
             CELLS_PER_TILE
@@ -343,13 +344,21 @@ fn block(spec: &SweepSpec) -> usize {
         _ if follows_roots(spec) => BLOCK_OF_DELAYS,
         Some(Protocol::Follow) => BLOCK_OF_VC,
         Some(Protocol::SwitchOn(_)) => 1,
-        None if spec.follows_motions() => 1,
+        None if spec.follows_motions() || has_margins(spec) => 1,
         None => BLOCK_OF_DELAYS,
     }
 }
 
 fn follows_roots(spec: &SweepSpec) -> bool {
     spec.fields.iter().any(|f| f.roots_needed() > 0)
+}
+
+fn has_margins(spec: &SweepSpec) -> bool {
+    spec.fields.iter().any(|f| f.of_margins())
+}
+
+fn proves_radii(spec: &SweepSpec) -> bool {
+    spec.fields.contains(&Field::StabilityRadius)
 }
 
 /// Whole lines as far as they go, else whole blocks of so many delays; then as many neighbouring

@@ -1,0 +1,207 @@
+//! What `slipmap best` prints for people.
+
+use std::io::Write;
+
+use slipmap::report::numbers::unit_behind;
+use slipmap::sweep::cells::best::{BestRegion, BestSettings, Ranges};
+use slipmap::sweep::input::units::Units;
+use slipmap::sweep::{Field, Parameter};
+
+use super::best::{Args, Control, Recommended};
+use super::failure::Failure;
+use super::output::tell_dimensionless;
+use super::{margins, vc};
+
+/// A number with as many digits as a person can use, the same on every machine.
+fn short(value: f64) -> String {
+    let rounded = format!("{value:.8e}").parse::<f64>();
+    rounded.unwrap_or(value).to_string()
+}
+
+pub(super) fn print(
+    out: &mut impl Write,
+    args: &Args,
+    ranges: &Ranges,
+    told: &Recommended,
+) -> Result<(), Failure> {
+    let units = args.parameters.units();
+    let (setting, found) = (&told.setting, &told.found);
+    if let Some(spread) = args.robust {
+        print_robust(out, args, spread, told)?;
+    }
+    let best = &found.overall;
+    let time = unit_behind(&units.time());
+    match best.relaxation_time() {
+        Some(relaxation) => writeln!(
+            out,
+            "sliding relaxes fastest, with the relaxation time {}{time}, at",
+            short(relaxation)
+        )?,
+        None => writeln!(
+            out,
+            "no stable setting in the ranges; the least unstable one is"
+        )?,
+    }
+    let (searched, other) = match args.control {
+        Control::Velocity => (Parameter::AlphaV, Parameter::AlphaN),
+        Control::Load => (Parameter::AlphaN, Parameter::AlphaV),
+    };
+    let sliding = setting.sliding_point()?;
+    let mut row = |name: &str, value: String| writeln!(out, "  {name:<16} {value}");
+    let of = |parameter: Parameter| unit_behind(&units.of_parameter(parameter));
+    let with = |parameter: Parameter, value: f64| format!("{}{}", short(value), of(parameter));
+    row(searched.name(), with(searched, best.gain))?;
+    row("tau", with(Parameter::Tau, best.tau))?;
+    for (field, value) in [
+        (Field::Abscissa, best.abscissa),
+        (Field::Frequency, best.frequency()),
+    ] {
+        let unit = unit_behind(&field.unit(&units));
+        row(field.name(), format!("{}{unit}", short(value)))?;
+    }
+    row("kind", best.kind.name().into())?;
+    row(
+        "certified",
+        if best.certified { "yes" } else { "no" }.into(),
+    )?;
+    row("mu_prime", with(Parameter::MuPrime, sliding.mu_prime))?;
+    row("mu_k", short(sliding.mu_k))?;
+    row(other.name(), with(other, setting.get(other)))?;
+    let range = |(from, to): (f64, f64), unit: &str| {
+        format!("{}{unit} to {}{unit}", short(from), short(to))
+    };
+    row(
+        "searched",
+        format!(
+            "{} {}, tau {}",
+            searched.name(),
+            range(ranges.gain, &of(searched)),
+            range(ranges.tau, &time)
+        ),
+    )?;
+    tell_dimensionless(out, &units)?;
+    print_regions(out, searched, found, &units)?;
+    print_recommended(out, args, told)
+}
+
+/// The robust setting, beside what the best one is worth within the same spread.
+fn print_robust(
+    out: &mut impl Write,
+    args: &Args,
+    spread: f64,
+    told: &Recommended,
+) -> Result<(), Failure> {
+    let percent = 100.0 * spread;
+    let Some(of) = &told.robust else {
+        let none = "no setting stays stable when gain, delay and mu_prime may each be off by";
+        return Ok(writeln!(out, "{none} {percent} %")?);
+    };
+    let units = args.parameters.units();
+    let unit = |parameter: Parameter| unit_behind(&units.of_parameter(parameter));
+    let rate = unit_behind(&units.rate());
+    let searched = args.control.parameter();
+    let lost = |worst: f64, abscissa: f64| match worst < 0.0 {
+        true => format!("{:.1} % slower", 100.0 * (1.0 - worst / abscissa)),
+        false => "unstable".into(),
+    };
+    writeln!(
+        out,
+        "when gain, delay and mu_prime may each be off by {percent} %, sliding relaxes fastest at"
+    )?;
+    let mut row = |name: &str, value: String| writeln!(out, "  {name:<16} {value}");
+    let found = &of.robust;
+    row(
+        searched.name(),
+        format!("{}{}", short(found.gain), unit(searched)),
+    )?;
+    row(
+        "tau",
+        format!("{}{}", short(found.tau), unit(Parameter::Tau)),
+    )?;
+    row("abscissa", format!("{}{rate}", short(found.abscissa)))?;
+    let worst = format!(
+        "{}{rate} within the spread, {}",
+        short(found.worst_abscissa),
+        lost(found.worst_abscissa, found.abscissa)
+    );
+    row("worst_abscissa", worst)?;
+    row(
+        "certified",
+        if found.certified { "yes" } else { "no" }.into(),
+    )?;
+    let (worst, _) = of.worst_of_best;
+    let of_best = format!(
+        "{}{rate} within the spread, {}",
+        short(worst),
+        lost(worst, told.found.overall.abscissa)
+    );
+    row("best setting", of_best)?;
+    Ok(())
+}
+
+/// Margins of the setting that is recommended, and v_c where there is a friction law.
+fn print_recommended(out: &mut impl Write, args: &Args, told: &Recommended) -> Result<(), Failure> {
+    let units = args.parameters.units();
+    let which = if told.robust.is_some() {
+        "robust"
+    } else {
+        "best"
+    };
+    writeln!(out, "at the {which} setting")?;
+    margins::print(out, &told.margins, &told.setting, &units)?;
+    match &told.vc {
+        Some(found) => vc::print_short(out, found, &units),
+        None => Ok(()),
+    }
+}
+
+/// One line for each stable region.
+fn print_regions(
+    out: &mut impl Write,
+    searched: Parameter,
+    found: &BestSettings,
+    units: &Units,
+) -> Result<(), Failure> {
+    if found.regions.is_empty() {
+        return Ok(());
+    }
+    writeln!(out, "the best setting of every stable region, by delay")?;
+    let mut line = |cells: [&str; 6]| {
+        let [gain, tau, time, frequency, certified, kind] = cells;
+        let text =
+            format!("  {gain:>14} {tau:>14} {time:>15} {frequency:>14} {certified:>9}  {kind}");
+        writeln!(out, "{}", text.trim_end())
+    };
+    line([
+        searched.name(),
+        "tau",
+        "relaxation_time",
+        "frequency",
+        "certified",
+        "kind",
+    ])?;
+    if !units.dimensionless() {
+        let gain = units.of_parameter(searched);
+        let (time, frequency) = (units.time(), units.angular_frequency());
+        line([&gain, &time, &time, &frequency, "", ""])?;
+    }
+    for BestRegion { best, .. } in &found.regions {
+        let time = best.relaxation_time().map_or("none".into(), short);
+        line([
+            &short(best.gain),
+            &short(best.tau),
+            &time,
+            &short(best.frequency()),
+            if best.certified { "yes" } else { "no" },
+            best.kind.name(),
+        ])?;
+    }
+    if found.regions_left_out > 0 {
+        let more = found.regions_left_out;
+        writeln!(
+            out,
+            "  and {more} regions at longer delays, which were not searched"
+        )?;
+    }
+    Ok(())
+}

@@ -1,0 +1,160 @@
+//! `slipmap margins`: how far a setting is from the boundary of stability.
+
+use std::io::Write;
+
+use slipmap::explore::margins::{Margin, Margins, StabilityBox};
+use slipmap::report::numbers::unit_behind;
+use slipmap::sweep::input::units::Units;
+use slipmap::sweep::{Parameter, Setting};
+
+use super::failure::Failure;
+use super::json::{self, AnswerSchema, Inputs};
+use super::output::tell_dimensionless;
+use super::point_args::PointArgs;
+
+#[derive(Debug, clap::Args)]
+#[command(
+    after_help = "Example: slipmap margins --mu-prime -0.3 --alpha-n -3.65 --tau 0.465 --decay 0.1"
+)]
+pub(super) struct Args {
+    #[command(flatten)]
+    point: PointArgs,
+    /// The decay rate that all roots have to have, 1/time; 0 asks for stability
+    #[arg(long, value_name = "RATE", default_value_t = 0.0, allow_hyphen_values = true,
+          value_parser = parse_decay)]
+    decay: f64,
+    /// One JSON object on standard output; infinities are null
+    #[arg(long)]
+    json: bool,
+}
+
+fn parse_decay(text: &str) -> Result<f64, String> {
+    let rate = text.trim().parse().ok();
+    let rate = rate.filter(|rate: &f64| (0.0..=1e12).contains(rate));
+    rate.ok_or_else(|| "expected a decay rate, from 0 to 1e12".to_owned())
+}
+
+/// What its JSON looks like.
+pub(super) fn described() -> AnswerSchema {
+    AnswerSchema::of("margins").or::<Margins>()
+}
+
+pub(super) fn main(args: &Args) -> Result<(), Failure> {
+    let (setting, units) = args.point.read()?;
+    let margins = Margins::at(&setting, args.decay)?;
+    if args.json {
+        let inputs = Inputs::of_setting(&setting, &units, |_| true).and("decay", args.decay);
+        return json::print(&inputs, &margins);
+    }
+    print(&mut std::io::stdout().lock(), &margins, &setting, &units)?;
+    Ok(())
+}
+
+/// The margins in lines of words and numbers.
+pub(super) fn print(
+    out: &mut impl Write,
+    margins: &Margins,
+    setting: &Setting,
+    units: &Units,
+) -> std::io::Result<()> {
+    let rate = unit_behind(&units.rate());
+    let wanted = match margins.required_decay {
+        0.0 => "stable".to_owned(),
+        decay => format!("left of -{decay}{rate} with all its roots"),
+    };
+    if !margins.decays {
+        return writeln!(out, "continuous sliding is not {wanted}: no margins");
+    }
+    writeln!(out, "continuous sliding is {wanted}; it stays so")?;
+    let mut row = |name: &str, value: String| writeln!(out, "  {name:<16} {value}");
+    let undecided = |name: &str| margins.undecided.contains(&name);
+    if let Some(gain) = margins.gain_margin {
+        let text = match (gain.lower.filter(|k| *k > 0.0), gain.upper) {
+            _ if undecided("gain_margin") => "not decided".into(),
+            (lower, upper) => between(lower, upper, " times as large"),
+        };
+        row("gain_margin", text)?;
+    }
+    for (parameter, margin) in [
+        (Parameter::Tau, margins.tau_margin),
+        (Parameter::MuPrime, margins.mu_prime_margin),
+        (Parameter::V0, margins.v0_margin),
+    ] {
+        let Some(margin) = margin else { continue };
+        let name = format!("{}_margin", parameter.name());
+        let unit = unit_behind(&units.of_parameter(parameter));
+        let text = match undecided(&name) {
+            true => "not decided".into(),
+            false => along(&margin, setting.get(parameter), &unit),
+        };
+        row(&name, text)?;
+    }
+    let time = unit_behind(&units.time());
+    for (name, value, unit, endless) in [
+        (
+            "phase_margin",
+            margins.phase_margin,
+            " rad",
+            "infinite: the loop is nowhere as large as 1",
+        ),
+        (
+            "latency_margin",
+            margins.latency_margin,
+            &*time,
+            "infinite: no latency matters",
+        ),
+    ] {
+        let text = match value {
+            _ if undecided(name) => "not decided".into(),
+            Some(value) => format!("{value}{unit}"),
+            None => endless.to_owned(),
+        };
+        row(name, text)?;
+    }
+    if let Some(found) = &margins.stability_box {
+        row("stability_radius", radius(margins.stability_radius, found))?;
+    }
+    tell_dimensionless(out, units)
+}
+
+fn between(lower: Option<f64>, upper: Option<f64>, unit: &str) -> String {
+    match (lower, upper) {
+        (None, None) => "whatever it is".into(),
+        (None, Some(upper)) => format!("up to {upper}{unit}"),
+        (Some(lower), None) => format!("from {lower}{unit} on"),
+        (Some(lower), Some(upper)) => format!("from {lower} to {upper}{unit}"),
+    }
+}
+
+/// The range of a parameter, and how far its ends are.
+fn along(margin: &Margin, at: f64, unit: &str) -> String {
+    let range = between(margin.from, margin.to, unit);
+    let share = |distance: f64| match at {
+        0.0 => String::new(),
+        at => format!(", {:.1} %", 100.0 * (distance / at).abs()),
+    };
+    let away = |sign: &str, distance: Option<f64>| {
+        distance.map(|d| format!("{sign}{d:.6}{unit}{}", share(d)))
+    };
+    let ways: Vec<String> = [away("-", margin.lower), away("+", margin.upper)]
+        .into_iter()
+        .flatten()
+        .collect();
+    match ways.is_empty() {
+        true => range,
+        false => format!("{range} ({})", ways.join("; ")),
+    }
+}
+
+fn radius(proved: f64, found: &StabilityBox) -> String {
+    let names = found.of.join(", ");
+    let together = if found.of.len() > 1 { " together" } else { "" };
+    let mut text = format!("{:.4} %: {names}{together}, proved", 100.0 * proved);
+    if !found.tight {
+        text += "; there may be more";
+    }
+    if !found.fixed.is_empty() {
+        text += &format!("; 0 stays 0: {}", found.fixed.join(", "));
+    }
+    text
+}

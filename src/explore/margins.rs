@@ -1,0 +1,175 @@
+//! How far a setting is from the boundary of stability, or from a decay rate that is required.
+
+use serde::Serialize;
+
+use super::finite;
+use crate::linear::margins::{Limits, Margins as Search, Radius};
+use crate::model::ModelError;
+use crate::sweep::cells::margins::Around;
+use crate::sweep::{Parameter, Setting};
+
+/// Margins of a setting, in its units.
+#[derive(Debug, Clone, Serialize)]
+#[cfg_attr(feature = "serve", derive(utoipa::ToSchema))]
+pub struct Margins {
+    /// The decay rate that all roots have to have; 0 asks for stability.
+    pub required_decay: f64,
+    /// Whether the setting has it, beyond doubt.
+    pub decays: bool,
+    /// The factors of both gains between which it stays; null where the setting has it not.
+    pub gain_margin: Option<Range>,
+    /// The least angle, rad, of either sign by which the loop may turn; null where it is infinite:
+    /// the loop is nowhere as large as 1. 0 where the setting has not the decay rate.
+    pub phase_margin: Option<f64>,
+    /// The largest further latency of the feedback; null where it is infinite. 0 where the setting
+    /// has not the decay rate.
+    pub latency_margin: Option<f64>,
+    /// The delays between which it stays; null where the setting has it not.
+    pub tau_margin: Option<Margin>,
+    /// The slopes μ_K′ between which it stays, at fixed μ_K; null where the setting has it not, and
+    /// where there is a friction law.
+    pub mu_prime_margin: Option<Margin>,
+    /// The sliding velocities between which it stays; null where the setting has it not, and where
+    /// there is no friction law.
+    pub v0_margin: Option<Margin>,
+    /// The largest relative box of gain, delay and μ_K′ or v0 that is proved to have it; 0 where
+    /// the setting has it not.
+    pub stability_radius: f64,
+    /// That box; null where the setting has not the decay rate.
+    pub stability_box: Option<StabilityBox>,
+    /// The margins above that could not be decided.
+    pub undecided: Vec<&'static str>,
+}
+
+/// Both ends of a range.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[cfg_attr(feature = "serve", derive(utoipa::ToSchema))]
+pub struct Range {
+    /// The lower end; null where there is none.
+    pub lower: Option<f64>,
+    /// The upper end; null where there is none.
+    pub upper: Option<f64>,
+}
+
+/// How far a parameter may go down and up.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[cfg_attr(feature = "serve", derive(utoipa::ToSchema))]
+pub struct Margin {
+    /// The distance downwards; null where no smaller value matters.
+    pub lower: Option<f64>,
+    /// The distance upwards; null where no larger value matters.
+    pub upper: Option<f64>,
+    /// The value below at which stability, or the decay rate, is lost; null where at none.
+    pub from: Option<f64>,
+    /// The value above; null where at none.
+    pub to: Option<f64>,
+}
+
+/// A box of relative changes, all of them at most the stability radius.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "serve", derive(utoipa::ToSchema))]
+pub struct StabilityBox {
+    /// The parameters that change: `gain`, `tau`, `mu_prime`, `v0`.
+    pub of: Vec<&'static str>,
+    /// Those that are 0 and stay so.
+    pub fixed: Vec<&'static str>,
+    /// The box is within one per cent of the largest.
+    pub tight: bool,
+    /// Relative changes, in the order of gain, delay and third parameter, at which stability, or
+    /// the decay rate, is lost just beyond the box; null where no change up to 1 does that.
+    pub lost_at: Option<[f64; 3]>,
+}
+
+impl Margins {
+    /// At a setting with all its parameters, for a required decay rate of `decay` ≥ 0.
+    ///
+    /// # Errors
+    /// When a parameter is outside the model's range.
+    pub fn at(setting: &Setting, decay: f64) -> Result<Self, ModelError> {
+        let around = Around::of(setting, decay)?;
+        let mut margins = Self {
+            required_decay: decay,
+            decays: around.stable(),
+            gain_margin: None,
+            phase_margin: Some(0.0),
+            latency_margin: Some(0.0),
+            tau_margin: None,
+            mu_prime_margin: None,
+            v0_margin: None,
+            stability_radius: 0.0,
+            stability_box: None,
+            undecided: Vec::new(),
+        };
+        if margins.decays {
+            margins.fill(&around, setting);
+        }
+        Ok(margins)
+    }
+
+    fn fill(&mut self, around: &Around, setting: &Setting) {
+        let mut search = Search::default();
+        let gain = around.gain(&mut search);
+        self.note("gain_margin", &[gain.lower, gain.upper]);
+        self.gain_margin = Some(Range {
+            lower: finite(gain.lower),
+            upper: finite(gain.upper),
+        });
+        let of_loop = around.of_loop(&mut search);
+        self.note("phase_margin", &[of_loop.phase]);
+        self.note("latency_margin", &[of_loop.latency]);
+        self.phase_margin = finite(of_loop.phase);
+        self.latency_margin = finite(of_loop.latency);
+        let delay = around.delay();
+        self.note("tau_margin", &[delay.lower, delay.upper]);
+        self.tau_margin = Some(Margin::of(setting.get(Parameter::Tau), delay, 0.0));
+        let (third, limits) = around.third(&mut search);
+        let at = setting.get(third);
+        let ends = [limits.lower, limits.upper];
+        if third == Parameter::V0 {
+            self.note("v0_margin", &ends);
+            self.v0_margin = Some(Margin::of(at, limits, 0.0));
+        } else {
+            self.note("mu_prime_margin", &ends);
+            self.mu_prime_margin = Some(Margin::of(at, limits, f64::NEG_INFINITY));
+        }
+        let radius = around.radius();
+        self.stability_radius = radius.proved;
+        self.stability_box = Some(StabilityBox::of(&radius, third));
+    }
+
+    fn note(&mut self, name: &'static str, values: &[f64]) {
+        if values.iter().any(|value| value.is_nan()) {
+            self.undecided.push(name);
+        }
+    }
+}
+
+impl Margin {
+    /// Nothing is lost at `least`, the lower end of the parameter's range.
+    fn of(at: f64, limits: Limits, least: f64) -> Self {
+        let from = finite(limits.lower).filter(|from| *from > least);
+        let to = finite(limits.upper);
+        Self {
+            lower: from.map(|from| at - from),
+            upper: to.map(|to| to - at),
+            from,
+            to,
+        }
+    }
+}
+
+impl StabilityBox {
+    fn of(radius: &Radius, third: Parameter) -> Self {
+        let names = ["gain", Parameter::Tau.name(), third.name()];
+        let those = |fixed: bool| {
+            let pairs = names.iter().zip(radius.fixed);
+            pairs.filter(move |(_, f)| *f == fixed).map(|(n, _)| *n)
+        };
+        Self {
+            of: those(false).collect(),
+            fixed: those(true).collect(),
+            tight: radius.tight,
+            lost_at: radius.unstable,
+        }
+    }
+}

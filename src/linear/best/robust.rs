@@ -1,0 +1,195 @@
+//! The setting whose slowest decay over a box of changes is fastest.
+//!
+//! ```text
+//! minimise over gain and delay   W = max abscissa(k = 1 + δ₁, τ (1 + δ₂), b (1 + δ₃)),
+//!                                |δ_i| ≤ spread                                            (1)
+//! ```
+//!
+//! The maximum is taken over corners and middles of the box, and over every place of it that a
+//! proof of W turned out to need: the stability radius at the decay rate −W either is at least the
+//! spread, or names a place in the box that decays more slowly, and the search goes on with it.
+
+use super::descend::descend;
+use super::regions::stable_regions;
+use super::search::{Place, Search};
+use super::{Best, Start, far_apart, lattice};
+use crate::linear::margins::{Changes, Setting, radius_up_to};
+use crate::linear::spectrum::RootFinder;
+use crate::model::Groups;
+
+/// The radius, in units of the frame, to which a descent goes.
+const FINE: f64 = 1e-6;
+/// Places that a proof may add.
+const MOST_PLACES: usize = 24;
+/// By what part of it W is proved to be larger, at most, than at the places it is taken over; the
+/// second where the first takes too long.
+const SLACK: [f64; 2] = [1e-3, 1e-2];
+
+/// A setting with the slowest decay around it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Robust {
+    /// The searched gain.
+    pub gain: f64,
+    /// The delay.
+    pub tau: f64,
+    /// The spectral abscissa of the setting itself.
+    pub abscissa: f64,
+    /// W of (1): no setting of the box has a larger one, where that is `certified`.
+    pub worst_abscissa: f64,
+    /// Where in the box it is taken, or nearly so.
+    pub worst_at: Changes,
+    /// Whether W is proved.
+    pub certified: bool,
+}
+
+/// The abscissa over a box around a place.
+struct Worst<'s> {
+    finder: RootFinder,
+    search: &'s Search,
+    spread: f64,
+    /// Where it is looked at, in units of the spread; the worst one last time first.
+    places: Vec<Changes>,
+}
+
+impl<'s> Worst<'s> {
+    fn new(search: &'s Search, spread: f64) -> Self {
+        let places = (0..27).map(|i| [i / 9, i / 3 % 3, i % 3].map(|n| f64::from(n) - 1.0));
+        Self {
+            finder: RootFinder::default(),
+            search,
+            spread,
+            places: places.collect(),
+        }
+    }
+
+    /// W and where it is taken; as soon as it is above `bound`, anything above that.
+    fn at(&mut self, place: Place, bound: f64) -> (f64, Changes) {
+        let mut worst = (f64::NEG_INFINITY, 0);
+        for (i, changes) in self.places.iter().enumerate() {
+            let (groups, tau) = self.changed(place, *changes);
+            let roots = self.finder.rightmost(groups, tau, 1, f64::NEG_INFINITY);
+            let abscissa = roots.ok().and_then(|roots| Some(roots.first()?.lambda.re));
+            let abscissa = abscissa.unwrap_or(f64::INFINITY);
+            if abscissa > worst.0 {
+                worst = (abscissa, i);
+            }
+            if abscissa > bound {
+                break;
+            }
+        }
+        let changes = self.places[worst.1];
+        self.places[..=worst.1].rotate_right(1);
+        (worst.0, changes.map(|d| self.spread * d))
+    }
+
+    fn changed(&self, place: Place, changes: Changes) -> (Groups, f64) {
+        let [k, delay, slope] = changes.map(|d| 1.0 + self.spread * d);
+        let Groups { b, a_v, a_n } = self.search.groups(place.gain);
+        (Groups::new(b * slope, a_v * k, a_n * k), place.tau * delay)
+    }
+
+    /// Goes down from a start.
+    fn descend(&mut self, (_, place, frame): &Start, largest: f64) -> (Place, f64) {
+        let search = self.search;
+        let value = |place: Place, bound: f64| self.at(place, bound).0;
+        descend(value, search, *place, frame, (largest, FINE))
+    }
+
+    /// A bound on W at `place` that is proved, or else a place of its box where W is larger.
+    fn proved(&mut self, place: Place) -> Result<Option<f64>, Changes> {
+        let (worst, _) = self.at(place, f64::INFINITY);
+        for slack in SLACK.into_iter().filter(|_| worst < 0.0) {
+            let line = worst * (1.0 - slack);
+            let setting = Setting {
+                groups: self.search.groups(place.gain),
+                tau: place.tau,
+                decay: -line,
+            };
+            let radius = radius_up_to(&setting, self.spread);
+            if radius.proved >= self.spread {
+                return Ok(Some(line));
+            }
+            if let Some(changes) = radius.unstable {
+                return Err(changes.map(|d| d / self.spread));
+            }
+        }
+        Ok(None)
+    }
+}
+
+/// The largest abscissa over the box of changes around a setting, and whether that is proved.
+#[must_use]
+pub fn worst_around(search: &Search, gain: f64, tau: f64, spread: f64) -> (f64, bool) {
+    let mut worst = Worst::new(search, spread);
+    let place = Place { gain, tau };
+    for _ in 0..MOST_PLACES {
+        match worst.proved(place) {
+            Ok(Some(bound)) => return (bound, true),
+            Ok(None) => break,
+            Err(changes) => worst.places.push(changes),
+        }
+    }
+    (worst.at(place, f64::INFINITY).0, false)
+}
+
+/// The most robust setting of the box of `search`, of those in the stable regions that `best` lists
+/// for it; none where no setting stays stable. 0 ≤ `spread` < 1.
+#[must_use]
+pub fn robust(search: &Search, best: &Best, spread: f64) -> Option<Robust> {
+    let mut worst = Worst::new(search, spread);
+    // No setting of a region is better than its best one.
+    let stretches = stable_regions(search);
+    let mut regions: Vec<_> = best.regions.iter().zip(&stretches).collect();
+    regions.sort_by(|(p, _), (q, _)| p.best.abscissa.total_cmp(&q.best.abscissa));
+    let mut found: Option<(Start, f64)> = None;
+    for (region, stretches) in regions {
+        let lowest = found.as_ref().map_or(0.0, |(_, value)| *value);
+        if region.best.abscissa >= lowest {
+            break;
+        }
+        let value = |place| worst.at(place, f64::INFINITY).0;
+        for start in far_apart(lattice(stretches, region.gains, value)) {
+            let (place, value) = worst.descend(&start, 1.0);
+            if found.as_ref().is_none_or(|(_, least)| value < *least) {
+                found = Some(((value, place, start.2), value));
+            }
+        }
+    }
+    let (start, _) = found.filter(|(_, value)| *value < 0.0)?;
+    Some(worst.refined(start))
+}
+
+impl Worst<'_> {
+    /// Goes on from a start until W is proved there.
+    fn refined(&mut self, mut start: Start) -> Robust {
+        let mut proof = None;
+        for _ in 0..MOST_PLACES {
+            match self.proved(start.1) {
+                Ok(bound) => {
+                    proof = bound;
+                    break;
+                }
+                Err(changes) => {
+                    self.places.push(changes);
+                    let (place, value) = self.descend(&start, 0.1);
+                    start = (value, place, start.2);
+                }
+            }
+        }
+        let place = start.1;
+        let (value, worst_at) = self.at(place, f64::INFINITY);
+        let groups = self.search.groups(place.gain);
+        let roots = self
+            .finder
+            .rightmost(groups, place.tau, 1, f64::NEG_INFINITY);
+        let abscissa = roots.ok().and_then(|roots| Some(roots.first()?.lambda.re));
+        Robust {
+            gain: place.gain,
+            tau: place.tau,
+            abscissa: abscissa.unwrap_or(f64::NAN),
+            worst_abscissa: proof.unwrap_or(value),
+            worst_at,
+            certified: proof.is_some(),
+        }
+    }
+}

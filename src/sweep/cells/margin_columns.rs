@@ -1,0 +1,112 @@
+//! The fields that tell how far a cell is from the boundary of stability.
+
+use super::buffers::TileBuffers;
+use super::line::{Here, SlowLine};
+use super::margins::Around;
+use crate::linear::margins::{Limits, LoopMargins, Margins};
+use crate::linear::status::NOT_CONVERGED;
+use crate::sweep::input::field::Field;
+use crate::sweep::input::source::{OfMargins, Source};
+
+/// Fills the columns of one thread's tiles.
+pub(super) struct MarginColumns {
+    search: Margins,
+    gain: bool,
+    of_loop: bool,
+    radius: bool,
+}
+
+/// The margins of a cell; NaN where none is asked for.
+#[derive(Clone, Copy)]
+struct Found {
+    gain: Limits,
+    of_loop: LoopMargins,
+    radius: f64,
+    /// A search was given up.
+    gave_up: bool,
+}
+
+/// Where sliding is not stable, nothing is left of any margin.
+const UNSTABLE: Found = Found {
+    gain: Limits {
+        lower: f64::NAN,
+        upper: f64::NAN,
+    },
+    of_loop: LoopMargins {
+        phase: 0.0,
+        latency: 0.0,
+    },
+    radius: 0.0,
+    gave_up: false,
+};
+
+impl MarginColumns {
+    /// For these fields; none where none of them is a margin.
+    pub(super) fn new(fields: &[Field]) -> Option<Self> {
+        use OfMargins::{GainLower, GainUpper, Latency, Phase, StabilityRadius};
+        let wants = |wanted: &[OfMargins]| {
+            let of = |field: &Field| match field.source() {
+                Source::Margins(of) => wanted.contains(&of),
+                _ => false,
+            };
+            fields.iter().any(of)
+        };
+        let columns = Self {
+            search: Margins::default(),
+            gain: wants(&[GainLower, GainUpper]),
+            of_loop: wants(&[Phase, Latency]),
+            radius: wants(&[StabilityRadius]),
+        };
+        (columns.gain || columns.of_loop || columns.radius).then_some(columns)
+    }
+
+    /// Computes the cells of a line. The status gains [`NOT_CONVERGED`] where a search was given
+    /// up.
+    pub(super) fn fill(&mut self, line: &SlowLine, buffers: &mut TileBuffers) {
+        line.each(|here| {
+            let found = self.at(&here);
+            if found.gave_up {
+                buffers.status[here.place] |= NOT_CONVERGED;
+            }
+            buffers.put(here.place, |field| match field.source() {
+                Source::Margins(of) => Some(found.value(of)),
+                _ => None,
+            });
+        });
+    }
+
+    fn at(&mut self, here: &Here) -> Found {
+        let around = Around::of(here.setting, 0.0);
+        // The line was not refused: its parameters are within the model's range.
+        let Some(around) = around.ok().filter(Around::stable) else {
+            return UNSTABLE;
+        };
+        let mut found = UNSTABLE;
+        if self.gain {
+            found.gain = around.gain(&mut self.search);
+            found.gave_up |= found.gain.lower.is_nan() || found.gain.upper.is_nan();
+        }
+        if self.of_loop {
+            found.of_loop = around.of_loop(&mut self.search);
+            found.gave_up |= found.of_loop.phase.is_nan();
+        }
+        if self.radius {
+            let radius = around.radius();
+            found.radius = radius.proved;
+            found.gave_up |= !radius.tight;
+        }
+        found
+    }
+}
+
+impl Found {
+    fn value(&self, of: OfMargins) -> f64 {
+        match of {
+            OfMargins::GainLower => self.gain.lower,
+            OfMargins::GainUpper => self.gain.upper,
+            OfMargins::Phase => self.of_loop.phase,
+            OfMargins::Latency => self.of_loop.latency,
+            OfMargins::StabilityRadius => self.radius,
+        }
+    }
+}
