@@ -19,6 +19,7 @@
 //! | [`maps`] | from a plan to its map; whether a map is true | `store` |
 //! | [`serve`] | a page in a browser, and the interface behind it | `serve` |
 //! | [`report`] | progress, pictures | `store`, `picture`, `cli` |
+//! | [`letter`] | every claim of the letter, computed again | `cli` |
 //!
 //! `cli`, the default, has everything. With `default-features = false` the rest stands alone,
 //! without libhdf5 and without a C compiler.
@@ -50,6 +51,8 @@ pub mod critical;
 #[cfg(feature = "explore")]
 #[cfg_attr(not(test), warn(clippy::disallowed_methods))]
 pub mod explore;
+#[cfg(feature = "cli")]
+pub mod letter;
 #[cfg_attr(not(test), warn(clippy::disallowed_methods))]
 pub mod linear;
 #[cfg(feature = "store")]

@@ -947,7 +947,7 @@ fn the_compliance_checker_finds_nothing() {
 }
 
 /// What every command prints with `--json`, each kind of answer once.
-const ANSWERS: [(&str, &str); 16] = [
+const ANSWERS: [(&str, &str); 20] = [
     (
         "point.plain",
         "point --mu-prime=-0.3 --alpha-v=-0.33 --tau 4.15",
@@ -994,6 +994,7 @@ const ANSWERS: [(&str, &str); 16] = [
     ("info.trace", "info case.h5"),
     ("status.map", "status sweep.h5"),
     ("verify.map", "verify sweep.h5"),
+    ("reproduce.quick", "reproduce --quick"),
 ];
 
 #[test]

@@ -5,9 +5,9 @@ mod uses;
 
 use std::path::{Path, PathBuf};
 
-const LAYERS: [&str; 11] = [
-    "model", "linear", "slip", "critical", "sweep", "explore", "store", "maps", "report", "serve",
-    "cli",
+const LAYERS: [&str; 12] = [
+    "model", "linear", "slip", "critical", "sweep", "explore", "store", "maps", "report", "letter",
+    "serve", "cli",
 ];
 /// The rooms of a sweep, each above those before it; beside them stands what a sweep tells.
 const ROOMS: [&str; 6] = ["events", "input", "plan", "cells", "engine", "grid"];
@@ -163,6 +163,7 @@ fn libraries_stay_in_their_rooms() {
         ("indicatif", "src/report/progress.rs"),
         ("plotters", "src/report/picture"),
         ("csv", "src/report/table"),
+        ("maud", "src/letter/page.rs"),
         ("axum", "src/serve"),
         ("clap", "src/cli"),
         ("miette", "src/cli"),

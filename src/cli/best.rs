@@ -49,8 +49,8 @@ pub(super) struct Args {
     /// by this part of them, such as 0.05
     #[arg(long, value_name = "SPREAD", allow_hyphen_values = true, value_parser = parse_spread)]
     robust: Option<f64>,
-    /// Write the best setting, with --robust that one, to a file that point and vc take with --setting, and simulate as a
-    /// case file
+    /// Write the best setting, with --robust that one, to a file that point and vc take with
+    /// --setting, and simulate as a case file
     #[arg(long, value_name = "SETTING.toml")]
     save: Option<PathBuf>,
     /// One JSON object on standard output

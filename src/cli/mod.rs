@@ -27,6 +27,7 @@ mod point;
 mod point_args;
 mod read_map;
 mod recommended;
+mod reproduce;
 mod run;
 mod say;
 mod schema;
@@ -103,6 +104,8 @@ enum Command {
     Export(export::Args),
     /// Say what a map or a trace holds
     Info(info::Args),
+    /// Reproduce the letter: every claim with what is found, and a verdict
+    Reproduce(reproduce::Args),
     /// Print the JSON Schema of what another command prints with --json
     Schema(schema::Args),
 }
@@ -153,6 +156,7 @@ pub(crate) fn main() -> ExitCode {
         Command::Plot(args) => plot::main(&args),
         Command::Export(args) => export::main(&args),
         Command::Info(args) => info::main(&args),
+        Command::Reproduce(args) => reproduce::main(&args),
         Command::Schema(args) => schema::main(&args),
     };
     match result {

@@ -4,7 +4,9 @@ use clap::ValueEnum;
 
 use super::failure::Failure;
 use super::json::AnswerSchema;
-use super::{basin, best, info, margins, plan, point, say, simulate, status, vc, verify};
+use super::{
+    basin, best, info, margins, plan, point, reproduce, say, simulate, status, vc, verify,
+};
 
 #[derive(Debug, clap::Args)]
 pub(super) struct Args {
@@ -22,6 +24,7 @@ enum Command {
     Margins,
     Plan,
     Point,
+    Reproduce,
     Simulate,
     Status,
     Vc,
@@ -37,6 +40,7 @@ impl Command {
             Self::Margins => margins::described(),
             Self::Plan => plan::described(),
             Self::Point => point::described(),
+            Self::Reproduce => reproduce::described(),
             Self::Simulate => simulate::described(),
             Self::Status => status::described(),
             Self::Vc => vc::described(),

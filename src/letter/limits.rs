@@ -1,0 +1,467 @@
+//! Where controls end: the slope beyond which velocity control fails, the weakest gains of load
+//! control, and short delays.
+
+use super::LetterError;
+use super::claim::{Claim, Value, Verdict};
+use super::workshop::{Source, Workshop, planes, source};
+use crate::linear::Crossings;
+use crate::linear::lobes::{
+    LobeControl, has_stable_delay, minimal_negative_load_gain, minimal_positive_load_gain,
+};
+use crate::model::Groups;
+use crate::sweep::Field;
+
+const LOBES: Source = source!("velocity_limit");
+const BRACKET: Source = source!("velocity_limit_bracket");
+
+/// What the claims here are computed from.
+pub(super) const SOURCES: [&Source; 2] = [&LOBES, &BRACKET];
+
+/// What the letter says of the slope at which velocity control ends, in units of √(κM)/N0, and the
+/// last digit that it gives.
+const LETTER: (f64, f64) = (-0.68, 0.01);
+
+/// The slope at which the last lobe of velocity control ends.
+#[derive(Debug, Clone, PartialEq)]
+struct VelocityLimit {
+    /// b*, from the tangency.
+    end: f64,
+    /// Gain and delay there.
+    place: (f64, f64),
+    /// Slopes of maps, and their stable cells.
+    cells: Vec<(f64, usize)>,
+}
+
+/// Of the tangency: its condition is solved to the last bits, its terms are of the order of 10.
+const TANGENCY_ERROR: f64 = 1e-13;
+
+impl VelocityLimit {
+    /// Slopes beyond b* at which a map has stable cells.
+    fn stable_beyond(&self) -> usize {
+        let beyond = self.cells.iter();
+        let beyond = beyond.filter(|(b, cells)| *b < self.end && *cells > 0);
+        beyond.count()
+    }
+
+    /// The steepest slope with stable cells, and the flattest without.
+    fn bracket(&self) -> (f64, f64) {
+        let with = self.cells.iter().filter(|(_, cells)| *cells > 0);
+        let without = self.cells.iter().filter(|(_, cells)| *cells == 0);
+        (
+            with.map(|(b, _)| *b).fold(0.0, f64::min),
+            without.map(|(b, _)| *b).fold(f64::NEG_INFINITY, f64::max),
+        )
+    }
+
+    fn verdict(&self) -> Verdict {
+        let (with, without) = self.bracket();
+        let bracketed = without < self.end && self.end < with;
+        let ends = Verdict::of(bracketed && self.stable_beyond() == 0);
+        ends.max(Verdict::of_number(
+            LETTER.0,
+            LETTER.1,
+            self.end,
+            TANGENCY_ERROR,
+        ))
+    }
+
+    fn claim(&self) -> Claim {
+        let (with, without) = self.bracket();
+        let because = format!(
+            "It does disappear, at {:.12} √(κM): the crossing curves touch there (α_v = {:.6}, τ = \
+             {:.6}). Maps have stable cells at {with} and none at {without}. At the letter's −0.68 \
+             the lobe has become too small to be seen.",
+            self.end, self.place.0, self.place.1,
+        );
+        let at = (
+            "paragraph of Fig. 2",
+            "it disappears if μ′_K(v0) N0 ≲ −0.68 √(κM)",
+        );
+        let how = "The first lobe shrinks to a point where both crossing frequencies are equal and \
+            both arms of the fold have the same slope: one scalar equation. Two maps bracket it, \
+            one shows the lobes beyond −0.68.";
+        let cells = self.cells.iter().map(|(b, cells)| {
+            let meaning = "stable cells of the map at this slope";
+            Value::of(format!("stable cells at {b}"), meaning, *cells as f64)
+        });
+        let end = Value::of("b_star", "slope of the end, √(κM)/N0", self.end);
+        let end = end.within(TANGENCY_ERROR).beside(LETTER.0);
+        Claim::new("velocity_limit", at, self.verdict(), because, how)
+            .by(std::iter::once(end).chain(cells))
+            .from(&["velocity_limit", "velocity_limit_bracket", "fig2a"])
+    }
+}
+
+/// The weakest gains of load control that stabilise, at growing |b|.
+#[derive(Debug, Clone, PartialEq)]
+struct LoadGains {
+    rows: Vec<LoadGain>,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct LoadGain {
+    b: f64,
+    /// The weakest negative one, and whether some delay is stable right beyond it.
+    negative: f64,
+    stable: bool,
+    /// The weakest positive one; infinite where none is found.
+    positive: f64,
+}
+
+/// Beyond a gain by this share, delays are stable if they are at all.
+const RIGHT_BEYOND: f64 = 1e-6;
+/// Slopes at which load control is looked at: from, to, how many, evenly in their logarithm.
+const SLOPES: (f64, f64, u32) = (0.01, 20.0, 400);
+
+impl LoadGains {
+    fn found() -> Self {
+        let (from, to, points) = SLOPES;
+        let slope = |i: u32| -from * (to / from).powf(f64::from(i) / f64::from(points - 1));
+        let last = LobeControl::PositiveLoad.lobe_end(0).b;
+        let row = |b: f64| {
+            let stable = |a_n: f64| has_stable_delay(Groups::new(b, 0.0, a_n));
+            let negative = minimal_negative_load_gain(b);
+            let positive = minimal_positive_load_gain(b);
+            LoadGain {
+                b,
+                negative,
+                stable: stable(negative * (1.0 + RIGHT_BEYOND))
+                    && !stable(negative * (1.0 - RIGHT_BEYOND)),
+                positive: match b > last {
+                    true => positive,
+                    false => f64::INFINITY,
+                },
+            }
+        };
+        Self {
+            rows: (0..points).map(slope).map(row).collect(),
+        }
+    }
+
+    fn always(&self) -> Verdict {
+        Verdict::of(!self.rows.is_empty() && self.rows.iter().all(|row| row.stable))
+    }
+
+    /// The smallest |gain| of either sign.
+    fn weakest(row: &LoadGain) -> f64 {
+        row.negative.abs().min(row.positive)
+    }
+
+    fn grows(&self) -> Verdict {
+        let grows = |size: fn(&LoadGain) -> f64| {
+            let pairs = self.rows.windows(2);
+            pairs.clone().count() > 0 && pairs.clone().all(|pair| size(&pair[1]) > size(&pair[0]))
+        };
+        Verdict::of_parts(
+            grows(Self::weakest) && grows(|row| row.negative.abs()),
+            grows(|row| row.negative.abs()),
+        )
+    }
+
+    /// The steepest slope at which a positive gain stabilises.
+    fn positive_until(&self) -> f64 {
+        let some = self.rows.iter().filter(|row| row.positive.is_finite());
+        some.map(|row| row.b).fold(0.0, f64::min)
+    }
+
+    fn claims(&self) -> [Claim; 2] {
+        let (from, to, points) = SLOPES;
+        let stable = self.rows.iter().filter(|row| row.stable).count();
+        let because = format!(
+            "Some delay is stable right beyond the weakest negative gain at {stable} of {points} \
+             slopes from −{from} to −{to} √(κM)/N0, and none at weaker ones."
+        );
+        let at = (
+            "paragraph of Eq. (8)",
+            "In pure load control there is always a stable region.",
+        );
+        let how = "Crossings exist from the gain −(b²/2 + |b|) κ/μ_K on, b being the slope; all \
+            stable delays on either side of it follow from their closed form.";
+        let count = Value::of("slopes", "slopes with a stable delay", stable as f64);
+        let always = Claim::new("load_always", at, self.always(), because, how)
+            .by([count])
+            .from(&["fig2b"]);
+        let until = LobeControl::PositiveLoad.lobe_end(0).b;
+        let because = format!(
+            "The smallest |α_N| grows at every step of the slope. What the letter does not say: \
+             down to μ′ = {until:.9} it belongs to a positive gain, in lobes of their own."
+        );
+        let at = (
+            "paragraph of Eq. (8)",
+            "Only the minimal value of |α_N| increases with increasing |μ′_K|",
+        );
+        let how = "The weakest negative gain −(b²/2 + |b|) and, down to the end of its first lobe, \
+            the weakest positive one |b| − b²/2, in units of κ/μ_K.";
+        let of = |b: f64| {
+            let negative = minimal_negative_load_gain(b);
+            let positive = match b > until {
+                true => minimal_positive_load_gain(b),
+                false => f64::INFINITY,
+            };
+            let meaning = "smallest |α_N| of either sign that stabilises, κ/μ_K";
+            let weakest = negative.abs().min(positive);
+            Value::of(format!("gain at {b}"), meaning, weakest).within(f64::EPSILON * weakest)
+        };
+        let end = "slope at which the last positive gain stabilises, √(κM)/N0";
+        let end = Value::of("positive_until", end, until).within(TANGENCY_ERROR);
+        let seen = "steepest of the slopes looked at with such a gain";
+        let seen = Value::of("seen_until", seen, self.positive_until());
+        let grows = Claim::new("minimal_load_gain", at, self.grows(), because, how)
+            .by([-0.1, -1.0, -5.0].map(of))
+            .by([end, seen])
+            .from(&["fig2b"]);
+        [always, grows]
+    }
+}
+
+/// Short delays.
+#[derive(Debug, Clone, PartialEq)]
+struct ShortDelays {
+    /// Slopes, the shortest delay that velocity control stabilises at any gain, infinite where none
+    /// does, and its error.
+    velocity: Vec<(f64, f64, f64)>,
+    /// Slopes, delays, and the gain where load control begins to stabilise over the letter's.
+    load: Vec<(f64, f64, f64)>,
+}
+
+/// Delays for the limit of load control, in units of √(M/κ), each a tenth of the one before.
+const SHORT: [f64; 4] = [1e-1, 1e-2, 1e-3, 1e-4];
+/// Gains tried at each slope, in each of three ranges.
+const GAINS: u32 = 20_000;
+/// Slopes at which they are.
+const SHORT_SLOPES: [f64; 9] = [-0.005, -0.02, -0.05, -0.1, -0.2, -0.3, -0.5, -0.7, -1.0];
+
+impl ShortDelays {
+    /// The shortest delay that velocity control stabilises at any gain, and how far it moves with
+    /// twice as many gains.
+    fn shortest_at(b: f64) -> (f64, f64) {
+        // Beyond the last of these gains the lower crossing, by which roots go left, is gone;
+        // before the first one there is none.
+        let (fold, last) = (0.5 * b - b * b * b / 8.0, 0.5 / b);
+        let shortest = |gains: u32| {
+            let share = |i: u32| f64::from(i) / f64::from(gains);
+            let within = (0..=gains).map(|i| fold + (last - fold) * share(i));
+            let beyond = (0..=gains).flat_map(|i| {
+                let gain = 1e-3 * 1e6_f64.powf(share(i));
+                [gain, -gain]
+            });
+            let delays = within.chain(beyond).filter_map(|a_v| {
+                let crossings = Crossings::of(Groups::new(b, a_v, 0.0));
+                crossings.stable_delays().next().map(|s| s.from)
+            });
+            delays.fold(f64::INFINITY, f64::min)
+        };
+        let (coarse, found) = (shortest(GAINS / 2), shortest(GAINS));
+        (found, (coarse - found).abs())
+    }
+
+    fn found() -> Self {
+        let boundary = |b: f64, tau: f64| {
+            let stable = |a_n: f64| Crossings::of(Groups::new(b, 0.0, a_n)).n_unstable(tau) == 0;
+            let (mut weak, mut strong) = (0.0, 2.0 * b / tau);
+            for _ in 0..100 {
+                let middle = 0.5 * (weak + strong);
+                *(if stable(middle) {
+                    &mut strong
+                } else {
+                    &mut weak
+                }) = middle;
+            }
+            strong * tau / b
+        };
+        let velocity = SHORT_SLOPES.map(|b| {
+            let (shortest, error) = Self::shortest_at(b);
+            (b, shortest, error)
+        });
+        let load = SHORT_SLOPES
+            .iter()
+            .flat_map(|&b| SHORT.map(|tau| (b, tau, boundary(b, tau))));
+        Self {
+            velocity: velocity.to_vec(),
+            load: load.collect(),
+        }
+    }
+
+    /// The least of those delays over its slope, |μ′|N0/κ, and its error.
+    fn least(&self) -> (f64, f64) {
+        let ratios = self.velocity.iter();
+        let ratios = ratios.map(|(b, tau, error)| (tau / b.abs(), error / b.abs()));
+        ratios.fold((f64::INFINITY, 0.0), |one, other| {
+            if other.0 < one.0 { other } else { one }
+        })
+    }
+
+    /// Every slope has a delay below which no gain stabilises, and not one that shrinks faster.
+    fn velocity_verdict(&self) -> Verdict {
+        Verdict::of(!self.velocity.is_empty() && self.least().0 > 1.0)
+    }
+
+    /// How far the gain is from the letter's at a delay, at most.
+    fn off(&self, at: f64) -> f64 {
+        let there = self.load.iter().filter(|(_, tau, _)| *tau == at);
+        there
+            .map(|(_, _, ratio)| (ratio - 1.0).abs())
+            .fold(0.0, f64::max)
+    }
+
+    /// The gain comes near the letter's at least in proportion to the delay.
+    fn load_verdict(&self) -> Verdict {
+        let off = SHORT.map(|tau| self.off(tau));
+        let nearer = off.windows(2).all(|pair| pair[1] < 0.2 * pair[0]);
+        let near = off[SHORT.len() - 1] < SHORT[SHORT.len() - 1];
+        Verdict::of_parts(
+            nearer && near && !self.load.is_empty(),
+            near && !self.load.is_empty(),
+        )
+    }
+
+    fn claims(&self) -> [Claim; 2] {
+        let because = format!(
+            "At every slope there is a shortest delay below which no gain makes sliding stable: \
+             {:.4} |μ′_K|N0/κ or longer. From μ′_K = {} on no delay is stable at all.",
+            self.least().0,
+            LobeControl::Velocity.lobe_end(0).b,
+        );
+        let at = (
+            "paragraph of Eq. (8)",
+            "pure velocity control … is not able to stabilize unstable continuous sliding states",
+        );
+        let how = "All stable delays at 60,000 gains of either sign, up to 1,000 √(κ/M), for each \
+            slope; beyond α_v = κ/(2μ′N0) no crossing leads back to stability.";
+        let shortest = self.velocity.iter().map(|(b, tau, error)| {
+            let meaning = "shortest stable delay at any gain, √(M/κ); none: no gain stabilises";
+            Value::of(format!("shortest at {b}"), meaning, *tau).within(*error)
+        });
+        let least = "shortest stable delay at any gain and slope, |μ′_K|N0/κ";
+        let least = Value::of("shortest", least, self.least().0).within(self.least().1);
+        let velocity = Claim::new("short_velocity", at, self.velocity_verdict(), because, how)
+            .by(std::iter::once(least).chain(shortest))
+            .from(&["fig2a"])
+            .repeat("slipmap point --mu-prime -0.1 --alpha-v=-2 --tau 0.1");
+        let last = SHORT[SHORT.len() - 1];
+        let because = format!(
+            "The gain at which load control begins to stabilise differs from Eq. (8) by a share of \
+             {:.1e} at τ = {}, and of {:.1e} at τ = {last}.",
+            self.off(SHORT[0]),
+            SHORT[0],
+            self.off(last),
+        );
+        let at = (
+            "Eq. (8)",
+            "the stabilization works if α_N < μ′_K N0/(μ_K τ)",
+        );
+        let how = "The gain where the exact count of unstable roots becomes 0, by bisection, over \
+            that of Eq. (8), for nine slopes at each delay.";
+        let off = SHORT.map(|tau| {
+            let meaning = "largest relative difference from Eq. (8)";
+            let off = Value::of(format!("off at {tau}"), meaning, self.off(tau));
+            off.within(1e-14 / tau)
+        });
+        let load = Claim::new("short_load", at, self.load_verdict(), because, how)
+            .by(off.into_iter().rev())
+            .repeat("slipmap point --mu-prime -0.3 --alpha-n=-301 --tau 0.001")
+            .repeat("slipmap point --mu-prime -0.3 --alpha-n=-299 --tau 0.001");
+        [velocity, load]
+    }
+}
+
+/// Everything here.
+pub(super) fn claims(shop: &mut Workshop) -> Result<Vec<Claim>, LetterError> {
+    let mut cells = Vec::new();
+    for source in [&LOBES, &BRACKET] {
+        for (outer, plane) in planes(&shop.map(source)?, Field::NUnstable)? {
+            let stable = plane.cells.iter().filter(|n| **n == 0.0).count();
+            cells.extend(outer.first().map(|(_, b)| (*b, stable)));
+        }
+    }
+    let end = LobeControl::Velocity.lobe_end(0);
+    let limit = VelocityLimit {
+        end: end.b,
+        place: (end.gain, end.tau),
+        cells,
+    };
+    shop.step("the weakest gains of load control, and short delays")?;
+    let mut claims = vec![limit.claim()];
+    claims.extend(LoadGains::found().claims());
+    claims.extend(ShortDelays::found().claims());
+    Ok(claims)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_limit_needs_the_tangency_and_both_maps() {
+        let found = VelocityLimit {
+            end: -0.725_636,
+            place: (-0.315, 4.36),
+            cells: vec![(-0.7, 500), (-0.7256, 7), (-0.7257, 0)],
+        };
+        assert_eq!(found.verdict(), Verdict::Refined);
+        let of = |end: f64, cells: &[(f64, usize)]| {
+            let (cells, place) = (cells.to_vec(), found.place);
+            VelocityLimit { end, place, cells }.verdict()
+        };
+        assert_eq!(of(-0.68, &[(-0.67, 9), (-0.69, 0)]), Verdict::Confirmed);
+        assert_eq!(
+            of(-0.725_636, &[(-0.7256, 7), (-0.7257, 1)]),
+            Verdict::Contradicted
+        );
+        assert_eq!(
+            of(-0.725_636, &[(-0.7256, 0), (-0.7257, 0)]),
+            Verdict::Contradicted
+        );
+        assert_eq!(of(-0.8, &[(-0.79, 7), (-0.81, 0)]), Verdict::Contradicted);
+    }
+
+    #[test]
+    fn load_control_needs_a_stable_delay_everywhere_and_growing_gains() {
+        let row = |b: f64, negative: f64| LoadGain {
+            b,
+            negative,
+            stable: true,
+            positive: f64::INFINITY,
+        };
+        let mut found = LoadGains {
+            rows: vec![row(-0.1, -0.1), row(-0.2, -0.3), row(-0.3, -0.5)],
+        };
+        assert_eq!(
+            (found.always(), found.grows()),
+            (Verdict::Confirmed, Verdict::Confirmed)
+        );
+        found.rows[2].positive = 0.2;
+        assert_eq!(found.grows(), Verdict::Refined);
+        found.rows[1].negative = -0.05;
+        found.rows[1].stable = false;
+        assert_eq!(
+            (found.always(), found.grows()),
+            (Verdict::Contradicted, Verdict::Contradicted)
+        );
+    }
+
+    #[test]
+    fn short_delays_are_judged_by_how_they_come_near() {
+        let load = |power: i32| {
+            let rows = SHORT.map(|tau| (-0.1, tau, 1.0 + 0.5 * tau.powi(power)));
+            rows.to_vec()
+        };
+        let of = |shortest: f64, load: Vec<(f64, f64, f64)>| {
+            let velocity = vec![(-0.1, 2.0, 0.0), (-0.2, shortest, 0.0)];
+            let found = ShortDelays { velocity, load };
+            (found.velocity_verdict(), found.load_verdict())
+        };
+        assert_eq!(of(1.5, load(1)), (Verdict::Confirmed, Verdict::Confirmed));
+        assert_eq!(
+            of(f64::INFINITY, load(2)),
+            (Verdict::Confirmed, Verdict::Confirmed)
+        );
+        assert_eq!(
+            of(0.1, load(0)),
+            (Verdict::Contradicted, Verdict::Contradicted)
+        );
+        let mut uneven = load(2);
+        uneven[1].2 = 1.0 + 1e-6;
+        assert_eq!(of(1.5, uneven).1, Verdict::Refined);
+    }
+}

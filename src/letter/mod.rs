@@ -1,0 +1,161 @@
+//! The letter, reproduced: every claim of F.-J. Elmer, *Controlling friction* (1997), computed
+//! again, with a verdict that follows from what was computed.
+//!
+//! ```text
+//! sweeps and cases → [workshop] maps, traces, pictures → evidence: plain numbers
+//!                  → [claim] claims with verdicts → [page] one page of HTML, or JSON
+//! ```
+//!
+//! - `stability`, `limits`: linear stability, the letter's Fig. 2; where controls end, short delays
+//! - `roots`: characteristic roots, their bounds and how fast they decay
+//! - `motions`: the motions of its Fig. 3, what becomes of stick-slip, basins
+//! - `robustness`, `measures`: critical velocities at finite delays; both controls compared
+//! - `short_delay`: Coulomb friction as the delay vanishes, its Fig. 4
+//!
+//! Each of these has structures of evidence, filled by a run. A claim is a pure function of one of
+//! them: the same numbers, the same verdict.
+
+mod claim;
+mod limits;
+mod measures;
+mod motions;
+mod page;
+mod robustness;
+mod roots;
+mod short_delay;
+mod stability;
+mod workshop;
+
+use std::path::{Path, PathBuf};
+
+use serde::Serialize;
+use utoipa::ToSchema;
+
+use crate::model::ModelError;
+use crate::report::picture::PictureError;
+use crate::store::StoreError;
+use crate::sweep::cells::trace::TraceError;
+use crate::sweep::{RunError, SpecError};
+pub use claim::{Claim, Value, Verdict};
+pub use page::GENERATOR;
+pub use workshop::{Figure, Workshop};
+
+/// The letter with what this program finds.
+#[derive(Debug, Clone, PartialEq, Serialize, ToSchema)]
+pub struct Reproduction {
+    /// Every claim, linear stability first.
+    pub claims: Vec<Claim>,
+    /// The maps and traces behind them.
+    pub figures: Vec<Figure>,
+}
+
+/// Why the letter could not be reproduced.
+#[derive(Debug, thiserror::Error)]
+pub enum LetterError {
+    /// It was stopped.
+    #[error("interrupted")]
+    Stopped,
+    /// A sweep or a case is not understood, which is a fault of the program.
+    #[error("{name}: {error}; this is a fault of slipmap")]
+    Spec {
+        /// The name of the sweep or case.
+        name: &'static str,
+        /// What is wrong.
+        error: SpecError,
+    },
+    /// A file is there that this program did not make, or made from something else.
+    #[error("{} is already there, and not of this run", path.display())]
+    Foreign {
+        /// The file.
+        path: PathBuf,
+    },
+    /// A map could not be computed.
+    #[error(transparent)]
+    Run(RunError<StoreError>),
+    /// A motion could not be followed.
+    #[error(transparent)]
+    Trace(TraceError),
+    /// A picture could not be drawn.
+    #[error(transparent)]
+    Picture(#[from] PictureError),
+    /// A file could not be read or written.
+    #[error(transparent)]
+    Store(#[from] StoreError),
+    /// The model refuses a value, which is a fault of the program.
+    #[error(transparent)]
+    Model(#[from] ModelError),
+}
+
+impl LetterError {
+    fn spec(name: &'static str) -> impl Fn(SpecError) -> Self {
+        move |error| Self::Spec { name, error }
+    }
+
+    fn io(action: &'static str, path: &Path) -> impl Fn(std::io::Error) -> Self {
+        let path = path.to_owned();
+        move |source| {
+            let path = path.clone();
+            Self::Store(StoreError::Io {
+                action,
+                path,
+                source,
+            })
+        }
+    }
+}
+
+impl From<RunError<StoreError>> for LetterError {
+    fn from(error: RunError<StoreError>) -> Self {
+        match error {
+            RunError::Interrupted => Self::Stopped,
+            other => Self::Run(other),
+        }
+    }
+}
+
+impl From<TraceError> for LetterError {
+    fn from(error: TraceError) -> Self {
+        match error {
+            TraceError::Stopped => Self::Stopped,
+            other => Self::Trace(other),
+        }
+    }
+}
+
+/// Reproduces the letter.
+///
+/// # Errors
+/// When the run is stopped, the folder cannot be written to or holds other files of the same names,
+/// or a map cannot be computed.
+pub fn reproduce(mut workshop: Workshop) -> Result<Reproduction, LetterError> {
+    let shop = &mut workshop;
+    shop.look(&stability::SOURCES)?;
+    shop.look(&limits::SOURCES)?;
+    shop.look(&motions::SOURCES)?;
+    shop.look(&robustness::SOURCES)?;
+    shop.look(&short_delay::SOURCES)?;
+    let mut claims = roots::claims(shop)?;
+    claims.extend(stability::claims(shop)?);
+    claims.extend(limits::claims(shop)?);
+    claims.extend(motions::claims(shop)?);
+    claims.extend(robustness::claims(shop)?);
+    claims.extend(short_delay::claims(shop)?);
+    shop.step("the page")?;
+    let made = workshop.made;
+    for claim in &mut claims {
+        let commands = claim.evidence.iter().filter_map(|name| made.get(name));
+        let commands: Vec<_> = commands.map(|figure| figure.command.clone()).collect();
+        claim.commands.splice(0..0, commands);
+    }
+    let figures = made.into_values().collect();
+    Ok(Reproduction { claims, figures })
+}
+
+impl Reproduction {
+    /// How many claims have a verdict.
+    #[must_use]
+    pub fn with(&self, verdict: Verdict) -> usize {
+        let same = self.claims.iter().filter(|claim| claim.verdict == verdict);
+        same.count()
+    }
+}

@@ -1,0 +1,378 @@
+//! Motions: the letter's Fig. 3, what becomes of stick-slip elsewhere, and basins of attraction.
+
+use super::LetterError;
+use super::claim::{Claim, Value, Verdict};
+use super::workshop::{Source, Workshop, column, planes, source};
+use crate::linear::rightmost::Rightmost;
+use crate::linear::{Crossings, MarginalTolerance};
+use crate::slip::outcome::Outcome;
+use crate::store::MapFile;
+use crate::sweep::input::case_file::CaseSpec;
+use crate::sweep::{Field, Parameter, Trace};
+
+const FIG3A: Source = source!("fig3a");
+const FIG3B: Source = source!("fig3b");
+const AT_FIG3B: Source = source!(
+    "velocity_at_fig3b",
+    quick: [("points = 111", "points = 23"), ("points = 149", "points = 31")]
+);
+const BASIN_A: Source = source!(
+    "basin_fig3a",
+    quick: [("points = 76", "points = 26"), ("points = 81", "points = 27")]
+);
+const BASIN_B: Source = source!(
+    "basin_fig3b",
+    quick: [("points = 76", "points = 26"), ("points = 81", "points = 27")]
+);
+
+/// What the claims here are computed from.
+pub(super) const SOURCES: [&Source; 5] = [&FIG3A, &FIG3B, &AT_FIG3B, &BASIN_A, &BASIN_B];
+
+/// A panel of Fig. 3.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Motion {
+    /// Unstable roots there, the spectral abscissa, and the bound on what lies farther right.
+    unstable: u64,
+    abscissa: f64,
+    margin: f64,
+    /// Sticks before the control begins to act, and when the last one behind it ends.
+    sticks_before: usize,
+    last_release: f64,
+    outcome: Outcome,
+    n_min: f64,
+}
+
+impl Motion {
+    fn of(spec: &CaseSpec, trace: &Trace) -> Result<Self, LetterError> {
+        let (groups, time_unit) = spec.setting.groups()?;
+        let tau = spec.setting.get(Parameter::Tau) / time_unit;
+        let count = Crossings::of(groups).count(tau, MarginalTolerance::default());
+        let found = Rightmost::at(groups, tau, 1, count);
+        let switch_on = spec.case.switch_on;
+        let sticks = trace.sticks();
+        let summary = &trace.summary;
+        Ok(Self {
+            unstable: count.n_unstable,
+            abscissa: found
+                .roots
+                .first()
+                .map_or(f64::NAN, |root| root.lambda.re / time_unit),
+            margin: found.margin,
+            sticks_before: sticks.iter().filter(|stick| stick.0 < switch_on).count(),
+            last_release: switch_on + summary.last_release,
+            outcome: summary.outcome,
+            n_min: summary.n_min,
+        })
+    }
+
+    fn stable(&self) -> bool {
+        self.unstable == 0 && self.abscissa < 0.0
+    }
+
+    fn turns(&self) -> Verdict {
+        Verdict::of(
+            self.sticks_before > 1
+                && self.outcome == Outcome::Sliding
+                && self.last_release.is_finite()
+                && self.n_min > 0.0,
+        )
+    }
+
+    fn claim(&self, name: &'static str, place: &'static str) -> Claim {
+        let because = format!(
+            "The block sticks {} times before the control begins to act, the last stick ends at t \
+             = {:.6}, and the motion is {} in the end. The load stays above {:.4}.",
+            self.sticks_before,
+            self.last_release,
+            self.outcome.name(),
+            self.n_min,
+        );
+        let quotation = "stick-slip oscillations disappear after the control is switched on";
+        let how = "The motion of Eqs. (1) and (2), event by event, by Taylor's method with an \
+            error of 1e-12 in a step, until the linear count and the decay of what is left decide.";
+        let values = [
+            Value::of(
+                "last_release",
+                "when the last stick ends, √(M/κ)",
+                self.last_release,
+            )
+            .within(1e-8),
+            Value::of(
+                "sticks",
+                "sticks before the control acts",
+                self.sticks_before as f64,
+            ),
+            Value::of("n_min", "smallest load since then, N0", self.n_min).within(1e-8),
+        ];
+        Claim::new(name, (place, quotation), self.turns(), because, how)
+            .by(values)
+            .from(&[name])
+    }
+}
+
+/// Both panels: sliding is stable there.
+fn stable_there(panels: &[Motion; 2]) -> Verdict {
+    Verdict::of(panels.iter().all(Motion::stable))
+}
+
+fn stability(panels: &[Motion; 2]) -> Claim {
+    let [a, b] = panels;
+    let because = format!(
+        "No root is unstable at either: disturbances decay at the rates {:.6} and {:.6} √(κ/M).",
+        -a.abscissa, -b.abscissa,
+    );
+    let how = "The exact count, and the rightmost characteristic root with a certificate by the \
+        argument principle that none lies farther right.";
+    let at = (
+        "Fig. 3 and the paragraph below Eq. (8)",
+        "We have confirmed our analytical results by numerical simulations",
+    );
+    let values = [("Fig. 3(a)", a), ("Fig. 3(b)", b)].map(|(name, panel)| {
+        let meaning = "largest real part of a characteristic root, √(κ/M)";
+        let error = panel.margin * panel.abscissa.abs().max(1.0);
+        Value::of(format!("abscissa at {name}"), meaning, panel.abscissa).within(error)
+    });
+    Claim::new("fig3_stable", at, stable_there(panels), because, how)
+        .by(values)
+        .from(&["fig3a", "fig3b"])
+        .repeat(
+            "slipmap point --friction weakening --mu0 0.5 --v-s 0.5 --v0 0.35 --alpha-v=-0.33 \
+             --tau 4.15",
+        )
+}
+
+/// How many cells of a map come to each outcome.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+struct Outcomes([usize; Outcome::ALL.len()]);
+
+impl Outcomes {
+    fn of(map: &MapFile) -> Result<Self, LetterError> {
+        let mut found = Self::default();
+        for number in column(map, Field::Outcome)? {
+            if let Some(count) = found.0.get_mut(number as usize) {
+                *count += usize::from(number.is_finite());
+            }
+        }
+        Ok(found)
+    }
+
+    fn number(&self, outcome: Outcome) -> usize {
+        self.0[outcome as usize]
+    }
+
+    fn cells(&self) -> usize {
+        self.0.iter().sum()
+    }
+
+    fn told(&self) -> String {
+        let some = Outcome::ALL.into_iter().filter(|of| self.number(*of) > 0);
+        let told = some.map(|of| format!("{} {}", self.number(of), of.name()));
+        told.collect::<Vec<_>>().join(", ")
+    }
+}
+
+/// Velocity control at the velocity of Fig. 3(b).
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct NotDestroyed {
+    outcomes: Outcomes,
+    /// Cells in which sliding is stable.
+    stable: usize,
+}
+
+impl NotDestroyed {
+    fn verdict(&self) -> Verdict {
+        let (slid, of) = (
+            self.outcomes.number(Outcome::Sliding),
+            self.outcomes.cells(),
+        );
+        let stick_slip = 2 * self.outcomes.number(Outcome::StickSlip) > of;
+        Verdict::of_parts(
+            of > 0 && slid == 0 && stick_slip,
+            100 * slid < of && stick_slip,
+        )
+    }
+
+    fn claim(&self) -> Claim {
+        let slid = self.outcomes.number(Outcome::Sliding);
+        let because = format!(
+            "Wherever velocity control is switched on at this velocity, {slid} of {} motions come \
+             to slide ({}); sliding is stable in {} of these cells.",
+            self.outcomes.cells(),
+            self.outcomes.told(),
+            self.stable,
+        );
+        let at = (
+            "paragraph below Eq. (8)",
+            "stick-slip motion can not be destroyed by pure velocity control",
+        );
+        let how = "Motions from uncontrolled stick-slip, control switched on at three phases of \
+            it, over gains and delays; undecided ones are irregular stick-slip, and large positive \
+            gains diverge.";
+        let count = Value::of("sliding", "cells that come to slide", slid as f64);
+        let stable = Value::of(
+            "stable",
+            "cells in which sliding is stable",
+            self.stable as f64,
+        );
+        Claim::new("velocity_at_fig3b", at, self.verdict(), because, how)
+            .by([count, stable])
+            .from(&["velocity_at_fig3b"])
+    }
+}
+
+/// The basins at both panels of Fig. 3.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Basins {
+    velocity: Outcomes,
+    load: Outcomes,
+}
+
+/// A basin that holds this share of the window of uncontrolled stick-slip is quite large.
+const QUITE_LARGE: f64 = 0.5;
+
+impl Basins {
+    fn share(outcomes: &Outcomes) -> f64 {
+        outcomes.number(Outcome::Sliding) as f64 / outcomes.cells() as f64
+    }
+
+    fn verdict(&self) -> Verdict {
+        let shares = [self.velocity, self.load].map(|of| Self::share(&of));
+        Verdict::of_parts(
+            shares.iter().all(|share| *share >= QUITE_LARGE),
+            shares.iter().any(|share| *share >= QUITE_LARGE),
+        )
+    }
+
+    fn claim(&self) -> Claim {
+        let because = format!(
+            "Of all starts in a window that holds the whole cycle of stick-slip, at Fig. 3(a) \
+             {:.1} % come to slide ({}), at Fig. 3(b) {:.1} % ({}).",
+            100.0 * Self::share(&self.velocity),
+            self.velocity.told(),
+            100.0 * Self::share(&self.load),
+            self.load.told(),
+        );
+        let at = (
+            "paragraph below Eq. (8)",
+            "the basin of attraction … can be quite large",
+        );
+        let how = "The outcome from every elongation and velocity of a grid, control acting from \
+            the start; quite large: at least half of the window.";
+        let value = |name: &str, of: &Outcomes| {
+            let (share, cells) = (Self::share(of), of.cells() as f64);
+            // The edge of the basin is one line through the grid.
+            let error = match share {
+                0.0 | 1.0 => 1.0 / cells,
+                _ => 1.0 / cells.sqrt(),
+            };
+            let meaning = "share of the window from which control ends in sliding; error: of a \
+                basin whose edge is as long as one of the window, or of a single cell";
+            Value::of(name, meaning, share).within(error)
+        };
+        Claim::new("basins", at, self.verdict(), because, how)
+            .by([value("basin at Fig. 3(a)", &self.velocity)])
+            .by([value("basin at Fig. 3(b)", &self.load)])
+            .from(&["basin_fig3a", "basin_fig3b"])
+    }
+}
+
+/// Everything here.
+pub(super) fn claims(shop: &mut Workshop) -> Result<Vec<Claim>, LetterError> {
+    let [a, b] = [shop.motion(&FIG3A)?, shop.motion(&FIG3B)?];
+    let panels = [Motion::of(&a.0, &a.1)?, Motion::of(&b.0, &b.1)?];
+    let basins = Basins {
+        velocity: Outcomes::of(&shop.map(&BASIN_A)?)?,
+        load: Outcomes::of(&shop.map(&BASIN_B)?)?,
+    };
+    let map = shop.map(&AT_FIG3B)?;
+    let stable = planes(&map, Field::NUnstable)?;
+    let stable = stable.iter().flat_map(|(_, plane)| &plane.cells);
+    let not_destroyed = NotDestroyed {
+        outcomes: Outcomes::of(&map)?,
+        stable: stable.filter(|n| **n == 0.0).count(),
+    };
+    Ok(vec![
+        panels[0].claim("fig3a", "Fig. 3(a)"),
+        panels[1].claim("fig3b", "Fig. 3(b)"),
+        stability(&panels),
+        basins.claim(),
+        not_destroyed.claim(),
+    ])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const MOTION: Motion = Motion {
+        unstable: 0,
+        abscissa: -0.1,
+        margin: 1e-8,
+        sticks_before: 7,
+        last_release: 97.0,
+        outcome: Outcome::Sliding,
+        n_min: 0.5,
+    };
+
+    #[test]
+    fn a_motion_has_to_stick_before_and_slide_in_the_end() {
+        assert_eq!(MOTION.turns(), Verdict::Confirmed);
+        let others = [
+            Motion {
+                sticks_before: 0,
+                ..MOTION
+            },
+            Motion {
+                outcome: Outcome::StickSlip,
+                ..MOTION
+            },
+            Motion {
+                n_min: 0.0,
+                ..MOTION
+            },
+        ];
+        for other in others {
+            assert_eq!(other.turns(), Verdict::Contradicted, "{other:?}");
+        }
+        let unstable = Motion {
+            unstable: 2,
+            ..MOTION
+        };
+        assert_eq!(stable_there(&[MOTION; 2]), Verdict::Confirmed);
+        assert_eq!(stable_there(&[MOTION, unstable]), Verdict::Contradicted);
+    }
+
+    fn outcomes(sliding: usize, stick_slip: usize) -> Outcomes {
+        let mut found = Outcomes::default();
+        found.0[Outcome::Sliding as usize] = sliding;
+        found.0[Outcome::StickSlip as usize] = stick_slip;
+        found
+    }
+
+    #[test]
+    fn no_motion_may_come_to_slide_under_velocity_control() {
+        let of = |sliding, stick_slip| {
+            let outcomes = outcomes(sliding, stick_slip);
+            NotDestroyed {
+                outcomes,
+                stable: 3,
+            }
+            .verdict()
+        };
+        assert_eq!(of(0, 1000), Verdict::Confirmed);
+        assert_eq!(of(3, 1000), Verdict::Refined);
+        assert_eq!(of(50, 1000), Verdict::Contradicted);
+        assert_eq!(of(0, 0), Verdict::Contradicted);
+    }
+
+    #[test]
+    fn basins_are_judged_by_their_shares() {
+        let of = |velocity, load| {
+            let [velocity, load] = [velocity, load].map(|sliding| outcomes(sliding, 10 - sliding));
+            Basins { velocity, load }.verdict()
+        };
+        assert_eq!(of(10, 6), Verdict::Confirmed);
+        assert_eq!(of(10, 4), Verdict::Refined);
+        assert_eq!(of(1, 4), Verdict::Contradicted);
+    }
+}

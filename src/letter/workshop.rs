@@ -1,0 +1,331 @@
+//! Maps and traces behind claims: computed into files of a folder, drawn, and read.
+
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use serde::Serialize;
+use utoipa::ToSchema;
+
+use super::LetterError;
+use crate::maps::maker::{self, Job};
+use crate::report::picture::{self, PictureOptions};
+use crate::slip::stop::Stop;
+use crate::store::describe::Provenance;
+use crate::store::map_file::Plane;
+use crate::store::schema::root;
+use crate::store::{MapFile, Output, TraceFile, trace_file};
+use crate::sweep::cells::samples::Most;
+use crate::sweep::cells::trace::MOST_SAMPLES;
+use crate::sweep::events::Attended;
+use crate::sweep::{CaseSpec, Field, Parameter, Plan, SweepSpec, Trace};
+
+/// A sweep or a case behind claims.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Source {
+    /// Its name: that of its file below `sweeps`.
+    pub name: &'static str,
+    /// The text of that file.
+    pub text: &'static str,
+    /// What is replaced in it, since the whole would take too long for a page.
+    pub always: &'static [(&'static str, &'static str)],
+    /// What is replaced in it in a quick run.
+    pub quick: &'static [(&'static str, &'static str)],
+}
+
+impl Source {
+    /// The text that is run.
+    fn text(&self, quick: bool) -> String {
+        let replaced = self.always.iter();
+        let replaced = replaced.chain(self.quick.iter().filter(|_| quick));
+        replaced.fold(self.text.to_owned(), |text, (from, to)| {
+            text.replace(from, to)
+        })
+    }
+}
+
+/// The source `sweeps/NAME.toml`, with what is replaced in it.
+macro_rules! source {
+    ($name:literal) => {
+        source!($name, always: [], quick: [])
+    };
+    ($name:literal, quick: [$($quick:expr),*]) => {
+        source!($name, always: [], quick: [$($quick),*])
+    };
+    ($name:literal, always: [$($always:expr),*], quick: [$($quick:expr),*]) => {
+        $crate::letter::workshop::Source {
+            name: $name,
+            text: include_str!(concat!("../../sweeps/", $name, ".toml")),
+            always: &[$($always),*],
+            quick: &[$($quick),*],
+        }
+    };
+}
+pub(super) use source;
+
+/// A map or a trace behind claims.
+#[derive(Debug, Clone, PartialEq, Serialize, ToSchema)]
+pub struct Figure {
+    /// Its name.
+    pub name: &'static str,
+    /// What it shows.
+    pub title: String,
+    /// The command that makes it.
+    pub command: String,
+    /// The sweep or case file that it was made from.
+    pub source: String,
+    /// Whether that is `sweeps/NAME.toml` as it stands.
+    pub shipped: bool,
+    /// Its map or trace, where that is kept.
+    pub file: Option<String>,
+    /// Its picture, SVG.
+    #[serde(skip)]
+    pub svg: String,
+}
+
+/// How the letter is reproduced.
+pub struct Workshop<'a> {
+    /// The folder that maps, traces, sweeps and pictures are made in.
+    pub folder: &'a Path,
+    /// Whether that stays.
+    pub kept: bool,
+    /// Coarser maps: about a minute on two cores.
+    pub quick: bool,
+    /// Threads that compute.
+    pub threads: usize,
+    /// Who makes the maps.
+    pub provenance: &'a Provenance,
+    /// Who follows the run, and what stops it.
+    pub attended: Attended<'a>,
+    /// Is told of each step.
+    pub tell: &'a dyn Fn(&str),
+    /// What was made so far.
+    pub(super) made: BTreeMap<&'static str, Figure>,
+}
+
+impl<'a> Workshop<'a> {
+    /// A workshop in a folder, which nothing was made in yet.
+    #[must_use]
+    pub fn new(
+        (folder, kept): (&'a Path, bool),
+        quick: bool,
+        threads: usize,
+        provenance: &'a Provenance,
+        attended: Attended<'a>,
+        tell: &'a dyn Fn(&str),
+    ) -> Self {
+        Self {
+            folder,
+            kept,
+            quick,
+            threads,
+            provenance,
+            attended,
+            tell,
+            made: BTreeMap::new(),
+        }
+    }
+
+    /// Ends motions and searches when the run ends.
+    pub(super) fn stop(&self) -> Stop {
+        Stop::when(self.attended.stop)
+    }
+
+    /// Tells of a step, if the run goes on.
+    pub(super) fn step(&self, what: &str) -> Result<(), LetterError> {
+        if self.stop().is_set() {
+            return Err(LetterError::Stopped);
+        }
+        (self.tell)(what);
+        Ok(())
+    }
+
+    /// The map of a sweep, computed and drawn.
+    pub(super) fn map(&mut self, source: &Source) -> Result<MapFile, LetterError> {
+        self.step(&format!("the map {}", source.name))?;
+        let text = source.text(self.quick);
+        let path = self.written(source, &text)?;
+        let spec: SweepSpec = text.parse().map_err(LetterError::spec(source.name))?;
+        let title = spec.title.clone();
+        let plan = Plan::new(spec).map_err(LetterError::spec(source.name))?;
+        replaceable(&path, &plan)?;
+        let job = Job::new(&path, self.threads, self.provenance);
+        maker::make(&Arc::new(plan), &job, self.attended)?;
+        let map = MapFile::open(&path)?;
+        let options = PictureOptions::default();
+        let drawn = picture::draw(&map, &path.with_extension("svg"), &options)?;
+        self.keep(source, (title, text, "run"), drawn)?;
+        Ok(map)
+    }
+
+    /// The motion of a case, computed and drawn.
+    pub(super) fn motion(&mut self, source: &Source) -> Result<(CaseSpec, Trace), LetterError> {
+        self.step(&format!("the motion {}", source.name))?;
+        let text = source.text(self.quick);
+        let path = self.written(source, &text)?;
+        let spec: CaseSpec = text.parse().map_err(LetterError::spec(source.name))?;
+        let most = Most::Refused(MOST_SAMPLES);
+        let trace = Trace::within(&spec, most, &self.stop())?;
+        if self.kept {
+            let known = !there(&path) || TraceFile::open(&path).is_ok_and(|t| t.spec == spec);
+            if !known {
+                return Err(LetterError::Foreign { path });
+            }
+            trace_file::write(&spec, &trace, Output::claim(&path)?, self.provenance)?;
+        }
+        let options = PictureOptions::default();
+        let picture = path.with_extension("svg");
+        let drawn = picture::draw_trace((&spec, &trace), &path, &picture, &options)?;
+        self.keep(source, (spec.title.clone(), text, "simulate"), drawn)?;
+        Ok((spec, trace))
+    }
+
+    /// The place of the file of a source, and whether it is there already.
+    ///
+    /// # Errors
+    /// When another file of that name is, or the map or the picture that belongs to such a file.
+    fn place(&self, source: &Source) -> Result<(PathBuf, bool), LetterError> {
+        let path = self.folder.join(format!("{}.toml", source.name));
+        let text = source.text(self.quick);
+        let same = std::fs::read_to_string(&path).is_ok_and(|there| there == text);
+        let names = ["toml", "h5", "svg"].map(|extension| path.with_extension(extension));
+        match names.into_iter().find(|path| !same && there(path)) {
+            Some(path) => Err(LetterError::Foreign { path }),
+            None => Ok((path, same)),
+        }
+    }
+
+    /// Looks whether files can be made from all these sources.
+    ///
+    /// # Errors
+    /// When a name is taken by another file.
+    pub(super) fn look(&self, sources: &[&Source]) -> Result<(), LetterError> {
+        let mut places = sources.iter().map(|source| self.place(source));
+        places.try_for_each(|place| place.map(drop))
+    }
+
+    /// Writes the text of a source into the folder; the name of its map or trace.
+    fn written(&self, source: &Source, text: &str) -> Result<PathBuf, LetterError> {
+        let (path, same) = self.place(source)?;
+        if !same {
+            std::fs::write(&path, text).map_err(LetterError::io("write", &path))?;
+        }
+        Ok(path.with_extension("h5"))
+    }
+
+    /// Takes note of what was made.
+    fn keep(
+        &mut self,
+        source: &Source,
+        (title, text, command): (String, String, &str),
+        picture: picture::Picture,
+    ) -> Result<(), LetterError> {
+        let svg = String::from_utf8_lossy(picture.bytes()).into_owned();
+        let shipped = text == source.text;
+        let (name, folder) = (source.name, self.folder.display());
+        let file = match () {
+            () if shipped => format!("sweeps/{name}.toml"),
+            () if self.kept => format!("{folder}/{name}.toml"),
+            () => format!("{name}.toml"),
+        };
+        if self.kept {
+            picture.save()?;
+        }
+        let figure = Figure {
+            name,
+            title,
+            command: format!("slipmap {command} {file}"),
+            source: text,
+            shipped,
+            file: self.kept.then(|| format!("{folder}/{name}.h5")),
+            svg,
+        };
+        self.made.insert(name, figure);
+        Ok(())
+    }
+}
+
+/// Whether anything has that name.
+fn there(path: &Path) -> bool {
+    path.symlink_metadata().is_ok()
+}
+
+/// A map that is there is replaced only if it is one of the same sweep.
+fn replaceable(path: &Path, plan: &Plan) -> Result<(), LetterError> {
+    if !there(path) {
+        return Ok(());
+    }
+    let map = MapFile::open(path);
+    let same = map
+        .is_ok_and(|map| map.root_text(root::PLAN_HASH).as_deref() == Some(plan.hash().as_str()));
+    match same {
+        true => Ok(()),
+        false => Err(LetterError::Foreign {
+            path: path.to_owned(),
+        }),
+    }
+}
+
+/// The values of the axes before a plane.
+type Place = Vec<(Parameter, f64)>;
+
+/// The planes of a field over the last two axes of a map, with the values of the axes before them.
+pub(super) fn planes(map: &MapFile, field: Field) -> Result<Vec<(Place, Plane)>, LetterError> {
+    let axes = map.axes();
+    let of = axes.len();
+    let plane = (of.saturating_sub(2), of - 1);
+    let outer = &axes[..plane.0];
+    let mut found = Vec::new();
+    for number in 0..outer.iter().map(|axis| axis.values.len()).product() {
+        let (mut index, mut left) = (vec![0; of], number);
+        for (place, axis) in index.iter_mut().zip(outer).rev() {
+            *place = left % axis.values.len();
+            left /= axis.values.len();
+        }
+        let values = index.iter().zip(outer);
+        let values = values.map(|(&i, axis)| (axis.parameter, axis.values[i]));
+        found.push((
+            values.collect(),
+            map.plane(field, &index, plane, usize::MAX)?,
+        ));
+    }
+    Ok(found)
+}
+
+/// All cells of a field in the order of the axes.
+pub(super) fn column(map: &MapFile, field: Field) -> Result<Vec<f64>, LetterError> {
+    let planes = planes(map, field)?;
+    Ok(planes.into_iter().flat_map(|(_, p)| p.cells).collect())
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::letter::{limits, motions, robustness, short_delay, stability};
+
+    /// What is replaced stands there, and what is left is a sweep or a case.
+    #[test]
+    fn every_source_is_read_in_full_and_quick() {
+        let sources = [
+            &stability::SOURCES[..],
+            &limits::SOURCES,
+            &motions::SOURCES,
+            &robustness::SOURCES,
+            &short_delay::SOURCES,
+        ];
+        let mut replaced = 0;
+        for source in sources.concat() {
+            for (from, _) in source.always.iter().chain(source.quick) {
+                assert!(source.text.contains(from), "{}: {from}", source.name);
+                replaced += 1;
+            }
+            for quick in [false, true] {
+                let text = source.text(quick);
+                match crate::sweep::input::case_file::is_case_file(&text) {
+                    true => drop(text.parse::<crate::sweep::CaseSpec>().unwrap()),
+                    false => drop(text.parse::<crate::sweep::SweepSpec>().unwrap()),
+                }
+            }
+        }
+        assert!(replaced > 10, "{replaced}");
+    }
+}

@@ -1,0 +1,488 @@
+//! The letter, reproduced by the real program: every verdict with its values, what is behind them,
+//! the page, and what is refused.
+
+#[path = "common/program.rs"]
+mod program;
+
+use std::collections::BTreeMap;
+use std::path::Path;
+use std::process::{Child, Command, Output, Stdio};
+use std::sync::OnceLock;
+use std::time::{Duration, Instant};
+
+use program::{Folder, err, expect, out};
+use serde_json::Value;
+use slipmap::linear::lobes::LobeControl;
+use slipmap::store::{MapFile, TraceFile};
+
+/// A quick run with everything kept, and one on one thread for people.
+struct Runs {
+    folder: Folder,
+    json: Value,
+    text: String,
+}
+
+fn runs() -> &'static Runs {
+    static RUNS: OnceLock<Runs> = OnceLock::new();
+    RUNS.get_or_init(|| {
+        let folder = Folder::new();
+        let start = |args: &[&str]| {
+            let mut command =
+                folder.command(&[&["reproduce", "--quick", "--quiet"], args].concat());
+            let command = command.stdout(Stdio::piped()).stderr(Stdio::piped());
+            command.spawn().unwrap()
+        };
+        let kept = start(&["--json", "-o", "letter.html", "--keep", "kept"]);
+        let told = start(&["--threads", "1", "-o", "other.html"]);
+        let done = |child: Child| {
+            let output = child.wait_with_output().unwrap();
+            assert!(output.status.success(), "{}", err(&output));
+            assert_eq!(err(&output), "");
+            out(&output)
+        };
+        let json = serde_json::from_str(&done(kept)).unwrap();
+        let text = done(told);
+        Runs { folder, json, text }
+    })
+}
+
+fn claims() -> BTreeMap<&'static str, &'static Value> {
+    let claims = runs().json["claims"].as_array().unwrap();
+    let named = claims
+        .iter()
+        .map(|claim| (claim["name"].as_str().unwrap(), claim));
+    named.collect()
+}
+
+/// A value of a claim and its error.
+fn value(claim: &str, name: &str) -> (f64, f64) {
+    let values = claims()[claim]["values"].as_array().unwrap();
+    let found = values.iter().find(|value| value["name"] == name);
+    let found = found.unwrap_or_else(|| panic!("{claim} has {name}: {values:?}"));
+    let error = found["error"].as_f64().unwrap_or(0.0);
+    (found["value"].as_f64().unwrap(), error)
+}
+
+/// All claims, verdicts, and the value that says most of each: from other programs, closed forms, or, where
+/// nothing else gives it, as it was when it was looked at; and how far off it may be.
+const EXPECTED: [(&str, &str, &str, f64, f64); 28] = [
+    ("uncontrolled", "confirmed", "weakening", 2.0, 0.0),
+    ("finite", "confirmed", "agree", 2000.0, 0.0),
+    ("root_bounds", "confirmed", "nearest", 0.954_693_725, 1e-8),
+    ("crossings", "confirmed", "residual", 0.0, 1e-12),
+    (
+        "larger_delays",
+        "confirmed",
+        "load control -0.1: region 1",
+        0.508_987_32,
+        1e-7,
+    ),
+    ("fig2a", "confirmed", "area at -0.6", 0.0427, 1e-4),
+    ("fig2b", "confirmed", "area at -0.05", 10.077, 1e-2),
+    ("smaller_area", "refined", "ratio at -0.05", 1.171, 1e-2),
+    (
+        "velocity_limit",
+        "refined",
+        "b_star",
+        -0.725_635_939_603,
+        1e-12,
+    ),
+    ("load_always", "confirmed", "slopes", 400.0, 0.0),
+    (
+        "minimal_load_gain",
+        "confirmed",
+        "gain at -0.1",
+        0.095,
+        1e-15,
+    ),
+    (
+        "short_velocity",
+        "confirmed",
+        "shortest at -0.1",
+        0.7947,
+        1e-3,
+    ),
+    ("short_load", "confirmed", "off at 0.0001", 0.0, 1e-8),
+    ("fig3a", "confirmed", "last_release", 97.029_009_396, 1e-8),
+    ("fig3b", "confirmed", "last_release", 76.277_483_031, 1e-8),
+    (
+        "fig3_stable",
+        "confirmed",
+        "abscissa at Fig. 3(a)",
+        -0.035_905_005,
+        1e-8,
+    ),
+    ("basins", "confirmed", "basin at Fig. 3(a)", 1.0, 0.0),
+    ("velocity_at_fig3b", "confirmed", "sliding", 0.0, 0.0),
+    (
+        "critical_velocity",
+        "confirmed",
+        "v_c at Fig. 3(b)",
+        0.021_540,
+        1e-6,
+    ),
+    (
+        "less_robust",
+        // Not by the largest latency margin at two slopes: delays of velocity control are longer.
+        "refined",
+        "measures",
+        21.0,
+        0.0,
+    ),
+    // SciPy's DOP853.
+    (
+        "rule_of_thumb",
+        "confirmed",
+        "at the lowest smooth velocity",
+        2.0057,
+        4e-4,
+    ),
+    ("arbitrarily_small", "confirmed", "settings", 6.0, 0.0),
+    ("coulomb_stable", "confirmed", "unstable", 0.0, 0.0),
+    ("overdamped", "confirmed", "vc", 0.0, 0.0),
+    ("fig4", "confirmed", "off", 0.0, 1e-5),
+    (
+        "weak_control",
+        "confirmed",
+        "error at γ = 0.00000001",
+        0.0,
+        1e-4,
+    ),
+    (
+        "strong_control",
+        "confirmed",
+        "error at γ = 0.99999",
+        0.0,
+        1e-4,
+    ),
+    ("lift_off", "confirmed", "on the curves", 7.793_072, 1e-5),
+];
+
+#[test]
+fn every_verdict_with_its_value() {
+    let claims = claims();
+    assert_eq!(claims.len(), EXPECTED.len(), "{:?}", claims.keys());
+    for (name, verdict, of, expected, within) in EXPECTED {
+        let claim = claims[name];
+        assert_eq!(claim["verdict"], verdict, "{claim}");
+        let (found, _) = value(name, of);
+        assert!((found - expected).abs() <= within, "{name} {of}: {found}");
+        for key in ["place", "quotation", "because", "how"] {
+            assert!(claim[key].as_str().unwrap().len() > 5, "{claim}");
+        }
+        let lists = ["commands", "evidence"].map(|key| claim[key].as_array().unwrap().len());
+        // What needs nothing but closed forms at many settings has no command of its own.
+        let closed = ["finite", "root_bounds", "crossings"].contains(&name);
+        assert!(closed || lists[0] > 0, "{claim}");
+    }
+    assert_eq!(runs().json["inputs"]["quick"], true);
+}
+
+/// The end of velocity control, as the tangency has it and between two maps; both numbers side by
+/// side.
+#[test]
+fn the_limit_stands_beside_the_letters() {
+    let end = LobeControl::Velocity.lobe_end(0).b;
+    assert!((end - -0.725_635_939_603).abs() < 1e-12);
+    let values = claims()["velocity_limit"]["values"].as_array().unwrap();
+    assert_eq!(values[0]["value"], end);
+    assert_eq!(values[0]["letter"], -0.68);
+    let cells = |b: f64| value("velocity_limit", &format!("stable cells at {b}")).0;
+    assert!(-0.7257 < end && end < -0.7256);
+    assert!(cells(-0.7256) > 1000.0);
+    assert_eq!(cells(-0.7257), 0.0);
+    for b in [-0.69, -0.7, -0.72] {
+        assert!(cells(b) > 100.0, "{b}");
+    }
+    let evidence = &claims()["velocity_limit"]["evidence"];
+    assert_eq!(evidence[0], "velocity_limit");
+}
+
+/// Known velocities, errors and times, within the errors that stand beside them.
+#[test]
+fn values_are_within_their_errors() {
+    for (claim, name, known) in [
+        ("critical_velocity", "v_c at Fig. 3(a)", 0.344_467_f64),
+        ("critical_velocity", "v_c at Fig. 3(b)", 0.021_540),
+        ("fig3a", "last_release", 97.029_009_396),
+        ("fig3b", "last_release", 76.277_483_031),
+        ("rule_of_thumb", "lowest", 0.221_303_8),
+        ("rule_of_thumb", "at Fig. 3(a)", 4.920_011_75 / 3.975_495_63),
+        (
+            "rule_of_thumb",
+            "at Fig. 3(b), load control",
+            15.855_550_61 / 3.446_001_38,
+        ),
+        ("minimal_load_gain", "gain at -1", 1.5),
+        ("minimal_load_gain", "gain at -5", 17.5),
+        ("minimal_load_gain", "positive_until", -0.356_930_047),
+        (
+            "larger_delays",
+            "velocity control -0.1: region 2",
+            10.733_306_8,
+        ),
+    ] {
+        let (found, error) = value(claim, name);
+        assert!(
+            error > 0.0 && error < 1e-3 * known.abs(),
+            "{claim} {name}: {error}"
+        );
+        // Known to nine digits at best.
+        assert!(
+            (found - known).abs() <= error + 1e-9 * known.abs().max(1.0),
+            "{name}: {found}"
+        );
+    }
+    for slope in ["-0.05", "-0.1", "-0.2"] {
+        for figure in ["fig2a", "fig2b"] {
+            let (area, error) = value(figure, &format!("area at {slope}"));
+            assert!(error < 1e-3 * area, "{figure} {slope}: {area} {error}");
+        }
+    }
+    let off = |tau: &str| value("short_load", &format!("off at {tau}")).0;
+    assert!(off("0.001") < 0.011 * off("0.01") && off("0.01") < 0.011 * off("0.1"));
+}
+
+/// What every figure shows is what its sweep or case gives by itself.
+#[test]
+fn figures_are_those_of_the_sweeps() {
+    let runs = runs();
+    let folder = Folder::new();
+    let mut shipped = 0;
+    for figure in runs.json["figures"].as_array().unwrap() {
+        let name = figure["name"].as_str().unwrap();
+        let kept = runs.folder.path().join(figure["file"].as_str().unwrap());
+        let source = kept.with_extension("toml");
+        let text = std::fs::read_to_string(&source).unwrap();
+        assert_eq!(figure["source"], text.as_str());
+        let of = format!("{}/sweeps/{name}.toml", env!("CARGO_MANIFEST_DIR"));
+        let same = text == std::fs::read_to_string(&of).unwrap();
+        assert_eq!(figure["shipped"], same, "{name}");
+        let command = figure["command"].as_str().unwrap();
+        if !same {
+            assert_eq!(command, format!("slipmap run kept/{name}.toml"));
+            continue;
+        }
+        shipped += 1;
+        let word = command.split(' ').nth(1).unwrap();
+        assert_eq!(command, format!("slipmap {word} sweeps/{name}.toml"));
+        let output = folder.run(&[word, "--quiet", &of]);
+        assert!(output.status.success(), "{}", err(&output));
+        let alone = folder.path().join(format!("{name}.h5"));
+        if word == "simulate" {
+            let [kept, alone] = [&kept, &alone].map(|path| TraceFile::open(path).unwrap().trace);
+            assert_eq!(kept.samples, alone.samples, "{name}");
+            assert_eq!(kept.events, alone.events, "{name}");
+            continue;
+        }
+        let [kept, alone] = [&kept, &alone].map(|path| MapFile::open(path).unwrap());
+        assert_eq!(kept.fields(), alone.fields());
+        assert_eq!(kept.axes(), alone.axes());
+        let of = kept.axes().len();
+        let plane = (of.saturating_sub(2), of - 1);
+        for field in kept.fields() {
+            for first in 0..if of > 2 {
+                kept.axes()[0].values.len()
+            } else {
+                1
+            } {
+                let mut index = vec![0; of];
+                index[0] = first;
+                let [kept, alone] = [&kept, &alone]
+                    .map(|map| map.plane(*field, &index, plane, usize::MAX).unwrap().cells);
+                // NaN, where there is no value, is no number.
+                let bits = |cells: &[f64]| cells.iter().map(|c| c.to_bits()).collect::<Vec<_>>();
+                assert!(bits(&kept) == bits(&alone), "{name} {}", field.name());
+            }
+        }
+    }
+    assert!(shipped >= 7, "{shipped}");
+}
+
+/// What a browser would load from elsewhere, or run.
+fn loads(page: &str) -> Vec<&str> {
+    let of = |mark: &'static str| page.match_indices(mark).map(move |(at, _)| (at, mark));
+    let marks = [
+        "src=", "<script", "<link", "@import", "url(", "<iframe", "<object", "<use", " on",
+    ];
+    let loads = marks.into_iter().flat_map(of).filter(|(at, mark)| {
+        // Attributes that begin with `on` run; words of the text do not.
+        *mark != " on"
+            || page[at + 3..].split_once('=').is_some_and(|(name, rest)| {
+                name.chars().all(|c| c.is_ascii_lowercase()) && rest.starts_with('"')
+            })
+    });
+    let outside = of("href=\"").filter(|(at, mark)| !page[at + mark.len()..].starts_with('#'));
+    let shown = |at: usize| page[at..].split(['>', '\n']).next().unwrap_or_default();
+    loads.chain(outside).map(|(at, _)| shown(at)).collect()
+}
+
+#[test]
+fn the_page_stands_alone() {
+    let runs = runs();
+    let page = std::fs::read_to_string(runs.folder.path().join("letter.html")).unwrap();
+    assert_eq!(loads(&page), [""; 0]);
+    for bad in [
+        "<img src=\"x\">",
+        "<a href=\"http://x\">",
+        "<b onclick=\"x\">",
+        "<script>",
+    ] {
+        assert_eq!(loads(bad).len(), 1, "{bad}");
+    }
+    let figures = runs.json["figures"].as_array().unwrap();
+    assert_eq!(page.matches("<svg ").count(), figures.len());
+    for claim in runs.json["claims"].as_array().unwrap() {
+        let name = claim["name"].as_str().unwrap();
+        assert!(page.contains(&format!("<section id=\"{name}\">")), "{name}");
+        for figure in claim["evidence"].as_array().unwrap() {
+            assert!(page.contains(&format!(
+                "<figure id=\"figure-{}\">",
+                figure.as_str().unwrap()
+            )));
+        }
+    }
+    // On one thread and without a folder that is kept the same but for that folder.
+    let other = std::fs::read_to_string(runs.folder.path().join("other.html")).unwrap();
+    let neutral = |page: &str| {
+        let lines = page.split("<p class=\"made\">").map(|part| {
+            let part = part.split_once("</p>").map_or(part, |(_, rest)| rest);
+            part.replace("kept/", "")
+        });
+        lines.collect::<String>()
+    };
+    let (one, two) = (neutral(&page), neutral(&other));
+    let text = |page: &str| {
+        let parts = page.split("<p><code>").map(|part| {
+            // The names of files that are kept.
+            part.split_once("</code></p>")
+                .map_or(part, |(_, rest)| rest)
+                .to_owned()
+        });
+        parts.collect::<String>()
+    };
+    assert!(text(&one) == text(&two), "the pages differ");
+}
+
+#[test]
+fn what_is_told() {
+    let mut told = runs().text.clone();
+    // The page's name is the last line.
+    assert!(told.ends_with("other.html\n"), "{told}");
+    told.truncate(told.len() - "other.html\n".len());
+    insta::assert_snapshot!("told", told);
+}
+
+fn refused(folder: &Folder, args: &[&str], says: &str) -> Output {
+    let before = folder.files();
+    let output = folder.run(&[&["reproduce", "--quick"], args].concat());
+    expect(&output, 2, says);
+    assert_eq!(out(&output), "");
+    assert_eq!(folder.files(), before);
+    output
+}
+
+/// Nothing is computed for a page that cannot be written, and nobody's file is replaced.
+#[test]
+fn what_cannot_be_written_is_refused_at_once() {
+    let folder = Folder::with(&[("notes.html", "<p>mine</p>"), ("file", "")]);
+    let start = Instant::now();
+    refused(
+        &folder,
+        &["-o", "nowhere/letter.html"],
+        "nowhere is no folder",
+    );
+    refused(&folder, &["-o", "file/letter.html"], "file is no folder");
+    refused(
+        &folder,
+        &["-o", "letter.pdf"],
+        "letter.pdf is no name for a page",
+    );
+    refused(
+        &folder,
+        &["-o", "notes.html"],
+        "notes.html is already there, and no page of slipmap",
+    );
+    refused(
+        &folder,
+        &["--json", "--keep", "no/where"],
+        "the folder cannot be made",
+    );
+    refused(
+        &folder,
+        &["--json", "--keep", "file"],
+        "the folder cannot be made",
+    );
+    std::fs::create_dir(folder.path().join("folder.html")).unwrap();
+    refused(&folder, &["-o", "folder.html"], "no page of slipmap");
+    let notes = std::fs::read_to_string(folder.path().join("notes.html")).unwrap();
+    assert_eq!(notes, "<p>mine</p>");
+    assert!(
+        start.elapsed() < Duration::from_secs(20),
+        "{:?}",
+        start.elapsed()
+    );
+    // Its own earlier page is replaced, which takes a run: see the other tests.
+}
+
+/// A folder with somebody's files is left as it is; so is one that must not be written to.
+#[test]
+fn a_folder_that_is_kept_holds_no_others_files() {
+    for (name, text) in [
+        ("fig2a.toml", "title = \"mine\"\n"),
+        ("fig2a.h5", "mine"),
+        ("fig2a.svg", "<svg/>"),
+    ] {
+        let folder = Folder::new();
+        let kept = folder.path().join("kept");
+        std::fs::create_dir(&kept).unwrap();
+        std::fs::write(kept.join(name), text).unwrap();
+        let output = folder.run(&["reproduce", "--quick", "--json", "--keep", "kept"]);
+        expect(&output, 2, &format!("kept/{name} is already there"));
+        assert_eq!(std::fs::read_to_string(kept.join(name)).unwrap(), text);
+        assert_eq!(out(&output), "");
+    }
+}
+
+/// The folder takes no file: not even for who may write everywhere.
+#[test]
+fn a_folder_that_takes_no_files_is_told() {
+    let folder = Folder::new();
+    if !Path::new("/proc/self").is_dir() {
+        return;
+    }
+    let output = folder.run(&["reproduce", "--quick", "-o", "/proc/self/letter.html"]);
+    expect(&output, 1, "cannot write /proc/self/letter.html");
+}
+
+fn interrupt(child: &Child) {
+    let id = child.id().to_string();
+    assert!(
+        Command::new("kill")
+            .args(["-INT", &id])
+            .status()
+            .unwrap()
+            .success()
+    );
+}
+
+#[test]
+fn a_signal_ends_it_soon_and_leaves_no_page() {
+    let folder = Folder::new();
+    for after in [300, 4000] {
+        let mut command = folder.command(&["reproduce", "-o", "letter.html", "--keep", "kept"]);
+        let child = command.stdout(Stdio::piped()).stderr(Stdio::piped());
+        let child = child.spawn().unwrap();
+        std::thread::sleep(Duration::from_millis(after));
+        interrupt(&child);
+        let start = Instant::now();
+        let output = child.wait_with_output().unwrap();
+        expect(&output, 130, "interrupted: no page is written");
+        assert!(
+            start.elapsed() < Duration::from_secs(15),
+            "{:?}",
+            start.elapsed()
+        );
+        assert_eq!(folder.files(), ["kept"]);
+    }
+}
