@@ -206,7 +206,8 @@ mod tests {
         /// Whatever the variables and the rests are, the result of the numbers lies in that of the
         /// enclosures.
         #[test]
-        fn results_are_enclosed(x in numbers(), y in numbers(), e in prop::array::uniform2(-1.0..1.0),
+        fn results_are_enclosed(x in numbers(), y in numbers(),
+                                e in prop::array::uniform2(-1.0..1.0),
                                 turn in 0.0..6.3, part in 0.0..1.0) {
             let rest = |z: &Number| Complex64::from_polar(part * z.rest, turn);
             let (a, b) = (at(&x, e) + rest(&x), at(&y, e) + rest(&y));
