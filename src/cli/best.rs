@@ -17,7 +17,7 @@ use utoipa::ToSchema;
 use super::failure::Failure;
 use super::json::{self, AnswerSchema, Inputs};
 use super::output::tell_dimensionless;
-use super::parameters::ParameterArgs;
+use super::parameters::{AtAnyDelay, ParameterArgs};
 use super::say;
 use super::setting;
 
@@ -31,7 +31,7 @@ control from 4(1 + |b|) κ/μ_K below the weakest negative one that
 stabilises, -(|b| + b²/2) κ/μ_K, to 4(1 + |b|) κ/μ_K.")]
 pub(super) struct Args {
     #[command(flatten)]
-    parameters: ParameterArgs,
+    parameters: ParameterArgs<AtAnyDelay>,
     /// The gain that is searched; the other one is given as usual
     #[arg(long, value_enum, default_value_t = Control::Velocity)]
     control: Control,
@@ -47,8 +47,8 @@ pub(super) struct Args {
     /// Longest delay to search
     #[arg(long, allow_hyphen_values = true, value_name = "T")]
     tau_to: Option<f64>,
-    /// Write the best setting to a file that point and vc take with --setting, and simulate as a
-    /// case file
+    /// Write the best setting, if one is stable, to a file that point takes with --setting and,
+    /// with a friction law, vc too, and simulate as a case file
     #[arg(long, value_name = "SETTING.toml")]
     save: Option<PathBuf>,
     /// One JSON object on standard output
@@ -116,6 +116,7 @@ struct OptimumOut {
     abscissa: f64,
     frequency: f64,
     frequencies: Vec<f64>,
+    /// −1/abscissa; null where the setting is not stable.
     relaxation_time: Option<f64>,
     kind: &'static str,
     certified: bool,
@@ -170,6 +171,11 @@ pub(super) fn main(args: &Args) -> Result<(), Failure> {
     let Some(path) = &args.save else {
         return Ok(());
     };
+    if found.overall.relaxation_time().is_none() {
+        let message = format!("{} is not written: no setting is stable", path.display());
+        let help = "other ranges (--alpha-from, --tau-to, …) or the other --control may hold one";
+        return Err(Failure::failed_with_help(message, help));
+    }
     let mut best = setting;
     best.set(args.control.parameter(), found.overall.gain);
     best.set(Parameter::Tau, found.overall.tau);

@@ -10,6 +10,7 @@ mod failure;
 mod info;
 mod info_trace;
 mod json;
+mod kind;
 mod merge;
 mod motion_text;
 mod open;
