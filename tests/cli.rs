@@ -55,7 +55,7 @@ fn run_makes_a_map_and_a_picture_and_goes_on_from_there() {
     expect(
         &folder.run(&["run", "small.toml", "-o", "new.png"]),
         2,
-        "the name of a png picture",
+        "a map is written as HDF5, not as png",
     );
     std::fs::write(
         folder.path().join("re.titled.toml"),
@@ -174,7 +174,7 @@ fn an_output_that_is_no_map_is_not_touched() {
     for fresh in [&["--fresh"][..], &[]] {
         for (name, says) in [
             ("thesis.h5", "no map of slipmap"),
-            ("small.toml", "no map of slipmap"),
+            ("small.toml", "a map is written as HDF5, not as toml"),
             ("folder.h5", "it is a folder"),
         ] {
             let args = [&["run", "small.toml", "-o", name], fresh].concat();
@@ -507,7 +507,7 @@ fn decay_rates_go_through_every_command() {
     expect(
         &folder.run(&["plot", "decay.h5", "--field", "abscissa_9"]),
         2,
-        "abscissa_2 … abscissa_8",
+        "it holds n_unstable, abscissa, frequency,",
     );
     expect(
         &folder.run(&["plot", "decay.h5", "--field", "relaxation_time"]),

@@ -340,7 +340,7 @@ fn samples_and_events_are_those_of_the_trace() {
     assert_eq!(some.column("a"), samples.column("a"));
     for (args, says) in [
         (["--field", "abscissa"], "a trace has no abscissa"),
-        (["--at", "tau=1"], "--at tau has no meaning for a trace"),
+        (["--at", "tau=1"], "--at tau=1 has no meaning for a trace"),
         (["--table", "cells"], "its tables: samples, events"),
     ] {
         expect(
@@ -451,7 +451,7 @@ fn a_text_is_written_whole_or_not_at_all() {
     let folder = with_large_map();
     std::fs::write(folder.path().join("map.csv"), "an older one").unwrap();
     let before = folder.files();
-    let mut command = folder.command(&["export", "map.h5", "-o", "map.csv"]);
+    let mut command = folder.command(&["export", "map.h5", "-o", "map.csv", "--fresh"]);
     command.stdout(Stdio::piped()).stderr(Stdio::piped());
     let child = command.spawn().unwrap();
     let part = folder.path().join(".map.csv.slipmap-part");

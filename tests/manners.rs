@@ -70,6 +70,66 @@ fn names_that_are_nearly_right_are_understood() {
     }
 }
 
+/// What is told is what is possible there.
+#[test]
+fn mistakes_are_answered_where_they_are() {
+    let folder = Folder::with(&[
+        ("small.toml", SMALL),
+        (
+            "weak.toml",
+            &format!("{SMALL}[friction]\nlaw = \"weakning\"\n"),
+        ),
+        ("folow.toml", &format!("protocol = \"folow\"\n{SMALL}")),
+        ("gama.toml", &CASE.replace("alpha_v", "gama")),
+        ("muprime.toml", &CASE.replace("alpha_v", "mu_prim")),
+        ("tt.csv", "# measured\n0, 1.5\n1, 0.4\n"),
+        ("case.toml", CASE),
+    ]);
+    expect(&folder.run(&["run", "small.toml"]), 0, "6 cells");
+    expect(&folder.run(&["simulate", "case.toml"]), 0, "slide");
+    let table = [
+        "point",
+        "--friction",
+        "table",
+        "--table",
+        "tt.csv",
+        "--v0",
+        "1",
+    ];
+    for (args, says) in [
+        (&["run", "weak.toml"][..], "did you mean `weakening`?"),
+        (&["run", "folow.toml"], "did you mean `follow`?"),
+        (&table, "tt.csv:2:4"),
+        (
+            &["plot", "small.h5", "--field", "nope"],
+            "it holds n_unstable",
+        ),
+        (
+            &["plot", "case.h5", "--field", "x"],
+            "a trace of one motion",
+        ),
+        (
+            &["export", "case.h5", "--at", "x=1"],
+            "a trace of one motion",
+        ),
+        (
+            &["export", "small.h5", "--at", "x=1"],
+            "its axes: alpha_v, tau",
+        ),
+    ] {
+        let text = said(&folder, args);
+        assert!(text.contains(says), "{args:?}: {text}");
+    }
+    for file in ["gama.toml", "muprime.toml"] {
+        let text = said(&folder, &["simulate", file]);
+        assert!(text.contains("known here: alpha_v"), "{file}: {text}");
+        assert!(
+            !text.contains("gamma") && !text.contains("mu_prime"),
+            "{text}"
+        );
+    }
+}
+
 #[test]
 fn files_of_another_kind_are_recognised() {
     let folder = Folder::with(&[
@@ -77,15 +137,108 @@ fn files_of_another_kind_are_recognised() {
         ("case.toml", &format!("switch_on = 70.0\n{CASE}")),
     ]);
     expect(&folder.run(&["simulate", "case.toml"]), 0, "slide");
+    expect(&folder.run(&["run", "small.toml"]), 0, "6 cells");
     for (args, says) in [
         (&["run", "case.toml"][..], "`slipmap simulate` takes it"),
         (&["simulate", "small.toml"], "`slipmap run` takes it"),
         (&["status", "case.h5"], "a trace of one motion"),
         (&["point", "--map", "case.h5"], "a trace of one motion"),
-        (&["info", "small.toml"], "it is no HDF5 file"),
+        (&["info", "small.toml"], "small.toml is a sweep file"),
+        (&["plot", "case.toml"], "case.toml is a case file"),
+        (&["export", "case.toml"], "`slipmap plan` and `simulate`"),
+        (&["verify", "small.toml"], "`slipmap plan` and `run` take"),
+        (&["status", "small.toml"], "small.toml is a sweep file"),
+        (&["vc", "--map", "small.toml"], "small.toml is a sweep file"),
+        (&["plan", "small.h5"], "small.h5 is a map, not a sweep file"),
+        (&["run", "small.h5"], "`slipmap info`, `plot`, `export`"),
+        (&["simulate", "small.h5"], "small.h5 is a map, not a case"),
+        (&["simulate", "case.h5"], "case.h5 is the trace of one"),
+        (&["point", "--setting", "small.h5"], "small.h5 is a map"),
+        (&["point", "--setting", "case.toml"], "case.toml is a case"),
+        (&["vc", "--setting", "small.toml"], "small.toml is a sweep"),
     ] {
         let text = said(&folder, args);
         assert!(text.contains(says), "{args:?}: {text}");
+    }
+    // Of a map that was interrupted there are only tiles.
+    let shard = ["run", "small.toml", "-o", "half.h5", "--shard", "1/2"];
+    expect(&folder.run(&shard), 0, "shard 1 of 2 is complete");
+    let cell = ["--map", "half.h5", "--at", "alpha_v=-1", "--at", "tau=1"];
+    let point = folder.run(&[&["point"], &cell[..]].concat());
+    expect(&point, 0, "half.h5 is not complete: ");
+    expect(&point, 0, "continuous sliding is");
+}
+
+/// Flags that a command always refuses are not offered; what is missing is told as it is.
+#[test]
+fn only_what_is_possible_is_offered() {
+    let folder = Folder::with(&[("small.toml", SMALL), ("case.toml", CASE)]);
+    let help = |command: &str| out(&folder.run(&[command, "--help"]));
+    let offers = |command: &str, flag: &str| help(command).contains(&format!("{flag} <"));
+    for command in ["vc", "simulate"] {
+        assert!(!offers(command, "--mu-prime") && !offers(command, "--mu-k"));
+        assert!(!help(command).contains("--mu-prime and"), "{command}");
+        assert!(offers(command, "--v0") && offers(command, "--tau"));
+    }
+    assert!(offers("point", "--mu-prime") && offers("best", "--mu-k"));
+    assert!(offers("point", "--tau") && !offers("best", "--tau"));
+    let law = ["--friction", "weakening", "--mu0", "0.5", "--v-s", "0.5"];
+    let vc = |more: &[&str]| folder.run(&[&["vc"], &law[..], more].concat());
+    assert_eq!(out(&vc(&["--v0", "0.3"])), out(&vc(&[])));
+    expect(&vc(&["--v0", "0.3"]), 0, "--v0 is left aside");
+    expect(&folder.run(&["run", "small.toml"]), 0, "6 cells");
+    let cell = ["--map", "small.h5", "--at", "alpha_v=-1", "--at", "tau=1"];
+    for (command, says) in [
+        ("vc", "a cell of this map has no friction law"),
+        ("simulate", "a cell of this map has no friction law"),
+    ] {
+        let text = said(&folder, &[&[command], &cell[..]].concat());
+        assert!(text.contains(says) && !text.contains("delay"), "{text}");
+    }
+    for args in [
+        &["vc", "--mu-prime", "-0.3", "--tau", "1"][..],
+        &["simulate", "--mu-prime", "-0.3"],
+        &["simulate", "--v0", "0.3"],
+    ] {
+        let text = said(&folder, args);
+        assert!(text.contains("--friction weakening"), "{args:?}: {text}");
+        assert!(!text.contains("either --mu-prime"), "{args:?}: {text}");
+    }
+    let idle = CASE.replace("alpha_v = -0.33\n", "");
+    std::fs::write(folder.path().join("idle.toml"), idle).unwrap();
+    for command in ["plan", "simulate"] {
+        let warned = folder.run(&[command, "idle.toml"]);
+        expect(&warned, 0, "warning: tau has no effect");
+    }
+}
+
+/// A file that is there is somebody's.
+#[test]
+fn texts_replace_nothing_unasked() {
+    let folder = Folder::with(&[("small.toml", SMALL), ("thesis.csv", "a life's work")]);
+    expect(&folder.run(&["run", "small.toml"]), 0, "6 cells");
+    let export = ["export", "small.h5", "-o", "thesis.csv"];
+    expect(&folder.run(&export), 2, "thesis.csv is already there");
+    let read = || std::fs::read_to_string(folder.path().join("thesis.csv")).unwrap();
+    assert_eq!(read(), "a life's work");
+    let fresh = [&export[..], &["--fresh"]].concat();
+    expect(&folder.run(&fresh), 0, "thesis.csv: 6 rows");
+    assert!(read().starts_with("alpha_v,tau"), "{}", read());
+}
+
+/// Comments of a map say as much as those of a trace.
+#[test]
+fn comments_tell_law_and_start() {
+    let motions = "fields = [\"outcome\"]\n[axes]\ntau = [0.5, 1]\n[fixed]\nv0 = 0.2\nalpha_n = -7\n\
+                   [friction]\nlaw = \"weakening\"\nmu0 = 0.5\nv_s = 0.5\n";
+    let folder = Folder::with(&[("map.toml", motions), ("case.toml", CASE)]);
+    expect(&folder.run(&["run", "map.toml"]), 0, "2 cells");
+    expect(&folder.run(&["simulate", "case.toml"]), 0, "slide");
+    for file in ["map.h5", "case.h5"] {
+        let text = out(&folder.run(&["export", file, "--comments"]));
+        for says in ["# friction: weakening", "# start: none is given: each"] {
+            assert!(text.contains(says), "{file}: {text}");
+        }
     }
 }
 
@@ -99,11 +252,31 @@ fn the_format_that_a_name_promises_is_kept_or_refused() {
         let text = said(&folder, &args);
         assert!(text.contains("is written as HDF5, not as"), "{text}");
     }
+    for other in ["o.tsv", "o.xlsx", "o.zarr", "o.toml", "o.png", "o", "-"] {
+        let run = said(&folder, &["run", "small.toml", "-o", other]);
+        assert!(run.contains("NAME.h5, NAME.hdf5 or"), "{other}: {run}");
+        let merge = said(&folder, &["merge", "small.h5", "-o", other]);
+        assert!(merge.contains("NAME.h5, NAME.hdf5 or"), "{other}: {merge}");
+        if other != "-" {
+            let simulate = said(&folder, &["simulate", "case.toml", "-o", other]);
+            assert!(simulate.contains("NAME.nc"), "{other}: {simulate}");
+        }
+    }
+    let text = said(&folder, &["merge", "part.csv"]);
+    assert!(
+        text.contains("part.csv: a map is written as HDF5"),
+        "{text}"
+    );
     assert_eq!(folder.files(), ["case.toml", "small.toml"]);
     expect(
         &folder.run(&["run", "small.toml", "-o", "small.nc"]),
         0,
         "small.nc: 6 cells",
+    );
+    expect(
+        &folder.run(&["run", "small.toml", "-o", "small.HDF5"]),
+        0,
+        "small.HDF5: 6 cells",
     );
 }
 
@@ -467,4 +640,49 @@ fn best_settings_are_marked_in_pictures() {
     // A diamond in the plane and one in the legend, each with paper around it.
     let lines = |svg: &str| svg.matches("<polyline").count();
     assert_eq!(lines(&best) - lines(&plain), 4);
+}
+
+/// Whether a schema allows null.
+fn is_nullable(schema: &Value) -> bool {
+    let of = |key: &str| schema[key].as_array().into_iter().flatten();
+    schema["type"] == "null"
+        || of("type").any(|kind| kind == "null")
+        || of("oneOf").chain(of("anyOf")).any(is_nullable)
+}
+
+/// Every property of a schema, by its name.
+fn properties(schema: &Value, found: &mut Vec<(String, Value)>) {
+    if let Some(of) = schema["properties"].as_object() {
+        found.extend(of.iter().map(|(name, value)| (name.clone(), value.clone())));
+    }
+    match schema {
+        Value::Object(parts) => parts.values().for_each(|part| properties(part, found)),
+        Value::Array(parts) => parts.iter().for_each(|part| properties(part, found)),
+        _ => {}
+    }
+}
+
+#[test]
+fn schemas_say_of_each_key_what_null_means() {
+    let folder = Folder::new();
+    let mut nullable = 0;
+    for command in [
+        "best", "info", "plan", "point", "simulate", "status", "vc", "verify",
+    ] {
+        let schema = serde_json::from_str(&out(&folder.run(&["schema", command]))).unwrap();
+        let mut found = Vec::new();
+        properties(&schema, &mut found);
+        for (name, property) in found.iter().filter(|(_, property)| is_nullable(property)) {
+            // Of what is an object or null, it stands beside the object.
+            let kinds = property["oneOf"].as_array().into_iter().flatten();
+            let mut told = kinds.chain([property]).map(|of| &of["description"]);
+            let says = |of: &Value| {
+                of.as_str()
+                    .is_some_and(|of| of.to_lowercase().contains("null"))
+            };
+            assert!(told.any(says), "{command}: {name}: {property}");
+            nullable += 1;
+        }
+    }
+    assert!(nullable > 50, "{nullable}");
 }

@@ -137,10 +137,42 @@ fn scales_are_as_asked() {
     );
     // Along one axis the range is that of the ordinate.
     let line = ["--field", "frequency", "--at", "tau=2"];
-    assert_ne!(
-        svg(&line),
-        svg(&[&line[..], &["--range", "0.5,3"]].concat())
-    );
+    let narrow = svg(&[&line[..], &["--range", "0.7,0.9"]].concat());
+    assert_ne!(svg(&line), narrow);
+    for cut in ["above 0.9 at the upper edge", "below 0.7 at the lower edge"] {
+        assert!(narrow.contains(cut) && !svg(&line).contains(cut), "{cut}");
+    }
+}
+
+const VC: &str = "fields = [\"n_unstable\", \"vc\", \"outcome\", \"regime\"]\n[axes]\n\
+                  alpha_n = [-10, -5, -1]\ntau = [0.2, 0.5, 1]\n[fixed]\nv0 = 0.2\n[friction]\n\
+                  law = \"weakening\"\nmu0 = 0.5\nv_s = 0.5\n";
+
+/// An outcome beside critical velocities is another one; regimes along a line stand by their names
+/// at the axis.
+#[test]
+fn pictures_tell_what_the_map_holds() {
+    let folder = Folder::with(&[("vc.toml", VC)]);
+    expect(&folder.run(&["run", "vc.toml"]), 0, "9 cells");
+    let svg = |options: &[&str]| {
+        let args = [&["plot", "vc.h5", "-o", "vc.svg"], options].concat();
+        expect(&folder.run(&args), 0, "vc.svg");
+        text(&folder, "vc.svg")
+    };
+    let outcome = svg(&["--field", "outcome"]);
+    assert!(outcome.contains("How stick-slip ends"), "{outcome}");
+    assert!(!outcome.contains("otion"), "{outcome}");
+    // The sweep has no title: what it shows unasked is headed generally, another field is not.
+    assert!(svg(&[]).contains("The critical velocity"));
+    let n_unstable = svg(&["--field", "n_unstable"]);
+    assert!(n_unstable.contains("Number of characteristic roots"));
+    let regimes = svg(&["--field", "regime", "--at", "tau=0.5"]);
+    for says in ["stable", "bistable", "unstable", "linearly stable"] {
+        assert!(regimes.lines().any(|line| line == says), "{says}");
+    }
+    assert!(!regimes.contains("0: stable"), "{regimes}");
+    let csv = folder.run(&["export", "vc.h5", "--comments"]);
+    expect(&csv, 0, "# outcome: how stick-slip ends");
 }
 
 #[test]

@@ -83,7 +83,8 @@ fn from_a_rig_to_a_setting() {
     let vc = json(&folder, &[&vc[..], &["--json"]].concat());
     let flags = [format!("--alpha-n={gain}"), format!("--tau={tau}")];
     std::fs::write(folder.path().join("curve.csv"), CURVE).unwrap();
-    let rig = RIG.iter().copied().filter(|flag| !flag.starts_with("--v0"));
+    // Its pulling velocity is left aside.
+    let rig = RIG.iter().copied();
     let rig: Vec<&str> = rig.chain(flags.iter().map(String::as_str)).collect();
     // JSON is read to the last bit but one.
     let by_flags = json(&folder, &[&["vc", "--json"], &rig[..]].concat());
@@ -269,4 +270,67 @@ fn a_delay_without_control_is_warned_of() {
     }
     let simulate = ["simulate", "--v0=0.1", "--tau=2", "--picture", "m.svg"];
     assert_eq!(said(&[&simulate[..], &flags].concat()), 1);
+}
+
+/// Where nothing is stable there is no best setting to save; without a law a setting is no case.
+#[test]
+fn only_what_holds_is_saved() {
+    let folder = Folder::new();
+    let best = |more: &[&str]| folder.run(&[&["best", "--save", "best.toml"], more].concat());
+    let nothing = best(&["--mu-prime=-3", "--tau-from=5", "--tau-to=6"]);
+    expect(
+        &nothing,
+        1,
+        "best.toml is not written: no setting is stable",
+    );
+    assert!(folder.files().is_empty());
+    expect(&best(&["--mu-prime=-0.1"]), 0, "best.toml");
+    let read = || std::fs::read_to_string(folder.path().join("best.toml")).unwrap();
+    assert!(!read().contains("simulate"), "{}", read());
+    let law = [
+        "--friction",
+        "weakening",
+        "--mu0",
+        "0.5",
+        "--v-s",
+        "0.5",
+        "--v0",
+        "0.35",
+    ];
+    expect(&best(&law), 0, "best.toml");
+    assert!(read().contains("simulate as a case file"), "{}", read());
+}
+
+/// What physical units there are stands behind every number that people are told.
+#[test]
+fn units_stand_behind_numbers() {
+    let sweep = "units = \"SI\"\nbest = true\nfields = [\"n_unstable\"]\n[axes]\nalpha_n = { from = -4, \
+                 to = 1, points = 5 }\ntau = { from = 0, to = 9, points = 5 }\n[fixed]\nmu_prime = -0.3\n";
+    let case = "units = \"SI\"\n[fixed]\nv0 = 0.35\nalpha_v = -0.33\ntau = 4.15\n[friction]\n\
+                law = \"weakening\"\nmu0 = 0.5\nv_s = 0.5\n";
+    let folder = Folder::with(&[("map.toml", sweep), ("case.toml", case)]);
+    expect(&folder.run(&["run", "map.toml"]), 0, "25 cells");
+    let info = out(&folder.run(&["info", "map.h5"]));
+    let best = info.lines().find(|line| line.starts_with("best")).unwrap();
+    assert!(best.ends_with(" s"), "{best}");
+    let cell = [
+        "point",
+        "--map",
+        "map.h5",
+        "--at",
+        "alpha_n=-4",
+        "--at",
+        "tau=9",
+    ];
+    expect(
+        &folder.run(&cell),
+        0,
+        "the cell at alpha_n = -4 N m-1, tau = 9 s",
+    );
+    let motion = folder.run(&["simulate", "case.toml"]);
+    expect(&motion, 0, "begins with x_dot0 = 0.3535 m s-1");
+    let info = out(&folder.run(&["info", "case.h5"]));
+    for (name, unit) in [("settle_time", "s"), ("n_min", "N"), ("decided", "s")] {
+        assert_row(&info, name, unit);
+    }
 }

@@ -180,7 +180,7 @@ fn only_traces_are_replaced() {
     expect(
         &simulate(&["a.toml", "-o", "a.png"]),
         2,
-        "the name of a png picture",
+        "a trace is written as HDF5, not as png",
     );
     expect(
         &simulate(&["a.toml", "-o", "no/a.h5"]),

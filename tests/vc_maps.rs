@@ -460,7 +460,7 @@ fn vc_names_flags() {
         format!("{weakening} --alpha-v=-0.3 --tau=-1"),
         format!("{weakening} --alpha-v=-1e300 --tau 1"),
         format!("{weakening} --mu-prime-rest=-1"),
-        format!("{weakening} --v0 0.1"),
+        format!("{weakening} --mu-prime 0.1"),
         format!("{weakening} --gamma 0.1"),
         "--friction weakening --mu0 2 --v-s 0.5".into(),
         "--friction weakening --v-s 0.5".into(),

@@ -342,3 +342,25 @@ fn a_map_of_another_revision_is_not_compared_bit_by_bit() {
     let report = check(&MapFile::open(&path).unwrap(), program("", ""), effort).unwrap();
     assert_eq!(report.tiles_equal, 1, "{report:?}");
 }
+
+/// Tiles that are not in a map are not computed again, and are not counted as unequal.
+#[test]
+fn missing_tiles_are_said_to_be_missing() {
+    let many = DECAY
+        .replace("points = 23", "points = 300")
+        .replace("points = 31", "points = 200");
+    let folder = Folder::with(&[("many.toml", &many)]);
+    let shard = ["run", "many.toml", "--shard", "1/2"];
+    expect(&folder.run(&shard), 0, "shard 1 of 2 is complete");
+    let merge = ["merge", "many.h5", "--partial", "-o", "part.h5"];
+    expect(&folder.run(&merge), 0, "of them missing");
+    let verified = folder.run(&["verify", "part.h5", "--tiles", "6", "--json"]);
+    expect(&verified, 0, "tiles_absent");
+    let told: serde_json::Value = serde_json::from_str(&out(&verified)).unwrap();
+    let number = |key: &str| told[key].as_u64().unwrap();
+    assert_eq!(number("tiles"), number("tiles_equal"), "{told}");
+    assert!(number("tiles") > 0 && number("tiles_absent") > 0, "{told}");
+    assert_eq!(number("tiles") + number("tiles_absent"), 6, "{told}");
+    let shown = folder.run(&["verify", "part.h5", "--tiles", "6"]);
+    expect(&shown, 0, "more are not in the map");
+}

@@ -14,7 +14,7 @@ use super::best_answer::BestAnswer;
 use super::best_text;
 use super::failure::Failure;
 use super::json::{self, AnswerSchema, Inputs};
-use super::parameters::ParameterArgs;
+use super::parameters::{AtAnyDelay, ParameterArgs};
 use super::recommended::{Control, Recommended};
 use super::say;
 use super::setting;
@@ -29,7 +29,7 @@ control from 4(1 + |b|) κ/μ_K below the weakest negative one that
 stabilises, -(|b| + b²/2) κ/μ_K, to 4(1 + |b|) κ/μ_K.")]
 pub(super) struct Args {
     #[command(flatten)]
-    parameters: ParameterArgs,
+    parameters: ParameterArgs<AtAnyDelay>,
     /// The gain that is searched; the other one is given as usual
     #[arg(long, value_enum, default_value_t = Control::Velocity)]
     control: Control,
@@ -49,8 +49,8 @@ pub(super) struct Args {
     /// by this part of them, such as 0.05
     #[arg(long, value_name = "SPREAD", allow_hyphen_values = true, value_parser = parse_spread)]
     robust: Option<f64>,
-    /// Write the best setting, with --robust that one, to a file that point and vc take with
-    /// --setting, and simulate as a case file
+    /// Write the best setting, with --robust that one, if one is stable, to a file that point takes
+    /// with --setting and, with a friction law, vc too, and simulate as a case file
     #[arg(long, value_name = "SETTING.toml")]
     save: Option<PathBuf>,
     /// One JSON object on standard output
@@ -87,6 +87,11 @@ pub(super) fn main(args: &Args) -> Result<(), Failure> {
     let Some(path) = &args.save else {
         return Ok(());
     };
+    if told.found.overall.relaxation_time().is_none() {
+        let message = format!("{} is not written: no setting is stable", path.display());
+        let help = "other ranges (--alpha-from, --tau-to, …) or the other --control may hold one";
+        return Err(Failure::failed_with_help(message, help));
+    }
     setting::save(&told.setting, &args.parameters.units(), path)?;
     match args.json {
         true => Ok(()),

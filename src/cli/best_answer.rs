@@ -91,6 +91,7 @@ struct OptimumOut {
     abscissa: f64,
     frequency: f64,
     frequencies: Vec<f64>,
+    /// −1/abscissa; null where the setting is not stable.
     relaxation_time: Option<f64>,
     kind: &'static str,
     certified: bool,

@@ -47,7 +47,8 @@ struct StartFacts {
     a0: f64,
     /// The file does not say where it starts: it slides a little faster than it is pulled.
     assumed: bool,
-    /// Just released from uncontrolled stick-slip; this long before switch-on.
+    /// Just released from uncontrolled stick-slip, this long before switch-on; null where it starts
+    /// otherwise.
     switch_on_phase: Option<f64>,
 }
 

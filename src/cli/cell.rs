@@ -1,17 +1,21 @@
 //! A cell of a map in the place of flags and case files: `--map MAP.h5 --at AXIS=VALUE`.
 
+use std::fmt;
 use std::path::{Path, PathBuf};
 
 use slipmap::maps::look::as_text::CellTexts;
+use slipmap::report::numbers::unit_behind;
 use slipmap::store::MapFile;
+use slipmap::store::tiles::Survey;
 use slipmap::sweep::input::axis::{Axis, nearest};
 use slipmap::sweep::input::basin::Basin;
 use slipmap::sweep::input::nearest::did_you_mean;
 use slipmap::sweep::input::point_file::{PointOf, PointSpec};
 use slipmap::sweep::input::simulation::Simulation;
-use slipmap::sweep::{Parameter, Plan};
+use slipmap::sweep::{Parameter, Plan, Setting};
 
 use super::failure::Failure;
+use super::open::tell_partial;
 use super::say;
 
 #[derive(Debug, clap::Args)]
@@ -21,38 +25,59 @@ pub(super) struct CellArgs {
     pub map: Option<PathBuf>,
     /// With --map: the cell at the value nearest to this; once for each axis of several values
     #[arg(long, value_name = "AXIS=VALUE", value_parser = parse_at, requires = "map")]
-    at: Vec<(Parameter, f64)>,
+    at: Vec<At>,
 }
 
-/// A parameter and its value, as flags say where on an axis.
-pub(super) fn parse_at(text: &str) -> Result<(Parameter, f64), String> {
+/// Where on an axis, as flags say it.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct At {
+    name: String,
+    pub value: f64,
+}
+
+/// A name and a value; which axes there are only a map says.
+pub(super) fn parse_at(text: &str) -> Result<At, String> {
     let (name, value) = text
         .split_once('=')
         .ok_or("expected AXIS=VALUE, for example mu_prime=-0.3")?;
-    let name = name.trim().replace('-', "_");
-    let parameter = Parameter::from_name(&name).ok_or_else(|| {
-        let names = Parameter::ALL.map(Parameter::name);
-        let meant = did_you_mean(&name, names);
-        format!(
-            "unknown axis \"{name}\"; {meant}known: {}",
-            names.join(", ")
-        )
-    })?;
     let value = value.trim().parse::<f64>().ok().filter(|v| v.is_finite());
-    let value = value.ok_or("the value after = must be a finite number")?;
-    Ok((parameter, value))
+    Ok(At {
+        name: name.trim().replace('-', "_"),
+        value: value.ok_or("the value after = must be a finite number")?,
+    })
+}
+
+impl At {
+    /// The number of its axis among `axes`, those of a map.
+    pub(super) fn axis(&self, axes: &[Parameter]) -> Result<usize, Failure> {
+        let names = || axes.iter().map(|axis| axis.name());
+        let place = names().position(|name| name == self.name);
+        place.ok_or_else(|| {
+            let meant = did_you_mean(&self.name, names());
+            let names: Vec<_> = names().collect();
+            Failure::bad_input_with_help(
+                format!("--at: {} is no axis of this map", self.name),
+                format!("{meant}its axes: {}", names.join(", ")),
+            )
+        })
+    }
+}
+
+impl fmt::Display for At {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}={}", self.name, self.value)
+    }
 }
 
 impl CellArgs {
     /// The flags `--at`, each after a space.
     pub(super) fn words(&self) -> String {
-        let at = self.at.iter();
-        at.map(|(axis, value)| format!(" --at {}={value}", axis.name()))
-            .collect()
+        self.at.iter().map(|at| format!(" --at {at}")).collect()
     }
 
-    /// What can be asked at the cell; none where no map is given. Says which cell it is.
-    pub(super) fn texts(&self) -> Result<Option<CellTexts>, Failure> {
+    /// What can be asked at the cell, and its setting; none where no map is given. Says which cell
+    /// it is.
+    fn texts(&self) -> Result<Option<(CellTexts, Setting)>, Failure> {
         let Some(path) = &self.map else {
             return Ok(None);
         };
@@ -62,27 +87,26 @@ impl CellArgs {
         let mut there = Vec::new();
         for axis in &plan.spec.axes {
             let place = self.place(axis)?;
-            there.push(format!(
-                "{} = {}",
-                axis.parameter.name(),
-                axis.values[place]
-            ));
+            let unit = unit_behind(&plan.spec.units.of_parameter(axis.parameter));
+            let (name, value) = (axis.parameter.name(), axis.values[place]);
+            there.push(format!("{name} = {value}{unit}"));
             index.push(place);
         }
         say::note(format_args!("the cell at {}", there.join(", ")));
-        Ok(Some(CellTexts::of(&plan, &index)))
+        let setting = plan.setting(&index);
+        Ok(Some((CellTexts::of(&plan, &index), setting)))
     }
 
     /// The point of sliding at the cell, or its critical velocity.
     pub(super) fn point(&self, of: PointOf) -> Result<Option<PointSpec>, Failure> {
-        let Some(texts) = self.texts()? else {
+        let Some((texts, setting)) = self.texts()? else {
             return Ok(None);
         };
-        let (text, lacks) = match of {
-            PointOf::CriticalVelocity => (texts.vc, "its friction law or its delay"),
-            _ => (texts.point, "its v0 or its delay"),
+        let (text, needed) = match of {
+            PointOf::CriticalVelocity => (texts.vc, &[Needed::Law, Needed::Delay][..]),
+            _ => (texts.point, &[Needed::V0, Needed::Delay][..]),
         };
-        let text = text.ok_or_else(|| without(lacks))?;
+        let text = text.ok_or_else(|| without(&setting, needed))?;
         let read = PointSpec::read(&text, of);
         read.map(Some)
             .map_err(|error| Failure::in_file(error, "the cell", &text))
@@ -100,11 +124,9 @@ impl CellArgs {
 
     /// The case of the motion at the cell.
     pub(super) fn case(&self) -> Result<Option<String>, Failure> {
-        let texts = self.texts()?;
-        let text = texts.map(|texts| {
-            texts
-                .motion
-                .ok_or_else(|| without("its friction law or its v0"))
+        let text = self.texts()?.map(|(texts, setting)| {
+            let needed = [Needed::Law, Needed::V0, Needed::Delay];
+            texts.motion.ok_or_else(|| without(&setting, &needed))
         });
         text.transpose()
     }
@@ -112,16 +134,14 @@ impl CellArgs {
     /// Values are given on axes alone.
     fn check_axes(&self, plan: &Plan) -> Result<(), Failure> {
         let axes: Vec<_> = plan.spec.axes.iter().map(|axis| axis.parameter).collect();
-        self.at
-            .iter()
-            .try_for_each(|(at, _)| axis_of(*at, &axes).map(drop))
+        self.at.iter().try_for_each(|at| at.axis(&axes).map(drop))
     }
 
     /// Where on an axis: at the value nearest to the one given.
     fn place(&self, axis: &Axis) -> Result<usize, Failure> {
         let name = axis.parameter.name();
-        let given = self.at.iter().filter(|(at, _)| *at == axis.parameter);
-        let value = match given.map(|(_, value)| *value).collect::<Vec<_>>()[..] {
+        let given = self.at.iter().filter(|at| at.name == name);
+        let value = match given.map(|at| at.value).collect::<Vec<_>>()[..] {
             [] if axis.len() == 1 => return Ok(0),
             [value] => value,
             [] => {
@@ -135,18 +155,6 @@ impl CellArgs {
         };
         place_on(axis.parameter, &axis.values, value)
     }
-}
-
-/// The number of an axis among `axes`.
-pub(super) fn axis_of(at: Parameter, axes: &[Parameter]) -> Result<usize, Failure> {
-    let place = axes.iter().position(|axis| *axis == at);
-    place.ok_or_else(|| {
-        let names: Vec<_> = axes.iter().map(|axis| axis.name()).collect();
-        Failure::bad_input_with_help(
-            format!("--at: {} is no axis of this map", at.name()),
-            format!("its axes: {}", names.join(", ")),
-        )
-    })
 }
 
 /// The place on an axis of the value nearest to `value`, which the axis reaches.
@@ -172,12 +180,51 @@ pub(super) fn alone(flag: &str, given: bool) -> Result<(), Failure> {
     }
 }
 
-fn without(lacks: &str) -> Failure {
-    Failure::bad_input(format!("a cell of this map does not say {lacks}"))
+/// What a command may need of a cell.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Needed {
+    Law,
+    V0,
+    Delay,
 }
 
-/// The plan of a map.
+impl Needed {
+    /// Its name, where a setting lacks it.
+    fn lacking(self, setting: &Setting) -> Option<&'static str> {
+        let lacks = |parameter| setting.get(parameter).is_nan();
+        match self {
+            Self::Law => setting.law().is_none().then_some("friction law"),
+            Self::V0 => (setting.law().is_some() && lacks(Parameter::V0)).then_some("v0"),
+            Self::Delay => lacks(Parameter::Tau).then_some("delay"),
+        }
+    }
+}
+
+/// A cell lacks what a command needs.
+fn without(setting: &Setting, needed: &[Needed]) -> Failure {
+    let lacking = needed.iter().filter_map(|needed| needed.lacking(setting));
+    match lacking.collect::<Vec<_>>()[..] {
+        // A cell of the limit of a short delay has all of its own.
+        [] => Failure::bad_input_with_help(
+            "this map is one of the limit of a short delay",
+            "its cells are asked for by slipmap vc --protocol limit --gamma G --mu-ratio R",
+        ),
+        ref lacking => Failure::bad_input(format!(
+            "a cell of this map has no {}",
+            lacking.join(" and no ")
+        )),
+    }
+}
+
+/// The plan of a map, or of its tiles where it is not there yet.
 fn plan_of(path: &Path) -> Result<Plan, Failure> {
+    if !path.exists()
+        && let Some(survey) = Survey::of(path)?
+    {
+        let cells = survey.plan.cells();
+        tell_partial(path, cells - survey.cells_done.min(cells), cells);
+        return Ok(survey.plan);
+    }
     let map = MapFile::open(path)?;
     let plan = map.sweep().and_then(Plan::new);
     plan.map_err(|e| Failure::in_file(e, &path.display().to_string(), &map.sweep_text()))
@@ -189,11 +236,15 @@ mod tests {
 
     #[test]
     fn places_on_axes_are_read() {
-        assert_eq!(parse_at("mu_prime=-0.3"), Ok((Parameter::MuPrime, -0.3)));
-        assert_eq!(parse_at("mu-prime = 1e-2"), Ok((Parameter::MuPrime, 0.01)));
+        for (text, value) in [("mu_prime=-0.3", -0.3), ("mu-prime = 1e-2", 0.01)] {
+            let at = parse_at(text).unwrap();
+            assert_eq!((at.name.as_str(), at.value), ("mu_prime", value));
+            let axes = [Parameter::Tau, Parameter::MuPrime];
+            assert!(matches!(at.axis(&axes), Ok(1)));
+            assert!(at.axis(&axes[..1]).is_err());
+        }
         for (text, says) in [
             ("tau", "AXIS=VALUE"),
-            ("delay=3", "unknown axis \"delay\""),
             ("tau=", "finite number"),
             ("tau=inf", "finite number"),
         ] {

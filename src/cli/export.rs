@@ -9,13 +9,12 @@ use slipmap::report::numbers::grouped;
 use slipmap::report::table::{TableError, write_cells, write_curves, write_events, write_samples};
 use slipmap::store::trace_file::{QUANTITIES, Quantity};
 use slipmap::store::{MapFile, TraceFile, trace_reader};
-use slipmap::sweep::input::field::fields_meant;
 use slipmap::sweep::input::nearest::did_you_mean;
 use slipmap::sweep::{Field, Parameter};
 
-use super::cell::{axis_of, parse_at, place_on};
+use super::cell::{At, parse_at, place_on};
 use super::failure::Failure;
-use super::open::open;
+use super::open::{held_field, open};
 use super::say;
 use super::signals::Signals;
 use super::text_output::To;
@@ -35,6 +34,9 @@ pub(super) struct Args {
     /// The text to write, .csv; - for standard output [default: standard output]
     #[arg(short, long, value_name = "TABLE.csv")]
     output: Option<PathBuf>,
+    /// Replace a file that is already there
+    #[arg(long)]
+    fresh: bool,
     /// Which table [default: the cells of a map, the samples of a trace]
     #[arg(long)]
     table: Option<TableName>,
@@ -43,7 +45,7 @@ pub(super) struct Args {
     field: Vec<String>,
     /// Hold an axis of the map at the value nearest to this; again for other axes
     #[arg(long, value_name = "AXIS=VALUE", value_parser = parse_at)]
-    at: Vec<(Parameter, f64)>,
+    at: Vec<At>,
     /// Begin with lines of # that give title, parameters, units and meaning of the columns
     #[arg(long)]
     comments: bool,
@@ -64,7 +66,7 @@ enum TableName {
 
 pub(super) fn main(args: &Args) -> Result<(), Failure> {
     let signals = Signals::catch()?;
-    let to = To::named(args.output.as_deref(), &args.file)?;
+    let to = To::named(args.output.as_deref(), Some(&args.file), args.fresh)?;
     let rows = match trace_reader::is_trace(&args.file) {
         true => of_trace(args, to, &signals)?,
         false => of_map(args, to, &signals)?,
@@ -124,12 +126,11 @@ fn of_trace(args: &Args, to: To, signals: &Signals) -> Result<u64, Failure> {
             [TableName::Samples, TableName::Events],
         ));
     }
-    if let Some((axis, _)) = args.at.first() {
-        let message = format!(
-            "--at {} has no meaning for a trace of one motion",
-            axis.name()
-        );
-        return Err(Failure::bad_input(message));
+    if let Some(at) = args.at.first() {
+        return Err(Failure::bad_input_with_help(
+            format!("--at {at} has no meaning for a trace of one motion"),
+            "a trace has no axes; its table samples has a row for each time",
+        ));
     }
     if table == TableName::Events {
         refuse_fields(args, table)?;
@@ -171,9 +172,10 @@ fn refuse_fields(args: &Args, table: TableName) -> Result<(), Failure> {
 fn held(map: &MapFile, args: &Args) -> Result<Vec<Option<usize>>, Failure> {
     let axes: Vec<Parameter> = map.axes().iter().map(|axis| axis.parameter).collect();
     let mut held = vec![None; axes.len()];
-    for &(parameter, value) in &args.at {
-        let axis = axis_of(parameter, &axes)?;
-        let place = place_on(parameter, &map.axes()[axis].values, value)?;
+    for at in &args.at {
+        let axis = at.axis(&axes)?;
+        let parameter = axes[axis];
+        let place = place_on(parameter, &map.axes()[axis].values, at.value)?;
         if held[axis].replace(place).is_some() {
             let message = format!("--at {} is given twice", parameter.name());
             return Err(Failure::bad_input(message));
@@ -187,19 +189,7 @@ fn fields(map: &MapFile, args: &Args) -> Result<Vec<Field>, Failure> {
     if args.field.is_empty() {
         return Ok(map.fields().to_vec());
     }
-    let field = |name: &String| {
-        let field = Field::from_name(name);
-        let field =
-            field.ok_or_else(|| Failure::bad_input(format!("--field: {}", fields_meant(name))))?;
-        if map.fields().contains(&field) {
-            return Ok(field);
-        }
-        let held: Vec<&str> = map.fields().iter().map(|field| field.name()).collect();
-        Err(Failure::bad_input_with_help(
-            format!("--field: the map does not hold {name}"),
-            format!("it holds {}", held.join(", ")),
-        ))
-    };
+    let field = |name: &String| held_field(map, name);
     once(args)?.map(field).collect()
 }
 

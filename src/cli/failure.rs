@@ -7,6 +7,7 @@ use slipmap::model::{ModelError, Shown};
 use slipmap::store::StoreError;
 use slipmap::sweep::SpecError;
 
+use super::kind::Kind;
 use super::say::{self, shortened, visible, visible_line};
 
 /// Why a command did not do what it was asked for.
@@ -99,6 +100,12 @@ fn shown(message: impl Into<String>) -> MietteDiagnostic {
 
 impl From<StoreError> for Failure {
     fn from(error: StoreError) -> Self {
+        if let StoreError::NotAMap { path, .. } | StoreError::NotATrace { path, .. } = &error
+            && let Some(kind @ Kind::Text(_)) = Kind::of(path)
+        {
+            let (message, help) = kind.not(path, "a map or a trace");
+            return Self::bad_input_with_help(message, help);
+        }
         let mut diagnostic = shown(error.to_string());
         let help = match error {
             StoreError::OtherTiles { .. } => {

@@ -112,7 +112,9 @@ struct Facts {
     #[serde(serialize_with = "as_object")]
     #[schema(value_type = BTreeMap<String, u64>)]
     status: Vec<(&'static str, u64)>,
+    /// Crossing curves; null where the map holds none.
     curves: Option<CurveFacts>,
+    /// Best settings; null where the map holds none.
     best: Option<BestFacts>,
 }
 
@@ -121,9 +123,10 @@ struct FieldFacts {
     name: &'static str,
     bytes: u64,
     bytes_on_disk: u64,
-    /// The smallest and largest finite value, and how many others there are; of numbers.
+    /// The smallest and largest finite value; null where there is none, and of kinds.
     #[schema(value_type = Option<[f64; 2]>)]
     range: Option<(f64, f64)>,
+    /// Cells of −∞ and +∞.
     infinite: u64,
     without_value: u64,
     /// Cells of each kind that any has, by its name.
@@ -143,6 +146,7 @@ struct CurveFacts {
 #[derive(Serialize, ToSchema)]
 struct BestFacts {
     planes: u64,
+    /// Null where no plane has a stable setting.
     shortest_relaxation_time: Option<f64>,
 }
 
@@ -219,7 +223,10 @@ impl Facts {
             return Ok(());
         };
         let fastest = match best.shortest_relaxation_time {
-            Some(fastest) => format!("the shortest relaxation time is {fastest:.4}"),
+            Some(fastest) => {
+                let unit = self.unit(Field::RelaxationTime.name());
+                format!("the shortest relaxation time is {fastest:.4}{unit}")
+            }
             None => "none of them stable".to_owned(),
         };
         let planes = grouped(best.planes);
@@ -291,14 +298,21 @@ fn units(map: &MapFile) -> Vec<(&'static str, String)> {
         .fields()
         .iter()
         .map(|&field| (field.name(), map.field_unit(field)));
-    of_parameters.chain(fields).collect()
+    let mut units: Vec<_> = of_parameters.chain(fields).collect();
+    // That of the best settings, too.
+    let time = Field::RelaxationTime.name();
+    if map.best_plane().is_some() && units.iter().all(|(name, _)| *name != time) {
+        units.push((time, of_sweep.time()));
+    }
+    units
 }
 
 fn fields(map: &MapFile) -> Result<Vec<FieldFacts>, Failure> {
     let mut fields = Vec::new();
     for (name, bytes, bytes_on_disk) in map.sizes()? {
         let mut facts = FieldFacts {
-            name,
+            // Older maps have other names for some.
+            name: Field::from_name(name).map_or(name, Field::name),
             bytes,
             bytes_on_disk,
             range: None,

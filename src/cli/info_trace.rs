@@ -8,12 +8,14 @@ use slipmap::slip::outcome::Summary;
 use slipmap::store::TraceFile;
 use slipmap::store::trace_file::QUANTITIES;
 use slipmap::sweep::cells::trace::EVENTS;
+use slipmap::sweep::input::units::Units;
 use utoipa::ToSchema;
 
 use super::case_facts::CaseFacts;
 use super::failure::Failure;
 use super::info::{origin, tell_text};
 use super::json::{self, Inputs, as_object};
+use super::motion_text;
 use super::say::Rows;
 
 /// In what form it is told.
@@ -55,21 +57,22 @@ pub(super) struct Facts {
 /// `decided`.
 #[derive(Serialize, ToSchema)]
 struct Numbers {
-    /// When the outcome was known.
+    /// When the outcome was known; null where the trace does not tell.
     decided: Option<f64>,
-    /// Until ẋ stays within 1 % of v0.
+    /// Until ẋ stays within 1 % of v0; null where it does not come to sliding.
     settle_time: Option<f64>,
-    /// The smallest load since switch-on.
+    /// The smallest load since switch-on; null where the motion ended before.
     n_min: Option<f64>,
-    /// The largest spring force since switch-on.
+    /// The largest spring force since switch-on; null where it grew beyond all numbers.
     peak_force: Option<f64>,
-    /// Of stick-slip.
+    /// Period of stick-slip; null where it did not end up in that.
     period: Option<f64>,
-    /// Time stuck in one period.
+    /// Time stuck in one period; null where there is no period.
     stick_time: Option<f64>,
-    /// Time in slip in one period.
+    /// Time in slip in one period; null where there is no period.
     slip_time: Option<f64>,
-    /// Until the last stick ended.
+    /// Until the last stick ended; 0 where there is none after switch-on, null where sticks go on
+    /// periodically.
     last_release: Option<f64>,
 }
 
@@ -106,7 +109,7 @@ pub(super) fn tell(path: &Path, what: Told) -> Result<(), Failure> {
     match what {
         Told::Text => tell_text(&file.spec.text),
         Told::Json => json::print(&Inputs::default().and("file", path), &Facts::of(&file)),
-        Told::Rows => Facts::of(&file).tell(&file.trace.summary),
+        Told::Rows => Facts::of(&file).tell(&file.trace.summary, &file.spec.units),
     }
 }
 
@@ -133,7 +136,7 @@ impl Facts {
         }
     }
 
-    fn tell(&self, summary: &Summary) -> Result<(), Failure> {
+    fn tell(&self, summary: &Summary, units: &Units) -> Result<(), Failure> {
         let mut rows = Rows::begin();
         let title = |name: &str| name == "title" || name == "friction";
         rows.row("kind", "a trace: one motion, by `slipmap simulate`")?;
@@ -153,9 +156,8 @@ impl Facts {
             rows.row("events", format!("{name:<12} {}", grouped(*count)))?;
         }
         rows.row("outcome", self.outcome)?;
-        let numbers = summary.numbers().into_iter();
-        for (name, value) in numbers.filter(|(_, value)| !value.is_nan()) {
-            rows.row("", format!("{name:<12} {}", value + 0.0))?;
+        for (name, value) in motion_text::numbers(summary, units) {
+            rows.row("", format!("{name:<12} {value}"))?;
         }
         rows.row("", format!("{:<12} {}", "steps", grouped(self.steps)))
     }

@@ -14,7 +14,7 @@ use slipmap::sweep::events::Attended;
 use slipmap::sweep::{Plan, Shard};
 
 use super::failure::Failure;
-use super::output::{provenance, tell_assembled};
+use super::output::{check_name, provenance, tell_assembled};
 use super::show::{nothing_to_do, show};
 use super::signals::Signals;
 use super::{open_files, run, say};
@@ -44,7 +44,11 @@ const NAMED: Named = Named::InMap;
 
 pub(super) fn main(args: &Args) -> Result<(), Failure> {
     let signals = Signals::catch()?;
-    let target = args.output.as_ref().unwrap_or(&args.map);
+    let (flag, target) = match &args.output {
+        Some(output) => ("--output ", output),
+        None => ("", &args.map),
+    };
+    check_name(flag, target, "map")?;
     if shards::settle(&args.map, |hash| maker::is_complete(target, Some(hash)))? {
         return nothing_to_do(target, "", NAMED, &signals);
     }

@@ -13,6 +13,7 @@ mod failure;
 mod info;
 mod info_trace;
 mod json;
+mod kind;
 mod margins;
 mod merge;
 mod motion_text;

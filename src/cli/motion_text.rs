@@ -5,6 +5,7 @@ use std::io::Write;
 use slipmap::report::numbers::{grouped, unit_behind};
 use slipmap::slip::motion::MOST_KEPT;
 use slipmap::slip::outcome::{Outcome, Summary};
+use slipmap::sweep::input::units::Units;
 use slipmap::sweep::{CaseSpec, Field, Trace};
 
 use super::output::tell_dimensionless;
@@ -17,17 +18,8 @@ pub(super) fn print(out: &mut impl Write, spec: &CaseSpec, trace: &Trace) -> std
     let summary = &trace.summary;
     writeln!(out, "{}", verdict(summary, spec))?;
     let units = &spec.units;
-    for (name, value) in summary.numbers() {
-        if value.is_finite() {
-            let field = Field::from_name(name).map(|field| field.unit(units));
-            let unit = unit_behind(&field.unwrap_or_else(|| units.time()));
-            let name = if name == "decided" {
-                "decided at"
-            } else {
-                name
-            };
-            writeln!(out, "  {name:<16} {}{unit}", digits(value))?;
-        }
+    for (name, value) in numbers(summary, units) {
+        writeln!(out, "  {name:<16} {value}")?;
     }
     writeln!(out, "  {:<16} {}", "steps", summary.steps)?;
     tell_dimensionless(out, units)?;
@@ -52,11 +44,37 @@ pub(super) fn print(out: &mut impl Write, spec: &CaseSpec, trace: &Trace) -> std
     Ok(())
 }
 
-/// A number with nine digits behind the point where it is of common size.
+/// The numbers of a motion that there are, by name, with their units.
+pub(super) fn numbers(summary: &Summary, units: &Units) -> Vec<(&'static str, String)> {
+    let finite = summary.numbers().into_iter();
+    let finite = finite.filter(|(_, value)| value.is_finite());
+    let told = finite.map(|(name, value)| {
+        let field = Field::from_name(name).map(|field| field.unit(units));
+        let unit = unit_behind(&field.unwrap_or_else(|| units.time()));
+        let name = if name == "decided" {
+            "decided at"
+        } else {
+            name
+        };
+        (name, format!("{}{unit}", digits(value)))
+    });
+    told.collect()
+}
+
+/// A number with ten digits, whatever its size.
 fn digits(value: f64) -> String {
     match value.abs() {
         0.0 => "0".into(),
-        1e-4..1e6 => format!("{value:.9}"),
+        size @ 1e-4..1e6 => {
+            // Of the rounded number: 9.9999999999 has two digits before the point.
+            let rounded = format!("{size:.9e}");
+            let exponent = rounded
+                .split('e')
+                .nth(1)
+                .and_then(|e| e.parse::<i32>().ok());
+            let behind = usize::try_from(9 - exponent.unwrap_or(0)).unwrap_or(0);
+            format!("{value:.behind$}")
+        }
         _ => format!("{value:.9e}"),
     }
 }
@@ -79,5 +97,25 @@ fn verdict(summary: &Summary, spec: &CaseSpec) -> String {
         ),
         Outcome::Undecided => format!("undecided at the horizon, t = {}", spec.case.horizon),
         Outcome::NoCycle => "there is no uncontrolled stick-slip to start from".into(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_have_ten_digits() {
+        for (value, text) in [
+            (0.0, "0"),
+            (-0.5, "-0.5000000000"),
+            (61.931764, "61.93176400"),
+            (9.99999999999, "10.00000000"),
+            (0.000123456789012, "0.0001234567890"),
+            (123456.7890123, "123456.7890"),
+            (1e7, "1.000000000e7"),
+        ] {
+            assert_eq!(digits(value), text);
+        }
     }
 }

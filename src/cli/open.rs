@@ -8,6 +8,8 @@ use slipmap::report::numbers::grouped;
 use slipmap::store::output::hidden_beside;
 use slipmap::store::tiles::{TileReader, shards};
 use slipmap::store::{MapFile, Output};
+use slipmap::sweep::Field;
+use slipmap::sweep::input::nearest::did_you_mean;
 
 use super::failure::Failure;
 use super::output::provenance;
@@ -37,6 +39,22 @@ pub(super) fn open(path: &Path, signals: &Signals, message: &str) -> Result<MapF
     so_far.map_err(|failure| signals.or_stopped(failure, message))
 }
 
+/// The field of that name that a map holds.
+pub(super) fn held_field(map: &MapFile, name: &str) -> Result<Field, Failure> {
+    let field = Field::from_name(name).filter(|field| map.fields().contains(field));
+    field.ok_or_else(|| {
+        let held: Vec<&str> = map.fields().iter().map(|field| field.name()).collect();
+        let meant = match Field::from_name(name) {
+            Some(_) => String::new(),
+            None => did_you_mean(name, held.iter().copied()),
+        };
+        Failure::bad_input_with_help(
+            format!("--field: the map does not hold {name}"),
+            format!("{meant}it holds {}", held.join(", ")),
+        )
+    })
+}
+
 /// What the folders of shards hold, as a map.
 fn so_far(path: &Path, folders: &[PathBuf], stop: &AtomicBool) -> Result<MapFile, Failure> {
     let (manifest, plan) = shards::plan(folders)?;
@@ -55,7 +73,8 @@ fn so_far(path: &Path, folders: &[PathBuf], stop: &AtomicBool) -> Result<MapFile
     Ok(map?)
 }
 
-fn tell_partial(path: &Path, missing: u64, cells: u64) {
+/// Says how much of a map is there.
+pub(super) fn tell_partial(path: &Path, missing: u64, cells: u64) {
     let (path, done, cells) = (
         path.display(),
         grouped(cells - missing.min(cells)),

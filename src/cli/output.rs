@@ -13,12 +13,41 @@ use slipmap::sweep::input::units::Units;
 use super::failure::Failure;
 use super::say;
 use super::sweep_file::STANDARD_INPUT;
+use super::text_output::STANDARD_OUTPUT;
 
-/// The format that the name of a file promises, if that is neither HDF5 nor netCDF.
-fn other_format(path: &Path) -> Option<String> {
-    const OTHERS: [&str; 8] = ["csv", "gif", "jpeg", "jpg", "json", "mat", "npy", "txt"];
-    let extension = path.extension()?.to_str()?.to_lowercase();
-    OTHERS.contains(&extension.as_str()).then_some(extension)
+/// Endings of the names of maps and traces: HDF5, and netCDF, whose readers read the same file.
+const ENDINGS: [&str; 3] = ["h5", "hdf5", "nc"];
+
+/// The name that `flag` gives a map or a trace, its `kind`, promises what is written: HDF5. A name
+/// without an ending promises nothing, and would be nobody's to recognise.
+pub(super) fn check_name(flag: &str, path: &Path, kind: &str) -> Result<(), Failure> {
+    let shown = format!("{flag}{}", path.display());
+    let is_folder = path.as_os_str().as_encoded_bytes().ends_with(b"/");
+    if is_folder || path.file_name().is_none() {
+        return Err(Failure::bad_input(format!("{shown} does not name a file")));
+    }
+    let help = format!(
+        "name it like NAME.h5, NAME.hdf5 or, for readers of netCDF, NAME.nc; a picture is drawn \
+         beside the {kind}, `slipmap export` makes tables of it"
+    );
+    if path == Path::new(STANDARD_OUTPUT) {
+        let message = format!("{shown}: a {kind} is a file, standard output takes none");
+        return Err(Failure::bad_input_with_help(message, help));
+    }
+    let ending = path.extension().map(|e| e.to_string_lossy().to_lowercase());
+    let message = match ending.as_deref() {
+        Some(ending) if ENDINGS.contains(&ending) => match path.to_str() {
+            Some(_) => return Ok(()),
+            None => {
+                return Err(Failure::bad_input(format!(
+                    "{shown} is not UTF-8, and HDF5 does not open files of such names"
+                )));
+            }
+        },
+        Some(other) => format!("{shown}: a {kind} is written as HDF5, not as {other}"),
+        None => format!("{shown}: a {kind} is written as HDF5, which this name does not tell"),
+    };
+    Err(Failure::bad_input_with_help(message, help))
 }
 
 /// The file to write: `given`, or the name of `input` with .h5 in the current folder. `kind`: map
@@ -41,39 +70,7 @@ pub(super) fn output_path(
         name.push(".h5");
         PathBuf::from(name)
     };
-    let is_folder = path.as_os_str().as_encoded_bytes().ends_with(b"/");
-    if is_folder || path.file_name().is_none() {
-        return Err(Failure::bad_input(format!(
-            "--output {} does not name a file",
-            path.display()
-        )));
-    }
-    if let Some(other) = other_format(&path) {
-        return Err(Failure::bad_input_with_help(
-            format!(
-                "--output {}: a {kind} is written as HDF5, not as {other}",
-                path.display()
-            ),
-            "name it like NAME.h5, or NAME.nc for readers of netCDF; `slipmap export` makes tables \
-             of it",
-        ));
-    }
-    if path.to_str().is_none() {
-        return Err(Failure::bad_input(format!(
-            "--output {} is not UTF-8, and HDF5 does not open files of such names",
-            path.display()
-        )));
-    }
-    let extension = path.extension().map(|e| e.to_string_lossy().to_lowercase());
-    if let Some(picture @ ("png" | "svg" | "pdf")) = extension.as_deref() {
-        return Err(Failure::bad_input_with_help(
-            format!(
-                "--output {} would be a {kind} with the name of a {picture} picture",
-                path.display()
-            ),
-            format!("{kind}s end in .h5; the picture is drawn beside"),
-        ));
-    }
+    check_name("--output ", &path, kind)?;
     Ok(path)
 }
 

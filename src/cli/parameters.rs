@@ -1,5 +1,6 @@
 //! The flags that give a point of parameter space, the same words as in sweep files.
 
+use std::marker::PhantomData;
 use std::path::PathBuf;
 
 use clap::builder::{PossibleValue, PossibleValuesParser};
@@ -13,6 +14,7 @@ use slipmap::sweep::input::units::Units;
 
 use super::failure::Failure;
 use super::output::warn_of_idle_delay;
+use super::say;
 use super::sweep_file::read_table;
 
 /// The values that flags give to parameters, each by the flag of its row.
@@ -80,14 +82,50 @@ fn law_names() -> PossibleValuesParser {
     PossibleValuesParser::new(formulas.chain([table]))
 }
 
-/// A point of parameter space.
-#[derive(Debug)]
-pub(super) struct ParameterArgs {
-    values: Values,
-    law: LawArgs,
+/// What a command asks of a point, and so which flags it can use.
+pub(super) trait Asks {
+    /// Whether it needs a whole friction law.
+    const LAW: bool;
+    /// Whether it looks for the delay.
+    const SEARCHES_DELAY: bool;
 }
 
-impl ParameterArgs {
+/// Sliding, by a friction law or by the slope alone.
+#[derive(Debug)]
+pub(super) struct OfSliding;
+
+impl Asks for OfSliding {
+    const LAW: bool = false;
+    const SEARCHES_DELAY: bool = false;
+}
+
+/// The same, at a delay that is looked for.
+#[derive(Debug)]
+pub(super) struct AtAnyDelay;
+
+impl Asks for AtAnyDelay {
+    const LAW: bool = false;
+    const SEARCHES_DELAY: bool = true;
+}
+
+/// Stick and slip, which a friction law says.
+#[derive(Debug)]
+pub(super) struct OfStickSlip;
+
+impl Asks for OfStickSlip {
+    const LAW: bool = true;
+    const SEARCHES_DELAY: bool = false;
+}
+
+/// A point of parameter space.
+#[derive(Debug)]
+pub(super) struct ParameterArgs<A: Asks = OfSliding> {
+    values: Values,
+    law: LawArgs,
+    asks: PhantomData<A>,
+}
+
+impl<A: Asks> ParameterArgs<A> {
     /// Whether a parameter is one without a friction law as well.
     const fn without_law(group: Group) -> bool {
         matches!(group, Group::Model | Group::Sliding)
@@ -96,12 +134,27 @@ impl ParameterArgs {
     const fn of_law(group: Group) -> bool {
         matches!(group, Group::Pull | Group::Law)
     }
+
+    /// What would always be refused is not offered; where it is given all the same, the answer
+    /// says why.
+    fn offered(arg: Arg) -> Arg {
+        let parameter = Parameter::from_name(arg.get_id().as_str());
+        let of_slope = |p: Parameter| p.group() == Group::Sliding;
+        let in_vain = (A::LAW && parameter.is_some_and(of_slope))
+            || (A::SEARCHES_DELAY && parameter == Some(Parameter::Tau));
+        arg.hide(in_vain)
+    }
 }
 
-impl Args for ParameterArgs {
+impl<A: Asks> Args for ParameterArgs<A> {
     fn augment_args(command: Command) -> Command {
-        let command = command.args(Values::flags(Self::without_law));
-        LawArgs::augment_args(command).args(Values::flags(Self::of_law))
+        let command = command.args(Values::flags(Self::without_law).map(Self::offered));
+        let command = LawArgs::augment_args(command);
+        let command = match A::LAW {
+            true => command.mut_arg("friction", |arg| arg.help("Friction law")),
+            false => command,
+        };
+        command.args(Values::flags(Self::of_law).map(Self::offered))
     }
 
     fn augment_args_for_update(command: Command) -> Command {
@@ -109,12 +162,13 @@ impl Args for ParameterArgs {
     }
 }
 
-impl FromArgMatches for ParameterArgs {
+impl<A: Asks> FromArgMatches for ParameterArgs<A> {
     fn from_arg_matches(matches: &ArgMatches) -> Result<Self, clap::Error> {
         let wanted = |group| Self::without_law(group) || Self::of_law(group);
         Ok(Self {
             values: Values::of(matches, wanted),
             law: LawArgs::from_arg_matches(matches)?,
+            asks: PhantomData,
         })
     }
 
@@ -173,7 +227,7 @@ pub(super) fn flag(parameter: Parameter) -> String {
     }
 }
 
-impl ParameterArgs {
+impl<A: Asks> ParameterArgs<A> {
     fn given(&self, parameter: Parameter) -> Option<f64> {
         self.values.get(parameter)
     }
@@ -183,7 +237,12 @@ impl ParameterArgs {
         let help =
             "--friction table --table FILE.csv, with a speed and a value of mu_k in each line";
         match (self.law.friction.as_deref(), &self.law.table) {
-            (Some(LawKind::TABLE), Some(path)) => Ok(Some(LawKind::Table(read_table(path)?))),
+            (Some(LawKind::TABLE), Some(path)) => {
+                let mu_s = Parameter::MuS;
+                let given = self.given(mu_s).or(mu_s.default_value());
+                let table = read_table(path, given.unwrap_or(1.0))?;
+                Ok(Some(LawKind::Table(table)))
+            }
             (Some(LawKind::TABLE), None) => Err(Failure::bad_input_with_help(
                 "--table is not given: the table law goes through the points of a file",
                 help,
@@ -199,7 +258,8 @@ impl ParameterArgs {
 
     /// The setting that the flags describe, with a delay only where control acts.
     pub(super) fn setting(&self) -> Result<Setting, Failure> {
-        let setting = self.setting_with(self.unneeded_delay(), &[], "")?;
+        self.check_law()?;
+        let setting = self.setting_with(self.unneeded_delay(), None, &[], "")?;
         setting.sliding_point().map_err(|e| self.refused(&e))?;
         Ok(setting)
     }
@@ -212,17 +272,34 @@ impl ParameterArgs {
         }
     }
 
-    /// The setting of a critical velocity: a friction law, no v0, and a delay only where control
-    /// acts.
-    pub(super) fn setting_without_v0(&self) -> Result<Setting, Failure> {
-        if self.law.friction.is_none() {
-            return Err(Failure::bad_input_with_help(
-                "--friction is not given: the critical velocity depends on the whole friction law",
-                "for example: --friction weakening --mu0 0.5 --v-s 0.5",
-            ));
+    /// A friction law is given where it is needed, and nothing in its place.
+    fn check_law(&self) -> Result<(), Failure> {
+        let help = "for example: --friction weakening --mu0 0.5 --v-s 0.5";
+        let mut of_slope = Parameter::ALL.into_iter();
+        let of_slope = of_slope.find(|p| p.group() == Group::Sliding && self.given(*p).is_some());
+        let why = "stick and slip depend on the whole friction law";
+        match of_slope.filter(|_| A::LAW) {
+            Some(parameter) => Err(Failure::bad_input_with_help(
+                format!("{} does not say enough: {why}", flag(parameter)),
+                help,
+            )),
+            None if A::LAW && self.law.friction.is_none() => Err(Failure::bad_input_with_help(
+                format!("--friction is not given: {why}"),
+                help,
+            )),
+            None => Ok(()),
         }
-        let help = "leave it out: v0 is what is looked for";
-        let setting = self.setting_with(self.unneeded_delay(), &[Parameter::V0], help)?;
+    }
+
+    /// The setting of a critical velocity: a friction law, and a delay only where control acts. A
+    /// v0 is left aside, so that all commands take the flags of one rig.
+    pub(super) fn setting_without_v0(&self) -> Result<Setting, Failure> {
+        self.check_law()?;
+        let mut setting = self.setting_with(self.unneeded_delay(), Some(Parameter::V0), &[], "")?;
+        if self.given(Parameter::V0).is_some() {
+            say::note("--v0 is left aside: the critical velocity is one");
+            setting.set(Parameter::V0, f64::NAN);
+        }
         setting.friction_law().map_err(|e| self.refused(&e))?;
         Ok(setting)
     }
@@ -257,14 +334,15 @@ impl ParameterArgs {
         searched: &[Parameter],
         help: &str,
     ) -> Result<Setting, Failure> {
-        self.setting_with(None, searched, help)
+        self.setting_with(None, None, searched, help)
     }
 
     /// The setting that the flags describe, as [`ParameterArgs::setting_but`] reads it, with a
-    /// value for a parameter that need not be given.
+    /// value for a parameter that need not be given, and another one that may be left out.
     fn setting_with(
         &self,
         unneeded: Option<(Parameter, f64)>,
+        left_out: Option<Parameter>,
         searched: &[Parameter],
         help: &str,
     ) -> Result<Setting, Failure> {
@@ -279,6 +357,7 @@ impl ParameterArgs {
             }
         }
         let without = |p| unneeded.is_some_and(|(unneeded, _)| unneeded == p);
+        let without = |p| without(p) || left_out == Some(p);
         let there = |p| searched.contains(&p) || without(p) || self.given(p).is_some();
         Setting::check_given(law.as_ref(), there).map_err(|e| {
             Failure::bad_input_with_help(e.message(law.as_ref(), flag), e.help(flag))

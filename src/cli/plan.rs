@@ -70,7 +70,10 @@ pub(super) fn main(args: &Args) -> Result<(), Failure> {
             let message = "--threads has no meaning for a case: one motion takes one thread";
             return Err(Failure::bad_input(message));
         }
-        Described::Case(spec) => return plan_case::tell(&args.sweep, &spec, args.json),
+        Described::Case(spec) => {
+            warn_of_idle_delay(spec.setting.has_idle_delay());
+            return plan_case::tell(&args.sweep, &spec, args.json);
+        }
     };
     warn_of_idle_delay(plan.spec.has_idle_delay());
     let asked = args.threads.unwrap_or_else(default_threads);
@@ -97,13 +100,14 @@ struct Facts {
     units: BTreeMap<&'static str, String>,
     dimensionless: bool,
     fields: Vec<&'static str>,
-    /// What is said of the start of motions that no key gives, and of many starts.
+    /// What is said of the start of motions that no key gives, and of many starts; null where a key
+    /// does, or no field is of motions.
     start: Option<String>,
     cells: u64,
     tiles: u64,
     cells_of_a_tile: u64,
     boundary_planes: u64,
-    /// None where no best settings are asked for.
+    /// Null where no best settings are asked for.
     best_planes: Option<u64>,
     /// Bytes of all cells in memory, and about those of the map on disk.
     bytes: u64,

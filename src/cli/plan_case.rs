@@ -30,10 +30,11 @@ pub(super) struct Facts {
     interval: Option<f64>,
     /// Samples of the trace, without those at events; null where only the motion tells.
     samples: Option<u64>,
-    /// Bytes of so many samples before compression.
+    /// Bytes of so many samples before compression; null where only the motion tells.
     bytes: Option<u64>,
-    /// The files that `simulate` writes by default; null for a case from standard input.
+    /// The trace that `simulate` writes by default; null for a case from standard input.
     trace: Option<String>,
+    /// The picture that it draws by default; null for a case from standard input.
     picture: Option<String>,
 }
 

@@ -8,13 +8,12 @@ use clap::builder::{PossibleValuesParser, TypedValueParser};
 use slipmap::report::picture::{
     self, ColourMap, Picture, PictureError, PictureKind, PictureOptions,
 };
-use slipmap::store::{TraceFile, trace_reader};
-use slipmap::sweep::input::field::fields_meant;
+use slipmap::store::{MapFile, TraceFile, trace_reader};
 use slipmap::sweep::{Field, Parameter};
 
-use super::cell::parse_at;
+use super::cell::{At, parse_at};
 use super::failure::Failure;
-use super::open::open;
+use super::open::{held_field, open};
 use super::say;
 use super::signals::Signals;
 use super::text_output::STANDARD_OUTPUT;
@@ -36,8 +35,8 @@ pub(super) struct Args {
     output: Option<PathBuf>,
     /// What to show, a field of the map [default: the `picture` of its sweep file, else the first
     /// held of regime, v_smooth, vc, outcome, abscissa, n_unstable]
-    #[arg(long, value_name = "NAME", value_parser = parse_field)]
-    field: Option<Field>,
+    #[arg(long, value_name = "NAME")]
+    field: Option<String>,
     /// Curves or cells [default: curves where the map holds them for a few values of one axis and
     /// no abscissa, and no field is named]
     #[arg(long)]
@@ -45,7 +44,7 @@ pub(super) struct Args {
     /// Hold an axis at the value nearest to this; again for the same axis: show several values of
     /// it
     #[arg(long, value_name = "AXIS=VALUE", value_parser = parse_at)]
-    at: Vec<(Parameter, f64)>,
+    at: Vec<At>,
     /// Width and height in pixels
     #[arg(long, value_name = "WIDTHxHEIGHT", default_value = SIZE, value_parser = parse_size)]
     size: (u32, u32),
@@ -106,10 +105,6 @@ enum Kind {
     Heat,
 }
 
-fn parse_field(name: &str) -> Result<Field, String> {
-    Field::from_name(name).ok_or_else(|| fields_meant(name))
-}
-
 pub(super) fn main(args: &Args) -> Result<(), Failure> {
     let signals = Signals::catch()?;
     let piped = args.output.as_deref() == Some(Path::new(STANDARD_OUTPUT));
@@ -125,12 +120,10 @@ pub(super) fn main(args: &Args) -> Result<(), Failure> {
         None => named_after(&args.map, &shown(args)),
     };
     let options = PictureOptions {
-        field: args.field,
         kind: args.kind.map(|kind| match kind {
             Kind::Boundaries => PictureKind::Boundaries,
             Kind::Heat => PictureKind::Heat,
         }),
-        at: args.at.clone(),
         size: args.size,
         title: args.title.clone(),
         range: args.range,
@@ -144,6 +137,7 @@ pub(super) fn main(args: &Args) -> Result<(), Failure> {
         signals.or_end(NOT_DRAWN, || draw_trace(&args.map, &path, &options))
     } else {
         let map = open(&args.map, &signals, NOT_DRAWN)?;
+        let options = shown_of(&map, args, options)?;
         signals.or_end(NOT_DRAWN, || picture::draw(&map, &path, &options))
     };
     if piped {
@@ -156,6 +150,23 @@ pub(super) fn main(args: &Args) -> Result<(), Failure> {
     };
     drawn.and_then(save).map_err(|error| failure(error, args))?;
     say::result(path.display())
+}
+
+/// The options with what is asked for of this map.
+fn shown_of(
+    map: &MapFile,
+    args: &Args,
+    options: PictureOptions,
+) -> Result<PictureOptions, Failure> {
+    let axes: Vec<Parameter> = map.axes().iter().map(|axis| axis.parameter).collect();
+    let at = args.at.iter();
+    let at = at.map(|at| at.axis(&axes).map(|axis| (axes[axis], at.value)));
+    let field = args.field.as_deref().map(|name| held_field(map, name));
+    Ok(PictureOptions {
+        field: field.transpose()?,
+        at: at.collect::<Result<_, _>>()?,
+        ..options
+    })
 }
 
 fn draw_trace(
@@ -185,10 +196,10 @@ fn refuse_of_maps(args: &Args) -> Result<(), Failure> {
 /// What tells the picture asked for from the one that a run draws, in words for its name.
 fn shown(args: &Args) -> Vec<String> {
     let kind = args.kind.and_then(|kind| kind.to_possible_value());
-    let mut words: Vec<String> = args.field.iter().map(|f| f.name().to_owned()).collect();
+    let name = |name: &String| Field::from_name(name).map_or(name.clone(), |f| f.name().into());
+    let mut words: Vec<String> = args.field.iter().map(name).collect();
     words.extend(kind.map(|kind| kind.get_name().to_owned()));
-    let at = args.at.iter();
-    words.extend(at.map(|(parameter, value)| format!("{}={value}", parameter.name())));
+    words.extend(args.at.iter().map(At::to_string));
     if args.size != PictureOptions::default().size {
         words.push(format!("{}x{}", args.size.0, args.size.1));
     }

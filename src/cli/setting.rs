@@ -18,7 +18,7 @@ const HEAD: &str = "# A setting by slipmap";
 
 #[derive(Debug, clap::Args)]
 pub(super) struct SettingArgs {
-    /// Take everything from this file, which `slipmap best --save` wrote
+    /// Take everything from this file, as `slipmap best --save` writes it
     #[arg(long, value_name = "SETTING.toml", conflicts_with = "map")]
     setting: Option<PathBuf>,
 }
@@ -65,8 +65,12 @@ pub(super) fn check_save(path: &Path) -> Result<(), Failure> {
 
 /// Writes a setting: whole, or not at all.
 pub(super) fn save(setting: &Setting, units: &Units, path: &Path) -> Result<(), Failure> {
+    let takers = match setting.law() {
+        Some(_) => "point and vc take it with --setting, simulate as a case file",
+        None => "point takes it with --setting",
+    };
     let text = setting_text(setting, units, |_| true);
-    let text = format!("{HEAD}; `slipmap simulate` takes it as a case file\n\n{text}");
+    let text = format!("{HEAD}; {takers}\n\n{text}");
     let output = Output::claim(path)?;
     std::fs::write(output.part(), text).map_err(|source| StoreError::Io {
         action: "write",

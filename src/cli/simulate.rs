@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use serde::Serialize;
 use slipmap::explore::motion::MotionSummary;
-use slipmap::report::numbers::grouped;
+use slipmap::report::numbers::{grouped, unit_behind};
 use slipmap::report::picture::{self, Picture, PictureError, PictureOptions};
 use slipmap::report::table::write_samples;
 use slipmap::store::describe::Provenance;
@@ -12,7 +12,7 @@ use slipmap::store::{Output, StoreError, trace_file, trace_reader};
 use slipmap::sweep::cells::trace::TraceError;
 use slipmap::sweep::input::setting_text::setting_text;
 use slipmap::sweep::input::simulation::DISTURBED;
-use slipmap::sweep::{CaseSpec, Trace};
+use slipmap::sweep::{CaseSpec, Parameter, Trace};
 use utoipa::ToSchema;
 
 use super::case_facts::CaseFacts;
@@ -21,7 +21,7 @@ use super::failure::Failure;
 use super::json::{self, AnswerSchema, Inputs};
 use super::motion_text;
 use super::output::{check_picture, output_path, provenance, warn_of_idle_delay};
-use super::parameters::ParameterArgs;
+use super::parameters::{OfStickSlip, ParameterArgs};
 use super::plot;
 use super::say;
 use super::signals::Signals;
@@ -35,7 +35,7 @@ pub(super) struct Args {
     #[arg(value_name = "CASE.toml", conflicts_with = "map")]
     case: Option<PathBuf>,
     #[command(flatten)]
-    parameters: ParameterArgs,
+    parameters: ParameterArgs<OfStickSlip>,
     #[command(flatten)]
     cell: CellArgs,
     /// The trace to write [default: the case file's name with .h5, in the current folder; with
@@ -75,9 +75,10 @@ pub(super) fn main(args: &Args) -> Result<(), Failure> {
     warn_of_idle_delay(args.case.is_some() && spec.setting.has_idle_delay());
     if spec.start_assumed {
         say::note(format_args!(
-            "no start is given: the block begins with x_dot0 = {}, {} % faster than it is \
+            "no start is given: the block begins with x_dot0 = {}{}, {} % faster than it is \
              pulled",
             spec.case.initial_state().0,
+            unit_behind(&spec.units.of_parameter(Parameter::XDot0)),
             100.0 * DISTURBED,
         ));
     }
@@ -176,18 +177,12 @@ impl Args {
         let Some(path) = &self.output else {
             return Ok(None);
         };
-        let to = match path {
-            path if path == Path::new(STANDARD_OUTPUT) => To::StandardOutput,
-            path if is_csv(path) => To::File(path),
-            _ => return Ok(None),
-        };
-        match to {
+        if path != Path::new(STANDARD_OUTPUT) && !is_csv(path) {
+            return Ok(None);
+        }
+        match To::named(Some(path), self.case.as_deref(), self.fresh)? {
             To::StandardOutput if self.json => Err(Failure::bad_input(
                 "--json and --output - both write to standard output",
-            )),
-            To::File(path) if path.exists() && !self.fresh => Err(Failure::bad_input_with_help(
-                format!("{} is already there", path.display()),
-                "--fresh replaces it; -o writes elsewhere",
             )),
             to => Ok(Some(to)),
         }

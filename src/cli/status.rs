@@ -78,7 +78,9 @@ struct ShardAnswer {
     pieces: u64,
     pieces_done: u64,
     damaged_files: u64,
+    /// Of the run that works on it; null where none does.
     cells_per_second: Option<f64>,
+    /// Until it is done; null where that is not known.
     seconds_left: Option<f64>,
 }
 

@@ -6,13 +6,14 @@ use std::path::Path;
 
 use slipmap::model::Table;
 use slipmap::report::numbers::bytes;
-use slipmap::sweep::input::case_file::is_case_file;
-use slipmap::sweep::input::friction_table::table_of_columns;
+use slipmap::sweep::input::case_file::{TextKind, is_case_file};
+use slipmap::sweep::input::friction_table::table_of_law;
 use slipmap::sweep::input::point_file::{PointOf, PointSpec};
 use slipmap::sweep::input::table_file::Inlined;
 use slipmap::sweep::{CaseSpec, Plan, SpecError, SweepSpec};
 
 use super::failure::Failure;
+use super::kind::Kind;
 
 /// A file larger than this is none of these. The text goes into maps and, with up to twice as many
 /// bytes, into manifests.
@@ -51,13 +52,17 @@ pub(super) fn read_case(path: &Path) -> Result<CaseSpec, Failure> {
 
 /// What the file at `path` gives of a point.
 pub(super) fn read_setting(path: &Path, of: PointOf) -> Result<PointSpec, Failure> {
+    if let Some(kind @ Kind::Text(TextKind::Sweep | TextKind::Case)) = Kind::of(path) {
+        let (message, help) = kind.not(path, "a file of a setting");
+        return Err(Failure::bad_input_with_help(message, help));
+    }
     read_with_table(path, "setting", |text| PointSpec::read(text, of))
 }
 
-/// The friction curve of the two columns in the file at `path`.
-pub(super) fn read_table(path: &Path) -> Result<Table, Failure> {
+/// The friction curve of the two columns in the file at `path`, of a law with this `mu_s`.
+pub(super) fn read_table(path: &Path, mu_s: f64) -> Result<Table, Failure> {
     let (name, text) = text_of(path, "table")?;
-    table_of_columns(&text).map_err(|error| Failure::in_file(error, &name, &text))
+    table_of_law(&text, mu_s).map_err(|error| Failure::in_file(error, &name, &text))
 }
 
 /// What stands for standard input in the place of a file.
@@ -88,6 +93,10 @@ fn read_with_table<T>(
 
 /// The name and the text of a file, or of standard input.
 fn text_of(path: &Path, kind: &str) -> Result<(String, String), Failure> {
+    if let Some(other @ (Kind::Map | Kind::Trace)) = Kind::of(path) {
+        let (message, help) = other.not(path, &format!("a {kind} file"));
+        return Err(Failure::bad_input_with_help(message, help));
+    }
     let (name, read) = match path == Path::new(STANDARD_INPUT) {
         true => (
             "standard input".to_owned(),

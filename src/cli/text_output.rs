@@ -25,11 +25,17 @@ pub(super) enum To<'p> {
 }
 
 impl<'p> To<'p> {
-    /// Where `--output` says; without it, or where that is `-`: standard output.
+    /// Where `--output` says; without it, or where that is `-`: standard output. What is at that
+    /// name already may be anybody's: only `fresh` replaces it.
     ///
     /// # Errors
-    /// When the name promises another format than CSV, or is that of the file that is read.
-    pub(super) fn named(output: Option<&'p Path>, read: &Path) -> Result<Self, Failure> {
+    /// When the name promises another format than CSV, is that of the file that is `read`, or
+    /// there is a file already.
+    pub(super) fn named(
+        output: Option<&'p Path>,
+        read: Option<&Path>,
+        fresh: bool,
+    ) -> Result<Self, Failure> {
         let Some(path) = output.filter(|path| *path != Path::new(STANDARD_OUTPUT)) else {
             return Ok(Self::StandardOutput);
         };
@@ -39,14 +45,21 @@ impl<'p> To<'p> {
                 "name it like NAME.csv; - is standard output",
             ));
         }
-        let same = path.canonicalize().ok().zip(read.canonicalize().ok());
-        match same.is_some_and(|(a, b)| a == b) {
-            true => Err(Failure::bad_input(format!(
+        let read = read.and_then(|read| read.canonicalize().ok());
+        let same = path.canonicalize().ok().zip(read);
+        if same.is_some_and(|(a, b)| a == b) {
+            return Err(Failure::bad_input(format!(
                 "--output {} would replace the file that is read",
                 path.display()
-            ))),
-            false => Ok(Self::File(path)),
+            )));
         }
+        if path.symlink_metadata().is_ok() && !fresh {
+            return Err(Failure::bad_input_with_help(
+                format!("{} is already there", path.display()),
+                "--fresh replaces it; -o writes elsewhere",
+            ));
+        }
+        Ok(Self::File(path))
     }
 
     /// Writes the text that `write` makes, which looks at a flag now and then whether to stop.

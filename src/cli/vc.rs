@@ -16,7 +16,7 @@ use slipmap::sweep::{Field, Parameter, Setting};
 use super::cell::{CellArgs, alone};
 use super::failure::Failure;
 use super::json::{self, AnswerSchema, Inputs};
-use super::parameters::{LimitArgs, ParameterArgs, flag};
+use super::parameters::{LimitArgs, OfStickSlip, ParameterArgs, flag};
 use super::setting::SettingArgs;
 
 #[derive(Debug, clap::Args)]
@@ -27,7 +27,7 @@ use super::setting::SettingArgs;
   slipmap vc --protocol limit --gamma 0.25 --mu-ratio 0.5")]
 pub(super) struct Args {
     #[command(flatten)]
-    parameters: ParameterArgs,
+    parameters: ParameterArgs<OfStickSlip>,
     #[command(flatten)]
     cell: CellArgs,
     #[command(flatten)]

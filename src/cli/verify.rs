@@ -186,6 +186,8 @@ struct MapAnswer {
     /// Tiles that were computed again, and those of which all bytes are equal.
     tiles: u64,
     tiles_equal: u64,
+    /// Tiles that were to be, and are not in a map that is not complete.
+    tiles_absent: u64,
 }
 
 /// What second methods say about a field: the number of cells at which they agree, differ, and do
@@ -217,6 +219,7 @@ impl From<&Report> for MapAnswer {
             answers: answers.map(answer).collect(),
             tiles: report.tiles,
             tiles_equal: report.tiles_equal,
+            tiles_absent: report.tiles_absent,
         }
     }
 }
@@ -233,12 +236,14 @@ fn print(report: &Report) -> Result<(), Failure> {
         let counts = format!("{agree} agree, {differ} differ, {open} open");
         rows.row("", format!("{:<38} {counts}", question.name()))?;
     }
-    if report.tiles > 0 {
+    if report.tiles + report.tiles_absent > 0 {
         let (equal, of) = (report.tiles_equal, report.tiles);
-        rows.row(
-            "tiles",
-            format!("{equal} of {of} computed again are the same, bit by bit"),
-        )?;
+        let absent = match report.tiles_absent {
+            0 => String::new(),
+            absent => format!("; {absent} more are not in the map"),
+        };
+        let text = format!("{equal} of {of} computed again are the same, bit by bit{absent}");
+        rows.row("tiles", text)?;
     }
     print_findings(&mut rows, &report.remarks, &report.faults)
 }

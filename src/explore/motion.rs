@@ -91,22 +91,22 @@ pub struct MotionSummary {
     pub outcome: &'static str,
     /// When that was known.
     pub decided: f64,
-    /// From switch-on until ẋ stays within 1 % of v0.
+    /// From switch-on until ẋ stays within 1 % of v0; null where it does not come to sliding.
     #[cfg_attr(feature = "serve", schema(value_type = Option<f64>, required))]
     pub settle_time: f64,
-    /// The smallest load since switch-on.
+    /// The smallest load since switch-on; null where the motion ended before.
     #[cfg_attr(feature = "serve", schema(value_type = Option<f64>, required))]
     pub n_min: f64,
-    /// The largest spring force since switch-on.
+    /// The largest spring force since switch-on; null where it grew beyond all numbers.
     #[cfg_attr(feature = "serve", schema(value_type = Option<f64>, required))]
     pub peak_force: f64,
-    /// Period of stick-slip.
+    /// Period of stick-slip; null where it did not end up in that.
     #[cfg_attr(feature = "serve", schema(value_type = Option<f64>, required))]
     pub period: f64,
-    /// Time stuck in one period.
+    /// Time stuck in one period; null where there is no period.
     #[cfg_attr(feature = "serve", schema(value_type = Option<f64>, required))]
     pub stick_time: f64,
-    /// Time in slip in one period.
+    /// Time in slip in one period; null where there is no period.
     #[cfg_attr(feature = "serve", schema(value_type = Option<f64>, required))]
     pub slip_time: f64,
     /// From switch-on until the last stick ended; 0 where there is none after switch-on, null where

@@ -74,16 +74,17 @@ pub struct PointCrossing {
 pub struct Spectrum {
     /// The spectral abscissa; null where no root converged.
     pub abscissa: Option<f64>,
-    /// |Im λ| of the rightmost root.
+    /// |Im λ| of the rightmost root; null where no root converged.
     pub frequency: Option<f64>,
     /// Re λ and Im λ ≥ 0, by falling real part.
     pub roots: Vec<[f64; 2]>,
     /// Whether the argument principle confirms that none is missing.
     pub certified: bool,
-    /// No root is farther right than abscissa + this times max(1/√(M/κ), |abscissa|).
+    /// No root is farther right than abscissa + this times max(1/√(M/κ), |abscissa|); null where no
+    /// root converged.
     pub certificate_margin: Option<f64>,
     /// Re λ of a vertical line, right of the rightmost root, that the argument principle finds no
-    /// root right of; none where it does not tell.
+    /// root right of; null where it does not tell.
     pub certified_line: Option<f64>,
     /// Why there are fewer roots than asked for.
     #[serde(skip)]

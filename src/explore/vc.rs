@@ -22,10 +22,10 @@ pub struct CriticalVelocity {
     /// that is tried, or the block lifts off.
     pub vc: Option<f64>,
     /// A lower bound of v_c, below the ends that all searches came to by a margin; v_c where that
-    /// is decided.
+    /// is decided. Null where lift-off comes before any stick-slip.
     pub vc_lower: Option<f64>,
     /// The smallest v0 at which it was lost for good or ended by lift-off; v_c where that is
-    /// decided. None where neither was seen up to the end of the range, or where slow
+    /// decided. Null where neither was seen up to the end of the range, or where slow
     /// searches disagree whether it lifts off.
     pub vc_upper: Option<f64>,
     /// Which question it answers: `follow` or `switch-on`.
@@ -34,13 +34,13 @@ pub struct CriticalVelocity {
     pub outcome: &'static str,
     /// Where it survives: v0 from and to.
     pub windows: Vec<[f64; 2]>,
-    /// The smallest v0 at which N ≤ 0 occurs, where that ends stick-slip.
+    /// The smallest v0 at which N ≤ 0 occurs; null where that does not end stick-slip.
     pub v_liftoff: Option<f64>,
-    /// Time stuck in a period at v_c.
+    /// Time stuck in a period at v_c; null where no orbit of stick-slip is known there.
     pub stick_time: Option<f64>,
-    /// Time in slip in a period at v_c.
+    /// Time in slip in a period at v_c; null where no orbit of stick-slip is known there.
     pub slip_time: Option<f64>,
-    /// The smallest load at v_c.
+    /// The smallest load at v_c; null where no orbit of stick-slip is known there.
     pub n_min: Option<f64>,
     /// What gave the answer.
     pub method: &'static str,
@@ -139,7 +139,8 @@ mod schema {
                 whole = whole.required(name);
             }
             for field in Field::ALL.into_iter().filter(|field| field.of_limit()) {
-                let value = object(or_null(), field.long_name());
+                let about = format!("{}; null where it has no finite value", field.long_name());
+                let value = object(or_null(), &about);
                 whole = whole.property(field.name(), value).required(field.name());
             }
             whole.into()

@@ -188,6 +188,11 @@ fn compute_tiles(map: &MapFile, plan: &Plan, program: Program, tiles: u64, repor
     for sample in 0..tiles.min(plan.tiles.len() as u64) {
         let number = (spread(sample) * plan.tiles.len() as f64) as usize;
         let tile = plan.tiles.tile(number);
+        // The status says whether a tile is in a map that is not complete.
+        if map.is_partial() && matches!(map.stored_chunk(STATUS, &tile.offset), Ok(None)) {
+            report.tiles_absent += 1;
+            continue;
+        }
         worker.compute(&tile);
         let piece = Piece::Tile(number as u64);
         let record = encoder.encode(piece, Computed::Tile(&worker.buffers));
@@ -204,8 +209,6 @@ fn compute_tiles(map: &MapFile, plan: &Plan, program: Program, tiles: u64, repor
         for (name, chunk) in held.zip(computed.chunks) {
             match map.stored_chunk(name, &tile.offset) {
                 Ok(Some(stored)) if stored == chunk => {}
-                // Of a map that is not complete.
-                Ok(None) if map.is_partial() => equal = false,
                 Err(error) => {
                     equal = false;
                     let fault = format!("{name}: tile {number} cannot be read: {error}");

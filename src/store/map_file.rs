@@ -212,6 +212,14 @@ impl MapFile {
             .unwrap_or_else(|_| "1".into())
     }
 
+    /// What a field is in this map: beside critical velocities an outcome is another one.
+    #[must_use]
+    pub fn long_name(&self, field: Field) -> String {
+        open::dataset(&self.file, self.name_of(field))
+            .and_then(|d| text(&d, "long_name"))
+            .unwrap_or_else(|_| field.long_name().into())
+    }
+
     /// The names of the datasets of cells, as this file has them: the fields' in order, and the
     /// status.
     pub(crate) fn names(&self) -> impl Iterator<Item = &'static str> {

@@ -38,6 +38,8 @@ pub struct Report {
     pub tiles: u64,
     /// Tiles computed again of which all bytes are equal.
     pub tiles_equal: u64,
+    /// Tiles that were to be, and are not in a map that is not complete.
+    pub tiles_absent: u64,
 }
 
 /// Whether a file without a seal is the sound map of `plan`, whose cells need not all be there;

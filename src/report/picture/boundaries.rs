@@ -67,11 +67,8 @@ pub(super) fn draw(
         Scale::between(&x_axis.values),
         Scale::between(&y_axis.values),
     );
-    let words = Words {
-        x: axis_title(x_axis),
-        y: axis_title(y_axis),
-        headings: vec![None],
-    };
+    let headings = vec![None];
+    let words = Words::of(axis_title(x_axis), axis_title(y_axis), headings);
     let panels = Panels::new(scene, body, scales, words);
     panels.draw_grid(scene);
     let Some(panel) = panels.list.first() else {

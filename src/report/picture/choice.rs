@@ -89,10 +89,12 @@ fn default_field(map: &MapFile) -> Field {
 const LONGEST_TITLE: usize = 400;
 
 /// The title of a picture of `field` of a sweep without one.
-fn untitled(field: Field) -> &'static str {
+fn untitled(map: &MapFile, field: Field) -> &'static str {
+    // The outcome of a map of critical velocities is how stick-slip ends.
+    let beside_vc = || map.fields().iter().any(|field| field.of_vc());
     if field.of_limit() {
         "Critical velocity as the delay vanishes"
-    } else if field.of_vc() {
+    } else if field.of_vc() || (field == Field::Outcome && beside_vc()) {
         "The critical velocity"
     } else if field.of_basin() {
         "The basin of attraction of sliding"
@@ -108,23 +110,31 @@ pub(super) fn title(map: &MapFile, options: &PictureOptions) -> Option<String> {
     let of_sweep = || map.root_text(root::TITLE);
     let title = options.title.clone().or_else(of_sweep);
     let title = title.filter(|title| !title.trim().is_empty())?;
-    let cut: String = title.chars().take(LONGEST_TITLE).collect();
-    Some(visible_line(&cut))
+    Some(shortened(&title))
+}
+
+/// A text of a map, which may come from anywhere.
+fn shortened(text: &str) -> String {
+    let cut: String = text.chars().take(LONGEST_TITLE).collect();
+    visible_line(&cut)
 }
 
 /// The title of a picture of `field`, and notes that name it. The title of a sweep is about the
-/// field that it shows unasked: a picture of another one is headed by that.
+/// field that it shows unasked: a picture of another one is headed by that, titled or not.
 pub(super) fn head(map: &MapFile, field: Field, options: &PictureOptions) -> (String, Vec<Rich>) {
     let unit = map.field_unit(field);
     let shown = named(map, options).unwrap_or_else(|| default_field(map));
-    let note = text::field_note(field, &unit);
+    let about = shortened(&map.long_name(field));
     match title(map, options) {
-        Some(title) if field != shown && options.title.is_none() => {
+        title if field != shown && options.title.is_none() => {
             let name = Rich::plain(field.name()).and(&text::suffix(&unit, "  (", ")"));
-            let of = Rich::plain(&format!("from: {title}"));
-            (capitalised(field.long_name()), vec![name, of])
+            let of = title.map(|title| Rich::plain(&format!("from: {title}")));
+            (capitalised(&about), [name].into_iter().chain(of).collect())
         }
-        title => (title.unwrap_or_else(|| untitled(field).into()), vec![note]),
+        title => {
+            let title = title.unwrap_or_else(|| untitled(map, field).into());
+            (title, vec![text::field_note(field, &about, &unit)])
+        }
     }
 }
 

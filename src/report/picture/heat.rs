@@ -61,11 +61,8 @@ pub(super) fn draw(
     };
     let (x_axis, y_axis) = (&map.axes()[view.x], &map.axes()[y]);
     let scales = (Scale::around(&x_axis.values), Scale::around(&y_axis.values));
-    let words = Words {
-        x: axis_title(x_axis),
-        y: axis_title(y_axis),
-        headings: view.panels.iter().map(|p| view.heading(map, p)).collect(),
-    };
+    let headings = view.panels.iter().map(|p| view.heading(map, p)).collect();
+    let words = Words::of(axis_title(x_axis), axis_title(y_axis), headings);
     let panels = Panels::new(scene, body, scales, words);
     let parts = panels.list.iter().zip(planes).zip(&view.panels);
     for (((panel, plane), index), symbols) in parts.zip(&symbols) {

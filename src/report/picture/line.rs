@@ -3,7 +3,7 @@
 use super::areas;
 use super::choice;
 use super::clip::between;
-use super::colour::{self, PAPER, Rgb, SOFT_INK, STABLE_TINT};
+use super::colour::{self, Rgb, SOFT_INK, STABLE_TINT};
 use super::error::PictureError;
 use super::hatch;
 use super::legend::{Legend, Swatch};
@@ -13,7 +13,8 @@ use super::page::{self, SMALL};
 use super::panels::{Panel, Panels, Words};
 use super::rectangles::{Rectangle, rectangles};
 use super::scale::Scale;
-use super::scene::{Align, Mark, Point, Scene};
+use super::scene::{Align, Point, Scene};
+use super::stable_line;
 use super::text::{Rich, axis_title, field_name, field_title, number, suffix};
 use super::value_scale;
 use super::view::View;
@@ -68,6 +69,7 @@ pub(super) fn draw(
         value_scale::asked(field, &finite(&lines).collect::<Vec<_>>(), options)?,
     );
     let u = scene.unit();
+    let asked = options.range.is_some();
     let mut legend = legend(map, view, &lines);
     // What lies beyond the scale does not depend on where the panel is.
     let anywhere = Panel {
@@ -75,7 +77,7 @@ pub(super) fn draw(
         x: scales.0,
         y: scales.1,
     };
-    let entries = draw_off_scale(&anywhere, &lines, &mut Scene::new(scene.size));
+    let entries = draw_off_scale(&anywhere, &lines, asked, &mut Scene::new(scene.size));
     legend.entries.extend(entries);
     let column = match options.no_legend {
         true => None,
@@ -85,22 +87,20 @@ pub(super) fn draw(
         x: axis_title(axis),
         y: ordinate(map, fields),
         headings: vec![None],
+        names: field.kinds().unwrap_or_default(),
     };
     let panels = Panels::new(scene, body, scales, words);
     let Some(panel) = panels.list.first() else {
         return Ok(());
     };
-    let stability = map.stability_field().filter(|_| lines.len() == 1);
-    if let Some(stable) = stability {
-        for line in read_lines(map, view, &[stable], most)? {
-            shade(panel, &line, scene);
-        }
+    if lines.len() == 1 {
+        stable_line::shade(map, view, most, panel, scene)?;
     }
     if let [line] = &lines[..] {
         draw_gaps(panel, line, scene);
     }
     panels.draw_grid(scene);
-    draw_lines(panel, &lines, scene);
+    draw_lines(panel, &lines, asked, scene);
     panels.draw_axes(scene);
     if let Some(column) = column {
         let top = panel.area.top;
@@ -110,8 +110,9 @@ pub(super) fn draw(
 }
 
 /// Draws the lines, above where 0 is.
-fn draw_lines(panel: &Panel, lines: &[Graph], scene: &mut Scene) {
-    if panel.y.holds(0.0) {
+fn draw_lines(panel: &Panel, lines: &[Graph], asked: bool, scene: &mut Scene) {
+    let numbers = lines.iter().all(|line| line.field.kinds().is_none());
+    if numbers && panel.y.holds(0.0) {
         let zero = panel.up(0.0);
         scene.ruler(
             (panel.area.left, zero),
@@ -123,12 +124,18 @@ fn draw_lines(panel: &Panel, lines: &[Graph], scene: &mut Scene) {
     for line in lines {
         draw_line(panel, line, scene);
     }
-    draw_off_scale(panel, lines, scene);
+    draw_off_scale(panel, lines, asked, scene);
     name_areas(panel, lines, scene);
 }
 
-/// Draws the values without a place on the scale; gives what that means.
-fn draw_off_scale(panel: &Panel, lines: &[Graph], scene: &mut Scene) -> Vec<(Swatch, Rich)> {
+/// Draws the values without a place on the scale, whose ends may be `asked` for; gives what that
+/// means.
+fn draw_off_scale(
+    panel: &Panel,
+    lines: &[Graph],
+    asked: bool,
+    scene: &mut Scene,
+) -> Vec<(Swatch, Rich)> {
     let edges: Vec<Vec<f64>> = lines.iter().map(|l| panel.x.filling_edges(&l.at)).collect();
     let lines = lines.iter().zip(&edges);
     let along = lines.map(|(line, edges)| Along {
@@ -138,7 +145,7 @@ fn draw_off_scale(panel: &Panel, lines: &[Graph], scene: &mut Scene) -> Vec<(Swa
         edges,
         colour: line.colour,
     });
-    off_scale::draw(panel, &along.collect::<Vec<_>>(), scene)
+    off_scale::draw(panel, &along.collect::<Vec<_>>(), asked, scene)
 }
 
 /// Names what lies on either side of the critical velocity of a short delay, and beyond the
@@ -292,27 +299,8 @@ fn draw_gaps(panel: &Panel, line: &Graph, scene: &mut Scene) {
     }
 }
 
-/// Shades the cells in which sliding is stable.
-fn shade(panel: &Panel, line: &Graph, scene: &mut Scene) {
-    let colour = |(&value, gap): (&f64, &Option<Gap>)| match line.field.tells_stable(value) {
-        Some(true) if gap.is_none() => STABLE_TINT,
-        _ => PAPER,
-    };
-    let edges = panel.x.filling_edges(&line.at);
-    scene.marks.push(Mark::Cells {
-        columns: edges.into_iter().map(|x| panel.across(x)).collect(),
-        rows: vec![panel.area.bottom, panel.area.top],
-        colours: line.values.iter().zip(&line.gaps).map(colour).collect(),
-    });
-}
-
 fn legend(map: &MapFile, view: &View, lines: &[Graph]) -> Legend {
     let mut legend = Legend::default();
-    if let Some(kinds) = lines.iter().find_map(|line| line.field.kinds()) {
-        // What the numbers on the axis mean.
-        let meaning = |(i, kind): (usize, &str)| Rich::plain(&format!("{i}: {kind}"));
-        legend.heading = kinds.into_iter().enumerate().map(meaning).collect();
-    }
     if let Some(axis) = view.along {
         let MapAxis {
             parameter, unit, ..
@@ -324,7 +312,9 @@ fn legend(map: &MapFile, view: &View, lines: &[Graph]) -> Legend {
     if lines.len() > 1 {
         legend.entries = lines.iter().map(|l| (l.swatch, l.name.clone())).collect();
     } else if map.stability_field().is_some() {
-        legend.entries = vec![(Swatch::Box(STABLE_TINT), Rich::plain("stable"))];
+        // A regime is called stable where stick-slip is none as well.
+        let stable = Rich::plain("linearly stable");
+        legend.entries = vec![(Swatch::Box(STABLE_TINT), stable)];
     }
     add_gaps(&mut legend, lines);
     legend
@@ -347,6 +337,8 @@ fn add_gaps(legend: &mut Legend, lines: &[Graph]) {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::report::picture::colour::PAPER;
+    use crate::report::picture::scene::Mark;
 
     /// A number that is not known is no point of a line.
     #[test]

@@ -10,7 +10,8 @@
 //!   that show none; `fitted`: cells along an exact boundary
 //! - `page`, `panels`, `inset`, `legend`: where things stand; `scale`, `value_scale`, `ticks`: from
 //!   values to places; `clip`, `areas`, `off_scale`: lines at edges, names and values beyond
-//! - `stable_area`, `curve_labels`: the region between curves, and free places on curves
+//! - `stable_area`, `stable_line`, `curve_labels`: the region between curves, where a line crosses
+//!   them, and free places on curves
 //! - `trace`, `stack`: a motion over time, in panels above one another
 //! - `roots`: the characteristic roots of a point, and its line of delays
 //! - `degrees`: dashed curves of degrees of stability; `symbols`: places with a meaning
@@ -46,6 +47,7 @@ mod roots;
 mod scale;
 mod scene;
 mod stable_area;
+mod stable_line;
 mod stack;
 mod symbols;
 mod text;

@@ -1,10 +1,11 @@
-//! Values along a line that have no place on its scale: infinite ones and, on a logarithmic scale,
-//! zeros. They are bars at the edge of the panel.
+//! Values along a line that have no place on its scale: those beyond its ends, infinite ones and,
+//! on a logarithmic scale, zeros. They are bars at the edge of the panel.
 
 use super::colour::Rgb;
 use super::legend::Swatch;
 use super::paint::at_zero;
 use super::panels::Panel;
+use super::scale::Scale;
 use super::scene::Scene;
 use super::text::{Rich, number};
 use crate::report::known::Gap;
@@ -17,12 +18,20 @@ const HEIGHT: f64 = 8.0;
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Off {
     Infinite,
+    Above,
     MinusInfinite,
     Zero,
+    Below,
 }
 
 impl Off {
-    const ALL: [Self; 3] = [Self::Infinite, Self::MinusInfinite, Self::Zero];
+    const ALL: [Self; 5] = [
+        Self::Infinite,
+        Self::Above,
+        Self::MinusInfinite,
+        Self::Zero,
+        Self::Below,
+    ];
 
     /// The kind of a value; none where the panel has a place for it.
     fn of(value: f64, panel: &Panel) -> Option<Self> {
@@ -30,23 +39,33 @@ impl Off {
             f64::INFINITY => Some(Self::Infinite),
             f64::NEG_INFINITY => Some(Self::MinusInfinite),
             0.0 if panel.y.is_logarithmic() => Some(Self::Zero),
-            _ => None,
+            v if v.is_nan() || panel.y.holds(v) => None,
+            v if v > panel.y.value(1.0) => Some(Self::Above),
+            _ => Some(Self::Below),
         }
     }
 
-    fn words(self, field: Field) -> Rich {
-        let (value, edge) = match self {
-            Self::Infinite => (f64::INFINITY, "upper"),
-            Self::MinusInfinite => (f64::NEG_INFINITY, "lower"),
-            Self::Zero => (0.0, "lower"),
+    const fn is_upper(self) -> bool {
+        matches!(self, Self::Infinite | Self::Above)
+    }
+
+    fn words(self, field: Field, scale: &Scale) -> Rich {
+        let shown = match self {
+            Self::Infinite => number(f64::INFINITY),
+            Self::MinusInfinite => number(f64::NEG_INFINITY),
+            Self::Zero => number(0.0),
+            Self::Above => format!("above {}", number(scale.value(1.0))),
+            Self::Below => format!("below {}", number(scale.value(0.0))),
         };
+        let unstable = |value: f64| field.tells_stable(value) == Some(false);
         let meaning = match self {
             Self::Zero => at_zero(field),
-            _ if field.tells_stable(value) == Some(false) => ", unstable",
+            Self::Infinite if unstable(f64::INFINITY) => ", unstable",
+            Self::MinusInfinite if unstable(f64::NEG_INFINITY) => ", unstable",
             _ => "",
         };
-        let text = format!("{} at the {edge} edge{meaning}", number(value));
-        Rich::default().and_formula(&text)
+        let edge = if self.is_upper() { "upper" } else { "lower" };
+        Rich::default().and_formula(&format!("{shown} at the {edge} edge{meaning}"))
     }
 }
 
@@ -69,19 +88,27 @@ impl Along<'_> {
     }
 }
 
-/// Draws the bars of all lines, those of one edge above one another; gives what they mean.
-pub(super) fn draw(panel: &Panel, lines: &[Along], scene: &mut Scene) -> Vec<(Swatch, Rich)> {
+/// Draws the bars of all lines, those of one edge above one another; gives what they mean. A value
+/// beyond the scale has one where its ends are `asked` for: by default all are within, but those
+/// that go on to 0 or to errors that nobody tells apart.
+pub(super) fn draw(
+    panel: &Panel,
+    lines: &[Along],
+    asked: bool,
+    scene: &mut Scene,
+) -> Vec<(Swatch, Rich)> {
     let height = HEIGHT * scene.unit();
     let mut entries = Vec::new();
     let (mut above, mut below) = (0.0, 0.0);
-    for off in Off::ALL {
+    let beyond = |off: &Off| matches!(off, Off::Above | Off::Below);
+    for off in Off::ALL.into_iter().filter(|off| asked || !beyond(off)) {
         for line in lines {
             let cells: Vec<usize> = line.cells(panel, off).collect();
             if cells.is_empty() {
                 continue;
             }
             let (top, rows) = match off {
-                Off::Infinite => (panel.area.top + height * above, &mut above),
+                _ if off.is_upper() => (panel.area.top + height * above, &mut above),
                 _ => (panel.area.bottom - height * (below + 1.0), &mut below),
             };
             *rows += 1.0;
@@ -91,7 +118,7 @@ pub(super) fn draw(panel: &Panel, lines: &[Along], scene: &mut Scene) -> Vec<(Sw
                 scene.rect(from, to, line.colour);
             }
             let swatch = Swatch::Line(line.colour, HEIGHT, None);
-            entries.push((swatch, off.words(line.field)));
+            entries.push((swatch, off.words(line.field, &panel.y)));
         }
     }
     entries
@@ -128,7 +155,7 @@ mod tests {
         };
         let bars = |y| {
             let mut scene = Scene::new((1600, 1100));
-            let entries = draw(&panel(y), std::slice::from_ref(&line), &mut scene);
+            let entries = draw(&panel(y), std::slice::from_ref(&line), true, &mut scene);
             let place = |mark: &Mark| match mark {
                 Mark::Rect { from, to, .. } => (from.0, from.1, to.1),
                 other => panic!("{other:?}"),

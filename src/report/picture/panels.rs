@@ -112,6 +112,20 @@ pub(super) struct Words {
     pub y: Rich,
     /// Above each panel.
     pub headings: Vec<Option<Rich>>,
+    /// What stands in the place of the numbers 0, 1, … to the left; numbers where it is empty.
+    pub names: Vec<&'static str>,
+}
+
+impl Words {
+    /// Those of two axes with numbers.
+    pub(super) fn of(x: Rich, y: Rich, headings: Vec<Option<Rich>>) -> Self {
+        Self {
+            x,
+            y,
+            headings,
+            names: Vec::new(),
+        }
+    }
 }
 
 /// Panels in rows.
@@ -137,7 +151,10 @@ impl Panels {
             0.5 * SMALL * u
         };
         let height = (outside.height() - (2.1 * SMALL + 1.1 * LABEL) * u) / rows as f64 - heading;
-        let y_ticks = fitting_up(&y, height, u);
+        let y_ticks = match words.names.is_empty() {
+            true => fitting_up(&y, height, u),
+            false => named(&y, &words.names),
+        };
         let labels = y_ticks.iter().filter_map(|t| t.label.as_deref());
         let left = outside.left + left_margin(labels, u);
         // Half of the last label of the x axis stands out to the right.
@@ -263,6 +280,15 @@ pub(super) fn fitting_across(scale: &Scale, width: f64, u: f64) -> Vec<Tick> {
 /// As many ticks as fit above one another over a height.
 pub(super) fn fitting_up(scale: &Scale, height: f64, u: f64) -> Vec<Tick> {
     fitting(scale, |_| 1.7 * SMALL * u, height)
+}
+
+/// A tick for each name whose number is on the scale.
+fn named(scale: &Scale, names: &[&str]) -> Vec<Tick> {
+    let ticks = names.iter().enumerate().map(|(number, name)| Tick {
+        value: number as f64,
+        label: Some((*name).to_owned()),
+    });
+    ticks.filter(|tick| scale.holds(tick.value)).collect()
 }
 
 /// As many ticks as have room for labels of the sizes that `size` gives.

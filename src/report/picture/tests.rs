@@ -6,7 +6,9 @@ use std::path::PathBuf;
 use std::sync::Arc;
 
 use super::*;
+use crate::linear::Crossings;
 use crate::maps::maker::make_in_memory;
+use crate::model::Groups;
 use crate::store::describe::Provenance;
 use crate::sweep::{Field, Parameter, Plan, SweepSpec};
 
@@ -157,6 +159,57 @@ fn every_shape_of_map_is_drawn() {
             case.draw(name, &PictureOptions::default()).unwrap();
         }
     }
+}
+
+/// Along either axis of the plane of curves, a line is shaded to where stability changes, whatever
+/// its cells are.
+#[test]
+fn a_line_is_shaded_to_the_exact_boundary() {
+    let case = Case::new(&FIG2.replace("points = 61", "points = 7"));
+    let (gain, delay) = (20, 2);
+    let index = [1, gain, delay];
+    let axes = case.map.axes();
+    let exact = |alpha_v: f64| {
+        let of = Crossings::of(Groups::new(-0.3, alpha_v, 0.0));
+        let stable: Vec<_> = of.stable_delays().collect();
+        let ends = stable.iter().flat_map(|of| [of.from, of.to]);
+        ends.filter(|tau| (1e-9..12.0).contains(tau))
+            .collect::<Vec<f64>>()
+    };
+    let near = |found: &mut Vec<f64>, expected: &[f64]| {
+        found.sort_by(f64::total_cmp);
+        assert_eq!(found.len(), expected.len(), "{found:?} {expected:?}");
+        for (found, expected) in found.iter().zip(expected) {
+            assert!((found - expected).abs() < 2e-3, "{found} {expected}");
+        }
+    };
+    let mut along_delay = stable_line::crossings(&case.map, 2, &index).unwrap();
+    let expected = exact(axes[1].values[gain]);
+    assert_eq!(expected.len(), 2, "{expected:?}");
+    near(&mut along_delay, &expected);
+    // Where the boundary crosses along the gain, the delay is one at which stability changes.
+    let tau = axes[2].values[delay];
+    let along_gain = stable_line::crossings(&case.map, 1, &index).unwrap();
+    assert!(!along_gain.is_empty());
+    for alpha_v in along_gain {
+        let ends = exact(alpha_v);
+        assert!(ends.iter().any(|end| (end - tau).abs() < 1e-2), "{alpha_v}");
+    }
+    let options = PictureOptions {
+        at: vec![
+            (Parameter::MuPrime, -0.3),
+            (Parameter::AlphaV, axes[1].values[gain]),
+        ],
+        ..PictureOptions::default()
+    };
+    let scene = compose(&case.map, &options, 1200).unwrap();
+    let shaded = |mark: &&scene::Mark| match mark {
+        scene::Mark::Rect { colour, .. } => *colour == colour::STABLE_TINT,
+        _ => false,
+    };
+    // One of them is in the legend.
+    let intervals = expected.len().div_ceil(2);
+    assert_eq!(scene.marks.iter().filter(shaded).count(), intervals + 1);
 }
 
 /// Every field as a heat map and along a line, with cells without delay or control among them.

@@ -118,9 +118,9 @@ pub(super) fn axis_title(axis: &MapAxis) -> Rich {
         .and(&suffix(&axis.unit, "  (", ")"))
 }
 
-/// A field by its name in the map, and what it is in full.
-pub(super) fn field_note(field: Field, unit: &str) -> Rich {
-    Rich::plain(&format!("{}: {}", field.name(), field.long_name())).and(&suffix(unit, "  (", ")"))
+/// A field by its name in the map, and what it is there in full.
+pub(super) fn field_note(field: Field, about: &str, unit: &str) -> Rich {
+    Rich::plain(&format!("{}: {about}", field.name())).and(&suffix(unit, "  (", ")"))
 }
 
 /// What a field is, in short.

@@ -5,6 +5,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use super::{About, Column, Table, TableError, put_number};
 use crate::linear::status::FLAGS;
+use crate::report::visible::visible_line;
 use crate::store::cell_blocks::CellBlock;
 use crate::store::schema::{STATUS, root};
 use crate::store::{MapAxis, MapFile};
@@ -39,20 +40,20 @@ pub fn write_cells(
 
 /// What is said of a map before its columns.
 pub(super) fn about(map: &MapFile) -> About {
+    let held = |name| map.root_text(name);
+    let start = map
+        .sweep()
+        .ok()
+        .and_then(|of| of.simulation.assumed_start());
     let texts = [
-        ("title", root::TITLE),
-        ("made by", root::SOURCE),
-        ("revision", root::GIT_REVISION),
+        ("title", held(root::TITLE)),
+        ("friction", held(root::FRICTION_LAW)),
+        ("protocol", held(root::PROTOCOL)),
+        ("start", start),
+        ("made by", held(root::SOURCE)),
+        ("revision", held(root::GIT_REVISION)),
     ];
-    let texts = texts.map(|(name, of)| (name, map.root_text(of).unwrap_or_default()));
-    About {
-        texts: texts
-            .into_iter()
-            .filter(|(_, text)| !text.is_empty())
-            .collect(),
-        fixed: map.scalars(),
-        units: map.units(),
-    }
+    About::new(texts, map.scalars(), map.units())
 }
 
 /// The column of an axis.
@@ -61,8 +62,10 @@ pub(super) fn of_axis(axis: &MapAxis) -> Column {
 }
 
 fn columns(map: &MapFile, fields: &[Field]) -> Vec<Column> {
-    let of_field =
-        |field: &Field| Column::of(field.name(), map.field_unit(*field), field.long_name());
+    let of_field = |field: &Field| {
+        let about = visible_line(&map.long_name(*field));
+        Column::of(field.name(), map.field_unit(*field), about)
+    };
     let flags = FLAGS
         .map(|(mask, name)| format!("{mask} {name}"))
         .join(", ");

@@ -74,6 +74,25 @@ struct About {
     units: Units,
 }
 
+impl About {
+    /// The texts that there are: of a map and a trace alike.
+    fn new(
+        texts: impl IntoIterator<Item = (&'static str, Option<String>)>,
+        fixed: Vec<(Parameter, f64)>,
+        units: Units,
+    ) -> Self {
+        let there = |(name, text): (&'static str, Option<String>)| {
+            let text = text.filter(|text| !text.is_empty())?;
+            Some((name, text))
+        };
+        Self {
+            texts: texts.into_iter().filter_map(there).collect(),
+            fixed,
+            units,
+        }
+    }
+}
+
 /// A table that is being written.
 struct Table<W: Write> {
     csv: csv::Writer<W>,

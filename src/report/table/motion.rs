@@ -7,6 +7,7 @@ use super::{About, Column, Table, TableError};
 use crate::store::schema::trace;
 use crate::store::trace_file::{Quantity, TIME};
 use crate::sweep::cells::trace::MODES;
+use crate::sweep::input::simulation::{DISTURBED, assumed_start};
 use crate::sweep::{CaseSpec, Parameter, Trace};
 
 /// Writes the samples of a motion, one row each: time, `quantities`, and the mode as a word.
@@ -72,17 +73,12 @@ fn about(spec: &CaseSpec) -> About {
     let setting = &spec.setting;
     let used = |p: &Parameter| setting.uses(*p) && !p.of_start();
     let fixed = Parameter::ALL.into_iter().filter(used);
-    let friction = setting.law().map_or("", |law| law.name());
+    let disturbance = if spec.start_assumed { DISTURBED } else { 0.0 };
     let texts = [
-        ("title", spec.title.clone()),
-        ("friction", friction.to_owned()),
+        ("title", Some(spec.title.clone())),
+        ("friction", setting.law().map(|law| law.name().to_owned())),
+        ("start", assumed_start(disturbance)),
     ];
-    About {
-        texts: texts
-            .into_iter()
-            .filter(|(_, text)| !text.is_empty())
-            .collect(),
-        fixed: fixed.map(|p| (p, setting.get(p))).collect(),
-        units: spec.units.clone(),
-    }
+    let fixed = fixed.map(|p| (p, setting.get(p))).collect();
+    About::new(texts, fixed, spec.units.clone())
 }

@@ -34,7 +34,7 @@
 use std::ops::Range;
 
 use super::given::{GivenParameters, read_units};
-use super::parameter::{LARGEST, Parameter};
+use super::parameter::{Group, LARGEST, Parameter};
 use super::setting::Setting;
 use super::simulation::{DISTURBED, POSITIVE, Simulation};
 use super::toml_reader::{Entry, SpecError, entries, parse};
@@ -49,6 +49,20 @@ const MOST_SAMPLES: u64 = 64;
 
 /// Keys of sweep files that case files do not have.
 const OF_SWEEPS: [&str; 5] = ["fields", "axes", "boundaries", "best", "protocol"];
+
+/// The keys of a case file.
+const KEYS: [&str; 10] = [
+    "title",
+    "friction",
+    "fixed",
+    "switch_on",
+    "horizon",
+    "tolerance",
+    "steps",
+    "start",
+    "trace",
+    "units",
+];
 
 /// How densely a motion is sampled between its events.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -81,6 +95,34 @@ pub struct CaseSpec {
     pub text: String,
 }
 
+/// What a text is meant as.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum TextKind {
+    /// A sweep file.
+    Sweep,
+    /// A case file.
+    Case,
+    /// A setting alone, which both have, and which is a case where it has a friction law.
+    Setting,
+}
+
+/// What a text is meant as, by its keys; none where they are not those of one kind.
+#[must_use]
+pub fn kind_of_text(text: &str) -> Option<TextKind> {
+    let document = parse(text).ok()?;
+    let entries = entries(document.get_ref(), "");
+    let all = |known: &[&str]| entries.iter().all(|entry| known.contains(&entry.key));
+    if entries.iter().any(|entry| OF_SWEEPS.contains(&entry.key)) {
+        Some(TextKind::Sweep)
+    } else if entries.is_empty() || !all(&KEYS) {
+        None
+    } else if all(&["fixed", "friction", "units"]) {
+        Some(TextKind::Setting)
+    } else {
+        Some(TextKind::Case)
+    }
+}
+
 /// Whether a text is meant as a case file rather than a sweep file: it has no key of sweeps alone,
 /// and one of cases alone or everything that a case needs.
 #[must_use]
@@ -107,7 +149,7 @@ impl std::str::FromStr for CaseSpec {
             match entry.key {
                 "title" => entry.line()?.clone_into(&mut draft.title),
                 "friction" => draft.given.read_friction(&entry)?,
-                "fixed" => draft.given.read_fixed(&entry)?,
+                "fixed" => draft.given.read_fixed(&entry, moves)?,
                 "switch_on" => {
                     draft.switch_on = Some((read_switch_on(&entry)?, entry.key_span.clone()));
                 }
@@ -120,24 +162,16 @@ impl std::str::FromStr for CaseSpec {
                         "it is a key of a sweep file, of a map: `slipmap run` takes it",
                     ));
                 }
-                _ => {
-                    return Err(entry.unknown(&[
-                        "title",
-                        "friction",
-                        "fixed",
-                        "switch_on",
-                        "horizon",
-                        "tolerance",
-                        "steps",
-                        "start",
-                        "trace",
-                        "units",
-                    ]));
-                }
+                _ => return Err(entry.unknown(&KEYS)),
             }
         }
         draft.finish(text)
     }
+}
+
+/// Whether a motion under a friction law has the parameter.
+fn moves(parameter: Parameter) -> bool {
+    matches!(parameter.group(), Group::Model | Group::Pull | Group::Start)
 }
 
 /// When control begins to act: a time, or +∞ for `false`.

@@ -58,7 +58,7 @@ impl SweepSpec {
                 "degree_of_stability" => draft.read_degrees(&entry)?,
                 "best" => draft.best = entry.boolean()?.then(|| entry.key_span.clone()),
                 "axes" => draft.read_axes(&entry, most_points.min(MOST_POINTS))?,
-                "fixed" => draft.given.read_fixed(&entry)?,
+                "fixed" => draft.given.read_fixed(&entry, |_| true)?,
                 "friction" => draft.given.read_friction(&entry)?,
                 "start" => draft.given.read_start(&entry)?,
                 "simulation" => draft.read_simulation(&entry)?,

@@ -3,8 +3,8 @@
 use std::ops::Range;
 
 use super::toml_reader::{Entry, SpecError};
-use crate::model::Table;
 use crate::model::table::{TableColumn, TableError};
+use crate::model::{FrictionLaw, Table};
 
 /// The numbers of one column with their places in the text.
 #[derive(Debug, Default)]
@@ -142,6 +142,26 @@ fn built(speeds: &Numbers, mu_k: &Numbers, place: &Range<usize>) -> Result<Table
 /// # Errors
 /// Points at the first line or number that is not understood or out of range, see [`Table::new`].
 pub fn table_of_columns(text: &str) -> Result<Table, SpecError> {
+    read_columns(text).map(|(table, _)| table)
+}
+
+/// Reads a table as [`table_of_columns`] does, for a friction law with the static coefficient
+/// `mu_s`.
+///
+/// # Errors
+/// As there, and where the law is ill-posed, see [`FrictionLaw::table`].
+pub fn table_of_law(text: &str, mu_s: f64) -> Result<Table, SpecError> {
+    let (table, at_rest) = read_columns(text)?;
+    let posed = FrictionLaw::table(table.clone(), mu_s);
+    posed.map_err(|error| SpecError {
+        span: at_rest,
+        ..SpecError::whole(error.to_string())
+    })?;
+    Ok(table)
+}
+
+/// The table, and the place of its first value of μ_K.
+fn read_columns(text: &str) -> Result<(Table, Option<Range<usize>>), SpecError> {
     let (mut speeds, mut mu_k) = (Numbers::default(), Numbers::default());
     let mut titles = false;
     let mut start = 0;
@@ -167,10 +187,11 @@ pub fn table_of_columns(text: &str) -> Result<Table, SpecError> {
         }
     }
     let end = text.len();
-    built(&speeds, &mu_k, &(end..end)).map_err(|error| SpecError {
+    let table = built(&speeds, &mu_k, &(end..end)).map_err(|error| SpecError {
         span: error.span.filter(|span| !span.is_empty()),
         ..error
-    })
+    })?;
+    Ok((table, mu_k.places.into_iter().next()))
 }
 
 /// The places of the fields of a line that begins at `from`.
@@ -226,8 +247,9 @@ mod tests {
             ("0,0.5\n1,-4\n", "-4", "mu_k = -4 is outside its range"),
             ("0,0.5\nnan,1\n", "nan", "speeds = NaN"),
             ("0 0.5 1\n", "0 0.5 1", "expected a speed"),
+            ("0,1.5\n1,0.4\n", "1.5", "at most mu_s"),
         ] {
-            let error = table_of_columns(text).unwrap_err();
+            let error = table_of_law(text, 1.0).unwrap_err();
             assert!(error.message.contains(says), "{text}: {error}");
             let found = error.span.clone().map_or("", |span| &text[span]);
             assert_eq!(found, place, "{text}: {error}");

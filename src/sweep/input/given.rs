@@ -32,11 +32,17 @@ impl GivenParameters {
         Ok(())
     }
 
-    /// Reads the table `[fixed]`.
-    pub(super) fn read_fixed(&mut self, fixed: &Entry) -> Result<(), SpecError> {
+    /// Reads the table `[fixed]`. A name that is not known may be meant as one of those that the
+    /// file `takes`.
+    pub(super) fn read_fixed(
+        &mut self,
+        fixed: &Entry,
+        takes: impl Fn(Parameter) -> bool,
+    ) -> Result<(), SpecError> {
         for entry in fixed.table()? {
             let known = Parameter::ALL.into_iter().filter(|p| !p.of_friction_law());
-            let names: Vec<_> = known.clone().map(Parameter::name).collect();
+            let names = known.clone().filter(|p| takes(*p)).map(Parameter::name);
+            let names: Vec<_> = names.collect();
             let parameter = known
                 .into_iter()
                 .find(|p| p.name() == entry.key)
@@ -130,9 +136,11 @@ impl GivenParameters {
             return Ok(LawKind::Table(self.table.table(&entry.span)?));
         }
         let law = Formula::from_name(name).ok_or_else(|| {
+            let formulas = Formula::ALL.into_iter().map(Formula::name);
+            let meant = did_you_mean(name, formulas.chain([LawKind::TABLE]));
             entry
                 .error(format!("unknown friction law \"{name}\""))
-                .help(format!("known: {}", LawKind::names()))
+                .help(format!("{meant}known: {}", LawKind::names()))
         })?;
         if let Some((place, column)) = self.table.any() {
             let message = format!("{column} has no meaning with the {name} law");

@@ -18,7 +18,7 @@
 //! sweep files.
 
 use super::given::{GivenParameters, read_units};
-use super::parameter::Parameter;
+use super::parameter::{Group, Parameter};
 use super::search::Protocol;
 use super::setting::Setting;
 use super::toml_reader::{SpecError, entries, parse};
@@ -37,6 +37,18 @@ pub enum PointOf {
     CriticalVelocityOfSetting,
     /// Its friction law alone.
     Law,
+}
+
+impl PointOf {
+    /// Whether a parameter has a meaning in it.
+    const fn takes(self, parameter: Parameter) -> bool {
+        match (self, parameter.group()) {
+            (_, Group::Limit | Group::Start) => false,
+            (Self::Sliding, _) => true,
+            (Self::CriticalVelocity, Group::Pull) => false,
+            (_, group) => !matches!(group, Group::Sliding),
+        }
+    }
 }
 
 /// A point: every value in range, every name known.
@@ -63,7 +75,7 @@ impl PointSpec {
         let critical = of == PointOf::CriticalVelocity;
         for entry in entries(document.get_ref(), "") {
             match entry.key {
-                "fixed" => given.read_fixed(&entry)?,
+                "fixed" => given.read_fixed(&entry, |p| of.takes(p))?,
                 "friction" => given.read_friction(&entry)?,
                 "units" => units = read_units(&entry)?,
                 "start" if critical => given.read_start(&entry)?,

@@ -51,6 +51,19 @@ impl Default for Simulation {
     }
 }
 
+/// What is said of a start that is not given, where sliding is disturbed by so much of v0; none
+/// where it is not.
+#[must_use]
+pub fn assumed_start(disturbance: f64) -> Option<String> {
+    (disturbance != 0.0).then(|| {
+        format!(
+            "none is given: each block begins with x_dot0 = {} v0, {} % faster than it is pulled",
+            1.0 + disturbance,
+            100.0 * disturbance,
+        )
+    })
+}
+
 impl Simulation {
     /// Names of the keys.
     pub(super) const KEYS: [&'static str; 3] = ["horizon", "tolerance", "steps"];
@@ -90,14 +103,7 @@ impl Simulation {
     /// What is said of a start that is not given; none where no motion has such a one.
     #[must_use]
     pub fn assumed_start(&self) -> Option<String> {
-        (self.disturbance != 0.0).then(|| {
-            format!(
-                "none is given: each block begins with x_dot0 = {} v0, {} % faster than it is \
-                 pulled",
-                1.0 + self.disturbance,
-                100.0 * self.disturbance,
-            )
-        })
+        assumed_start(self.disturbance)
     }
 
     /// The horizon, where it is given, is later than `switch_on`, the value of `name`.

@@ -2,6 +2,7 @@
 
 use std::ops::Range;
 
+use super::nearest::did_you_mean;
 use super::parameter::Parameter;
 use super::search::{LIMIT, PHASES, Protocol, Search};
 use super::toml_reader::{Entry, SpecError};
@@ -30,9 +31,12 @@ impl VcKeys {
             "protocol" => {
                 let name = entry.string()?;
                 if !Protocol::NAMES.contains(&name) {
+                    let known = || Protocol::NAMES.into_iter().chain([LIMIT]);
+                    let meant = did_you_mean(name, known());
+                    let known = known().collect::<Vec<_>>().join(", ");
                     return Err(entry
                         .error(format!("unknown protocol \"{name}\""))
-                        .help(format!("known: {}, {LIMIT}", Protocol::NAMES.join(", "))));
+                        .help(format!("{meant}known: {known}")));
                 }
                 self.switch_on = name != Protocol::Follow.name();
                 self.protocol_place = Some(entry.span.clone());

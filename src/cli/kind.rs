@@ -1,0 +1,70 @@
+//! What kind of file of slipmap's a name leads to: a command that does not take it says which ones
+//! do.
+
+use std::fs::File;
+use std::io::Read;
+use std::path::Path;
+
+use slipmap::store::{MapFile, trace_reader};
+use slipmap::sweep::input::case_file::{TextKind, kind_of_text};
+
+/// The first bytes of an HDF5 file.
+const HDF5: &[u8] = b"\x89HDF\r\n\x1a\n";
+/// Longer texts are none of slipmap's, about.
+const MOST_BYTES: u64 = 1 << 20;
+
+/// A kind of file.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Kind {
+    Map,
+    Trace,
+    Text(TextKind),
+}
+
+impl Kind {
+    /// The kind of the file at `path`; none where it is none of slipmap's.
+    pub(super) fn of(path: &Path) -> Option<Self> {
+        // A pipe would be waited for.
+        path.metadata()
+            .is_ok_and(|file| file.is_file())
+            .then_some(())?;
+        let mut bytes = Vec::new();
+        let mut file = File::open(path).ok()?.take(MOST_BYTES);
+        file.by_ref()
+            .take(HDF5.len() as u64)
+            .read_to_end(&mut bytes)
+            .ok()?;
+        if bytes == HDF5 {
+            return match trace_reader::is_trace(path) {
+                true => Some(Self::Trace),
+                false => MapFile::open(path).is_ok().then_some(Self::Map),
+            };
+        }
+        file.read_to_end(&mut bytes).ok()?;
+        kind_of_text(std::str::from_utf8(&bytes).ok()?).map(Self::Text)
+    }
+
+    /// That the file at `path` is of this kind, not the `wanted` one; and what takes it.
+    pub(super) fn not(self, path: &Path, wanted: &str) -> (String, String) {
+        let path = path.display();
+        let (name, takers) = match self {
+            Self::Map => (
+                "a map",
+                "`slipmap info`, `plot`, `export`, `verify` and `status` take it; `point`, `vc` \
+                 and `simulate` take a cell of it, by --map MAP.h5 --at AXIS=VALUE",
+            ),
+            Self::Trace => (
+                "the trace of one motion",
+                "`slipmap info`, `plot`, `export` and `verify` take it",
+            ),
+            Self::Text(TextKind::Sweep) => ("a sweep file", "`slipmap plan` and `run` take it"),
+            Self::Text(TextKind::Case) => ("a case file", "`slipmap plan` and `simulate` take it"),
+            Self::Text(TextKind::Setting) => (
+                "a file of a setting",
+                "`slipmap point` and `vc` take it with --setting; with a friction law `simulate` \
+                 takes it, too",
+            ),
+        };
+        (format!("{path} is {name}, not {wanted}"), takers.to_owned())
+    }
+}
