@@ -327,8 +327,7 @@ impl<A: Asks> ParameterArgs<A> {
         flags || Parameter::ALL.into_iter().any(|p| self.given(p).is_some())
     }
 
-    /// The setting that the flags describe but for the parameters `searched`, which must not be
-    /// given. `help` says why.
+    /// The setting of the flags but for the parameters `searched`, refused with `help`.
     pub(super) fn setting_but(
         &self,
         searched: &[Parameter],
@@ -356,8 +355,7 @@ impl<A: Asks> ParameterArgs<A> {
                 ));
             }
         }
-        let without = |p| unneeded.is_some_and(|(unneeded, _)| unneeded == p);
-        let without = |p| without(p) || left_out == Some(p);
+        let without = |p| left_out == Some(p) || unneeded.is_some_and(|(u, _)| u == p);
         let there = |p| searched.contains(&p) || without(p) || self.given(p).is_some();
         Setting::check_given(law.as_ref(), there).map_err(|e| {
             Failure::bad_input_with_help(e.message(law.as_ref(), flag), e.help(flag))
