@@ -2,7 +2,7 @@
 
 use std::io::Write;
 
-use slipmap::report::numbers::unit_behind;
+use slipmap::report::numbers::{rounded, unit_behind};
 use slipmap::sweep::cells::best::{BestRegion, BestSettings};
 use slipmap::sweep::input::units::Units;
 use slipmap::sweep::{Field, Parameter};
@@ -12,10 +12,9 @@ use super::output::tell_dimensionless;
 use super::recommended::{Control, Recommended};
 use super::{margins, vc};
 
-/// A number with as many digits as a person can use, the same on every machine.
+/// A number with as many digits as a person can use.
 fn short(value: f64) -> String {
-    let rounded = format!("{value:.8e}").parse::<f64>();
-    rounded.unwrap_or(value).to_string()
+    rounded(value, 8)
 }
 
 pub(super) fn print(

@@ -3,7 +3,7 @@
 use std::io::Write;
 
 use slipmap::explore::margins::{Margin, Margins, StabilityBox};
-use slipmap::report::numbers::unit_behind;
+use slipmap::report::numbers::{rounded, unit_behind};
 use slipmap::sweep::input::units::Units;
 use slipmap::sweep::{Parameter, Setting};
 
@@ -106,7 +106,7 @@ pub(super) fn print(
     ] {
         let text = match value {
             _ if undecided(name) => "not decided".into(),
-            Some(value) => format!("{value}{unit}"),
+            Some(value) => format!("{}{unit}", rounded(value, 8)),
             None => endless.to_owned(),
         };
         row(name, text)?;
@@ -118,7 +118,8 @@ pub(super) fn print(
 }
 
 fn between(lower: Option<f64>, upper: Option<f64>, unit: &str) -> String {
-    match (lower, upper) {
+    let digits = |end: Option<f64>| end.map(|end| rounded(end, 8));
+    match (digits(lower), digits(upper)) {
         (None, None) => "whatever it is".into(),
         (None, Some(upper)) => format!("up to {upper}{unit}"),
         (Some(lower), None) => format!("from {lower}{unit} on"),
@@ -134,7 +135,7 @@ fn along(margin: &Margin, at: f64, unit: &str) -> String {
         at => format!(", {:.1} %", 100.0 * (distance / at).abs()),
     };
     let away = |sign: &str, distance: Option<f64>| {
-        distance.map(|d| format!("{sign}{d:.6}{unit}{}", share(d)))
+        distance.map(|d| format!("{sign}{}{unit}{}", rounded(d, 5), share(d)))
     };
     let ways: Vec<String> = [away("-", margin.lower), away("+", margin.upper)]
         .into_iter()
@@ -149,7 +150,9 @@ fn along(margin: &Margin, at: f64, unit: &str) -> String {
 fn radius(proved: f64, found: &StabilityBox) -> String {
     let names = found.of.join(", ");
     let together = if found.of.len() > 1 { " together" } else { "" };
-    let mut text = format!("{:.4} %: {names}{together}, proved", 100.0 * proved);
+    // Rounded down: more is not proved.
+    let percent = (1.0 - 5e-4) * 100.0 * proved;
+    let mut text = format!("{} %: {names}{together}, proved", rounded(percent, 3));
     if !found.tight {
         text += "; there may be more";
     }

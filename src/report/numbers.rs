@@ -79,6 +79,14 @@ pub fn short(value: f64) -> String {
     }
 }
 
+/// A number with at most so many digits behind its first one: nine in all are the same on every
+/// machine.
+#[must_use]
+pub fn rounded(value: f64, digits: usize) -> String {
+    let rounded = format!("{value:.digits$e}").parse::<f64>();
+    rounded.unwrap_or(value).to_string()
+}
+
 /// A unit behind a number, after a space; nothing where there is none, "1".
 #[must_use]
 pub fn unit_behind(unit: &str) -> String {
