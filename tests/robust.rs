@@ -162,3 +162,45 @@ fn the_program_recommends_robust_settings() {
     let none = ["best", "--mu-prime", "-0.72", "--robust", "0.2"];
     assert!(program::out(&folder.run(&none)).starts_with("no setting stays stable"));
 }
+
+/// What `run` tells of a plane is what `best` finds at its slope.
+#[test]
+fn a_run_tells_the_best_setting_of_every_plane() {
+    let sweep = "best = true\n[axes]\nmu_prime = [-0.3, -0.1]\n\
+                 alpha_n = { from = -6, to = 2, points = 9 }\n\
+                 tau = { from = 0, to = 2, points = 9 }\n";
+    let folder = program::Folder::with(&[("sweep.toml", sweep)]);
+    let told = program::err(&folder.run(&["run", "sweep.toml"]));
+    for slope in ["-0.3", "-0.1"] {
+        let found = program::out(&folder.run(&[
+            "best",
+            "--mu-prime",
+            slope,
+            "--control",
+            "load",
+            "--alpha-from",
+            "-6",
+            "--alpha-to",
+            "2",
+            "--tau-from",
+            "0",
+            "--tau-to",
+            "2",
+        ]));
+        let of = |name: &str| {
+            let line = found
+                .lines()
+                .find(|line| line.trim_start().starts_with(name))
+                .unwrap();
+            line.split_whitespace().nth(1).unwrap().to_owned()
+        };
+        let line = format!(
+            "best setting at mu_prime = {slope}: alpha_n = {}, tau = {}: relaxation time",
+            of("alpha_n"),
+            of("tau")
+        );
+        assert!(told.contains(&line), "{line}\n{told}");
+    }
+    let quiet = folder.run(&["run", "sweep.toml", "--fresh", "--quiet"]);
+    assert_eq!(program::err(&quiet), "");
+}

@@ -3,9 +3,11 @@
 use std::io::IsTerminal;
 use std::path::Path;
 
+use slipmap::report::numbers::{rounded, unit_behind};
 use slipmap::report::picture::{self, Named, Picture, PictureError, PictureOptions};
 use slipmap::report::preview::preview;
-use slipmap::store::MapFile;
+use slipmap::store::{MapFile, StoreError};
+use slipmap::sweep::Parameter;
 
 use super::colours::Colours;
 use super::failure::Failure;
@@ -14,6 +16,8 @@ use super::{plot, say};
 
 /// Columns of the picture on the terminal: as many as every terminal has.
 const PREVIEW_WIDTH: usize = 78;
+/// Planes whose best settings are told; the map has all.
+const PLANES_TOLD: usize = 8;
 
 /// Says that a map is complete, and draws it where an earlier command did not come to that, or
 /// where the sweep file names another field for pictures by now.
@@ -30,6 +34,57 @@ pub(super) fn nothing_to_do(
         "{} is already complete{remark}",
         path.display()
     ))
+}
+
+/// Tells the best setting of every plane, of the first ones where there are many.
+fn tell_best(map: &MapFile) -> Result<(), StoreError> {
+    let Some((gain, tau)) = map.best_plane() else {
+        return Ok(());
+    };
+    // A map without its sweep is told by `verify`.
+    let Ok(units) = map.sweep().map(|sweep| sweep.units) else {
+        return Ok(());
+    };
+    let with = |parameter: Parameter, value: f64| {
+        let unit = unit_behind(&units.of_parameter(parameter));
+        format!("{} = {}{unit}", parameter.name(), rounded(value, 8))
+    };
+    let axes = map.axes();
+    let outer: Vec<Parameter> = (0..axes.len())
+        .filter(|axis| *axis != gain && *axis != tau)
+        .map(|axis| axes[axis].parameter)
+        .collect();
+    let all = map.best()?;
+    for best in all.iter().take(PLANES_TOLD) {
+        let pairs = outer.iter().zip(&best.outer);
+        let plane: Vec<String> = pairs.map(|(p, value)| with(*p, *value)).collect();
+        let place = [
+            with(axes[gain].parameter, best.gain),
+            with(Parameter::Tau, best.tau),
+        ];
+        let time = unit_behind(&units.time());
+        let relaxes = match (best.kind, best.relaxation_time) {
+            (None, _) => "not looked for".to_owned(),
+            (_, None) => "unstable everywhere".to_owned(),
+            (_, Some(relaxation)) => format!(
+                "{}: relaxation time {}{time}",
+                place.join(", "),
+                rounded(relaxation, 8)
+            ),
+        };
+        let plane = match plane.is_empty() {
+            true => String::new(),
+            false => format!(" at {}", plane.join(", ")),
+        };
+        say::note(format_args!("best setting{plane}: {relaxes}"));
+    }
+    if all.len() > PLANES_TOLD {
+        let more = all.len() - PLANES_TOLD;
+        say::note(format_args!(
+            "and those of {more} further planes, in the map"
+        ));
+    }
+    Ok(())
 }
 
 /// Whether there is no picture beside a map, or one of what was there before, or of another field
@@ -74,7 +129,13 @@ pub(super) fn show(path: &Path, named: Named, signals: &Signals) {
         )),
         Err(error) => say::remark(format_args!("warning: no picture: {error}")),
     }
-    if say::is_quiet() || !std::io::stderr().is_terminal() {
+    if say::is_quiet() {
+        return;
+    }
+    if let Err(error) = signals.or_end(&complete, || tell_best(&map)) {
+        say::remark(format_args!("warning: no best settings: {error}"));
+    }
+    if !std::io::stderr().is_terminal() {
         return;
     }
     let coloured = Colours::asked().of_terminal();

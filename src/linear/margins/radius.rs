@@ -25,7 +25,7 @@ use crate::model::Groups;
 use crate::model::elementary::{exp, power};
 
 /// Boxes that are looked at before the best proof so far has to do.
-const MOST_BOXES: usize = 1 << 20;
+const MOST_BOXES: usize = 1 << 18;
 /// The proved radius is at least this part of the distance of a setting that is not stable.
 const TIGHT: f64 = 0.995;
 /// Boxes less wide than this are near a zero of D, where there is one.
