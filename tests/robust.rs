@@ -160,7 +160,9 @@ fn the_program_recommends_robust_settings() {
         program::expect(&folder.run(&args), 2, says);
     }
     let none = ["best", "--mu-prime", "-0.72", "--robust", "0.2"];
-    assert!(program::out(&folder.run(&none)).starts_with("no setting stays stable"));
+    assert!(
+        program::out(&folder.run(&none)).starts_with("no setting found in the ranges stays stable")
+    );
 }
 
 /// What `run` tells of a plane is what `best` finds at its slope.

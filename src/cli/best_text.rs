@@ -90,7 +90,8 @@ fn print_robust(
 ) -> Result<(), Failure> {
     let percent = 100.0 * spread;
     let Some(of) = &told.robust else {
-        let none = "no setting stays stable when gain, delay and mu_prime may each be off by";
+        let none = "no setting found in the ranges stays stable when gain, delay and mu_prime may \
+                    each be off by";
         return Ok(writeln!(out, "{none} {percent} %")?);
     };
     let unit = |parameter: Parameter| unit_behind(&units.of_parameter(parameter));

@@ -63,7 +63,10 @@ pub(super) fn print(
         decay => format!("left of -{decay}{rate} with all its roots"),
     };
     if !margins.decays {
-        return writeln!(out, "continuous sliding is not {wanted}: no margins");
+        return writeln!(
+            out,
+            "continuous sliding is not known to be {wanted}: no margins"
+        );
     }
     writeln!(out, "continuous sliding is {wanted}; it stays so")?;
     let mut row = |name: &str, value: String| writeln!(out, "  {name:<16} {value}");
@@ -86,6 +89,10 @@ pub(super) fn print(
         let text = match undecided(&name) {
             true => "not decided".into(),
             false => along(&margin, setting.get(parameter), &unit),
+        };
+        let text = match (parameter, margin.to) {
+            (Parameter::V0, None) => text + "; looked at up to 1024 times v0",
+            _ => text,
         };
         row(&name, text)?;
     }

@@ -29,8 +29,8 @@ pub struct Margins {
     /// The slopes μ_K′ between which it stays, at fixed μ_K; null where the setting has it not, and
     /// where there is a friction law.
     pub mu_prime_margin: Option<Margin>,
-    /// The sliding velocities between which it stays; null where the setting has it not, and where
-    /// there is no friction law.
+    /// The sliding velocities between which it stays, looked at up to 1024 times v0; null where the
+    /// setting has it not, and where there is no friction law.
     pub v0_margin: Option<Margin>,
     /// The largest relative box of gain, delay and μ_K′ or v0 that is proved to have it; 0 where
     /// the setting has it not.

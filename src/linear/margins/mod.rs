@@ -139,10 +139,10 @@ impl Margins {
         if setting.idle() {
             return free;
         }
-        self.gain_limits(setting).unwrap_or(Limits::UNDECIDED)
+        self.gain_limits(setting)
     }
 
-    fn gain_limits(&mut self, setting: &Setting) -> Result<Limits, TooMany> {
+    fn gain_limits(&mut self, setting: &Setting) -> Limits {
         let line = setting.line();
         let highest = highest_with_gain(setting);
         let f = line.gain();
@@ -163,7 +163,12 @@ impl Margins {
                     changes.push(factor);
                 }
             };
-            self.intervals.zeros(f, (0.0, end), &mut keep)?;
+            if self.intervals.zeros(f, (0.0, end), &mut keep) == Err(TooMany) {
+                return Limits {
+                    lower: lower.unwrap_or(f64::NAN),
+                    upper: f64::NAN,
+                };
+            }
             // A real root on the line; on the imaginary axis there is none.
             if setting.decay > 0.0 {
                 keep(0.0);
@@ -176,7 +181,7 @@ impl Margins {
             let last = end >= highest || most >= MOST_GAINS;
             if above.is_some() || last {
                 let upper = above.unwrap_or(f64::INFINITY);
-                return Ok(Limits { lower, upper });
+                return Limits { lower, upper };
             }
             most *= 4.0;
         }
