@@ -7,6 +7,7 @@ use num_complex::Complex64;
 use slipmap::linear::certificate::roots_right_of;
 use slipmap::linear::characteristic::characteristic;
 use slipmap::linear::margins::{self, Limits, Margins, Radius, Setting, SlidingLaw};
+use slipmap::linear::spectrum::RootFinder;
 use slipmap::linear::{Crossings, MarginalTolerance};
 use slipmap::model::{Control, FrictionLaw, Groups, Oscillator, Table};
 
@@ -131,6 +132,41 @@ fn limits_are_those_of_brute_force() {
     for setting in settings(100, 0.05) {
         check_setting(&mut search, setting);
     }
+}
+
+/// Real roots come to the line at ω = 0.
+#[test]
+fn strongly_damped_settings_are_decided() {
+    let mut chance = Chance(23);
+    let (mut search, mut finder) = (Margins::default(), RootFinder::default());
+    let mut undecided = 0;
+    for i in 0..240 {
+        let load = i % 2 == 0;
+        let gain = chance.between(-1.0, 0.3);
+        let (a_v, a_n) = if load { (0.0, gain) } else { (gain, 0.0) };
+        let groups = Groups::new(chance.between(2.0, 10.0), a_v, a_n);
+        let tau = chance.between(0.1, 3.0);
+        let roots = finder.rightmost(groups, tau, 1, f64::NEG_INFINITY).unwrap();
+        let abscissa = roots[0].lambda.re;
+        let decay = -[0.1, 0.5, 0.9, 0.99][i % 4] * abscissa;
+        let setting = Setting { groups, tau, decay };
+        if abscissa >= 0.0 || !stable(setting) {
+            continue;
+        }
+        let limits = margins::delay(&setting);
+        let latency = search.of_loop(&setting).latency;
+        if [limits.lower, limits.upper, latency]
+            .iter()
+            .any(|limit| limit.is_nan())
+        {
+            undecided += 1;
+            continue;
+        }
+        let delay = |tau: f64| Setting { groups, tau, decay };
+        check("lower delay", tau, limits.lower, 0.0, &delay);
+        check("upper delay", tau, limits.upper, tau + 100.0, &delay);
+    }
+    assert!(undecided <= 6, "{undecided}");
 }
 
 /// −L(λ) = A (1 − e^(−λτ))/B.

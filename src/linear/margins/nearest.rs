@@ -12,6 +12,8 @@ use super::enclosure::Enclosed;
 
 /// Boxes that are looked at before a search is given up.
 const MOST_BOXES: usize = 1 << 16;
+/// How far below a box a zero may be found.
+const NEAR: f64 = 1e-9;
 /// Distances that differ by less are the same.
 const SAME: f64 = 1e-12;
 
@@ -89,7 +91,9 @@ pub(super) fn nearest(family: &impl Family, from: f64, to: f64) -> Nearest {
             found = Nearest::At(zero);
         }
         let [wm, pm] = [0.5 * (w.0 + w.1), 0.5 * (p.0 + p.1)];
-        let fine = |(a, b): (f64, f64)| b - a <= 16.0 * f64::EPSILON * a.abs().max(b.abs());
+        // Frequencies and parameters are of order 1: below that nothing is told from 0.
+        let fine =
+            |(a, b): (f64, f64)| b - a <= 16.0 * f64::EPSILON * (1e-3 + a.abs().max(b.abs()));
         let halves = match (fine(w), fine(p)) {
             // Nothing is left to halve: a zero within rounding.
             (true, true) => {
@@ -127,7 +131,8 @@ fn newton(family: &impl Family, part: Part) -> Option<f64> {
         let step_p = (value.re * by_w.im - value.im * by_w.re) / determinant;
         omega += step_w;
         parameter += step_p;
-        if !(omega >= w0 && omega <= w1 && parameter >= p0 && parameter <= p1) {
+        // A real root is at ω = 0, which rounding may make negative.
+        if !(omega >= w0 - NEAR && omega <= w1 && parameter >= p0 && parameter <= p1) {
             return None;
         }
         let small = |step: f64, at: f64| step.abs() <= SAME * (1e-3 + at.abs());
