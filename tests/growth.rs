@@ -50,7 +50,10 @@ fn grown(folder: &Path) {
         let grown = "name = \"slipmap\"\nversion = \"0.0.0-grown\"";
         fs::write(folder.join(file), text.replace(&package, grown)).unwrap();
     }
-    copy(&own.join("src"), &folder.join("src"));
+    // The letter's sweeps are part of the program.
+    for place in ["src", "sweeps"] {
+        copy(&own.join(place), &folder.join(place));
+    }
     // Benches and tests that the manifest names.
     for (place, names) in [
         (
@@ -58,6 +61,7 @@ fn grown(folder: &Path) {
             &[
                 "critical",
                 "critical_options",
+                "margins",
                 "motion",
                 "roots",
                 "throughput",
