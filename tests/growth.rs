@@ -35,26 +35,8 @@ fn copy(from: &Path, to: &Path) {
     }
 }
 
-/// A copy of what a build takes, patched.
-fn grown(folder: &Path) {
-    let own = Path::new(env!("CARGO_MANIFEST_DIR"));
-    fs::copy(own.join("build.rs"), folder.join("build.rs")).unwrap();
-    // Another version, so that nothing of it is taken for the crate's own.
-    let package = format!(
-        "name = \"slipmap\"\nversion = \"{}\"",
-        env!("CARGO_PKG_VERSION")
-    );
-    for file in ["Cargo.toml", "Cargo.lock"] {
-        let text = fs::read_to_string(own.join(file)).unwrap();
-        assert!(text.contains(&package), "{file}");
-        let grown = "name = \"slipmap\"\nversion = \"0.0.0-grown\"";
-        fs::write(folder.join(file), text.replace(&package, grown)).unwrap();
-    }
-    // The letter's sweeps are part of the program.
-    for place in ["src", "sweeps"] {
-        copy(&own.join(place), &folder.join(place));
-    }
-    // Benches and tests that the manifest names.
+/// Benches and tests that the manifest names, empty.
+fn named_by_the_manifest(folder: &Path) {
     for (place, names) in [
         (
             "benches",
@@ -74,6 +56,28 @@ fn grown(folder: &Path) {
             fs::write(folder.join(place).join(format!("{name}.rs")), "").unwrap();
         }
     }
+}
+
+/// A copy of what a build takes, patched.
+fn grown(folder: &Path) {
+    let own = Path::new(env!("CARGO_MANIFEST_DIR"));
+    fs::copy(own.join("build.rs"), folder.join("build.rs")).unwrap();
+    // Another version, so that nothing of it is taken for the crate's own.
+    let package = format!(
+        "name = \"slipmap\"\nversion = \"{}\"",
+        env!("CARGO_PKG_VERSION")
+    );
+    for file in ["Cargo.toml", "Cargo.lock"] {
+        let text = fs::read_to_string(own.join(file)).unwrap();
+        assert!(text.contains(&package), "{file}");
+        let grown = "name = \"slipmap\"\nversion = \"0.0.0-grown\"";
+        fs::write(folder.join(file), text.replace(&package, grown)).unwrap();
+    }
+    // The letter's sweeps are part of the program.
+    for place in ["src", "sweeps"] {
+        copy(&own.join(place), &folder.join(place));
+    }
+    named_by_the_manifest(folder);
     fs::create_dir(folder.join("examples")).unwrap();
     fs::copy(
         own.join("tests/growth/grown.rs"),

@@ -96,6 +96,19 @@ pub(super) fn print(
         };
         row(&name, text)?;
     }
+    print_loop(&mut row, margins, units)?;
+    if let Some(found) = &margins.stability_box {
+        row("stability_radius", radius(margins.stability_radius, found))?;
+    }
+    tell_dimensionless(out, units)
+}
+
+/// The phase margin and the latency margin.
+fn print_loop(
+    mut row: impl FnMut(&str, String) -> std::io::Result<()>,
+    margins: &Margins,
+    units: &Units,
+) -> std::io::Result<()> {
     let time = unit_behind(&units.time());
     for (name, value, unit, endless) in [
         (
@@ -112,16 +125,13 @@ pub(super) fn print(
         ),
     ] {
         let text = match value {
-            _ if undecided(name) => "not decided".into(),
+            _ if margins.undecided.contains(&name) => "not decided".into(),
             Some(value) => format!("{}{unit}", rounded(value, 8)),
             None => endless.to_owned(),
         };
         row(name, text)?;
     }
-    if let Some(found) = &margins.stability_box {
-        row("stability_radius", radius(margins.stability_radius, found))?;
-    }
-    tell_dimensionless(out, units)
+    Ok(())
 }
 
 fn between(lower: Option<f64>, upper: Option<f64>, unit: &str) -> String {
