@@ -1,0 +1,30 @@
+//! Any linear system with one delay, D(λ) = P(λ) + Q(λ) e^(−λτ), retarded or neutral.
+//!
+//! - [`polynomial`]: P, Q and what is made of them, each coefficient with a bound on its error
+//! - [`zeros`]: all zeros of such a polynomial, in discs that are known to hold them
+//! - [`system`]: one setting, its class, and |P|² − |Q|² and D on a vertical line
+//! - [`switches`]: where |P| and |Q| change places on such a line
+//! - [`right_of`]: how many roots lie right of a line, in closed form
+//! - `equation`: a system as what finds and follows roots takes it
+//! - [`rightmost`]: the rightmost roots, or where roots accumulate
+//! - [`line`]: all delays of a setting: crossings and counts
+//! - [`stable`]: the delays at which it is stable
+//! - [`reason`]: why a cell is not like the others
+
+mod equation;
+pub mod line;
+pub mod polynomial;
+pub mod reason;
+pub mod right_of;
+pub mod rightmost;
+pub mod stable;
+mod switches;
+pub mod system;
+pub mod zeros;
+
+pub use line::DelayLine;
+pub use polynomial::Polynomial;
+pub use reason::Reason;
+pub use right_of::{RightOf, RootCounter};
+pub use rightmost::Spectrum;
+pub use system::{Class, System};

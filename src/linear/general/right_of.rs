@@ -1,0 +1,302 @@
+//! How many roots lie right of a vertical line: the argument principle in closed form, for any
+//! degree.
+//!
+//! ```text
+//! p = P(σ + iω),  q = κ Q(σ + iω),  F_σ(x) = |p|² − |q|²,  x = ω²                            (6)
+//! N_σ = n_P + ν₀ + 2 Σ_j s_j m_j,   m_j = round[(φ_j − ψ_j + ω_j τ)/2π]                      (7)
+//! ```
+//!
+//! n_P is the number of zeros of P right of the line, φ and ψ are the arguments of p and q,
+//! continuous in ω, ω_j the frequencies at which F_σ changes its sign and s_j = ±1 that change.
+//! ν₀ = 0 where |p(0)| > |q(0)|, else [ψ(0) − φ(0)]/π. Between the ω_j one term dominates, and the
+//! argument of D keeps within a right angle of its argument: no turn is stepped over.
+//!
+//! Only whole turns come from the zeros r of P and Q, arg = Σ arctan[(ω − Im r)/(σ − Re r)]; the
+//! fraction comes from P and Q themselves. Equation numbers are those of the derivation for
+//! general systems.
+
+use std::f64::consts::{PI, TAU};
+
+use num_complex::Complex64;
+
+use super::polynomial::{MOST_DEGREE, Polynomial};
+use super::switches::Switches;
+use super::system::{Angle, Class, Decay, System};
+use super::zeros::Zeros;
+use crate::model::elementary::atan2;
+
+/// How far the two ways to an argument may differ before neither is trusted.
+const SAME_TURN: f64 = 1.0;
+
+/// The number of roots right of a line.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum RightOf {
+    /// So many.
+    Roots(u64),
+    /// Infinitely many: the line lies left of the one at which they accumulate.
+    Infinite,
+    /// A root lies within rounding of the line.
+    Undecided,
+}
+
+impl RightOf {
+    /// The number, where it is finite and known.
+    #[must_use]
+    pub fn finite(self) -> Option<u64> {
+        match self {
+            Self::Roots(n) => Some(n),
+            Self::Infinite | Self::Undecided => None,
+        }
+    }
+}
+
+/// Counts roots of one system at any delay right of any line.
+#[derive(Debug, Clone)]
+pub struct RootCounter {
+    system: System,
+    p: Factors,
+    q: Factors,
+}
+
+/// A polynomial by its zeros.
+#[derive(Debug, Clone, Copy)]
+struct Factors {
+    zeros: [Complex64; MOST_DEGREE],
+    count: usize,
+    positive: bool,
+}
+
+impl Factors {
+    fn of(polynomial: &Polynomial) -> Self {
+        let mut factors = Self {
+            zeros: [Complex64::ZERO; MOST_DEGREE],
+            count: polynomial.degree(),
+            positive: polynomial.leading().value > 0.0,
+        };
+        for (zero, disc) in factors.zeros.iter_mut().zip(Zeros::of(polynomial).discs()) {
+            *zero = disc.centre;
+        }
+        factors
+    }
+
+    fn zeros(&self) -> &[Complex64] {
+        &self.zeros[..self.count]
+    }
+
+    /// How many lie right of `line`.
+    fn right_of(&self, line: f64) -> usize {
+        self.zeros().iter().filter(|r| r.re > line).count()
+    }
+
+    /// The argument at σ itself, in units of π: 0 or 1.
+    fn half_turns_at_zero(&self, line: f64) -> i64 {
+        let beyond = |r: &&Complex64| r.im == 0.0 && r.re > line;
+        let odd = self.zeros().iter().filter(beyond).count() % 2 == 1;
+        i64::from(self.positive == odd)
+    }
+
+    /// The argument at σ + iω, continuous in ω ≥ 0.
+    fn argument(&self, line: f64, omega: f64) -> f64 {
+        let turns: f64 = self
+            .zeros()
+            .iter()
+            // A zero on the line itself counts as left of it.
+            .map(|r| {
+                let aside = line - r.re;
+                let angle = atan2(omega - r.im, aside.abs());
+                if aside < 0.0 { -angle } else { angle }
+            })
+            .sum();
+        PI * self.half_turns_at_zero(line) as f64 + turns
+    }
+}
+
+/// A frequency at which one of (7)'s turns is counted.
+#[derive(Debug, Clone, Copy)]
+struct Turn {
+    omega: f64,
+    omega_error: f64,
+    sign: f64,
+    /// φ − ψ and a bound on its error.
+    phase: f64,
+    phase_error: f64,
+}
+
+impl Turn {
+    /// m of (7), or none where it might round either way.
+    #[inline]
+    fn turns(&self, tau: f64) -> Option<f64> {
+        let angle = self.omega * tau;
+        let turns = (self.phase + angle) / TAU;
+        let error = self.phase_error
+            + self.omega_error * tau
+            + 4.0 * f64::EPSILON * (angle + self.phase.abs());
+        let whole = (turns + 0.5).floor();
+        let left = 0.5 - (turns - whole).abs();
+        (left * TAU > error).then_some(whole)
+    }
+}
+
+/// Equation (7) on one line, with everything in it that does not depend on the delay.
+#[derive(Debug, Clone, Default)]
+pub struct Turning {
+    /// n_P + ν₀.
+    without_turns: i64,
+    turns: Vec<Turn>,
+}
+
+impl Turning {
+    /// The number of roots right of the line at the delay `tau`, the one it was made for; any where
+    /// the line is the imaginary axis. None where a root is too near to the line.
+    #[must_use]
+    pub fn at(&self, tau: f64) -> Option<u64> {
+        let mut sum = 0.0;
+        for turn in &self.turns {
+            sum += turn.sign * turn.turns(tau)?;
+        }
+        u64::try_from(self.without_turns + 2 * sum as i64).ok()
+    }
+}
+
+/// What (7) comes to on a line.
+#[derive(Debug, Clone)]
+enum Found {
+    Turning(Turning),
+    Infinite,
+    Undecided,
+}
+
+impl RootCounter {
+    /// For `system`, which is not one of unknown degree.
+    #[must_use]
+    pub fn new(system: &System) -> Self {
+        Self {
+            system: *system,
+            p: Factors::of(&system.p),
+            q: Factors::of(&system.q.without_open_leading()),
+        }
+    }
+
+    /// The number of roots with Re λ > `line` at the delay `tau` ≥ 0. Real roots count once, pairs
+    /// twice.
+    #[must_use]
+    pub fn right_of(&self, tau: f64, line: f64) -> RightOf {
+        if tau == 0.0 || self.system.uncontrolled() {
+            return self.without_delay(tau, line);
+        }
+        match self.on_line(tau, line) {
+            Found::Turning(turning) => turning.at(tau).map_or(RightOf::Undecided, RightOf::Roots),
+            Found::Infinite => RightOf::Infinite,
+            Found::Undecided => RightOf::Undecided,
+        }
+    }
+
+    /// Equation (7) on the imaginary axis, for every delay τ > 0; none where it cannot be had at
+    /// any.
+    #[must_use]
+    pub fn unstable(&self) -> Option<Turning> {
+        match self.on_line(0.0, 0.0) {
+            Found::Turning(turning) => Some(turning),
+            Found::Infinite | Found::Undecided => None,
+        }
+    }
+
+    /// The system itself.
+    #[must_use]
+    pub fn system(&self) -> &System {
+        &self.system
+    }
+
+    /// The zeros of P.
+    pub(super) fn zeros_of_p(&self) -> &[Complex64] {
+        self.p.zeros()
+    }
+
+    fn without_delay(&self, tau: f64, line: f64) -> RightOf {
+        let sum = if tau == 0.0 {
+            self.system.without_delay()
+        } else {
+            self.system.p
+        };
+        if !sum.degree_known() {
+            return RightOf::Undecided;
+        }
+        let mut right = 0;
+        for set in Zeros::of(&sum).sets() {
+            let (from, to) = set.real_parts();
+            if from > line {
+                right += set.count() as u64;
+            } else if to > line {
+                return RightOf::Undecided;
+            }
+        }
+        RightOf::Roots(right)
+    }
+
+    fn on_line(&self, tau: f64, line: f64) -> Found {
+        if matches!(self.system.class(), Class::DegreeUnknown | Class::Refused) {
+            return Found::Undecided;
+        }
+        if self.system.class() == Class::Infinite {
+            return Found::Infinite;
+        }
+        let Some(decay) = Decay::new(line, tau) else {
+            return Found::Undecided;
+        };
+        if !self.system.on_real_axis(line, decay).decided() {
+            return Found::Undecided;
+        }
+        let mut modulus = self.system.modulus(line, decay);
+        if self.system.class() == Class::NeutralLimit && line == 0.0 {
+            modulus = modulus.without_open_leading();
+        }
+        let mut switches = Switches::default();
+        if !switches.find(&modulus) {
+            return Found::Undecided;
+        }
+        if modulus.leading().value < 0.0 {
+            return Found::Infinite;
+        }
+        self.turning(line, &modulus, &switches)
+    }
+
+    fn turning(&self, line: f64, modulus: &Polynomial, switches: &Switches) -> Found {
+        let constant = modulus.coefficient(0);
+        let mut without_turns = self.p.right_of(line) as i64;
+        // Where that is open though D(σ) is not, |p| = |q| without a root: then ν₀ = 0.
+        if constant.decided() && constant.value < 0.0 {
+            without_turns += self.q.half_turns_at_zero(line) - self.p.half_turns_at_zero(line);
+        }
+        let mut turns = Vec::with_capacity(switches.list.len());
+        for switch in &switches.list {
+            let Some(phase) = self.phase(line, switch.omega, switch.error) else {
+                return Found::Undecided;
+            };
+            turns.push(Turn {
+                omega: switch.omega,
+                omega_error: switch.error,
+                sign: f64::from(switch.sign),
+                phase: phase.value,
+                phase_error: phase.error,
+            });
+        }
+        Found::Turning(Turning {
+            without_turns,
+            turns,
+        })
+    }
+
+    /// φ − ψ at `omega`: whole turns from the zeros, the fraction from P and Q.
+    fn phase(&self, line: f64, omega: f64, error: f64) -> Option<Angle> {
+        let Angle { value, error } = self.system.phase(line, omega, error)?;
+        let rough = self.p.argument(line, omega) - self.q.argument(line, omega);
+        // The argument of −P Q* is half a turn from that of P Q*.
+        let fraction = value + PI;
+        let turns = ((rough - fraction) / TAU).round();
+        let phase = fraction + TAU * turns;
+        ((phase - rough).abs() < SAME_TURN).then_some(Angle {
+            value: phase,
+            error: error + 4.0 * f64::EPSILON * phase.abs(),
+        })
+    }
+}

@@ -1,0 +1,471 @@
+//! A system at one setting of its parameters, and to which class it belongs.
+
+use num_complex::Complex64;
+
+use super::polynomial::{DegreeTooLarge, Polynomial};
+use super::reason::Reason;
+use crate::linear::characteristic::{Jet, one_minus_exp};
+use crate::linear::rounded::Rounded;
+use crate::model::elementary::{arg, atan2, exp, expm1, ln};
+
+/// D(λ) = P(λ) + Q(λ) e^(−λτ) with every parameter but the delay given.
+#[derive(Debug, Clone, Copy)]
+pub struct System {
+    /// P.
+    pub(super) p: Polynomial,
+    /// Q.
+    pub(super) q: Polynomial,
+    pub(super) feedback: Option<Feedback>,
+    class: Class,
+}
+
+/// The feedback form D = B(1 − R E) − A(1 − E), so P = B − A and Q = A − R B.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Feedback {
+    /// B, the open loop.
+    pub open: Polynomial,
+    /// A, what is fed back.
+    pub gain: Polynomial,
+    /// R, the memory.
+    pub memory: f64,
+}
+
+/// What kind of equation it is.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Class {
+    /// deg Q < deg P: finitely many roots right of any line.
+    Retarded,
+    /// deg Q = deg P with ρ = |q_n/p_n| < 1: roots accumulate at Re λ = ln ρ/τ.
+    Neutral {
+        /// ρ.
+        ratio: f64,
+    },
+    /// ρ = 1 within rounding, with finitely many unstable roots: they accumulate at the axis.
+    NeutralLimit,
+    /// ρ > 1, or deg Q > deg P: infinitely many unstable roots at every τ > 0.
+    Infinite,
+    /// The highest coefficient is within its error of 0.
+    DegreeUnknown,
+    /// |P| = |Q| on all of the imaginary axis.
+    Refused,
+}
+
+impl Class {
+    /// What a cell of this class has to say about itself.
+    #[must_use]
+    pub fn reason(self) -> Option<Reason> {
+        match self {
+            Self::Retarded | Self::Neutral { .. } => None,
+            Self::NeutralLimit => Some(Reason::NeutralLimit),
+            Self::Infinite => Some(Reason::Infinite),
+            Self::DegreeUnknown => Some(Reason::DegreeUnknown),
+            Self::Refused => Some(Reason::Refused),
+        }
+    }
+}
+
+/// e^(−στ) and what is made of it without cancellation.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Decay {
+    /// κ = e^(−στ).
+    pub kappa: Rounded,
+    /// 1 − κ.
+    pub lost: Rounded,
+}
+
+impl Decay {
+    /// On the imaginary axis.
+    pub(super) const NONE: Self = Self {
+        kappa: Rounded {
+            value: 1.0,
+            error: 0.0,
+        },
+        lost: Rounded {
+            value: 0.0,
+            error: 0.0,
+        },
+    };
+
+    /// None where κ overflows.
+    pub(super) fn new(line: f64, tau: f64) -> Option<Self> {
+        if line == 0.0 || tau == 0.0 {
+            return Some(Self::NONE);
+        }
+        let growth = expm1(-line * tau);
+        let kappa = growth + 1.0;
+        let error = f64::EPSILON * kappa * (1.0 + (line * tau).abs());
+        kappa.is_finite().then_some(Self {
+            kappa: Rounded {
+                value: kappa,
+                error: error + f64::EPSILON * kappa,
+            },
+            lost: Rounded {
+                value: -growth,
+                error: error.min(2.0 * f64::EPSILON * growth.abs() * (1.0 + (line * tau).abs()))
+                    + f64::EPSILON * growth.abs(),
+            },
+        })
+    }
+}
+
+/// 1 without error.
+const ONE: Rounded = Rounded {
+    value: 1.0,
+    error: 0.0,
+};
+
+impl System {
+    /// From P and Q themselves.
+    #[must_use]
+    pub fn direct(p: Polynomial, q: Polynomial) -> Self {
+        Self::classified(p, q, None)
+    }
+
+    /// From the open loop B, the feedback A with deg A < deg B, and the memory −1 < R < 1; without
+    /// latency. Where A is 0 everywhere R is ignored: there is nothing to remember.
+    #[must_use]
+    pub fn feedback(open: Polynomial, gain: Polynomial, memory: f64) -> Self {
+        if gain.is_zero() {
+            return Self::classified(open, Polynomial::ZERO, None);
+        }
+        let p = open.plus(&gain, -1.0);
+        let q = if memory == 0.0 {
+            gain
+        } else {
+            gain.plus(&open, -memory)
+        };
+        let feedback = Feedback { open, gain, memory };
+        Self::classified(p, q, Some(feedback))
+    }
+
+    /// From the coefficients of P and Q, the constants first.
+    ///
+    /// # Errors
+    /// When there are too many.
+    pub fn of_coefficients(p: &[f64], q: &[f64]) -> Result<Self, DegreeTooLarge> {
+        Ok(Self::direct(Polynomial::new(p)?, Polynomial::new(q)?))
+    }
+
+    fn classified(p: Polynomial, q: Polynomial, feedback: Option<Feedback>) -> Self {
+        let mut system = Self {
+            p,
+            q,
+            feedback,
+            class: Class::Retarded,
+        };
+        system.class = system.find_class();
+        system
+    }
+
+    fn find_class(&self) -> Class {
+        let (n, m) = (self.p.degree(), self.q.degree());
+        if !self.p.degree_known() || (m >= n && !self.q.degree_known()) {
+            return Class::DegreeUnknown;
+        }
+        if self.q.is_zero() {
+            return if self.p.is_zero() {
+                Class::Refused
+            } else {
+                Class::Retarded
+            };
+        }
+        if self.p.is_zero() || m > n {
+            return Class::Infinite;
+        }
+        if m < n {
+            return Class::Retarded;
+        }
+        let modulus = self.modulus(0.0, Decay::NONE);
+        if modulus.vanishes() {
+            return Class::Refused;
+        }
+        let ratio = (self.q.leading().value / self.p.leading().value).abs();
+        let leading = modulus.coefficient(n);
+        if leading.decided() {
+            return if ratio < 1.0 {
+                Class::Neutral { ratio }
+            } else {
+                Class::Infinite
+            };
+        }
+        let highest = (0..n).rev().map(|k| modulus.coefficient(k));
+        match highest.into_iter().find(|c| c.decided()) {
+            Some(c) if c.value < 0.0 => Class::Infinite,
+            _ => Class::NeutralLimit,
+        }
+    }
+
+    /// Its class.
+    #[must_use]
+    pub fn class(&self) -> Class {
+        self.class
+    }
+
+    /// No feedback at all: the delay does not matter.
+    #[must_use]
+    pub fn uncontrolled(&self) -> bool {
+        self.q.is_zero()
+    }
+
+    /// The real part at which roots accumulate at the delay `tau` > 0: ln ρ/τ, −∞ where deg Q <
+    /// deg P.
+    #[must_use]
+    pub fn essential_abscissa(&self, tau: f64) -> f64 {
+        match self.class {
+            Class::Neutral { ratio } if tau > 0.0 => ln(ratio) / tau,
+            Class::NeutralLimit if tau > 0.0 => 0.0,
+            Class::Infinite if tau > 0.0 => f64::INFINITY,
+            _ => f64::NEG_INFINITY,
+        }
+    }
+
+    /// P and Q divided by λ, where both vanish at 0 for certain or within rounding; none where they
+    /// do not.
+    pub(super) fn without_common_origin(&self) -> Option<Self> {
+        let vanish = |p: &Polynomial| !p.coefficient(0).decided();
+        if self.q.is_zero() || !(vanish(&self.p) && vanish(&self.q)) {
+            return None;
+        }
+        Some(Self::classified(
+            self.p.divided_by_variable(),
+            self.q.divided_by_variable(),
+            None,
+        ))
+    }
+
+    /// P + Q: its zeros are the roots without delay.
+    pub(super) fn without_delay(&self) -> Polynomial {
+        match &self.feedback {
+            Some(Feedback { open, memory, .. }) => open.scaled(Rounded {
+                value: 1.0 - memory,
+                error: 0.5 * f64::EPSILON,
+            }),
+            None => self.p.plus(&self.q, 1.0),
+        }
+    }
+
+    /// D on the real axis at σ = `line`, of which sign and rounding matter.
+    pub(super) fn on_real_axis(&self, line: f64, decay: Decay) -> Rounded {
+        let at = |p: &Polynomial| p.shifted(line).coefficient(0);
+        match &self.feedback {
+            // B(1 − Rκ) − A(1 − κ).
+            Some(Feedback { open, gain, memory }) => at(open)
+                .times(remembered(*memory, decay))
+                .minus(at(gain).times(decay.lost)),
+            None => {
+                let echo = at(&self.q).times(decay.kappa);
+                Rounded::sum([at(&self.p).value, echo.value])
+                    .plus_error(at(&self.p).error + echo.error)
+            }
+        }
+    }
+
+    /// p(0) − q(0) on the real axis at σ = `line`: F_σ(0) is D(σ) times this.
+    fn mirror(&self, line: f64, decay: Decay) -> Rounded {
+        let at = |p: &Polynomial| p.shifted(line).coefficient(0);
+        let minus = |a: Rounded, b: Rounded| a.minus(b);
+        match &self.feedback {
+            // B(1 + Rκ) − A(1 + κ).
+            Some(Feedback { open, gain, memory }) => {
+                let whole = |by: f64| {
+                    Rounded::sum([1.0, by * decay.kappa.value])
+                        .plus_error(by.abs() * decay.kappa.error)
+                };
+                minus(at(open).times(whole(*memory)), at(gain).times(whole(1.0)))
+            }
+            None => minus(at(&self.p), at(&self.q).times(decay.kappa)),
+        }
+    }
+
+    /// F_σ of equations (6) and (8): |P|² − κ²|Q|² on the line σ = `line`, a polynomial in x = ω².
+    /// On the imaginary axis it may be one divided by a positive constant.
+    pub(super) fn modulus(&self, line: f64, decay: Decay) -> Polynomial {
+        let modulus = self.modulus_by_squares(line, decay);
+        let sum = match &self.feedback {
+            Some(Feedback { open, .. }) if line == 0.0 => open.coefficient(0),
+            _ => self.on_real_axis(line, decay),
+        };
+        // The product keeps its sign where a root is near σ, the difference of squares does not.
+        modulus.with_constant(sum.times(self.mirror(line, decay)))
+    }
+
+    fn modulus_by_squares(&self, line: f64, decay: Decay) -> Polynomial {
+        let square = decay.kappa.times(decay.kappa);
+        if let Some(Feedback { open, gain, memory }) = &self.feedback {
+            let (open, gain) = (open.shifted(line), gain.shifted(line));
+            let both = gain.real_product(&open);
+            let own = open.real_product(&open);
+            if line == 0.0 {
+                let factor = Rounded {
+                    value: 1.0 + memory,
+                    error: if *memory == 0.0 { 0.0 } else { f64::EPSILON },
+                };
+                return own.scaled(factor).plus(&both, -2.0);
+            }
+            // 1 − κ² = (1 − κ)(1 + κ).
+            let lost = decay
+                .lost
+                .times(Rounded::sum([1.0, decay.kappa.value]).plus_error(decay.kappa.error));
+            let remembered_square = remembered(*memory, decay).times(
+                Rounded::sum([1.0, memory * decay.kappa.value])
+                    .plus_error(memory.abs() * decay.kappa.error),
+            );
+            let middle = Rounded::sum([lost.value, square.value * (1.0 - memory)])
+                .plus_error(lost.error + square.error * (1.0 - memory));
+            return own
+                .scaled(remembered_square)
+                .plus(&both.scaled(middle), -2.0)
+                .plus(&gain.real_product(&gain).scaled(lost), 1.0);
+        }
+        let (p, q) = (self.p.shifted(line), self.q.shifted(line));
+        p.real_product(&p)
+            .plus(&q.real_product(&q).scaled(square), -1.0)
+    }
+
+    /// The argument α of −P Q* at σ + iω and a bound on its error, `omega` being known to within
+    /// `error`: none where nothing is known of it.
+    ///
+    /// D vanishes there where |P| = κ|Q| and α + ωτ is a multiple of 2π.
+    pub(super) fn phase(&self, line: f64, omega: f64, error: f64) -> Option<Angle> {
+        match &self.feedback {
+            Some(Feedback { open, gain, memory }) => {
+                let b = open.shifted(line).on_axis(omega, error);
+                let a = gain.shifted(line).on_axis(omega, error);
+                // |A|² + R|B|² − R A B* − B A*: small angles keep their digits where A is large.
+                let both = a.value * b.value.conj();
+                let (a_size, b_size) = (a.value.norm_sqr(), b.value.norm_sqr());
+                let re = a_size + memory * b_size - (1.0 + memory) * both.re;
+                let im = (1.0 - memory) * both.im;
+                let size = (a_size * b_size).sqrt();
+                let both_error = a_size.sqrt() * b.error
+                    + b_size.sqrt() * a.error
+                    + a.error * b.error
+                    + 4.0 * f64::EPSILON * size;
+                let squares = 2.0 * a_size.sqrt() * a.error + a.error * a.error;
+                let others = 2.0 * b_size.sqrt() * b.error + b.error * b.error;
+                let re_error = squares
+                    + others
+                    + 2.0 * both_error
+                    + 4.0 * f64::EPSILON * (a_size + b_size + 2.0 * size);
+                Angle::of(re, im, re_error, 2.0 * both_error)
+            }
+            None => {
+                let p = self.p.shifted(line).on_axis(omega, error);
+                let q = self.q.shifted(line).on_axis(omega, error);
+                let product = -(p.value * q.value.conj());
+                let relative = |at: super::polynomial::At| {
+                    at.error / (at.value.norm_sqr().sqrt() - at.error).max(0.0)
+                };
+                let error = 2.0 * (relative(p) + relative(q)) + 4.0 * f64::EPSILON;
+                (error < 1.0).then(|| Angle {
+                    value: arg(product),
+                    error,
+                })
+            }
+        }
+    }
+
+    /// A radius within which every root with Re λ ≥ `line` lies; infinite where κρ ≥ 1.
+    #[must_use]
+    pub fn root_bound(&self, tau: f64, line: f64) -> f64 {
+        let n = self.p.degree();
+        let kappa = exp(-line * tau);
+        let size = |p: &Polynomial, k: usize| {
+            let c = p.coefficient(k);
+            if k <= p.degree() {
+                c.value.abs() + c.error
+            } else {
+                0.0
+            }
+        };
+        let leading = size(&self.p, n) * (1.0 - 2.0 * f64::EPSILON) - kappa * size(&self.q, n);
+        if leading.is_nan() || leading <= 0.0 {
+            return f64::INFINITY;
+        }
+        // Rⁿ = Σ r_i Rⁱ has no positive zero beyond 2 max r_i^(1/(n − i)) (Fujiwara).
+        let radius = |i: usize| {
+            let ratio = (size(&self.p, i) + kappa * size(&self.q, i)) / leading;
+            libm::pow(ratio, 1.0 / (n - i) as f64)
+        };
+        2.0 * (0..n).map(radius).fold(0.0, f64::max)
+    }
+
+    /// D, D′ and D″ at λ, with Q as what is fed back.
+    #[must_use]
+    pub fn jet(&self, tau: f64, lambda: Complex64) -> Jet {
+        let difference = one_minus_exp(-tau * lambda);
+        let delayed = 1.0 - difference;
+        let (kept, fed, part) = match &self.feedback {
+            // D = (1 − R) B − Q(1 − E): short delays keep their digits.
+            Some(Feedback { open, gain, memory }) => {
+                let (b, a) = (open.jet(lambda), gain.jet(lambda));
+                let fed = [0, 1, 2].map(|i| a[i] - memory * b[i]);
+                (b.map(|b| b * (1.0 - memory)), fed, -difference)
+            }
+            None => (self.p.jet(lambda), self.q.jet(lambda), delayed),
+        };
+        let memory = fed[0] * delayed * tau;
+        Jet {
+            value: kept[0] + fed[0] * part,
+            first: kept[1] + fed[1] * part - memory,
+            second: kept[2] + fed[2] * part - 2.0 * tau * fed[1] * delayed + memory * tau,
+            delayed,
+            difference,
+            feedback: fed[0],
+        }
+    }
+
+    /// A bound on the rounding error of D at λ, to within a small factor.
+    #[must_use]
+    pub fn rounding(&self, jet: &Jet, tau: f64, lambda: Complex64) -> f64 {
+        let size = lambda.l1_norm();
+        let unit = (self.p.degree().max(self.q.degree()) as f64 + 4.0) * f64::EPSILON;
+        let part = |p: &Polynomial, by: f64| {
+            let (value, error) = p.bounds(size);
+            by * (unit * value + error)
+        };
+        let delayed = jet.delayed.l1_norm();
+        // The argument λτ is rounded as well, and with it the phase of E.
+        let turned = delayed * size * tau;
+        match &self.feedback {
+            Some(Feedback { open, gain, memory }) => {
+                let by = jet.difference.l1_norm() + turned;
+                part(gain, by) + part(open, 1.0 - memory + memory.abs() * by)
+            }
+            None => part(&self.p, 1.0) + part(&self.q, delayed + turned),
+        }
+    }
+}
+
+/// 1 − Rκ without cancellation: (1 − R) + R(1 − κ).
+fn remembered(memory: f64, decay: Decay) -> Rounded {
+    if memory == 0.0 {
+        return ONE;
+    }
+    Rounded::sum([1.0 - memory, memory * decay.lost.value])
+        .plus_error(memory.abs() * decay.lost.error + f64::EPSILON)
+}
+
+/// An angle and a bound on its error.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Angle {
+    /// In [−π, π].
+    pub value: f64,
+    pub error: f64,
+}
+
+impl Angle {
+    /// Of `re` + i `im`, each with its error; none where the point may be the origin.
+    fn of(re: f64, im: f64, re_error: f64, im_error: f64) -> Option<Self> {
+        let size = (re * re + im * im).sqrt();
+        if re_error + im_error >= 0.5 * size {
+            return None;
+        }
+        let aside = (re.abs() * im_error + im.abs() * re_error) / (size * size);
+        let value = atan2(im, re);
+        Some(Self {
+            value,
+            error: 4.0 * aside + 4.0 * f64::EPSILON * value.abs(),
+        })
+    }
+}
