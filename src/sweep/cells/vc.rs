@@ -16,6 +16,7 @@ use crate::sweep::input::parameter::Parameter;
 use crate::sweep::input::regime_at_v0::RegimeAtV0;
 use crate::sweep::input::search::Protocol;
 use crate::sweep::input::setting::Setting;
+use crate::sweep::input::simulation::NOT_IN_MOTIONS;
 
 /// Error allowed in a step where control is switched on.
 const SWITCH_ON_ACCURACY: f64 = 1e-9;
@@ -38,6 +39,7 @@ pub struct Asked {
 /// When the setting has no friction law, or a value is out of the model's range: a gain needs a
 /// delay τ > 0.
 pub fn asked(setting: &Setting) -> Result<Asked, ModelError> {
+    setting.check_of_letter(NOT_IN_MOTIONS, "0 where a critical velocity is looked for")?;
     let oscillator = setting.oscillator()?;
     let units = CaseUnits::of(&oscillator);
     let Some(law) = setting.friction_law()? else {

@@ -1,5 +1,6 @@
 //! Reads a sweep file.
 
+mod beyond;
 mod checks;
 
 use std::ops::Range;
@@ -54,7 +55,10 @@ impl SweepSpec {
                 }
                 "picture" => draft.picture = Some((read_field(&entry)?, entry.span.clone())),
                 "fields" => draft.read_fields(&entry)?,
-                "boundaries" => draft.boundaries = Some(entry.boolean()?),
+                "boundaries" => {
+                    draft.boundaries = Some(entry.boolean()?);
+                    draft.boundaries_place = Some(entry.key_span.clone());
+                }
                 "degree_of_stability" => draft.read_degrees(&entry)?,
                 "best" => draft.best = entry.boolean()?.then(|| entry.key_span.clone()),
                 "axes" => draft.read_axes(&entry, most_points.min(MOST_POINTS))?,
@@ -122,6 +126,7 @@ struct Draft {
     simulation: Simulation,
     simulation_place: Option<Range<usize>>,
     boundaries: Option<bool>,
+    boundaries_place: Option<Range<usize>>,
     degrees: Vec<f64>,
     degrees_place: Option<Range<usize>>,
     /// Where the best settings are asked for, if they are.

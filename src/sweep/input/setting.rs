@@ -124,7 +124,39 @@ impl Setting {
     #[must_use]
     pub fn uses(&self, parameter: Parameter) -> bool {
         let taken = parameter.of_start() || Self::takes(self.law.as_ref(), parameter);
-        taken && !self.get(parameter).is_nan()
+        let value = self.get(parameter);
+        taken && !value.is_nan() && !(parameter.beyond_letter() && value == 0.0)
+    }
+
+    /// The first of these parameters by which the setting is beyond the letter's own system. What
+    /// nothing feeds back is not remembered either, and comes to nothing late: without gains memory
+    /// and latency are left aside.
+    #[must_use]
+    pub fn beyond_letter(&self, of: &[Parameter]) -> Option<Parameter> {
+        let idle = self.control() == Control::default();
+        let left_aside = |p: Parameter| idle && matches!(p, Parameter::Memory | Parameter::Latency);
+        let mut of = of.iter().copied();
+        of.find(|&p| self.get(p) != 0.0 && !left_aside(p))
+    }
+
+    /// Refuses what is beyond the letter's own system by one of these parameters, for computations
+    /// that know nothing of them; `allowed` says what is allowed there, and where.
+    ///
+    /// # Errors
+    /// Names the first of them that is not 0.
+    pub fn check_of_letter(
+        &self,
+        of: &[Parameter],
+        allowed: &'static str,
+    ) -> Result<(), ModelError> {
+        match self.beyond_letter(of) {
+            Some(parameter) => Err(ModelError {
+                parameter: parameter.name(),
+                value: self.get(parameter),
+                allowed,
+            }),
+            None => Ok(()),
+        }
     }
 
     /// True for the parameters that a setting with this law can have, its start left aside.
@@ -214,8 +246,13 @@ impl Setting {
     /// The dimensionless groups and the unit of time √(M/κ).
     ///
     /// # Errors
-    /// When a parameter is outside the model's range.
+    /// When a parameter is outside the model's range, and for all that has more than these groups:
+    /// memory, latency or lags.
     pub fn groups(&self) -> Result<(Groups, f64), ModelError> {
+        self.check_of_letter(
+            &Parameter::BEYOND_LETTER,
+            "0 in what is known of the letter's own feedback alone",
+        )?;
         let oscillator = self.oscillator()?;
         let groups = oscillator.groups(self.sliding_point()?, self.control());
         Ok((groups, oscillator.time_unit()))

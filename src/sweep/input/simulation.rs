@@ -19,6 +19,9 @@ const MOST_STEPS: u64 = 1_000_000_000;
 /// Times and lengths that are greater than zero.
 pub(super) const POSITIVE: RangeInclusive<f64> = 1.0 / LARGEST..=LARGEST;
 
+/// What motions do not know.
+pub(crate) const NOT_IN_MOTIONS: &[Parameter] = &Parameter::BEYOND_LETTER;
+
 /// The keys `horizon`, `tolerance` and `steps`: of a case file, and of the table `[simulation]` of
 /// a sweep file.
 #[derive(Debug, Clone, PartialEq)]
@@ -128,6 +131,7 @@ impl Simulation {
         let Some(law) = setting.friction_law()? else {
             return Ok(None);
         };
+        setting.check_of_letter(NOT_IN_MOTIONS, "0 where motions are followed")?;
         let oscillator = setting.oscillator()?;
         let v0 = setting.get(Parameter::V0);
         let given = |p: Parameter| Some(setting.get(p)).filter(|value| !value.is_nan());

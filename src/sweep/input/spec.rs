@@ -116,6 +116,12 @@ impl SweepSpec {
         }
     }
 
+    /// Whether some cell has memory, latency or lags: more than the letter's own feedback.
+    #[must_use]
+    pub fn beyond_letter(&self) -> bool {
+        beyond_letter(&self.fixed, &self.axes, &Parameter::BEYOND_LETTER).is_some()
+    }
+
     /// Whether there is a sliding state in each cell whose linear stability can be asked for: a
     /// friction law needs a v0.
     #[must_use]
@@ -151,4 +157,15 @@ impl SweepSpec {
     pub fn follows_motions(&self) -> bool {
         self.critical.is_none() && self.fields.iter().any(|f| f.of_motion())
     }
+}
+
+/// The first of the parameters `of` by which some cell is beyond the letter's own feedback.
+pub(super) fn beyond_letter(fixed: &Setting, axes: &[Axis], of: &[Parameter]) -> Option<Parameter> {
+    let mut most = fixed.clone();
+    for axis in axes {
+        // Any value that is not 0 will do.
+        let value = axis.values.iter().copied().find(|value| *value != 0.0);
+        most.set(axis.parameter, value.unwrap_or(0.0));
+    }
+    most.beyond_letter(of)
 }

@@ -314,7 +314,8 @@ pub fn in_hexadecimal(bytes: &[u8]) -> String {
 
 /// The plane of crossing curves; none where there is no such plane, or where it is not wanted.
 fn boundary_plane(spec: &SweepSpec) -> Option<(usize, usize)> {
-    let (p, tau) = plane_of_curves(&spec.axes).filter(|_| spec.has_sliding())?;
+    let (p, tau) =
+        plane_of_curves(&spec.axes).filter(|_| spec.has_sliding() && !spec.beyond_letter())?;
     let planes: u64 = spec
         .axes
         .iter()

@@ -24,6 +24,7 @@ impl Draft {
         self.check_best()?;
         let fixed = self.given.setting();
         self.check_law(&fixed)?;
+        self.check_beyond_letter(&fixed)?;
         let critical = self.check_nonlinear(&fixed)?;
         Ok((fixed, critical))
     }
