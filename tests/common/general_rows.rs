@@ -163,7 +163,7 @@ fn pd(row: &Row) -> System {
 /// The tables whose systems have no latency, with the system of each row.
 pub fn without_latency() -> Vec<(Row, System)> {
     let feedback = |(open, gain): (Polynomial, Polynomial), row: &Row| {
-        System::feedback(open, gain, row.or_zero("memory"))
+        System::feedback(open, gain, row.or_zero("memory"), 0.0)
     };
     let mut all = Vec::new();
     let mut add = |name: &str, table: &str, system: &dyn Fn(&Row) -> System| {

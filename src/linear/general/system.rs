@@ -19,7 +19,7 @@ pub struct System {
     class: Class,
 }
 
-/// The feedback form D = B(1 − R E) − A(1 − E), so P = B − A and Q = A − R B.
+/// The feedback form D = B(1 − R E) − A e^(−λδ)(1 − E), so P = B − A and Q = A − R B without latency.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Feedback {
     /// B, the open loop.
@@ -28,6 +28,8 @@ pub(super) struct Feedback {
     pub gain: Polynomial,
     /// R, the memory.
     pub memory: f64,
+    /// δ ≥ 0, the latency.
+    pub latency: f64,
 }
 
 /// What kind of equation it is.
@@ -121,10 +123,11 @@ impl System {
         Self::classified(p, q, None)
     }
 
-    /// From the open loop B, the feedback A with deg A < deg B, and the memory −1 < R < 1; without
-    /// latency. Where A is 0 everywhere R is ignored: there is nothing to remember.
+    /// From the open loop B, the feedback A with deg A < deg B, the memory −1 < R < 1 and the latency
+    /// δ ≥ 0: D = B(1 − R E) − A e^(−λδ)(1 − E). Where A is 0 everywhere both are ignored: there is
+    /// nothing to remember and nothing that could be late.
     #[must_use]
-    pub fn feedback(open: Polynomial, gain: Polynomial, memory: f64) -> Self {
+    pub fn feedback(open: Polynomial, gain: Polynomial, memory: f64, latency: f64) -> Self {
         if gain.is_zero() {
             return Self::classified(open, Polynomial::ZERO, None);
         }
@@ -134,7 +137,12 @@ impl System {
         } else {
             gain.plus(&open, -memory)
         };
-        let feedback = Feedback { open, gain, memory };
+        let feedback = Feedback {
+            open,
+            gain,
+            memory,
+            latency,
+        };
         Self::classified(p, q, Some(feedback))
     }
 
@@ -158,6 +166,9 @@ impl System {
     }
 
     fn find_class(&self) -> Class {
+        if self.feedback.is_some_and(|f| f.latency > 0.0) {
+            return Class::Refused;
+        }
         let (n, m) = (self.p.degree(), self.q.degree());
         if !self.p.degree_known() || (m >= n && !self.q.degree_known()) {
             return Class::DegreeUnknown;
@@ -249,7 +260,9 @@ impl System {
         let at = |p: &Polynomial| p.shifted(line).coefficient(0);
         match &self.feedback {
             // B(1 − Rκ) − A(1 − κ).
-            Some(Feedback { open, gain, memory }) => at(open)
+            Some(Feedback {
+                open, gain, memory, ..
+            }) => at(open)
                 .times(remembered(*memory, decay))
                 .minus(at(gain).times(decay.lost)),
             None => {
@@ -266,7 +279,9 @@ impl System {
         let minus = |a: Rounded, b: Rounded| a.minus(b);
         match &self.feedback {
             // B(1 + Rκ) − A(1 + κ).
-            Some(Feedback { open, gain, memory }) => {
+            Some(Feedback {
+                open, gain, memory, ..
+            }) => {
                 let whole = |by: f64| {
                     Rounded::sum([1.0, by * decay.kappa.value])
                         .plus_error(by.abs() * decay.kappa.error)
@@ -291,7 +306,10 @@ impl System {
 
     fn modulus_by_squares(&self, line: f64, decay: Decay) -> Polynomial {
         let square = decay.kappa.times(decay.kappa);
-        if let Some(Feedback { open, gain, memory }) = &self.feedback {
+        if let Some(Feedback {
+            open, gain, memory, ..
+        }) = &self.feedback
+        {
             let (open, gain) = (open.shifted(line), gain.shifted(line));
             let both = gain.real_product(&open);
             let own = open.real_product(&open);
@@ -328,7 +346,9 @@ impl System {
     /// D vanishes there where |P| = κ|Q| and α + ωτ is a multiple of 2π.
     pub(super) fn phase(&self, line: f64, omega: f64, error: f64) -> Option<Angle> {
         match &self.feedback {
-            Some(Feedback { open, gain, memory }) => {
+            Some(Feedback {
+                open, gain, memory, ..
+            }) => {
                 let b = open.shifted(line).on_axis(omega, error);
                 let a = gain.shifted(line).on_axis(omega, error);
                 // |A|² + R|B|² − R A B* − B A*: small angles keep their digits where A is large.
@@ -397,7 +417,9 @@ impl System {
         let delayed = 1.0 - difference;
         let (kept, fed, part) = match &self.feedback {
             // D = (1 − R) B − Q(1 − E): short delays keep their digits.
-            Some(Feedback { open, gain, memory }) => {
+            Some(Feedback {
+                open, gain, memory, ..
+            }) => {
                 let (b, a) = (open.jet(lambda), gain.jet(lambda));
                 let fed = [0, 1, 2].map(|i| a[i] - memory * b[i]);
                 (b.map(|b| b * (1.0 - memory)), fed, -difference)
@@ -428,7 +450,9 @@ impl System {
         // The argument λτ is rounded as well, and with it the phase of E.
         let turned = delayed * size * tau;
         match &self.feedback {
-            Some(Feedback { open, gain, memory }) => {
+            Some(Feedback {
+                open, gain, memory, ..
+            }) => {
                 let by = jet.difference.l1_norm() + turned;
                 part(gain, by) + part(open, 1.0 - memory + memory.abs() * by)
             }
