@@ -9,6 +9,7 @@ use super::axis::{Axis, MOST_POINTS};
 use super::basin::BasinKeys;
 use super::field::Field;
 use super::given::{GivenParameters, read_units};
+use super::keys::{SWEEP, names};
 use super::limit_spec::LimitDraft;
 use super::parameter::Parameter;
 use super::search::LIMIT;
@@ -76,33 +77,12 @@ impl SweepSpec {
                          in a sweep, [simulation] has the horizon and the steps",
                     ));
                 }
-                _ => return Err(entry.unknown(&KEYS)),
+                _ => return Err(entry.unknown(&names(&SWEEP))),
             }
         }
         draft.finish(text)
     }
 }
-
-/// The keys of a sweep file.
-const KEYS: [&str; 17] = [
-    "title",
-    "picture",
-    "fields",
-    "boundaries",
-    "degree_of_stability",
-    "best",
-    VcKeys::KEYS[0],
-    VcKeys::KEYS[1],
-    VcKeys::KEYS[2],
-    "axes",
-    "fixed",
-    "friction",
-    "start",
-    "simulation",
-    "basin",
-    "units",
-    "tolerance",
-];
 
 /// What was read of a sweep file, and where, until it is known to fit together.
 #[derive(Default)]

@@ -3,7 +3,8 @@
 
 use std::ops::Range;
 
-use super::friction_table::{GivenTable, PAIRS};
+use super::friction_table::GivenTable;
+use super::keys::{FRICTION_TABLE, UNITS, names};
 use super::law_kind::{Formula, LawKind};
 use super::nearest::did_you_mean;
 use super::parameter::Parameter;
@@ -107,10 +108,11 @@ impl GivenParameters {
     /// Reads the table `[friction]`.
     pub(super) fn read_friction(&mut self, friction: &Entry) -> Result<(), SpecError> {
         let of_laws = Parameter::ALL.into_iter().filter(|p| p.of_friction_law());
-        let names: Vec<_> = ["law"]
+        let [law, table @ ..] = FRICTION_TABLE.map(|key| key.name);
+        let known: Vec<_> = [law]
             .into_iter()
             .chain(of_laws.map(Parameter::name))
-            .chain(["speeds", "mu_k", PAIRS])
+            .chain(table)
             .collect();
         let mut law = None;
         for entry in friction.table()? {
@@ -118,7 +120,7 @@ impl GivenParameters {
                 Some(parameter) => self.read_value(&entry, parameter)?,
                 None if entry.key == "law" => law = Some(entry),
                 None if self.table.read(&entry)? => {}
-                None => return Err(entry.unknown(&names)),
+                None => return Err(entry.unknown(&known)),
             }
         }
         let Some(law) = law else {
@@ -226,7 +228,7 @@ pub(super) fn read_units(units: &Entry) -> Result<Units, SpecError> {
             "force" => &mut force,
             "length" => &mut length,
             "time" => &mut time,
-            _ => return Err(entry.unknown(&["force", "length", "time"])),
+            _ => return Err(entry.unknown(&names(&UNITS))),
         };
         let name = entry.string()?;
         Units::check_name(name).map_err(|why| entry.error(why))?;

@@ -10,6 +10,7 @@ mod draft;
 pub mod field;
 pub mod friction_table;
 mod given;
+pub mod keys;
 pub mod law_kind;
 mod limit_spec;
 pub mod nearest;

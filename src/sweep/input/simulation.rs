@@ -3,6 +3,7 @@
 
 use std::ops::{Range, RangeInclusive};
 
+use super::keys::{SIMULATION, names};
 use super::parameter::{LARGEST, Parameter};
 use super::setting::Setting;
 use super::toml_reader::{Entry, SpecError};
@@ -68,9 +69,6 @@ pub fn assumed_start(disturbance: f64) -> Option<String> {
 }
 
 impl Simulation {
-    /// Names of the keys.
-    pub(super) const KEYS: [&'static str; 3] = ["horizon", "tolerance", "steps"];
-
     /// Takes the value of an entry that is one of the keys; false where it is none.
     pub(super) fn read(&mut self, entry: &Entry) -> Result<bool, SpecError> {
         match entry.key {
@@ -97,7 +95,7 @@ impl Simulation {
     pub(super) fn read_table(&mut self, table: &Entry) -> Result<(), SpecError> {
         for entry in table.table()? {
             if !self.read(&entry)? {
-                return Err(entry.unknown(&Self::KEYS));
+                return Err(entry.unknown(&names(&SIMULATION)));
             }
         }
         Ok(())

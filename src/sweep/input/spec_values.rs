@@ -2,6 +2,7 @@
 
 use super::axis::{Spacing, spaced};
 use super::field::{Field, fields_meant, known_fields};
+use super::keys::{RANGE, TOLERANCE, names};
 use super::parameter::Parameter;
 use super::toml_reader::{Entry, SpecError};
 use crate::linear::MarginalTolerance;
@@ -31,7 +32,7 @@ pub(super) fn read_range(axis: &Entry, most: u64) -> Result<Vec<f64>, SpecError>
                     }
                 }
             }
-            _ => return Err(entry.unknown(&["from", "to", "points", "spacing"])),
+            _ => return Err(entry.unknown(&names(&RANGE))),
         }
     }
     let missing = |name| axis.error(format!("{name} is missing"));
@@ -129,7 +130,7 @@ pub(super) fn read_tolerance(tolerance: &Entry) -> Result<MarginalTolerance, Spe
             "marginal" => {
                 result = MarginalTolerance(entry.number_within(f64::EPSILON..=0.01)?);
             }
-            _ => return Err(entry.unknown(&["marginal"])),
+            _ => return Err(entry.unknown(&names(&TOLERANCE))),
         }
     }
     Ok(result)
