@@ -81,9 +81,10 @@ pub(super) fn starting_values(
     starts.clear();
     let pair = equation.pair();
     let radius = equation.root_bound(tau, line);
-    let branches = (radius * tau / PI).ceil() + 2.0;
+    let span = equation.memory_span(tau);
+    let branches = (radius * span / PI).ceil() + 2.0;
     let kappa = exp(-line * tau);
-    let place = |j: usize| PI * j as f64 / tau;
+    let place = |j: usize| PI * j as f64 / span;
     // A root right of the line lies where feedback is the larger part on the line, as far as one
     // can tell from there.
     let inside = |j: usize| {
@@ -94,7 +95,7 @@ pub(super) fn starting_values(
     for j in 0..(branches as usize).min(MOST_BRANCHES) {
         let after = j < ALWAYS_FOLLOWED || inside(j + 1);
         if (before || here || after)
-            && let Some(start) = follow_branch(&pair, tau, place(j))
+            && let Some(start) = follow_branch(&pair, (tau, span), place(j))
         {
             starts.push(start);
         }
@@ -109,10 +110,10 @@ pub(super) fn starting_values(
 }
 
 /// Newton's method on λτ = log(−Q/P) + 2πik from the branch that `omega` belongs to.
-fn follow_branch(pair: &impl Pair, tau: f64, omega: f64) -> Option<Complex64> {
+fn follow_branch(pair: &impl Pair, (tau, span): (f64, f64), omega: f64) -> Option<Complex64> {
     let on_axis = Complex64::new(0.0, omega);
     let [p, _, q, _] = pair.at(on_axis);
-    let mut lambda = Complex64::new(0.5 * ln(q.norm_sqr() / p.norm_sqr()) / tau, omega);
+    let mut lambda = Complex64::new(0.5 * ln(q.norm_sqr() / p.norm_sqr()) / span, omega);
     for _ in 0..STEPS {
         let [p, slope, q, q_slope] = pair.at(lambda);
         let log = -divide(p, q);

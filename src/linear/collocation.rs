@@ -47,8 +47,35 @@ pub fn nodes_for(tau: f64, radius: f64) -> Option<usize> {
 /// if the eigenvalue iteration fails.
 #[must_use]
 pub fn eigenvalues(p: &[f64], q: &[f64], tau: f64, nodes: usize) -> Option<Vec<Complex64>> {
-    let size = nodes + p.len() - 1;
-    let matrix = generator(p, q, tau, nodes);
+    eigenvalues_of(&generator(p, q, tau, nodes))
+}
+
+/// Feedback that comes late, B(1 − R E) = A e^(−λδ)(1 − E), by the coefficients of B and A.
+#[derive(Debug, Clone, Copy)]
+pub struct Late<'c> {
+    /// B; its last coefficient is not 0.
+    pub open: &'c [f64],
+    /// A, of lower degree.
+    pub gain: &'c [f64],
+    /// R.
+    pub memory: f64,
+    /// τ > 0.
+    pub tau: f64,
+    /// δ ≥ 0.
+    pub latency: f64,
+}
+
+/// As [`eigenvalues`], with latency.
+///
+/// With z = (1 − R E) x only s = A x is fed back: B z = s(t − δ) − s(t − δ − τ) and s = A z + R s(t −
+/// τ). Its history over τ + δ is collocated, with barycentric values inside.
+#[must_use]
+pub fn late_eigenvalues(of: &Late<'_>, nodes: usize) -> Option<Vec<Complex64>> {
+    eigenvalues_of(&late_generator(of, nodes))
+}
+
+fn eigenvalues_of(matrix: &Mat<f64>) -> Option<Vec<Complex64>> {
+    let size = matrix.nrows();
     let mut re = Diag::<f64>::zeros(size);
     let mut im = Diag::<f64>::zeros(size);
     let scratch = evd_scratch::<f64>(
@@ -110,6 +137,67 @@ fn generator(p: &[f64], q: &[f64], tau: f64, nodes: usize) -> Mat<f64> {
         }
     }
     matrix
+}
+
+/// The matrix of [`late_eigenvalues`].
+fn late_generator(of: &Late<'_>, nodes: usize) -> Mat<f64> {
+    let n = of.open.len() - 1;
+    let span = of.tau + of.latency;
+    let per_leading = 1.0 / of.open[n];
+    let late = interpolation(nodes, of.latency / span);
+    let delayed = interpolation(nodes, of.tau / span);
+    // s(0) as a row over z, ż, … and s at the other nodes: it stands in its own interpolation.
+    let per_own = 1.0 / (1.0 - of.memory * delayed[0]);
+    let mut now = vec![0.0; nodes + n];
+    for (entry, a) in now.iter_mut().zip(of.gain) {
+        *entry = a * per_own;
+    }
+    for (entry, weight) in now[n..].iter_mut().zip(&delayed[1..]) {
+        *entry = of.memory * weight * per_own;
+    }
+    let mut matrix = Mat::<f64>::zeros(nodes + n, nodes + n);
+    for i in 1..n {
+        matrix[(i - 1, i)] = 1.0;
+    }
+    for i in 0..nodes + n {
+        let own = if i < n { -of.open[i] } else { late[i - n + 1] };
+        matrix[(n - 1, i)] = (own + late[0] * now[i]) * per_leading;
+    }
+    matrix[(n - 1, nodes + n - 1)] -= per_leading;
+    for row in 1..=nodes {
+        let entry = |column| differentiation(nodes, row, column) * 2.0 / span;
+        for column in 1..=nodes {
+            matrix[(row + n - 1, column + n - 1)] = entry(column);
+        }
+        let first = entry(0);
+        for (i, now) in now.iter().enumerate() {
+            matrix[(row + n - 1, i)] += first * now;
+        }
+    }
+    matrix
+}
+
+/// Weights of the values at the Chebyshev points, from 0 back to the longest delay, in the value at
+/// the `part` of that delay.
+fn interpolation(nodes: usize, part: f64) -> Vec<f64> {
+    let at = 1.0 - 2.0 * part;
+    let point = |j: usize| cos(PI * j as f64 / nodes as f64);
+    if let Some(hit) = (0..=nodes).find(|&j| point(j) == at) {
+        let own = |j| if j == hit { 1.0 } else { 0.0 };
+        return (0..=nodes).map(own).collect();
+    }
+    let mut weights: Vec<f64> = (0..=nodes)
+        .map(|j| {
+            let end = if j == 0 || j == nodes { 0.5 } else { 1.0 };
+            let sign = if j.is_multiple_of(2) { end } else { -end };
+            sign / (at - point(j))
+        })
+        .collect();
+    let sum: f64 = weights.iter().sum();
+    for weight in &mut weights {
+        *weight /= sum;
+    }
+    weights
 }
 
 /// Entry of the differentiation matrix on the Chebyshev points cos(πj/N) (Trefethen, Spectral

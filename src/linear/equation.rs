@@ -41,6 +41,11 @@ pub trait Equation: Copy {
     /// The number that `unstable` tells at `tau`.
     fn unstable_at(unstable: &Self::Unstable, tau: f64) -> Option<u64>;
 
+    /// How far back in time the equation reaches at the delay `tau`.
+    fn memory_span(self, tau: f64) -> f64 {
+        tau
+    }
+
     /// The radius within which every root with Re λ ≥ `line` lies.
     fn root_bound(self, tau: f64, line: f64) -> f64;
 

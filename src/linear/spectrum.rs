@@ -79,7 +79,8 @@ impl RootFinder {
         if self.complete(equation, tau, count) {
             return Ok(&self.roots);
         }
-        let mut nodes = nodes_for(tau, equation.root_bound(tau, line)).ok_or(incomplete)?;
+        let mut nodes = nodes_for(equation.memory_span(tau), equation.root_bound(tau, line))
+            .ok_or(incomplete)?;
         self.collocations += 1;
         for _ in 0..COLLOCATIONS {
             self.starts = equation.eigenvalues(tau, nodes).ok_or(incomplete)?;
@@ -267,7 +268,7 @@ fn line_left_of(equation: impl Equation, tau: f64, wanted: u64, leftmost: f64) -
         return f64::NEG_INFINITY;
     }
     let leftmost = leftmost
-        .max(-FARTHEST_LEFT / tau)
+        .max(-FARTHEST_LEFT / equation.memory_span(tau))
         .max(beside_essential(equation, tau));
     // The line itself may hit a root; its neighbours then do not.
     let count = |line: f64| {

@@ -1,5 +1,7 @@
 //! The tables of independently computed systems with one delay, `tests/reference/general_*.csv`.
 
+#![allow(dead_code, reason = "no test uses all of it")]
+
 use std::collections::HashMap;
 
 use slipmap::linear::general::{Polynomial, System};
@@ -202,6 +204,19 @@ pub fn without_latency() -> Vec<(Row, System)> {
     );
     add("pd", include_str!("../reference/general_pd.csv"), &pd);
     all
+}
+
+/// The table of systems with latency.
+pub fn with_latency() -> Vec<(Row, System)> {
+    rows("latency", include_str!("../reference/general_latency.csv"))
+        .into_iter()
+        .map(|row| {
+            let (open, gain) = with_lags(&row);
+            let system =
+                System::feedback(open, gain, row.or_zero("memory"), row.or_zero("latency"));
+            (row, system)
+        })
+        .collect()
 }
 
 /// The degenerate ones.

@@ -15,6 +15,9 @@ use crate::linear::equation::{Equation, Pair};
 impl Pair for &System {
     #[inline]
     fn at(&self, lambda: Complex64) -> [Complex64; 4] {
+        if let Some(feedback) = self.late() {
+            return feedback.pair(lambda);
+        }
         let ([p, p_slope, _], [q, q_slope, _]) = (self.p.jet(lambda), self.q.jet(lambda));
         [p, p_slope, q, q_slope]
     }
@@ -41,9 +44,18 @@ impl Equation for &RootCounter {
 
     fn third(self, jet: &Jet, tau: f64, lambda: Complex64) -> Complex64 {
         // Of P‴ + (Q‴ − 3τQ″ + 3τ²Q′ − τ³Q) E what the delay makes large.
+        if let Some(feedback) = self.system().late() {
+            let [p_third, slope, bend, third] = feedback.thirds(lambda);
+            let turned = tau * (3.0 * slope - tau * jet.feedback) - 3.0 * bend;
+            return p_third + jet.delayed * (third + tau * turned);
+        }
         let [_, slope, bend] = self.system().q.jet(lambda);
         let p_third = self.system().p.derivative().jet(lambda)[2];
         p_third + tau * jet.delayed * (tau * (3.0 * slope - tau * jet.feedback) - 3.0 * bend)
+    }
+
+    fn memory_span(self, tau: f64) -> f64 {
+        tau + self.system().latency()
     }
 
     fn right_of(self, tau: f64, line: f64) -> Option<u64> {
@@ -82,6 +94,13 @@ impl Equation for &RootCounter {
     }
 
     fn further_starts(self, tau: f64, line: f64, starts: &mut Vec<Complex64>) {
+        if let Some(feedback) = self.system().late() {
+            if let Some(slow) = feedback.slow(tau) {
+                add_zeros(&slow, starts);
+            }
+            grid(self.system(), tau, line, starts);
+            return;
+        }
         let q = &self.system().q;
         let parabola = Polynomial::new(&[0.0, tau, -0.5 * tau * tau]);
         if let Some(fed) = parabola.ok().and_then(|p| q.times(&p).ok()) {
@@ -91,6 +110,9 @@ impl Equation for &RootCounter {
     }
 
     fn eigenvalues(self, tau: f64, nodes: usize) -> Option<Vec<Complex64>> {
+        if let Some(feedback) = self.system().late() {
+            return feedback.eigenvalues(tau, nodes);
+        }
         let System { p, q, .. } = self.system();
         eigenvalues(p.coefficients(), q.coefficients(), tau, nodes)
     }
@@ -109,7 +131,8 @@ fn grid(system: &System, tau: f64, line: f64, starts: &mut Vec<Complex64>) {
     if !(width.is_finite() && width > 0.0) {
         return;
     }
-    let rows = (radius * tau / PI * 2.0)
+    let span = tau + system.latency();
+    let rows = (radius * span / PI * 2.0)
         .ceil()
         .min(MOST_IN_GRID / f64::from(COLUMNS));
     for row in 0..=rows as u32 {
@@ -117,7 +140,7 @@ fn grid(system: &System, tau: f64, line: f64, starts: &mut Vec<Complex64>) {
             // Denser near the line, where most roots are.
             let part = f64::from(column) / f64::from(COLUMNS);
             let re = line + width * part * part * part;
-            let im = 0.5 * PI / tau * f64::from(row);
+            let im = 0.5 * PI / span * f64::from(row);
             starts.push(Complex64::new(re, im));
         }
     }

@@ -15,12 +15,14 @@
 use std::f64::consts::{PI, TAU};
 
 use super::reason::Reason;
-use super::right_of::RootCounter;
+use super::right_of::{RootCounter, Turning};
 use super::switches::{Switch, Switches};
-use super::system::{Class, Decay, System};
+use super::system::{Angle, Class, Decay, System};
 use super::zeros::Zeros;
 use crate::linear::count::{Count, MarginalTolerance};
 use crate::linear::crossing::{Crossing, Direction};
+use crate::linear::equation::Pair;
+use crate::linear::newton::divide;
 
 /// Delays tried for a count by (7) where P + Q leaves n(0⁺) open.
 const TRIES: usize = 40;
@@ -110,7 +112,7 @@ impl DelayLine {
         self.find_crossings(system);
     }
 
-    fn clear(&mut self) {
+    pub(super) fn clear(&mut self) {
         let mut crossings = std::mem::take(&mut self.crossings);
         crossings.clear();
         *self = Self {
@@ -127,22 +129,31 @@ impl DelayLine {
     }
 
     fn find_crossings(&mut self, system: &System) {
-        let mut modulus = system.modulus(0.0, Decay::NONE);
-        if system.class() == Class::NeutralLimit {
-            modulus = modulus.without_open_leading();
-        }
         let mut switches = Switches::default();
-        if !switches.find(&modulus) {
-            self.uncounted = true;
-            self.reason = Some(Reason::DegreeUnknown);
-            return;
+        if let Some(feedback) = system.late() {
+            if !feedback.late_switches(&mut switches) {
+                // Too many to be listed: nothing is said but what holds without delay.
+                self.find_without_delay(system);
+                self.at_zero_delay = self.without_delay;
+                self.always_marginal = true;
+                return;
+            }
+        } else {
+            let mut modulus = system.modulus(0.0, Decay::NONE);
+            if system.class() == Class::NeutralLimit {
+                modulus = modulus.without_open_leading();
+            }
+            if !switches.find(&modulus) {
+                self.uncounted = true;
+                self.reason = Some(Reason::DegreeUnknown);
+                return;
+            }
         }
         let origin = !system.on_real_axis(0.0, Decay::NONE).decided();
         if origin {
             self.rests_at_origin();
-        } else if switches.open_below > 0.0 {
-            // There P(0) = Q(0) within rounding: a pair may cross at some τ ≥ π/ω or so.
-            self.open_from = 0.5 * PI / switches.open_below;
+        } else {
+            self.opens_below(switches.open_below);
         }
         for switch in &switches.list {
             self.add_crossing(system, switch);
@@ -150,18 +161,35 @@ impl DelayLine {
         self.find_start(system, &switches, origin);
     }
 
+    /// Below the frequency `omega` |P(0)| = |Q(0)| within rounding, without a root at 0: a pair may
+    /// cross at some τ ≥ π/ω or so.
+    pub(super) fn opens_below(&mut self, omega: f64) {
+        if omega > 0.0 {
+            self.open_from = 0.5 * PI / omega;
+        }
+    }
+
     fn add_crossing(&mut self, system: &System, switch: &Switch) {
+        if switch.sign == 0 && common_zero(system, switch.omega) {
+            self.always_marginal = true;
+            self.reason = self.reason.or(Some(Reason::RootOnAxis));
+            return;
+        }
+        let phase = match system.late() {
+            Some(feedback) => feedback.late_phase(switch.omega, switch.error),
+            None => system.phase(0.0, switch.omega, switch.error),
+        };
+        self.add(switch, phase);
+    }
+
+    /// Adds the crossing at `switch`, `phase` being the argument of −P Q* there.
+    pub(super) fn add(&mut self, switch: &Switch, phase: Option<Angle>) {
         let direction = match switch.sign {
             1 => Direction::Right,
             -1 => Direction::Left,
             _ => Direction::Touch,
         };
-        if direction == Direction::Touch && common_zero(system, switch.omega) {
-            self.always_marginal = true;
-            self.reason = self.reason.or(Some(Reason::RootOnAxis));
-            return;
-        }
-        let (theta, error) = match system.phase(0.0, switch.omega, switch.error) {
+        let (theta, error) = match phase {
             // θ = arg(−Q/P) = −arg(−P Q*).
             Some(angle) => (turned(-angle.value), angle.error),
             // Nothing is known of the phase: every delay is marginal.
@@ -194,9 +222,9 @@ impl DelayLine {
             }
         }
         if self.marginal_at_zero && !(decided && self.start_on_axis(system, &sum)) {
-            self.start_by_count(system);
+            self.start_by_count(RootCounter::new(system).unstable());
         } else if !decided {
-            self.start_by_count(system);
+            self.start_by_count(RootCounter::new(system).unstable());
         }
     }
 
@@ -267,8 +295,8 @@ impl DelayLine {
                 Direction::Left => false,
                 Direction::Touch => {
                     let z = num_complex::Complex64::new(0.0, middle.im);
-                    let slope = system.p.derivative().value(z) + system.q.derivative().value(z);
-                    let drift = crate::linear::newton::divide(system.q.value(z), slope).re;
+                    let [_, p_slope, q, q_slope] = Pair::at(&system, z);
+                    let drift = divide(q, p_slope + q_slope).re;
                     let above = self.modulus_sign_above(system, middle.im);
                     drift * above > 0.0
                 }
@@ -287,19 +315,23 @@ impl DelayLine {
             .iter()
             .filter(|c| c.omega > omega * (1.0 + 1e-9) && c.direction != Direction::Touch)
             .count();
-        let modulus = system.modulus(0.0, Decay::NONE).without_open_leading();
-        let far = modulus.leading().value;
+        let far = if system.late().is_some() {
+            1.0
+        } else {
+            let modulus = system.modulus(0.0, Decay::NONE);
+            modulus.without_open_leading().leading().value
+        };
         if higher % 2 == 0 { far } else { -far }
     }
 
     /// n(0⁺) from (7) at some delay, less what happened up to there.
-    fn start_by_count(&mut self, system: &System) {
+    pub(super) fn start_by_count(&mut self, unstable: Option<Turning>) {
         let period = self
             .crossings
             .iter()
             .map(|c| c.period())
             .fold(1.0, f64::min);
-        let found = RootCounter::new(system).unstable().and_then(|turning| {
+        let found = unstable.and_then(|turning| {
             (1..=TRIES).find_map(|i| {
                 let tau = period * (i as f64 * 0.618_033_988_75 + 0.01);
                 let marginal = self.count(tau, MarginalTolerance::default());
@@ -383,10 +415,11 @@ fn common_zero(system: &System, omega: f64) -> bool {
             apart(a).total_cmp(&apart(b))
         })
     };
-    match (
-        on_axis(&system.p),
-        on_axis(&system.q.without_open_leading()),
-    ) {
+    let [p, q] = match system.late() {
+        Some(feedback) => feedback.polynomials(),
+        None => [&system.p, &system.q],
+    };
+    match (on_axis(p), on_axis(&q.without_open_leading())) {
         (Some(p), Some(q)) => (p.centre.im - q.centre.im).abs() <= p.radius + q.radius,
         _ => false,
     }

@@ -9,9 +9,11 @@
 //! - [`rightmost`]: the rightmost roots, or where roots accumulate
 //! - [`line`]: all delays of a setting: crossings and counts
 //! - [`stable`]: the delays at which it is stable
+//! - [`latency`]: feedback that comes late
 //! - [`reason`]: why a cell is not like the others
 
 mod equation;
+mod latency;
 pub mod line;
 pub mod polynomial;
 pub mod reason;
@@ -22,6 +24,7 @@ mod switches;
 pub mod system;
 pub mod zeros;
 
+pub use latency::Form;
 pub use line::DelayLine;
 pub use polynomial::Polynomial;
 pub use reason::Reason;

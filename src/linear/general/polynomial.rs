@@ -359,6 +359,28 @@ impl Polynomial {
             sum_of_products(terms)
         })
     }
+
+    /// As [`Polynomial::real_product`], the imaginary part: a polynomial in x = ω² with
+    /// Im[self(iω) other(iω)*]/ω as its value.
+    #[must_use]
+    pub(super) fn imaginary_product(&self, other: &Self) -> Self {
+        let Some(degree) = (self.degree + other.degree).checked_sub(1) else {
+            return Self::ZERO;
+        };
+        Self::of(degree / 2, |k| {
+            let order = 2 * k + 1;
+            let from = order.saturating_sub(other.degree);
+            let terms = (from..=order.min(self.degree)).map(|i| {
+                // i^i (−i)^(2k + 1 − i) = i · i^(2i − 2k − 2).
+                let mut own = self.coefficient(i);
+                if (i + k) % 2 == 0 {
+                    own.value = -own.value;
+                }
+                (own, other.coefficient(order - i))
+            });
+            sum_of_products(terms)
+        })
+    }
 }
 
 /// The product with its error; that with an exact 0 or ±1 has none of its own.

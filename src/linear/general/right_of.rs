@@ -19,6 +19,7 @@ use std::f64::consts::{PI, TAU};
 
 use num_complex::Complex64;
 
+use super::latency::Form;
 use super::polynomial::{MOST_DEGREE, Polynomial};
 use super::switches::Switches;
 use super::system::{Angle, Class, Decay, System};
@@ -26,7 +27,7 @@ use super::zeros::Zeros;
 use crate::model::elementary::atan2;
 
 /// How far the two ways to an argument may differ before neither is trusted.
-const SAME_TURN: f64 = 1.0;
+pub(super) const SAME_TURN: f64 = 1.0;
 
 /// The number of roots right of a line.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -60,7 +61,7 @@ pub struct RootCounter {
 
 /// A polynomial by its zeros.
 #[derive(Debug, Clone, Copy)]
-struct Factors {
+pub(super) struct Factors {
     zeros: [Complex64; MOST_DEGREE],
     count: usize,
     positive: bool,
@@ -84,7 +85,7 @@ impl Factors {
     }
 
     /// How many lie right of `line`.
-    fn right_of(&self, line: f64) -> usize {
+    pub(super) fn right_of(&self, line: f64) -> usize {
         self.zeros().iter().filter(|r| r.re > line).count()
     }
 
@@ -96,7 +97,7 @@ impl Factors {
     }
 
     /// The argument at σ + iω, continuous in ω ≥ 0.
-    fn argument(&self, line: f64, omega: f64) -> f64 {
+    pub(super) fn argument(&self, line: f64, omega: f64) -> f64 {
         let turns: f64 = self
             .zeros()
             .iter()
@@ -113,19 +114,19 @@ impl Factors {
 
 /// A frequency at which one of (7)'s turns is counted.
 #[derive(Debug, Clone, Copy)]
-struct Turn {
-    omega: f64,
-    omega_error: f64,
-    sign: f64,
+pub(super) struct Turn {
+    pub omega: f64,
+    pub omega_error: f64,
+    pub sign: f64,
     /// φ − ψ and a bound on its error.
-    phase: f64,
-    phase_error: f64,
+    pub phase: f64,
+    pub phase_error: f64,
 }
 
 impl Turn {
     /// m of (7), or none where it might round either way.
     #[inline]
-    fn turns(&self, tau: f64) -> Option<f64> {
+    pub(super) fn turns(&self, tau: f64) -> Option<f64> {
         let angle = self.omega * tau;
         let turns = (self.phase + angle) / TAU;
         let error = self.phase_error
@@ -141,8 +142,8 @@ impl Turn {
 #[derive(Debug, Clone, Default)]
 pub struct Turning {
     /// n_P + ν₀.
-    without_turns: i64,
-    turns: Vec<Turn>,
+    pub(super) without_turns: i64,
+    pub(super) turns: Vec<Turn>,
 }
 
 impl Turning {
@@ -170,10 +171,15 @@ impl RootCounter {
     /// For `system`, which is not one of unknown degree.
     #[must_use]
     pub fn new(system: &System) -> Self {
+        let [p, q] = match system.late() {
+            // What swings with the latency has no finite number of zeros.
+            Some(feedback) => feedback.polynomials(),
+            None => [&system.p, &system.q],
+        };
         Self {
             system: *system,
-            p: Factors::of(&system.p),
-            q: Factors::of(&system.q.without_open_leading()),
+            p: Factors::of(p),
+            q: Factors::of(&q.without_open_leading()),
         }
     }
 
@@ -183,6 +189,9 @@ impl RootCounter {
     pub fn right_of(&self, tau: f64, line: f64) -> RightOf {
         if tau == 0.0 || self.system.uncontrolled() {
             return self.without_delay(tau, line);
+        }
+        if let Some(feedback) = self.system.late() {
+            return self.late(feedback, tau, line);
         }
         match self.on_line(tau, line) {
             Found::Turning(turning) => turning.at(tau).map_or(RightOf::Undecided, RightOf::Roots),
@@ -195,6 +204,9 @@ impl RootCounter {
     /// any.
     #[must_use]
     pub fn unstable(&self) -> Option<Turning> {
+        if self.system.late().is_some() {
+            return self.late_unstable(Form::Delay, 0.0);
+        }
         match self.on_line(0.0, 0.0) {
             Found::Turning(turning) => Some(turning),
             Found::Infinite | Found::Undecided => None,
@@ -207,7 +219,12 @@ impl RootCounter {
         &self.system
     }
 
-    /// The zeros of P.
+    /// B and A by their zeros, of a system with latency.
+    pub(super) fn late_factors(&self) -> (&Factors, &Factors) {
+        (&self.p, &self.q)
+    }
+
+    /// The zeros of P, with latency those of B.
     pub(super) fn zeros_of_p(&self) -> &[Complex64] {
         self.p.zeros()
     }

@@ -97,17 +97,17 @@ fn switch((from, to): (f64, f64), centre: Option<f64>, (before, after): (bool, b
     let (low, high) = (from.max(0.0).sqrt(), to.sqrt());
     let omega = centre.map_or(0.5 * (low + high), f64::sqrt);
     let error = (high - omega).max(omega - low) + f64::EPSILON * omega;
-    let sign = match (before, after) {
-        (false, true) => 1,
-        (true, false) => -1,
-        _ => 0,
-    };
     Switch {
         omega,
         error,
-        sign,
+        sign: direction(before, after),
         simple: centre.is_some(),
     }
+}
+
+/// Half the change of the sign of F, positive or not.
+pub(super) const fn direction(before: bool, after: bool) -> i8 {
+    after as i8 - before as i8
 }
 
 /// A frequency beyond which the error of F(0) moves no zero that is near 0.

@@ -2,7 +2,8 @@
 
 use num_complex::Complex64;
 
-use super::polynomial::{DegreeTooLarge, Polynomial};
+use super::latency::late;
+use super::polynomial::{At, DegreeTooLarge, Polynomial};
 use super::reason::Reason;
 use crate::linear::characteristic::{Jet, one_minus_exp};
 use crate::linear::rounded::Rounded;
@@ -154,7 +155,7 @@ impl System {
         Ok(Self::direct(Polynomial::new(p)?, Polynomial::new(q)?))
     }
 
-    fn classified(p: Polynomial, q: Polynomial, feedback: Option<Feedback>) -> Self {
+    pub(super) fn classified(p: Polynomial, q: Polynomial, feedback: Option<Feedback>) -> Self {
         let mut system = Self {
             p,
             q,
@@ -166,8 +167,8 @@ impl System {
     }
 
     fn find_class(&self) -> Class {
-        if self.feedback.is_some_and(|f| f.latency > 0.0) {
-            return Class::Refused;
+        if let Some(feedback) = self.late() {
+            return feedback.late_class();
         }
         let (n, m) = (self.p.degree(), self.q.degree());
         if !self.p.degree_known() || (m >= n && !self.q.degree_known()) {
@@ -237,10 +238,12 @@ impl System {
         if self.q.is_zero() || !(vanish(&self.p) && vanish(&self.q)) {
             return None;
         }
+        // Only with latency P and Q do not say it all.
+        let feedback = self.late().map(Feedback::divided_by_variable);
         Some(Self::classified(
             self.p.divided_by_variable(),
             self.q.divided_by_variable(),
-            None,
+            feedback,
         ))
     }
 
@@ -345,49 +348,28 @@ impl System {
     ///
     /// D vanishes there where |P| = κ|Q| and α + ωτ is a multiple of 2π.
     pub(super) fn phase(&self, line: f64, omega: f64, error: f64) -> Option<Angle> {
-        match &self.feedback {
-            Some(Feedback {
-                open, gain, memory, ..
-            }) => {
-                let b = open.shifted(line).on_axis(omega, error);
-                let a = gain.shifted(line).on_axis(omega, error);
-                // |A|² + R|B|² − R A B* − B A*: small angles keep their digits where A is large.
-                let both = a.value * b.value.conj();
-                let (a_size, b_size) = (a.value.norm_sqr(), b.value.norm_sqr());
-                let re = a_size + memory * b_size - (1.0 + memory) * both.re;
-                let im = (1.0 - memory) * both.im;
-                let size = (a_size * b_size).sqrt();
-                let both_error = a_size.sqrt() * b.error
-                    + b_size.sqrt() * a.error
-                    + a.error * b.error
-                    + 4.0 * f64::EPSILON * size;
-                let squares = 2.0 * a_size.sqrt() * a.error + a.error * a.error;
-                let others = 2.0 * b_size.sqrt() * b.error + b.error * b.error;
-                let re_error = squares
-                    + others
-                    + 2.0 * both_error
-                    + 4.0 * f64::EPSILON * (a_size + b_size + 2.0 * size);
-                Angle::of(re, im, re_error, 2.0 * both_error)
-            }
-            None => {
-                let p = self.p.shifted(line).on_axis(omega, error);
-                let q = self.q.shifted(line).on_axis(omega, error);
-                let product = -(p.value * q.value.conj());
-                let relative = |at: super::polynomial::At| {
-                    at.error / (at.value.norm_sqr().sqrt() - at.error).max(0.0)
-                };
-                let error = 2.0 * (relative(p) + relative(q)) + 4.0 * f64::EPSILON;
-                (error < 1.0).then(|| Angle {
-                    value: arg(product),
-                    error,
-                })
-            }
+        if let Some(feedback) = &self.feedback {
+            let b = feedback.open.shifted(line).on_axis(omega, error);
+            let a = feedback.gain.shifted(line).on_axis(omega, error);
+            return Angle::of_feedback(b, a, feedback.memory);
         }
+        let p = self.p.shifted(line).on_axis(omega, error);
+        let q = self.q.shifted(line).on_axis(omega, error);
+        let product = -(p.value * q.value.conj());
+        let relative = |at: At| at.error / (at.value.norm_sqr().sqrt() - at.error).max(0.0);
+        let error = 2.0 * (relative(p) + relative(q)) + 4.0 * f64::EPSILON;
+        (error < 1.0).then(|| Angle {
+            value: arg(product),
+            error,
+        })
     }
 
     /// A radius within which every root with Re λ ≥ `line` lies; infinite where κρ ≥ 1.
     #[must_use]
     pub fn root_bound(&self, tau: f64, line: f64) -> f64 {
+        if let Some(feedback) = self.late() {
+            return feedback.late_root_bound(tau, line);
+        }
         let n = self.p.degree();
         let kappa = exp(-line * tau);
         let size = |p: &Polynomial, k: usize| {
@@ -418,9 +400,12 @@ impl System {
         let (kept, fed, part) = match &self.feedback {
             // D = (1 − R) B − Q(1 − E): short delays keep their digits.
             Some(Feedback {
-                open, gain, memory, ..
+                open,
+                gain,
+                memory,
+                latency,
             }) => {
-                let (b, a) = (open.jet(lambda), gain.jet(lambda));
+                let (b, a) = (open.jet(lambda), late(gain.jet(lambda), *latency, lambda));
                 let fed = [0, 1, 2].map(|i| a[i] - memory * b[i]);
                 (b.map(|b| b * (1.0 - memory)), fed, -difference)
             }
@@ -450,11 +435,13 @@ impl System {
         // The argument λτ is rounded as well, and with it the phase of E.
         let turned = delayed * size * tau;
         match &self.feedback {
-            Some(Feedback {
-                open, gain, memory, ..
-            }) => {
+            Some(feedback) => {
+                let Feedback {
+                    open, gain, memory, ..
+                } = feedback;
                 let by = jet.difference.l1_norm() + turned;
-                part(gain, by) + part(open, 1.0 - memory + memory.abs() * by)
+                part(gain, by * feedback.late_size(lambda))
+                    + part(open, 1.0 - memory + memory.abs() * by)
             }
             None => part(&self.p, 1.0) + part(&self.q, delayed + turned),
         }
@@ -462,7 +449,7 @@ impl System {
 }
 
 /// 1 − Rκ without cancellation: (1 − R) + R(1 − κ).
-fn remembered(memory: f64, decay: Decay) -> Rounded {
+pub(super) fn remembered(memory: f64, decay: Decay) -> Rounded {
     if memory == 0.0 {
         return ONE;
     }
@@ -479,6 +466,27 @@ pub(super) struct Angle {
 }
 
 impl Angle {
+    /// Of −P Q* = |A|² + R|B|² − R A B* − B A* from the values of B and A: small angles keep their
+    /// digits where A is large.
+    pub(super) fn of_feedback(b: At, a: At, memory: f64) -> Option<Self> {
+        let both = a.value * b.value.conj();
+        let (a_size, b_size) = (a.value.norm_sqr(), b.value.norm_sqr());
+        let re = a_size + memory * b_size - (1.0 + memory) * both.re;
+        let im = (1.0 - memory) * both.im;
+        let size = (a_size * b_size).sqrt();
+        let both_error = a_size.sqrt() * b.error
+            + b_size.sqrt() * a.error
+            + a.error * b.error
+            + 4.0 * f64::EPSILON * size;
+        let squares = 2.0 * a_size.sqrt() * a.error + a.error * a.error;
+        let others = 2.0 * b_size.sqrt() * b.error + b.error * b.error;
+        let re_error = squares
+            + others
+            + 2.0 * both_error
+            + 4.0 * f64::EPSILON * (a_size + b_size + 2.0 * size);
+        Self::of(re, im, re_error, 2.0 * both_error)
+    }
+
     /// Of `re` + i `im`, each with its error; none where the point may be the origin.
     fn of(re: f64, im: f64, re_error: f64, im_error: f64) -> Option<Self> {
         let size = (re * re + im * im).sqrt();

@@ -313,7 +313,7 @@ fn start(of: &Polynomial, at: &mut [Complex64]) {
     };
     let mut from = 0;
     // Zeros at 0 itself.
-    while c[from] == 0.0 {
+    while from < n && c[from] == 0.0 {
         at[from] = Complex64::ZERO;
         from += 1;
     }

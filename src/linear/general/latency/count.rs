@@ -1,0 +1,273 @@
+//! How many roots of a system with latency lie right of a vertical line: equation (7) of
+//! [`right_of`](super::super::right_of) in either form of [`on_line`](super::on_line).
+//!
+//! With the delay inside, 𝒫 has the zeros of B right of the line, and arguments are those of B and A
+//! and the principal ones of 1 − RE and 1 − E. With the latency inside, 𝒫 and 𝒬 are sums of two
+//! terms each, and [`sum`](super::sum) carries their arguments along.
+
+use std::f64::consts::{PI, TAU};
+
+use super::super::right_of::{Factors, RightOf, RootCounter, SAME_TURN, Turn, Turning};
+use super::super::switches::{Switch, Switches};
+use super::super::system::{Angle, Class, Feedback};
+use super::on_line::{Form, OnLine};
+use super::sum::Sum;
+use super::wave::TooMany;
+use crate::model::elementary::{arg, atan2, sincos};
+
+/// Below this part of a turn a root near the real axis cannot have made one.
+const NO_TURN: f64 = 0.25;
+
+/// Why a line has no count.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(in super::super) enum NoCount {
+    Infinite,
+    Undecided,
+}
+
+/// The arguments of B and A, continuous in ω ≥ 0.
+struct Arguments<'f> {
+    open: &'f Factors,
+    gain: &'f Factors,
+    line: f64,
+}
+
+impl Arguments<'_> {
+    fn at(&self, omega: f64) -> [f64; 2] {
+        [self.open, self.gain].map(|factors| factors.argument(self.line, omega))
+    }
+}
+
+/// What tells φ and ψ at a frequency to within a good part of a turn.
+enum Rough {
+    Latency,
+    Delay {
+        first: Sum,
+        /// Of 𝒬, none where R = 0.
+        second: Option<Sum>,
+    },
+}
+
+/// One line in one form.
+struct Way<'f> {
+    on_line: OnLine,
+    form: Form,
+    arguments: Arguments<'f>,
+    rough: Rough,
+    /// n_𝒫.
+    zeros: i64,
+}
+
+impl<'f> Way<'f> {
+    fn new(
+        on_line: OnLine,
+        form: Form,
+        (open, gain): (&'f Factors, &'f Factors),
+        switches: &mut Switches,
+    ) -> Option<Self> {
+        let line = on_line.line;
+        let arguments = Arguments { open, gain, line };
+        let mut zeros = open.right_of(line) as i64;
+        let rough = match form {
+            Form::Latency => Rough::Latency,
+            Form::Delay => {
+                let (latency, memory) = (on_line.latency, on_line.memory);
+                let first = Sum::new(&on_line.difference(1.0, 1.0), switches, |omega| {
+                    let [open, gain] = arguments.at(omega);
+                    [open, gain + PI - omega * latency]
+                })?;
+                zeros += first.more_zeros();
+                let second = if memory == 0.0 {
+                    None
+                } else {
+                    let difference = on_line.difference(-memory * memory, -1.0);
+                    let sum = Sum::new(&difference, switches, |omega| {
+                        let [open, gain] = arguments.at(omega);
+                        [gain - omega * latency, open + half_turn(-memory)]
+                    });
+                    Some(sum?)
+                };
+                Rough::Delay { first, second }
+            }
+        };
+        Some(Self {
+            on_line,
+            form,
+            arguments,
+            rough,
+            zeros,
+        })
+    }
+
+    /// φ and ψ.
+    fn rough(&self, omega: f64) -> [f64; 2] {
+        let [open, gain] = self.arguments.at(omega);
+        let of = &self.on_line;
+        match &self.rough {
+            Rough::Latency => {
+                let [kept, lost] = of.echoes(omega);
+                let lost = if of.decay.lost.value >= 0.0 {
+                    // Principal, from −π/2 to π/2.
+                    atan2(lost.im, lost.re.max(0.0))
+                } else {
+                    // −κe^(−iωτ) is the larger term.
+                    let turn = omega * of.tau;
+                    let (sin, cos) = sincos(turn);
+                    let per_kappa = 1.0 / of.decay.kappa.value;
+                    atan2(-per_kappa * sin, 1.0 - per_kappa * cos) - turn + PI
+                };
+                [open + arg(kept), gain + PI + lost]
+            }
+            Rough::Delay { first, second } => {
+                let (b, a) = of.at(omega, 0.0);
+                let (b, a) = (b.value, a.value);
+                let turned = gain - omega * of.latency;
+                let before = first.argument(omega, [open, turned + PI], [b, -a]);
+                let behind = second.as_ref().map_or(turned, |sum| {
+                    let arguments = [turned, open + half_turn(-of.memory)];
+                    sum.argument(omega, arguments, [a, -of.memory * b])
+                });
+                [before, behind]
+            }
+        }
+    }
+
+    /// φ − ψ at `switch`: whole turns from [`Way::rough`], the fraction from B and A themselves.
+    fn phase(&self, switch: &Switch) -> Option<Angle> {
+        let Angle { value, error } = self.on_line.phase(self.form, switch.omega, switch.error)?;
+        let [before, behind] = self.rough(switch.omega);
+        let rough = before - behind;
+        // The argument of −𝒫 𝒬* is half a turn from that of 𝒫 𝒬*.
+        let fraction = value + PI;
+        let phase = fraction + TAU * ((rough - fraction) / TAU).round();
+        ((phase - rough).abs() < SAME_TURN).then_some(Angle {
+            value: phase,
+            error: error + 4.0 * f64::EPSILON * phase.abs(),
+        })
+    }
+
+    fn turn(&self, switch: &Switch) -> Option<Turn> {
+        let phase = self.phase(switch)?;
+        Some(Turn {
+            omega: switch.omega,
+            omega_error: switch.error,
+            sign: f64::from(switch.sign),
+            phase: phase.value,
+            phase_error: phase.error,
+        })
+    }
+
+    /// Tells `each` the turns of the line; what stands before them in (7).
+    fn turns(&self, mut each: impl FnMut(Turn) -> bool) -> Result<i64, NoCount> {
+        let undecided = |_: TooMany| NoCount::Undecided;
+        let wave = self.on_line.wave(self.form);
+        let last = self.on_line.last();
+        let start = wave
+            .zeros(last, |switch| self.turn(&switch).is_some_and(&mut each))
+            .map_err(undecided)?;
+        let longest = self.on_line.tau + self.on_line.latency;
+        if start.open_below * longest > NO_TURN {
+            return Err(NoCount::Undecided);
+        }
+        let constant = wave.parts[0].coefficient(0);
+        let mut without_turns = self.zeros;
+        // Where that is open though D(σ) is not, |𝒫| = |𝒬| without a root: then ν₀ = 0.
+        if constant.decided() && constant.value < 0.0 {
+            let [before, behind] = self.rough(0.0);
+            without_turns += ((behind - before) / PI).round() as i64;
+        }
+        Ok(without_turns)
+    }
+}
+
+/// The argument of a real number: 0 or π.
+fn half_turn(sign: f64) -> f64 {
+    if sign < 0.0 { PI } else { 0.0 }
+}
+
+impl RootCounter {
+    /// The number of roots with Re λ > `line` at the delay `tau` ≥ 0 by one form of (7), for a
+    /// system in feedback form; both forms agree.
+    #[must_use]
+    pub fn right_of_by(&self, form: Form, tau: f64, line: f64) -> RightOf {
+        match self.system().feedback {
+            Some(feedback) if tau > 0.0 => self.late_right_of(&feedback, form, tau, line),
+            _ => self.right_of(tau, line),
+        }
+    }
+
+    /// As [`RootCounter::right_of`], with latency: by the form that swings less often, or else by
+    /// the other one.
+    pub(in super::super) fn late(&self, feedback: &Feedback, tau: f64, line: f64) -> RightOf {
+        let forms = if tau < feedback.latency {
+            [Form::Latency, Form::Delay]
+        } else {
+            [Form::Delay, Form::Latency]
+        };
+        match self.late_right_of(feedback, forms[0], tau, line) {
+            RightOf::Undecided => self.late_right_of(feedback, forms[1], tau, line),
+            found => found,
+        }
+    }
+
+    fn late_right_of(&self, feedback: &Feedback, form: Form, tau: f64, line: f64) -> RightOf {
+        let turn_by = match form {
+            Form::Delay => tau,
+            Form::Latency => feedback.latency,
+        };
+        let mut sum = 0.0;
+        let found = self.on_late_line(feedback, form, (tau, line), |turn| {
+            turn.turns(turn_by).is_some_and(|turns| {
+                sum += turn.sign * turns;
+                true
+            })
+        });
+        match found {
+            Ok(without_turns) => u64::try_from(without_turns + 2 * sum as i64)
+                .map_or(RightOf::Undecided, RightOf::Roots),
+            Err(NoCount::Infinite) => RightOf::Infinite,
+            Err(NoCount::Undecided) => RightOf::Undecided,
+        }
+    }
+
+    /// Equation (7) on the imaginary axis with latency: for every delay, or with a given delay for
+    /// every latency.
+    pub(in super::super) fn late_unstable(&self, form: Form, tau: f64) -> Option<Turning> {
+        let feedback = self.system().feedback?;
+        let mut turns = Vec::new();
+        let without_turns = self.on_late_line(&feedback, form, (tau, 0.0), |turn| {
+            turns.push(turn);
+            true
+        });
+        Some(Turning {
+            without_turns: without_turns.ok()?,
+            turns,
+        })
+    }
+
+    fn on_late_line(
+        &self,
+        feedback: &Feedback,
+        form: Form,
+        (tau, line): (f64, f64),
+        each: impl FnMut(Turn) -> bool,
+    ) -> Result<i64, NoCount> {
+        let open = NoCount::Undecided;
+        match self.system().class() {
+            Class::DegreeUnknown | Class::Refused => return Err(open),
+            Class::Infinite => return Err(NoCount::Infinite),
+            _ => {}
+        }
+        let on_line = OnLine::new(feedback, tau, line).ok_or(open)?;
+        if !on_line.right_of_essential().ok_or(open)? {
+            return Err(NoCount::Infinite);
+        }
+        if !on_line.on_real_axis().decided() {
+            return Err(open);
+        }
+        let mut switches = Switches::default();
+        Way::new(on_line, form, self.late_factors(), &mut switches)
+            .ok_or(open)?
+            .turns(each)
+    }
+}
