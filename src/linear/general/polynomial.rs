@@ -152,8 +152,10 @@ impl Polynomial {
             let own = self.coefficient(k);
             let scaled = factor * other.values[k];
             let value = own.value + scaled;
-            let rounding = 0.5 * f64::EPSILON * (value.abs() + scaled.abs());
-            let exact = scaled == 0.0 || (own.value == 0.0 && factor.abs() == 1.0);
+            let sign_alone = factor.abs() == 1.0;
+            let of_product = if sign_alone { 0.0 } else { scaled.abs() };
+            let rounding = 0.5 * f64::EPSILON * (value.abs() + of_product);
+            let exact = scaled == 0.0 || (own.value == 0.0 && sign_alone);
             Rounded {
                 value,
                 error: own.error

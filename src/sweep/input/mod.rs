@@ -24,6 +24,7 @@ pub mod simulation;
 pub mod source;
 pub mod spec;
 mod spec_values;
+pub mod system;
 pub mod table_file;
 pub mod toml_reader;
 pub mod units;
