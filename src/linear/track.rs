@@ -7,6 +7,8 @@
 //! reported. Where it finds one, where roots run into one another or an iteration does not settle,
 //! all are found anew ([`RootFinder`]). So they are at every [`BLOCK`]-th delay, which makes the
 //! values of a cell independent of where a tile begins.
+//!
+//! Longer than most files: one loop over cells, with its steps.
 
 use num_complex::Complex64;
 

@@ -7,15 +7,15 @@ use std::collections::HashMap;
 use slipmap::linear::general::{Polynomial, System};
 
 /// One row: its cells by the names of the columns.
-pub struct Row {
+pub(crate) struct Row {
     cells: HashMap<String, String>,
     /// Where it stands, for messages.
-    pub place: String,
+    pub(crate) place: String,
 }
 
 impl Row {
     /// The number in a column, or none where the cell is empty.
-    pub fn number(&self, column: &str) -> Option<f64> {
+    pub(crate) fn number(&self, column: &str) -> Option<f64> {
         let cell = self.cells.get(column)?;
         (!cell.is_empty()).then(|| {
             cell.parse()
@@ -24,17 +24,17 @@ impl Row {
     }
 
     /// The number in a column that is 0 where the cell is empty or there is no such column.
-    pub fn or_zero(&self, column: &str) -> f64 {
+    pub(crate) fn or_zero(&self, column: &str) -> f64 {
         self.number(column).unwrap_or(0.0)
     }
 
     /// The text in a column.
-    pub fn text(&self, column: &str) -> &str {
+    pub(crate) fn text(&self, column: &str) -> &str {
         self.cells.get(column).map_or("", String::as_str)
     }
 
     /// Intervals `from:to;…`, open ones to infinity.
-    pub fn intervals(&self, column: &str) -> Vec<(f64, f64)> {
+    pub(crate) fn intervals(&self, column: &str) -> Vec<(f64, f64)> {
         let ends = |text: &str| {
             let (from, to) = text.split_once(':').expect("an interval");
             let to = if to.is_empty() {
@@ -53,7 +53,7 @@ impl Row {
 }
 
 /// The rows of a table.
-pub fn rows(name: &str, table: &str) -> Vec<Row> {
+pub(crate) fn rows(name: &str, table: &str) -> Vec<Row> {
     let mut lines = table.lines();
     let header = split(lines.next().expect("a header"));
     lines
@@ -163,7 +163,7 @@ fn pd(row: &Row) -> System {
 }
 
 /// The tables whose systems have no latency, with the system of each row.
-pub fn without_latency() -> Vec<(Row, System)> {
+pub(crate) fn without_latency() -> Vec<(Row, System)> {
     let feedback = |(open, gain): (Polynomial, Polynomial), row: &Row| {
         System::feedback(open, gain, row.or_zero("memory"), 0.0)
     };
@@ -220,7 +220,7 @@ pub fn with_latency() -> Vec<(Row, System)> {
 }
 
 /// The degenerate ones.
-pub fn degenerate() -> Vec<(Row, System)> {
+pub(crate) fn degenerate() -> Vec<(Row, System)> {
     rows(
         "degenerate",
         include_str!("../reference/general_degenerate.csv"),

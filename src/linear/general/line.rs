@@ -9,8 +9,8 @@
 //! ```
 //!
 //! Equation numbers are those of the derivation for general systems. Degenerate cases are answered
-//! one by one: a root at 0 for every delay, which a real root may pass once; a zero on the axis that
-//! P and Q share; zeros of P + Q on the axis, from which a pair starts at τ = 0.
+//! one by one: a root at 0 for every delay, which a real root may pass once; a zero on the axis
+//! that P and Q share; zeros of P + Q on the axis, from which a pair starts at τ = 0.
 
 use std::f64::consts::{PI, TAU};
 
@@ -221,9 +221,8 @@ impl DelayLine {
                 self.passage = None;
             }
         }
-        if self.marginal_at_zero && !(decided && self.start_on_axis(system, &sum)) {
-            self.start_by_count(RootCounter::new(system).unstable());
-        } else if !decided {
+        let known = decided && (!self.marginal_at_zero || self.start_on_axis(system, &sum));
+        if !known {
             self.start_by_count(RootCounter::new(system).unstable());
         }
     }
@@ -329,7 +328,7 @@ impl DelayLine {
         let period = self
             .crossings
             .iter()
-            .map(|c| c.period())
+            .map(Crossing::period)
             .fold(1.0, f64::min);
         let found = unstable.and_then(|turning| {
             (1..=TRIES).find_map(|i| {

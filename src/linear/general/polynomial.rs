@@ -10,8 +10,8 @@ const LENGTH: usize = MOST_DEGREE + 1;
 
 /// Σ c_k s^k, each c_k known to within e_k.
 ///
-/// The degree is that of the last coefficient which is not exactly 0. Whether that one is certain to
-/// differ from 0 is another question: [`Polynomial::degree_known`].
+/// The degree is that of the last coefficient which is not exactly 0. Whether that one is certain
+/// to differ from 0 is another question: [`Polynomial::degree_known`].
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Polynomial {
     values: [f64; LENGTH],
@@ -347,7 +347,7 @@ impl Polynomial {
     /// x = ω² with Re[self(iω) other(iω)*] as its value.
     #[must_use]
     pub(super) fn real_product(&self, other: &Self) -> Self {
-        let degree = (self.degree + other.degree) / 2;
+        let degree = usize::midpoint(self.degree, other.degree);
         Self::of(degree, |k| {
             let from = (2 * k).saturating_sub(other.degree);
             let terms = (from..=(2 * k).min(self.degree)).map(|i| {

@@ -5,6 +5,7 @@
 
 use super::polynomial::Polynomial;
 use super::zeros::{Set, Zeros};
+use crate::model::elementary::pow;
 
 /// A positive zero of F, or several that cannot be told apart.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -121,7 +122,7 @@ fn near_zero(f: &Polynomial) -> f64 {
     (1..=f.degree())
         .map(|k| (k, f.coefficient(k)))
         .filter(|(_, c)| c.decided())
-        .map(|(k, c)| libm::pow(2.0 * most / (c.value.abs() - c.error), 0.5 / k as f64))
+        .map(|(k, c)| pow(2.0 * most / (c.value.abs() - c.error), 0.5 / k as f64))
         .fold(f64::INFINITY, f64::min)
         .min(1e300)
 }

@@ -1,4 +1,6 @@
 //! A system at one setting of its parameters, and to which class it belongs.
+//!
+//! Longer than most files: each of its forms has its own way around cancellation.
 
 use num_complex::Complex64;
 
@@ -7,7 +9,7 @@ use super::polynomial::{At, DegreeTooLarge, Polynomial};
 use super::reason::Reason;
 use crate::linear::characteristic::{Jet, one_minus_exp};
 use crate::linear::rounded::Rounded;
-use crate::model::elementary::{arg, atan2, exp, expm1, ln};
+use crate::model::elementary::{arg, atan2, exp, expm1, ln, pow};
 
 /// D(λ) = P(λ) + Q(λ) e^(−λτ) with every parameter but the delay given.
 #[derive(Debug, Clone, Copy)]
@@ -20,7 +22,7 @@ pub struct System {
     class: Class,
 }
 
-/// The feedback form D = B(1 − R E) − A e^(−λδ)(1 − E), so P = B − A and Q = A − R B without latency.
+/// The feedback form D = B(1 − R E) − A e^(−λδ)(1 − E): without latency P = B − A and Q = A − R B.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Feedback {
     /// B, the open loop.
@@ -124,8 +126,8 @@ impl System {
         Self::classified(p, q, None)
     }
 
-    /// From the open loop B, the feedback A with deg A < deg B, the memory −1 < R < 1 and the latency
-    /// δ ≥ 0: D = B(1 − R E) − A e^(−λδ)(1 − E). Where A is 0 everywhere both are ignored: there is
+    /// From the open loop B, the feedback A with deg A < deg B, the memory −1 < R < 1 and the
+    /// latency δ ≥ 0: D = B(1 − R E) − A e^(−λδ)(1 − E). Where A is 0 everywhere both are ignored: there is
     /// nothing to remember and nothing that could be late.
     #[must_use]
     pub fn feedback(open: Polynomial, gain: Polynomial, memory: f64, latency: f64) -> Self {
@@ -261,19 +263,17 @@ impl System {
     /// D on the real axis at σ = `line`, of which sign and rounding matter.
     pub(super) fn on_real_axis(&self, line: f64, decay: Decay) -> Rounded {
         let at = |p: &Polynomial| p.shifted(line).coefficient(0);
-        match &self.feedback {
+        if let Some(Feedback {
+            open, gain, memory, ..
+        }) = &self.feedback
+        {
             // B(1 − Rκ) − A(1 − κ).
-            Some(Feedback {
-                open, gain, memory, ..
-            }) => at(open)
+            return at(open)
                 .times(remembered(*memory, decay))
-                .minus(at(gain).times(decay.lost)),
-            None => {
-                let echo = at(&self.q).times(decay.kappa);
-                Rounded::sum([at(&self.p).value, echo.value])
-                    .plus_error(at(&self.p).error + echo.error)
-            }
+                .minus(at(gain).times(decay.lost));
         }
+        let echo = at(&self.q).times(decay.kappa);
+        Rounded::sum([at(&self.p).value, echo.value]).plus_error(at(&self.p).error + echo.error)
     }
 
     /// p(0) − q(0) on the real axis at σ = `line`: F_σ(0) is D(σ) times this.
@@ -387,7 +387,7 @@ impl System {
         // Rⁿ = Σ r_i Rⁱ has no positive zero beyond 2 max r_i^(1/(n − i)) (Fujiwara).
         let radius = |i: usize| {
             let ratio = (size(&self.p, i) + kappa * size(&self.q, i)) / leading;
-            libm::pow(ratio, 1.0 / (n - i) as f64)
+            pow(ratio, 1.0 / (n - i) as f64)
         };
         2.0 * (0..n).map(radius).fold(0.0, f64::max)
     }

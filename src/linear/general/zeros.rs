@@ -327,10 +327,10 @@ fn start(of: &Polynomial, at: &mut [Complex64]) {
             }
         }
         let size = rough_exp2(-steepest);
-        for k in from..to {
-            let turn = (k - from) as f64 / (to - from) as f64 + from as f64 / n as f64;
+        for (k, z) in at[from..to].iter_mut().enumerate() {
+            let turn = k as f64 / (to - from) as f64 + from as f64 / n as f64;
             let (sin, cos) = sincos(TAU * turn + TURNED);
-            at[k] = size * Complex64::new(cos, sin);
+            *z = size * Complex64::new(cos, sin);
         }
         from = to;
     }
