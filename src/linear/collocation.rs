@@ -8,8 +8,8 @@
 //! d/dt (x, ẋ, u(θ₁), …, u(θ_N)) = (ẋ, −p₀x − p₁ẋ − u(θ_N), Σ_m D_jm u(θ_m))
 //! ```
 //!
-//! a matrix of N + 2 rows instead of the 2N + 2 of the general method; N + n rows for degree n. In a
-//! neutral equation u(0) holds x⁽ⁿ⁾ as well, which the equation itself gives. The only file that
+//! a matrix of N + 2 rows instead of the 2N + 2 of the general method; N + n rows for degree n. In
+//! a neutral equation u(0) holds x⁽ⁿ⁾ as well, which the equation itself gives. The only file that
 //! uses faer: without its feature `std`, with which it picks code by the processor.
 
 use std::f64::consts::PI;
@@ -43,8 +43,8 @@ pub fn nodes_for(tau: f64, radius: f64) -> Option<usize> {
 /// nothing.
 ///
 /// `p` and `q` are the coefficients of P and Q, the constants first; the last of P is not 0, and Q
-/// has no higher degree. Newton's method has to polish the roots. `tau` > 0 in units of √(M/κ). None
-/// if the eigenvalue iteration fails.
+/// has no higher degree. Newton's method has to polish the roots. `tau` > 0 in units of √(M/κ).
+/// None if the eigenvalue iteration fails.
 #[must_use]
 pub fn eigenvalues(p: &[f64], q: &[f64], tau: f64, nodes: usize) -> Option<Vec<Complex64>> {
     eigenvalues_of(&generator(p, q, tau, nodes))

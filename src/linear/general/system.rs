@@ -127,8 +127,8 @@ impl System {
     }
 
     /// From the open loop B, the feedback A with deg A < deg B, the memory −1 < R < 1 and the
-    /// latency δ ≥ 0: D = B(1 − R E) − A e^(−λδ)(1 − E). Where A is 0 everywhere both are ignored: there is
-    /// nothing to remember and nothing that could be late.
+    /// latency δ ≥ 0: D = B(1 − R E) − A e^(−λδ)(1 − E). Where A is 0 everywhere both are ignored:
+    /// there is nothing to remember and nothing that could be late.
     #[must_use]
     pub fn feedback(open: Polynomial, gain: Polynomial, memory: f64, latency: f64) -> Self {
         if gain.is_zero() {

@@ -284,7 +284,7 @@ catalogue! {
             long_name: "time constant with which the sensor follows the elongation",
             flag: Some(Flag {
                 value: "T",
-                help: "T_s, time constant with which the sensor follows the elongation [default: 0]",
+                help: "T_s, time constant with which the sensor follows elongation [default: 0]",
             }),
             ..LAG
         };
