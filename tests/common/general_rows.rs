@@ -207,7 +207,7 @@ pub(crate) fn without_latency() -> Vec<(Row, System)> {
 }
 
 /// The table of systems with latency.
-pub fn with_latency() -> Vec<(Row, System)> {
+pub(crate) fn with_latency() -> Vec<(Row, System)> {
     rows("latency", include_str!("../reference/general_latency.csv"))
         .into_iter()
         .map(|row| {

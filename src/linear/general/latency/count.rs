@@ -39,6 +39,7 @@ impl Arguments<'_> {
 }
 
 /// What tells φ and ψ at a frequency to within a good part of a turn.
+#[allow(clippy::large_enum_variant, reason = "there is one at a time")]
 enum Rough {
     Latency,
     Delay {
