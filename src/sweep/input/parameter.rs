@@ -489,6 +489,9 @@ impl Parameter {
         Self::SensorLag,
     ];
 
+    /// The lags of load, velocity and sensor.
+    pub const LAGS: [Self; 3] = [Self::LoadLag, Self::VelocityLag, Self::SensorLag];
+
     /// True for [`Parameter::BEYOND_LETTER`].
     #[must_use]
     pub const fn beyond_letter(self) -> bool {
