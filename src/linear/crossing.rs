@@ -153,7 +153,8 @@ impl Crossing {
         self.phase_error + self.frequency_error * tau
     }
 
-    fn scaled(self, time_unit: f64) -> Self {
+    /// With delays in a unit of time of which `time_unit` makes one of these.
+    pub(super) fn scaled(self, time_unit: f64) -> Self {
         Self {
             omega: self.omega / time_unit,
             first_delay: self.first_delay * time_unit,

@@ -112,6 +112,21 @@ impl DelayLine {
         self.find_crossings(system);
     }
 
+    /// The same with delays in a unit of time of which `time_unit` makes one dimensionless.
+    #[must_use]
+    pub fn in_physical_time(mut self, time_unit: f64) -> Self {
+        for crossing in &mut self.crossings {
+            *crossing = crossing.scaled(time_unit);
+        }
+        if let Some(passage) = &mut self.passage {
+            passage.tau *= time_unit;
+            passage.error *= time_unit;
+        }
+        self.open_from *= time_unit;
+        self.time_unit *= time_unit;
+        self
+    }
+
     pub(super) fn clear(&mut self) {
         let mut crossings = std::mem::take(&mut self.crossings);
         crossings.clear();

@@ -65,10 +65,15 @@ impl Iterator for Changes<'_> {
     }
 }
 
+/// More changes than this are not gone through: near a touch there can be any number of them.
+const MOST_CHANGES: u64 = 1 << 24;
+
 /// The stable intervals of a line by growing delay.
 #[derive(Debug, Clone)]
 pub struct StableIntervals<'l> {
     changes: Changes<'l>,
+    /// How many changes may still be gone through.
+    left: u64,
     n: i64,
     from: f64,
     /// Beyond it nothing is stable.
@@ -79,7 +84,8 @@ impl Iterator for StableIntervals<'_> {
     type Item = StableInterval;
 
     fn next(&mut self) -> Option<StableInterval> {
-        while self.from < self.last {
+        while self.from < self.last && self.left > 0 {
+            self.left -= 1;
             let change = self.changes.next();
             let (from, stable) = (self.from, self.n == 0);
             let Some(Change { tau, by }) = change else {
@@ -99,6 +105,58 @@ impl Iterator for StableIntervals<'_> {
     }
 }
 
+impl StableIntervals<'_> {
+    /// There were too many changes to go through: further intervals may have been left out.
+    #[must_use]
+    pub fn gave_up(&self) -> bool {
+        self.left == 0
+    }
+}
+
+/// Distances to the nearest change of stability along a line, for delays that grow from call to
+/// call.
+#[derive(Debug, Clone)]
+pub struct MarginWalk<'l> {
+    line: &'l DelayLine,
+    intervals: StableIntervals<'l>,
+    /// The last stable interval that began, and the one after it.
+    below: Option<StableInterval>,
+    above: Option<StableInterval>,
+}
+
+impl MarginWalk<'_> {
+    /// The signed distance at `tau` ≥ 0: positive where stable, negative where not, infinite where
+    /// that never changes, 0 at every delay where all of them are marginal. NaN where it is not
+    /// known.
+    pub fn margin_at(&mut self, tau: f64) -> f64 {
+        if self.line.uncounted {
+            return f64::NAN;
+        }
+        if self.line.always_marginal {
+            return 0.0;
+        }
+        // τ = 0 belongs to the interval that begins there.
+        let begun = |next: &StableInterval| next.from < tau || next.from == 0.0;
+        while let Some(next) = self.above.filter(begun) {
+            self.below = Some(next);
+            self.above = self.intervals.next();
+        }
+        if self.intervals.gave_up() {
+            return f64::NAN;
+        }
+        let to_next = self.above.map_or(f64::INFINITY, |next| next.from - tau);
+        match self.below {
+            // Stability does not change at the lower end τ = 0 of all delays.
+            Some(StableInterval { from, to }) if tau <= to => match from {
+                0.0 => to - tau,
+                _ => (to - tau).min(tau - from),
+            },
+            Some(passed) => 0.0 - to_next.min(tau - passed.to),
+            None => 0.0 - to_next,
+        }
+    }
+}
+
 impl DelayLine {
     /// The changes of the number of unstable roots with τ > 0, by growing delay.
     #[must_use]
@@ -115,9 +173,22 @@ impl DelayLine {
         let never = self.always_marginal || self.uncounted;
         StableIntervals {
             changes: self.changes(),
+            left: MOST_CHANGES,
             n: self.at_zero_delay as i64,
             from: 0.0,
             last: if never { 0.0 } else { self.last_stable() },
+        }
+    }
+
+    /// Distances to the nearest change of stability along the line.
+    #[must_use]
+    pub fn margins(&self) -> MarginWalk<'_> {
+        let mut intervals = self.stable_intervals();
+        MarginWalk {
+            line: self,
+            below: None,
+            above: intervals.next(),
+            intervals,
         }
     }
 

@@ -1,7 +1,7 @@
 //! The linear model of a setting: the letter's own, or one beyond it.
 //!
 //! ```text
-//! D = B(1 − R E) − A(1 − E),   E = e^(−λτ)                                                   (1)
+//! D = B(1 − R E) − A e^(−λδ)(1 − E),   E = e^(−λτ)                                           (1)
 //! B = B₀ L_a L_v L_s,   A = a_n N₀ L_v + a_v V₀ L_a,   L = 1 + Tλ                            (2)
 //! B₀ = λ² + bλ + 1,   N₀ = 1,   V₀ = b + λ                                                   (3)
 //! ```
@@ -15,6 +15,7 @@ use num_complex::Complex64;
 
 use super::parameter::Parameter;
 use super::setting::Setting;
+use crate::linear::characteristic::one_minus_exp;
 use crate::linear::general::{Polynomial, System};
 use crate::model::{Groups, ModelError};
 
@@ -50,6 +51,7 @@ pub struct FeedbackLoop {
     a_n: f64,
     a_v: f64,
     memory: f64,
+    latency: f64,
 }
 
 /// Derivatives of D with respect to the dimensionless groups.
@@ -86,17 +88,18 @@ impl Friction {
 }
 
 impl FeedbackLoop {
-    /// Of the gains a_n and a_v, the lags T_a, T_v and T_s, and the memory R.
-    fn new(friction: Friction, [a_n, a_v]: [f64; 2], lags: [f64; 3], memory: f64) -> Self {
+    /// With lags T_a, T_v and T_s; gains, memory and latency are still 0.
+    fn new(friction: Friction, lags: [f64; 3]) -> Self {
         let [of_load, of_velocity, of_sensor] = lags.map(|time| polynomial(&[1.0, time]));
         let lags = times(&times(&of_load, &of_velocity), &of_sensor);
         Self {
             open: friction.open.map(|open| times(&open, &lags)),
             load: times(&friction.load, &of_velocity),
             velocity: friction.velocity.map(|velocity| times(&velocity, &of_load)),
-            a_n,
-            a_v,
-            memory,
+            a_n: 0.0,
+            a_v: 0.0,
+            memory: 0.0,
+            latency: 0.0,
         }
     }
 
@@ -107,9 +110,14 @@ impl FeedbackLoop {
     pub fn of(setting: &Setting) -> Result<Self, ModelError> {
         let oscillator = setting.oscillator()?;
         let Groups { b, a_v, a_n } = oscillator.groups(setting.sliding_point()?, setting.control());
-        let lags = Parameter::LAGS.map(|lag| setting.get(lag) / oscillator.time_unit());
-        let memory = setting.get(Parameter::Memory);
-        Ok(Self::new(Friction::of_slope(b), [a_n, a_v], lags, memory))
+        let time = |parameter| setting.get(parameter) / oscillator.time_unit();
+        Ok(Self {
+            a_n,
+            a_v,
+            memory: setting.get(Parameter::Memory),
+            latency: time(Parameter::Latency),
+            ..Self::new(Friction::of_slope(b), Parameter::LAGS.map(time))
+        })
     }
 
     /// The system of the loop.
@@ -117,7 +125,7 @@ impl FeedbackLoop {
     pub fn system(&self) -> System {
         let load = Polynomial::ZERO.plus(&self.load, self.a_n);
         let gain = load.plus(&self.velocity[0], self.a_v);
-        System::feedback(self.open[0], gain, self.memory)
+        System::feedback(self.open[0], gain, self.memory, self.latency)
     }
 
     /// Derivatives of D at λ, where 1 − E is `difference`.
@@ -125,10 +133,14 @@ impl FeedbackLoop {
     pub fn per_group(&self, lambda: Complex64, difference: Complex64) -> PerGroup {
         let at = |polynomial: &Polynomial| polynomial.value(lambda);
         let remembered = 1.0 - self.memory * (1.0 - difference);
+        let acting = match self.latency {
+            0.0 => difference,
+            latency => difference * (1.0 - one_minus_exp(-latency * lambda)),
+        };
         PerGroup {
-            b: at(&self.open[1]) * remembered - self.a_v * at(&self.velocity[1]) * difference,
-            a_v: -at(&self.velocity[0]) * difference,
-            a_n: -at(&self.load) * difference,
+            b: at(&self.open[1]) * remembered - self.a_v * at(&self.velocity[1]) * acting,
+            a_v: -at(&self.velocity[0]) * acting,
+            a_n: -at(&self.load) * acting,
         }
     }
 }
@@ -144,7 +156,6 @@ impl Setting {
             let groups = oscillator.groups(self.sliding_point()?, self.control());
             return Ok((LinearModel::Letter(groups), oscillator.time_unit()));
         }
-        self.check_of_letter(&[Parameter::Latency], "0 here")?;
         let system = FeedbackLoop::of(self)?.system();
         let time_unit = self.oscillator()?.time_unit();
         Ok((LinearModel::General(Box::new(system)), time_unit))

@@ -13,6 +13,7 @@ mod given;
 pub mod keys;
 pub mod law_kind;
 mod limit_spec;
+pub mod linear_model;
 pub mod nearest;
 pub mod parameter;
 pub mod point_file;
