@@ -343,13 +343,20 @@ fn make_symmetric(at: &mut [Complex64]) {
             z.im = 0.0;
         }
     }
-    // Those farthest from the axis first: what is left over lies near to it.
-    at.sort_by(|p, q| q.im.abs().total_cmp(&p.im.abs()));
+    // Those at the steepest angle to the axis first: what is left over lies near to it. The angle,
+    // since the zeros of a cluster far away are farther from the axis than pairs near 0.
+    let angle = |z: &Complex64| match z.im.abs() {
+        0.0 => 0.0,
+        im => im / (z.re.abs() + im),
+    };
+    at.sort_by(|p, q| angle(q).total_cmp(&angle(p)));
     let mut i = 0;
     while i < at.len() && at[i].im != 0.0 {
         let mirrored = at[i].conj();
+        // One that is farther than the axis is the partner of another.
+        let near = |j: usize| norm(at[j] - mirrored) <= 2.0 * mirrored.im.abs();
         let partner = (i + 1..at.len())
-            .filter(|&j| at[j].im * at[i].im < 0.0)
+            .filter(|&j| at[j].im * at[i].im < 0.0 && near(j))
             .min_by(|&j, &k| norm(at[j] - mirrored).total_cmp(&norm(at[k] - mirrored)));
         if let Some(j) = partner {
             let middle = 0.5 * (at[i] + at[j].conj());
