@@ -5,11 +5,17 @@
 #[allow(dead_code)]
 mod general_rows;
 
+use std::sync::Arc;
+
 use general_rows::{Row, rows};
 use serde_json::Value;
 use slipmap::explore::point::Point;
 use slipmap::explore::stability::Wanted;
-use slipmap::sweep::{Parameter, Setting};
+use slipmap::linear::status::{CERTIFIED, DISAGREE, MARGINAL, NOT_CONVERGED};
+use slipmap::sweep::cells::second_look::{Answer, Question, Stored, second_look};
+use slipmap::sweep::grid::Grid;
+use slipmap::sweep::input::field::Storage;
+use slipmap::sweep::{Field, Parameter, Plan, Setting, SweepSpec};
 
 const TABLES: [(&str, &str); 2] = [
     ("etdas", include_str!("reference/general_etdas.csv")),
@@ -180,4 +186,214 @@ fn short_lags_are_harmless() {
             row.place
         );
     }
+}
+
+const FIELDS: &str = "fields = [\"n_unstable\", \"delay_margin\", \"abscissa\", \"frequency\", \
+    \"relaxation_time\", \"essential_abscissa\", \"d_abscissa_d_tau\", \
+    \"d_abscissa_d_alpha_v\", \"d_abscissa_d_alpha_n\", \"d_abscissa_d_mu_prime\"]\n";
+
+/// Gains and delays around a lobe of velocity control, one gain and one delay 0.
+const PLANE: &str = "alpha_v = { from = -0.9, to = 0.1, points = 11 }\n\
+    tau = { from = 0, to = 9, points = 13 }\n";
+const FIXED: &str = "[fixed]\nmu_prime = -0.6\nalpha_n = 0.0\nmass = 2.0\nstiffness = 5.0\n";
+
+/// The cells of a sweep, computed into memory.
+fn cells(text: &str) -> Grid {
+    let plan = Plan::new(text.parse::<SweepSpec>().unwrap()).unwrap();
+    Grid::compute(&Arc::new(plan), 2).unwrap()
+}
+
+fn column(grid: &Grid, field: &str) -> Vec<f64> {
+    let field = Field::from_name(field).unwrap();
+    let columns = grid.cells.columns.iter().find(|c| c.field == field);
+    columns.expect("a field of the sweep").cells.clone()
+}
+
+/// The value in a cell where a point there says it.
+fn same_number(cell: f64, said: &Value) -> bool {
+    match said.as_f64() {
+        Some(said) => cell == said || (cell - said).abs() <= 1e-12 * said.abs(),
+        None => !cell.is_finite(),
+    }
+}
+
+#[test]
+fn cells_of_maps_are_points() {
+    for axis in [
+        "memory = [-0.4, 0.0, 0.3, 0.9]\n",
+        "sensor_lag = [0.0, 1e-9, 0.5]\n",
+    ] {
+        let grid = cells(&format!("{FIELDS}[axes]\n{axis}{PLANE}{FIXED}"));
+        let plan = grid.plan();
+        let counts = grid.cells.n_unstable.as_ref().unwrap();
+        let reasons = &grid.cells.kinds[0];
+        assert_eq!(reasons.field, Field::Reason, "it comes unasked");
+        let shape = plan.shape().to_vec();
+        let mut stable = 0;
+        for i in 0..counts.len() {
+            let index = [
+                i / (shape[1] * shape[2]),
+                i / shape[2] % shape[1],
+                i % shape[2],
+            ];
+            let setting = plan.setting(&index);
+            let found = point(&setting, None);
+            let status = grid.cells.status[i];
+            assert_eq!(Some(u64::from(counts[i])), found["n_unstable"].as_u64());
+            assert_eq!(status & MARGINAL != 0, found["marginal"] == true);
+            assert_eq!(
+                status & CERTIFIED != 0,
+                found["certified"] == true,
+                "{found}"
+            );
+            assert_eq!(status & (NOT_CONVERGED | DISAGREE), 0, "{found}");
+            for name in [
+                "abscissa",
+                "frequency",
+                "delay_margin",
+                "essential_abscissa",
+            ] {
+                let cell = column(&grid, name)[i];
+                assert!(same_number(cell, &found[name]), "{name} {cell}: {found}");
+            }
+            let names = Field::Reason.kinds().unwrap();
+            let reason = names[usize::from(reasons.cells[i])];
+            assert_eq!(reason, found["reason"].as_str().unwrap_or("none"));
+            stable += u32::from(found["stable"] == true);
+        }
+        assert!(stable > 0, "{axis}");
+    }
+}
+
+/// Where the memory is 0 the cells are those of a sweep without it, bit by bit.
+#[test]
+fn cells_without_memory_are_the_letters_own() {
+    let with = cells(&format!(
+        "{FIELDS}[axes]\nmemory = [0.0, 0.5]\n{PLANE}{FIXED}"
+    ));
+    let without = cells(&format!("{FIELDS}[axes]\n{PLANE}{FIXED}"));
+    let len = without.cells.status.len();
+    assert_eq!(with.cells.status[..len], without.cells.status[..]);
+    let counts = |grid: &Grid| grid.cells.n_unstable.clone().unwrap();
+    assert_eq!(counts(&with)[..len], counts(&without)[..]);
+    for field in without
+        .plan()
+        .spec
+        .fields
+        .iter()
+        .filter(|f| f.storage() == Storage::Real)
+    {
+        let bits = |grid: &Grid| -> Vec<u64> {
+            let cells = column(grid, field.name());
+            cells[..len].iter().map(|cell| cell.to_bits()).collect()
+        };
+        assert_eq!(bits(&with), bits(&without), "{}", field.name());
+    }
+}
+
+/// The derivatives of a map against difference quotients of its own abscissas.
+#[test]
+fn derivatives_are_slopes_of_the_abscissa() {
+    let with = |changed: &str, by: f64| {
+        let value = |name: &str, at: f64| at + if name == changed { by } else { 0.0 };
+        let (tau, alpha_v) = (value("tau", 1.3), value("alpha_v", -0.4));
+        let (alpha_n, mu_prime) = (value("alpha_n", 0.7), value("mu_prime", -0.6));
+        cells(&format!(
+            "{FIELDS}[axes]\ntau = [{tau:?}]\n[fixed]\nmu_prime = {mu_prime:?}\n\
+             alpha_v = {alpha_v:?}\nalpha_n = {alpha_n:?}\nmass = 2.0\nstiffness = 5.0\n\
+             memory = 0.35\nload_lag = 0.1\nvelocity_lag = 0.4\nsensor_lag = 0.02\n"
+        ))
+    };
+    let here = with("", 0.0);
+    for name in ["tau", "alpha_v", "alpha_n", "mu_prime"] {
+        let abscissa = |by: f64| column(&with(name, by), "abscissa")[0];
+        let numeric = (abscissa(1e-5) - abscissa(-1e-5)) / 2e-5;
+        let found = column(&here, &format!("d_abscissa_d_{name}"))[0];
+        assert!((found - numeric).abs() < 1e-7, "{name}: {found} {numeric}");
+    }
+}
+
+/// A second method looks at cells of general systems, too.
+#[test]
+fn cells_are_looked_at_twice() {
+    let grid = cells(&format!(
+        "{FIELDS}[axes]\nmemory = [-0.4, 0.3]\n{PLANE}{FIXED}"
+    ));
+    let plan = grid.plan();
+    let counts = grid.cells.n_unstable.as_ref().unwrap();
+    let mut agree = 0;
+    for (i, &n) in counts.iter().enumerate() {
+        let index = [i / (11 * 13), i / 13 % 11, i % 13];
+        for shift in [0.0, 1.0] {
+            let value = |field: Field| match field {
+                Field::NUnstable => f64::from(n) + shift,
+                field => column(&grid, field.name())[i],
+            };
+            let status = grid.cells.status[i];
+            let stored = Stored {
+                status,
+                value: &value,
+            };
+            for (question, answer) in second_look(plan, &index, &stored).unwrap() {
+                let wrong = shift > 0.0 && question == Question::Count;
+                let expected = if wrong {
+                    Answer::Differs
+                } else {
+                    Answer::Agrees
+                };
+                assert!(
+                    answer == expected || answer == Answer::Open,
+                    "{question:?} {index:?}"
+                );
+                agree += u32::from(answer == expected);
+            }
+        }
+    }
+    assert!(agree > 900, "{agree}");
+}
+
+#[test]
+fn what_cannot_be_had_is_told_at_its_key() {
+    let friction = "[friction]\nlaw = \"coulomb\"\nmu0 = 0.4\n";
+    let sweep = |head: &str, fixed: &str| {
+        format!("{head}[axes]\nalpha_n = [-1, 1]\ntau = [1, 2]\n[fixed]\n{fixed}")
+    };
+    let told = [
+        (
+            "fields = [\"phase_margin\"]\n",
+            "mu_prime = -0.1\nmemory = 0.2\n",
+            "",
+        ),
+        ("best = true\n", "mu_prime = -0.1\nload_lag = 0.2\n", ""),
+        (
+            "boundaries = true\n",
+            "mu_prime = -0.1\nlatency = 0.2\n",
+            "",
+        ),
+        (
+            "degree_of_stability = [0.1]\n",
+            "mu_prime = -0.1\nmemory = -0.2\n",
+            "",
+        ),
+        (
+            "fields = [\"outcome\"]\n",
+            "v0 = 0.1\nsensor_lag = 0.2\n",
+            friction,
+        ),
+        ("fields = [\"vc\"]\n", "velocity_lag = 0.2\n", friction),
+        ("", "mu_prime = -0.1\nmemory = 1.0\n", ""),
+        ("", "mu_prime = -0.1\nlatency = -1.0\n", ""),
+    ]
+    .map(|(head, fixed, law)| {
+        let text = sweep(head, fixed) + law;
+        let error = text.parse::<SweepSpec>().unwrap_err();
+        let place = error.span.map(|span| text[span].to_owned());
+        format!(
+            "{}\n  at {}\n  {}\n",
+            error.message,
+            place.unwrap(),
+            error.help.unwrap_or_default()
+        )
+    });
+    insta::assert_snapshot!(told.concat());
 }

@@ -7,7 +7,7 @@ use clap::builder::{PossibleValue, PossibleValuesParser};
 use clap::{Arg, ArgMatches, Args, Command, FromArgMatches};
 use slipmap::model::{ModelError, Shown};
 use slipmap::sweep::Parameter;
-use slipmap::sweep::input::law_kind::{Formula, LawKind};
+use slipmap::sweep::input::law_kind::{Formula, LawKind, NO_MOTIONS};
 use slipmap::sweep::input::parameter::Group;
 use slipmap::sweep::input::setting::Setting;
 use slipmap::sweep::input::units::Units;
@@ -264,6 +264,12 @@ impl<A: Asks> ParameterArgs<A> {
         Ok(setting)
     }
 
+    /// Whether the friction law has a state.
+    fn has_state(&self) -> bool {
+        let law = self.law.friction.as_deref().and_then(Formula::from_name);
+        law == Some(Formula::RateAndState)
+    }
+
     /// The delay, where both gains are 0.
     fn unneeded_delay(&self) -> Option<(Parameter, f64)> {
         match [Parameter::AlphaV, Parameter::AlphaN].map(|p| self.given(p)) {
@@ -282,6 +288,13 @@ impl<A: Asks> ParameterArgs<A> {
             Some(parameter) => Err(Failure::bad_input_with_help(
                 format!("{} does not say enough: {why}", flag(parameter)),
                 help,
+            )),
+            None if A::LAW && self.has_state() => Err(Failure::bad_input_with_help(
+                format!(
+                    "--friction {} has no motions here",
+                    Formula::RateAndState.name()
+                ),
+                NO_MOTIONS,
             )),
             None if A::LAW && self.law.friction.is_none() => Err(Failure::bad_input_with_help(
                 format!("--friction is not given: {why}"),
@@ -307,6 +320,13 @@ impl<A: Asks> ParameterArgs<A> {
     /// The setting of motions: a friction law and v0, and a delay only where control acts.
     pub(super) fn setting_of_motions(&self) -> Result<Setting, Failure> {
         match self.law.friction {
+            Some(_) if self.has_state() => Err(Failure::bad_input_with_help(
+                format!(
+                    "--friction {} has no motions here",
+                    Formula::RateAndState.name()
+                ),
+                NO_MOTIONS,
+            )),
             Some(_) => self.setting(),
             None => Err(Failure::bad_input_with_help(
                 "--friction is not given: motions stick and slip by a friction law",

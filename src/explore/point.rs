@@ -2,6 +2,7 @@
 
 use serde::Serialize;
 
+use super::finite;
 use super::margins::Margins;
 use super::stability::{Stability, Wanted};
 use crate::model::ModelError;
@@ -21,6 +22,9 @@ pub struct Point {
     pub alpha_n: f64,
     /// τ.
     pub tau: f64,
+    /// Stiffness over the critical one of rate-and-state friction, below which steady sliding without
+    /// control is unstable; null where it is stable at every stiffness, and under other laws.
+    pub stiffness_ratio: Option<f64>,
     /// Its stability, with its roots.
     #[serde(flatten)]
     pub stability: Stability,
@@ -49,6 +53,7 @@ impl Point {
             alpha_v: setting.get(Parameter::AlphaV),
             alpha_n: setting.get(Parameter::AlphaN),
             tau,
+            stiffness_ratio: setting.stiffness_ratio().and_then(finite),
             stability,
             margins,
         })

@@ -301,7 +301,15 @@ impl RootTracker {
             return Err(Doubt::Undecided);
         }
         let mut widest = MARGIN;
+        let essential = equation.essential_abscissa(tau);
+        // There is always one right of the line at which they accumulate, or the cell is not ours.
+        if roots[0].lambda.re <= essential {
+            return Err(Doubt::Missed);
+        }
         for root in roots {
+            if root.lambda.re <= essential {
+                return Err(Doubt::Undecided);
+            }
             let unit = root.lambda.re.abs().max(1.0);
             let mut margin = MARGIN.max(16.0 * root.error / unit);
             let line = loop {

@@ -4,6 +4,7 @@
 use super::line::DelayLine;
 use super::reason::Reason;
 use super::right_of::{RightOf, RootCounter};
+use super::system::System;
 use crate::linear::count::{Count, MarginalTolerance};
 use crate::linear::newton::Root;
 use crate::linear::rightmost::Rightmost;
@@ -33,6 +34,15 @@ pub struct Spectrum {
     pub missing: Option<Incomplete>,
 }
 
+/// A line right of the one at which the roots of `system` accumulate at the delay `tau`, as near as
+/// roots are told from it; none where they accumulate nowhere.
+#[must_use]
+pub fn beside_accumulation(system: &System, tau: f64) -> Option<f64> {
+    let essential = system.essential_abscissa(tau);
+    let beside = essential + BESIDE * essential.abs().max(1.0 / tau);
+    beside.is_finite().then_some(beside)
+}
+
 impl Spectrum {
     /// The `wanted` rightmost roots, at least one, at the delay `tau` ≥ 0 of the line `line` of the
     /// system of `counter`.
@@ -54,8 +64,9 @@ impl Spectrum {
         }
         let count = line.count(tau, MarginalTolerance::default());
         spectrum.count = Some(count);
-        let beside = essential_abscissa + BESIDE * essential_abscissa.abs().max(1.0 / tau);
-        if beside.is_finite() && counter.right_of(tau, beside) == RightOf::Roots(0) {
+        if let Some(beside) = beside_accumulation(counter.system(), tau)
+            && counter.right_of(tau, beside) == RightOf::Roots(0)
+        {
             spectrum.abscissa = essential_abscissa;
             spectrum.margin = beside - essential_abscissa;
             spectrum.certified = count.n_unstable == 0 && !count.marginal;

@@ -43,11 +43,7 @@ pub fn asked(setting: &Setting) -> Result<Asked, ModelError> {
     let oscillator = setting.oscillator()?;
     let units = CaseUnits::of(&oscillator);
     let Some(law) = setting.friction_law()? else {
-        return Err(ModelError {
-            parameter: "friction",
-            value: f64::NAN,
-            allowed: "a friction law",
-        });
+        return Err(ModelError::of_law("a friction law"));
     };
     let control = setting.control();
     let tau = setting.get(Parameter::Tau);

@@ -210,6 +210,7 @@ impl Draft {
             return Err(SpecError::whole("a case needs a friction law")
                 .help("for example: [friction] law = \"weakening\", mu0 = 0.5, v_s = 0.5"));
         };
+        self.given.check_motions()?;
         let mut setting = self.given.setting();
         let optional = (setting.control() == Control::default()).then_some(Parameter::Tau);
         self.given.check(optional.as_slice(), Some(&law_place))?;

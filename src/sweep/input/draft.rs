@@ -14,7 +14,7 @@ use super::limit_spec::LimitDraft;
 use super::parameter::Parameter;
 use super::search::LIMIT;
 use super::simulation::{DISTURBED, Simulation};
-use super::spec::SweepSpec;
+use super::spec::{SweepSpec, beyond_letter};
 use super::spec_values::{
     read_degrees, read_field, read_fields, read_list, read_range, read_tolerance,
 };
@@ -203,7 +203,12 @@ impl Draft {
         if critical.is_none() && self.motion_place.is_some() && !self.given.has_start() {
             simulation.disturbance = DISTURBED;
         }
-        let fields = self.fields.unwrap_or(default_fields);
+        let mut fields = self.fields.unwrap_or(default_fields);
+        let beyond = fixed.has_state()
+            || beyond_letter(&fixed, &self.axes, &Parameter::BEYOND_LETTER).is_some();
+        if beyond && fields.iter().any(|f| f.of_sliding()) && !fields.contains(&Field::Reason) {
+            fields.push(Field::Reason);
+        }
         let basin = match &self.basin_place {
             Some(_) => Some(self.basin.basin()?),
             None => None,

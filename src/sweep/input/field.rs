@@ -5,9 +5,10 @@
 use super::catalogue::catalogue;
 use super::nearest::did_you_mean;
 use super::regime_at_v0::RegimeAtV0;
-use super::source::{OfMargins, OfRoots, Slope, Source};
+use super::source::{OfLinear, OfMargins, OfRoots, Slope, Source};
 use super::units::Units;
 use crate::critical::{CriticalVelocity, Method, Transition};
+use crate::linear::general::Reason;
 use crate::slip::outcome::Outcome;
 
 /// How a field is stored.
@@ -398,6 +399,55 @@ catalogue! {
             short_name: "certificate margin",
             source: Source::Roots(OfRoots::CertificateMargin),
             comment: Some("in units of max(1/t, |abscissa|), t = sqrt(mass/stiffness)"),
+            ..ROW
+        };
+        /// The real part at which roots accumulate.
+        EssentialAbscissa = Row {
+            name: "essential_abscissa",
+            long_name: "real part at which infinitely many characteristic roots accumulate",
+            short_name: "essential abscissa",
+            measure: RATE,
+            source: Source::Linear(OfLinear::EssentialAbscissa),
+            spread: Spread::BetterBelow,
+            comment: Some(
+                "log|memory|/tau; -infinity where they accumulate nowhere: without memory or delay",
+            ),
+            ..ROW
+        };
+        /// Stiffness over the critical one of rate-and-state friction.
+        StiffnessRatio = Row {
+            name: "stiffness_ratio",
+            long_name: "stiffness over the critical one, below which steady sliding without \
+                        control is unstable",
+            short_name: "κ/κ_c",
+            source: Source::Linear(OfLinear::StiffnessRatio),
+            spread: Spread::Magnitudes,
+            comment: Some(
+                "of rate-and-state friction; infinity where evolution_effect is not larger than \
+                 direct_effect: stable at every stiffness",
+            ),
+            ..ROW
+        };
+        /// Why the cell is not like others: 0, or the number of a [`Reason`].
+        Reason = Row {
+            name: "reason",
+            long_name: "why the linear stability of the cell is not like that of others",
+            short_name: "reason",
+            storage: Storage::Kind,
+            kinds: Some(|| {
+                let names = Reason::ALL.into_iter().map(Reason::name);
+                std::iter::once("none").chain(names).collect()
+            }),
+            source: Source::Linear(OfLinear::Reason),
+            comment: Some(
+                "root-at-origin, root-on-axis: at every delay a root lies on the imaginary axis, \
+                 marginal in status; infinite: infinitely many unstable roots, n_unstable has no \
+                 value; neutral-limit: roots accumulate at the imaginary axis, it is never \
+                 exponentially stable; no-rightmost-root: the abscissa is the essential one, a \
+                 supremum, and there are no other roots, told beside fields of roots; \
+                 degree-unknown: the highest coefficient is within rounding of 0; refused: the \
+                 imaginary axis is crossed everywhere or nowhere",
+            ),
             ..ROW
         };
         /// The factor of both gains, below 1, at which sliding is no longer stable.
@@ -847,7 +897,7 @@ impl Field {
     pub const fn of_sliding(self) -> bool {
         matches!(
             self.source(),
-            Source::Line | Source::Roots(_) | Source::Margins(_)
+            Source::Line | Source::Roots(_) | Source::Linear(_) | Source::Margins(_)
         )
     }
 
@@ -1035,9 +1085,9 @@ mod tests {
             "n_unstable, outcome, method, regime, windows, delay_margin, abscissa, abscissa_2 … \
              abscissa_8, frequency, frequency_2 … frequency_8, relaxation_time, \
              d_abscissa_d_tau, d_abscissa_d_alpha_v, d_abscissa_d_alpha_n, \
-             d_abscissa_d_mu_prime, certificate_margin, gain_margin_lower, gain_margin_upper, \
-             phase_margin, latency_margin, stability_radius, settle_time, last_release, n_min, \
-             peak_force, basin_share, basin_share_error, basin_share_upper, vc, vc_lower, \
+             d_abscissa_d_mu_prime, certificate_margin, essential_abscissa, stiffness_ratio, \
+             reason, gain_margin_lower, gain_margin_upper, phase_margin, latency_margin, \
+             stability_radius, settle_time, last_release, n_min, peak_force, basin_share, basin_share_error, basin_share_upper, vc, vc_lower, \
              vc_upper, v_liftoff, stick_time, slip_time, v_smooth, vc_over_vtilde, omega0_T, \
              liftoff_over_vtilde, vc_weak_control, vc_strong_control, weak_control_error, \
              strong_control_error"

@@ -5,7 +5,7 @@ use std::ops::Range;
 
 use super::friction_table::GivenTable;
 use super::keys::{FRICTION_TABLE, UNITS, names};
-use super::law_kind::{Formula, LawKind};
+use super::law_kind::{Formula, LawKind, NO_MOTIONS};
 use super::nearest::did_you_mean;
 use super::parameter::Parameter;
 use super::setting::{GivenError, Setting};
@@ -151,6 +151,17 @@ impl GivenParameters {
             );
         }
         Ok(LawKind::Formula(law))
+    }
+
+    /// Motions can be followed under the law, as far as that alone tells.
+    pub(super) fn check_motions(&self) -> Result<(), SpecError> {
+        match &self.law {
+            Some((law, place)) if law.has_state() => {
+                let message = format!("the {} law has no motions here", law.name());
+                Err(SpecError::at(place.clone(), message).help(NO_MOTIONS))
+            }
+            _ => Ok(()),
+        }
     }
 
     /// Where to tell that the friction law is ill-posed: at what it is at rest, or at its name.

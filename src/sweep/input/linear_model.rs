@@ -4,12 +4,13 @@
 //! D = B(1 − R E) − A e^(−λδ)(1 − E),   E = e^(−λτ)                                           (1)
 //! B = B₀ L_a L_v L_s,   A = a_n N₀ L_v + a_v V₀ L_a,   L = 1 + Tλ                            (2)
 //! B₀ = λ² + bλ + 1,   N₀ = 1,   V₀ = b + λ                                                   (3)
+//! B₀ = (1 + Tλ)(λ² + 1) + fλ,   N₀ = 1 + (1 − c)Tλ,   V₀ = f + λ(1 + Tλ),   f = α − β + αTλ  (4)
 //! ```
 //!
 //! The load follows its command with the lag T_a, the pulling velocity with T_v, and the sensor the
 //! elongation with T_s: each divides what passes through it by 1 + Tλ. (1) and (2) are equation (2)
-//! and the first row of section 7 of the derivation for general systems, (3) is the letter's
-//! friction. Times are in units of √(M/κ).
+//! and the first row of section 7 of the derivation for general systems; (3) is the letter's
+//! friction, (4) with a state, the second row there. Times are in units of √(M/κ).
 
 use num_complex::Complex64;
 
@@ -17,7 +18,7 @@ use super::parameter::Parameter;
 use super::setting::Setting;
 use crate::linear::characteristic::one_minus_exp;
 use crate::linear::general::{Polynomial, System};
-use crate::model::{Groups, ModelError};
+use crate::model::{Groups, ModelError, StateGroups};
 
 /// The linear model of a setting, dimensionless.
 #[derive(Debug, Clone)]
@@ -77,6 +78,35 @@ fn times(one: &Polynomial, other: &Polynomial) -> Polynomial {
 }
 
 impl Friction {
+    /// With a state, second row of section 7.
+    fn of_state(groups: StateGroups) -> Self {
+        let StateGroups {
+            direct,
+            evolution,
+            state_time,
+            load_memory,
+        } = groups;
+        let number = |value: f64| Polynomial::constant(value, 0.0);
+        let state = times(&number(state_time), &Polynomial::variable());
+        // α − β + αTλ.
+        let effect = number(direct).plus(&number(evolution), -1.0);
+        let effect = effect.plus(&times(&number(direct), &state), 1.0);
+        let moving = times(&Polynomial::variable(), &number(1.0).plus(&state, 1.0));
+        let oscillator = times(
+            &polynomial(&[1.0, 0.0, 1.0]),
+            &number(1.0).plus(&state, 1.0),
+        );
+        let kept = number(1.0).plus(&number(load_memory), -1.0);
+        Self {
+            open: [
+                oscillator.plus(&times(&effect, &Polynomial::variable()), 1.0),
+                Polynomial::ZERO,
+            ],
+            load: number(1.0).plus(&times(&kept, &state), 1.0),
+            velocity: [effect.plus(&moving, 1.0), Polynomial::ZERO],
+        }
+    }
+
     /// The letter's.
     fn of_slope(b: f64) -> Self {
         Self {
@@ -110,13 +140,17 @@ impl FeedbackLoop {
     pub fn of(setting: &Setting) -> Result<Self, ModelError> {
         let oscillator = setting.oscillator()?;
         let Groups { b, a_v, a_n } = oscillator.groups(setting.sliding_point()?, setting.control());
+        let friction = match setting.rate_and_state() {
+            Some(law) => Friction::of_state(law.groups(&oscillator, setting.get(Parameter::V0))),
+            None => Friction::of_slope(b),
+        };
         let time = |parameter| setting.get(parameter) / oscillator.time_unit();
         Ok(Self {
             a_n,
             a_v,
             memory: setting.get(Parameter::Memory),
             latency: time(Parameter::Latency),
-            ..Self::new(Friction::of_slope(b), Parameter::LAGS.map(time))
+            ..Self::new(friction, Parameter::LAGS.map(time))
         })
     }
 
@@ -151,7 +185,7 @@ impl Setting {
     /// # Errors
     /// When a parameter is outside the model's range.
     pub fn linear(&self) -> Result<(LinearModel, f64), ModelError> {
-        if self.beyond_letter(&Parameter::BEYOND_LETTER).is_none() {
+        if !self.has_state() && self.beyond_letter(&Parameter::BEYOND_LETTER).is_none() {
             let oscillator = self.oscillator()?;
             let groups = oscillator.groups(self.sliding_point()?, self.control());
             return Ok((LinearModel::Letter(groups), oscillator.time_unit()));

@@ -327,6 +327,71 @@ catalogue! {
             }),
             ..ROW
         };
+        /// v* of rate-and-state friction.
+        VStar = Row {
+            name: "v_star",
+            symbol: "v*",
+            long_name: "velocity at which steady sliding has the friction coefficient mu0",
+            dimension: VELOCITY,
+            group: Group::Law,
+            flag: Some(Flag {
+                value: "V_STAR",
+                help: "v* of rate-and-state friction, where steady sliding has μ0",
+            }),
+            ..ROW
+        };
+        /// A_f, the direct effect.
+        DirectEffect = Row {
+            name: "direct_effect",
+            symbol: "A_f",
+            long_name: "direct effect of the velocity on the friction coefficient",
+            group: Group::Law,
+            flag: Some(Flag {
+                value: "A",
+                help: "A_f of rate-and-state friction, the direct effect",
+            }),
+            ..ROW
+        };
+        /// B_f, the effect of evolution.
+        EvolutionEffect = Row {
+            name: "evolution_effect",
+            symbol: "B_f",
+            long_name: "effect of the evolving state on the friction coefficient",
+            group: Group::Law,
+            flag: Some(Flag {
+                value: "B",
+                help: "B_f of rate-and-state friction, the effect of evolution",
+            }),
+            ..ROW
+        };
+        /// D_c, the distance in which the state evolves.
+        SlipDistance = Row {
+            name: "slip_distance",
+            symbol: "D_c",
+            long_name: "slip distance in which the state of friction evolves",
+            dimension: [0, 1, 0],
+            group: Group::Law,
+            flag: Some(Flag {
+                value: "D_C",
+                help: "D_c of rate-and-state friction, the distance in which the state evolves",
+            }),
+            ..ROW
+        };
+        /// c: how much a change of the load takes from the state.
+        LoadMemory = Row {
+            name: "load_memory",
+            symbol: "c",
+            long_name: "share of a change of the load that the state of friction takes up at once",
+            range: Range::NotNegative,
+            default: Some(0.0),
+            group: Group::Law,
+            flag: Some(Flag {
+                value: "C",
+                help: "c of rate-and-state friction: how much the state takes up of a change of \
+                    the load [default: 0]",
+            }),
+            ..ROW
+        };
         /// μ_S, the static friction coefficient.
         MuS = Row {
             name: "mu_s",

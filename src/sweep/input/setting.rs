@@ -2,9 +2,11 @@
 
 use std::cmp::Ordering;
 
-use super::law_kind::LawKind;
+use super::law_kind::{LawKind, OF_VELOCITY};
 use super::parameter::{Group, Parameter};
-use crate::model::{Control, FrictionLaw, Groups, ModelError, Oscillator, SlidingPoint};
+use crate::model::{
+    Control, FrictionLaw, Groups, ModelError, Oscillator, RateAndState, SlidingPoint,
+};
 
 /// Why a set of given parameters does not make a setting.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -139,6 +141,12 @@ impl Setting {
         of.find(|&p| self.get(p) != 0.0 && !left_aside(p))
     }
 
+    /// Whether friction has a state besides the velocity.
+    #[must_use]
+    pub fn has_state(&self) -> bool {
+        self.law.as_ref().is_some_and(LawKind::has_state)
+    }
+
     /// Refuses what is beyond the letter's own system by one of these parameters, for computations
     /// that know nothing of them; `allowed` says what is allowed there, and where.
     ///
@@ -149,6 +157,9 @@ impl Setting {
         of: &[Parameter],
         allowed: &'static str,
     ) -> Result<(), ModelError> {
+        if self.has_state() {
+            return Err(ModelError::of_law(OF_VELOCITY));
+        }
         match self.beyond_letter(of) {
             Some(parameter) => Err(ModelError {
                 parameter: parameter.name(),
@@ -165,7 +176,7 @@ impl Setting {
             (_, Group::Limit) => false,
             (Some(_), Group::Sliding) => false,
             (Some(law), Group::Law) => {
-                parameter == Parameter::MuS || law.parameters().contains(&parameter)
+                parameter == law.optional() || law.parameters().contains(&parameter)
             }
             (None, Group::Law | Group::Pull) => false,
             _ => true,
@@ -209,12 +220,28 @@ impl Setting {
         }
     }
 
-    /// The friction law with its parameters.
+    /// The friction law with its parameters; none where there is none of the velocity alone.
     ///
     /// # Errors
     /// When the law is ill-posed, see [`FrictionLaw`].
     pub fn friction_law(&self) -> Result<Option<FrictionLaw>, ModelError> {
-        self.law.as_ref().map(|law| law.at(self)).transpose()
+        let law = self.law.as_ref().filter(|law| !law.has_state());
+        law.map(|law| law.at(self)).transpose()
+    }
+
+    /// The law of rate-and-state friction, where it is that.
+    #[must_use]
+    pub fn rate_and_state(&self) -> Option<RateAndState> {
+        self.law.as_ref()?.with_state(self)
+    }
+
+    /// κ/κ_c of rate-and-state friction, infinite where sliding without control is stable at every
+    /// stiffness; none where it is not that law.
+    #[must_use]
+    pub fn stiffness_ratio(&self) -> Option<f64> {
+        let (law, oscillator) = (self.rate_and_state()?, self.oscillator().ok()?);
+        let groups = law.groups(&oscillator, self.get(Parameter::V0));
+        Some(groups.stiffness_ratio())
     }
 
     /// μ_K and μ_K′ at the sliding velocity: from the friction law, or as given.
@@ -222,6 +249,9 @@ impl Setting {
     /// # Errors
     /// When the law is ill-posed.
     pub fn sliding_point(&self) -> Result<SlidingPoint, ModelError> {
+        if let Some(law) = self.rate_and_state() {
+            return law.steady(self.get(Parameter::V0));
+        }
         match self.friction_law()? {
             Some(law) => SlidingPoint::of_law(&law, self.get(Parameter::V0)),
             None => Ok(SlidingPoint {
@@ -247,7 +277,7 @@ impl Setting {
     ///
     /// # Errors
     /// When a parameter is outside the model's range, and for all that has more than these groups:
-    /// memory, latency or lags.
+    /// memory, latency, lags or a state of friction.
     pub fn groups(&self) -> Result<(Groups, f64), ModelError> {
         self.check_of_letter(
             &Parameter::BEYOND_LETTER,

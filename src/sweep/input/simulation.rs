@@ -126,10 +126,10 @@ impl Simulation {
     /// # Errors
     /// When a parameter is outside the model's range.
     pub fn case(&self, setting: &Setting, switch_on: f64) -> Result<Option<Case>, ModelError> {
+        setting.check_of_letter(NOT_IN_MOTIONS, "0 where motions are followed")?;
         let Some(law) = setting.friction_law()? else {
             return Ok(None);
         };
-        setting.check_of_letter(NOT_IN_MOTIONS, "0 where motions are followed")?;
         let oscillator = setting.oscillator()?;
         let v0 = setting.get(Parameter::V0);
         let given = |p: Parameter| Some(setting.get(p)).filter(|value| !value.is_nan());

@@ -116,10 +116,12 @@ impl SweepSpec {
         }
     }
 
-    /// Whether some cell has memory, latency or lags: more than the letter's own feedback.
+    /// Whether some cell has memory, latency, lags or a state of friction: more than the letter's
+    /// own system.
     #[must_use]
     pub fn beyond_letter(&self) -> bool {
-        beyond_letter(&self.fixed, &self.axes, &Parameter::BEYOND_LETTER).is_some()
+        let of = &Parameter::BEYOND_LETTER;
+        self.fixed.has_state() || beyond_letter(&self.fixed, &self.axes, of).is_some()
     }
 
     /// Whether there is a sliding state in each cell whose linear stability can be asked for: a

@@ -25,6 +25,7 @@ impl Draft {
         let fixed = self.given.setting();
         self.check_law(&fixed)?;
         self.check_beyond_letter(&fixed)?;
+        self.check_stiffness_ratio(&fixed)?;
         let critical = self.check_nonlinear(&fixed)?;
         Ok((fixed, critical))
     }
