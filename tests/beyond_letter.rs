@@ -1,5 +1,5 @@
-//! The letter's control with memory and lags, by its own parameters, against independently computed
-//! tables; and nothing changes where there is none of them.
+//! The letter's control with memory, latency and lags, and under rate-and-state friction, by its own
+//! parameters, against independently computed tables; and nothing changes where there is none of it.
 
 #[path = "common/general_rows.rs"]
 #[allow(dead_code)]
@@ -15,11 +15,17 @@ use slipmap::linear::status::{CERTIFIED, DISAGREE, MARGINAL, NOT_CONVERGED};
 use slipmap::sweep::cells::second_look::{Answer, Question, Stored, second_look};
 use slipmap::sweep::grid::Grid;
 use slipmap::sweep::input::field::Storage;
+use slipmap::sweep::input::law_kind::{Formula, LawKind};
 use slipmap::sweep::{Field, Parameter, Plan, Setting, SweepSpec};
 
-const TABLES: [(&str, &str); 2] = [
+const TABLES: [(&str, &str); 4] = [
     ("etdas", include_str!("reference/general_etdas.csv")),
     ("lag", include_str!("reference/general_lag.csv")),
+    ("latency", include_str!("reference/general_latency.csv")),
+    (
+        "rate_state",
+        include_str!("reference/general_rate_state.csv"),
+    ),
 ];
 
 fn all_rows() -> impl Iterator<Item = Row> {
@@ -31,15 +37,25 @@ fn all_rows() -> impl Iterator<Item = Row> {
 /// The setting of a row, in units of time, length and force of which `units` make one of the
 /// row's.
 fn setting(row: &Row, [force, length, time]: [f64; 3]) -> Setting {
-    let mut setting = Setting::new(None);
+    let with_state = row.number("state_time").is_some();
+    let law = with_state.then_some(LawKind::Formula(Formula::RateAndState));
+    let mut setting = Setting::new(law);
     for parameter in Parameter::ALL {
         let unit = [force, length, time]
             .iter()
             .zip(parameter.dimension())
             .map(|(unit, power)| unit.powi(power))
             .product::<f64>();
-        let value = row
-            .number(parameter.name())
+        let of_state = match parameter {
+            _ if !with_state => None,
+            Parameter::Mu0 | Parameter::VStar | Parameter::V0 => Some(1.0),
+            Parameter::DirectEffect => row.number("direct"),
+            Parameter::EvolutionEffect => row.number("evolution"),
+            Parameter::SlipDistance => row.number("state_time"),
+            _ => None,
+        };
+        let value = of_state
+            .or(row.number(parameter.name()))
             .or(parameter.default_value())
             .unwrap_or(f64::NAN);
         setting.set(parameter, value * unit);
@@ -62,7 +78,8 @@ fn points_of_the_tables() {
     let mut checked = 0;
     for row in all_rows() {
         // In other units, too: nothing depends on them.
-        for units in [[1.0; 3], [3.0, 0.02, 0.25]] {
+        let other = (checked % 4 == 0).then_some([3.0, 0.02, 0.25]);
+        for units in [[1.0; 3]].into_iter().chain(other) {
             let time = units[2];
             let line = row.or_zero("line") / time;
             let found = point(&setting(&row, units), Some(line));
@@ -91,6 +108,9 @@ fn points_of_the_tables() {
                 ),
             ] {
                 let expected = row.number(column).map(|value| value * unit);
+                // What nothing feeds back is not remembered.
+                let idle = row.or_zero("alpha_v") == 0.0 && row.or_zero("alpha_n") == 0.0;
+                let expected = expected.filter(|_| !(idle && key == "essential_abscissa"));
                 let same = match expected {
                     Some(expected) => near(&found[key], expected, error),
                     None => found[key].is_null(),
@@ -102,20 +122,41 @@ fn points_of_the_tables() {
             assert_eq!(found["marginal"], false, "{}", row.place);
             let stable = row.or_zero("n_unstable") == 0.0;
             assert_eq!(found["stable"], stable, "{}", row.place);
-            let expected = row.intervals("stable_delays");
-            let intervals = found["stable_delays"].as_array().unwrap();
-            assert!(intervals.len() >= expected.len(), "{}\n{found}", row.place);
-            for (found, (from, to)) in intervals.iter().zip(expected) {
-                let end = match to.is_finite() {
-                    true => near(&found[1], to * time, 1e-9),
-                    false => found[1].is_null(),
+            same_intervals(&row, "stable_delays", &found, time);
+            if row.number("latency").is_some() {
+                same_intervals(&row, "stable_latencies", &found, time);
+                let margin = row.text("latency_margin");
+                let same = match margin {
+                    "inf" => found["latency_margin"].is_null(),
+                    margin => near(
+                        &found["latency_margin"],
+                        margin.parse::<f64>().unwrap() * time,
+                        1e-11,
+                    ),
                 };
-                assert!(end && near(&found[0], from * time, 1e-9), "{}", row.place);
+                assert!(same || found["decays"] == false, "{}\n{found}", row.place);
             }
             checked += 1;
         }
     }
-    assert!(checked > 280, "{checked}");
+    assert!(checked > 350, "{checked}");
+}
+
+fn same_intervals(row: &Row, name: &str, found: &Value, time: f64) {
+    let expected = row.intervals(name);
+    let intervals = found[name].as_array().unwrap();
+    assert!(intervals.len() >= expected.len(), "{}\n{found}", row.place);
+    for (found, (from, to)) in intervals.iter().zip(expected) {
+        let end = match to.is_finite() {
+            true => near(&found[1], to * time, 1e-9),
+            false => found[1].is_null(),
+        };
+        assert!(
+            end && near(&found[0], from * time, 1e-9),
+            "{name}: {}",
+            row.place
+        );
+    }
 }
 
 /// The distance to the nearest change of stability, from the intervals of the table.
@@ -152,6 +193,9 @@ fn delay_margins_of_the_tables() {
 fn zeros_change_nothing() {
     for row in all_rows() {
         let mut plain = setting(&row, [3.0, 0.02, 0.25]);
+        if plain.has_state() {
+            continue;
+        }
         for parameter in Parameter::BEYOND_LETTER {
             plain.set(parameter, 0.0);
         }
@@ -170,6 +214,9 @@ fn zeros_change_nothing() {
 fn short_lags_are_harmless() {
     for row in all_rows() {
         let mut plain = setting(&row, [1.0; 3]);
+        if plain.has_state() {
+            continue;
+        }
         for parameter in Parameter::BEYOND_LETTER {
             plain.set(parameter, 0.0);
         }
@@ -197,6 +244,30 @@ const PLANE: &str = "alpha_v = { from = -0.9, to = 0.1, points = 11 }\n\
     tau = { from = 0, to = 9, points = 13 }\n";
 const FIXED: &str = "[fixed]\nmu_prime = -0.6\nalpha_n = 0.0\nmass = 2.0\nstiffness = 5.0\n";
 
+/// Weakens steadily, with a critical stiffness.
+const STATE: &str = "[friction]\nlaw = \"rate-and-state\"\nmu0 = 0.5\nv_star = 0.1\n\
+    direct_effect = 0.02\nevolution_effect = 0.03\nslip_distance = 0.01\n";
+
+/// Without control sliding is stable above the critical stiffness, whatever else there is; lags of
+/// what does not act change nothing.
+#[test]
+fn the_critical_stiffness_is_where_sliding_becomes_stable() {
+    for lags in ["", "load_lag = 0.3\nsensor_lag = 0.1\n"] {
+        let grid = cells(&format!(
+            "fields = [\"n_unstable\", \"stiffness_ratio\", \"abscissa\"]\n[axes]\n\
+             stiffness = {{ from = 0.1, to = 5, points = 99 }}\nv0 = [0.003, 0.1, 2.0]\n\
+             [fixed]\ntau = 1\nmass = 0.01\nnormal_load = 2\n{lags}{STATE}"
+        ));
+        let (ratios, counts) = (column(&grid, "stiffness_ratio"), &grid.cells.n_unstable);
+        let counts = counts.as_ref().unwrap();
+        for (ratio, &n) in ratios.iter().zip(counts) {
+            assert_eq!(n, if *ratio < 1.0 { 2 } else { 0 }, "{ratio}");
+        }
+        let both = ratios.iter().filter(|ratio| **ratio < 1.0).count();
+        assert!(both > 20 && both < ratios.len() - 20, "{both}");
+    }
+}
+
 /// The cells of a sweep, computed into memory.
 fn cells(text: &str) -> Grid {
     let plan = Plan::new(text.parse::<SweepSpec>().unwrap()).unwrap();
@@ -222,6 +293,7 @@ fn cells_of_maps_are_points() {
     for axis in [
         "memory = [-0.4, 0.0, 0.3, 0.9]\n",
         "sensor_lag = [0.0, 1e-9, 0.5]\n",
+        "latency = [0.0, 0.3]\n",
     ] {
         let grid = cells(&format!("{FIELDS}[axes]\n{axis}{PLANE}{FIXED}"));
         let plan = grid.plan();
@@ -301,7 +373,8 @@ fn derivatives_are_slopes_of_the_abscissa() {
         cells(&format!(
             "{FIELDS}[axes]\ntau = [{tau:?}]\n[fixed]\nmu_prime = {mu_prime:?}\n\
              alpha_v = {alpha_v:?}\nalpha_n = {alpha_n:?}\nmass = 2.0\nstiffness = 5.0\n\
-             memory = 0.35\nload_lag = 0.1\nvelocity_lag = 0.4\nsensor_lag = 0.02\n"
+             memory = 0.35\nload_lag = 0.1\nvelocity_lag = 0.4\nsensor_lag = 0.02\n\
+             latency = 0.07\n"
         ))
     };
     let here = with("", 0.0);
@@ -381,6 +454,20 @@ fn what_cannot_be_had_is_told_at_its_key() {
             friction,
         ),
         ("fields = [\"vc\"]\n", "velocity_lag = 0.2\n", friction),
+        ("fields = [\"stiffness_ratio\"]\n", "v0 = 0.1\n", friction),
+        ("fields = [\"stability_radius\"]\n", "v0 = 0.1\n", STATE),
+        (
+            "fields = [\"d_abscissa_d_mu_prime\"]\n",
+            "v0 = 0.1\n",
+            STATE,
+        ),
+        ("fields = [\"basin_share\"]\n", "v0 = 0.1\n", STATE),
+        ("fields = [\"vc\"]\n", "", STATE),
+        (
+            "",
+            "v0 = 0.1\n",
+            "[friction]\nlaw = \"rate-and-state\"\nmu0 = 0.5\nmu_s = 1\n",
+        ),
         ("", "mu_prime = -0.1\nmemory = 1.0\n", ""),
         ("", "mu_prime = -0.1\nlatency = -1.0\n", ""),
     ]

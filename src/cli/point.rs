@@ -212,6 +212,9 @@ fn print(
         let unit = unit_behind(&units.of_parameter(parameter));
         row(parameter.name(), format!("{value}{unit}"))?;
     }
+    if let Some(ratio) = point.stiffness_ratio {
+        row(Field::StiffnessRatio.name(), ratio.to_string())?;
+    }
     print_stability(stability, units, &mut row)?;
     tell_dimensionless(out, units)
 }

@@ -22,8 +22,8 @@ pub struct Margins {
     /// The least angle, rad, of either sign by which the loop may turn; null where it is infinite:
     /// the loop is nowhere as large as 1. 0 where the setting has not the decay rate.
     pub phase_margin: Option<f64>,
-    /// The largest further latency of the feedback; null where it is infinite. 0 where the setting
-    /// has not the decay rate.
+    /// The largest latency of the feedback, counted from none; null where it is infinite. 0 where the
+    /// setting without latency has not the decay rate.
     pub latency_margin: Option<f64>,
     /// The delays between which it stays; null where the setting has it not.
     pub tau_margin: Option<Margin>,
@@ -124,12 +124,14 @@ impl Margins {
         if interval.is_none() {
             margins.undecided.push("tau_margin");
         }
-        (margins.phase_margin, margins.latency_margin) = (None, None);
+        margins.phase_margin = None;
+        let latency = stability.latency_margin.unwrap_or(f64::NAN);
+        margins.latency_margin = finite(latency);
+        margins.note("latency_margin", &[latency]);
         margins.stability_radius = None;
         margins.undecided.extend([
             "gain_margin",
             "phase_margin",
-            "latency_margin",
             "mu_prime_margin",
             "v0_margin",
             "stability_radius",

@@ -53,6 +53,16 @@ pub struct Stability {
     pub first_change: Option<i8>,
     /// Where roots cross the imaginary axis as the delay grows.
     pub crossings: Vec<PointCrossing>,
+    /// All intervals of latencies in which sliding is stable at the point's delay, by shortest
+    /// latency; the end of the last one is null where it has none. Null where latency has no meaning
+    /// in the system.
+    pub stable_latencies: Option<Vec<[Option<f64>; 2]>>,
+    /// Some are left out.
+    pub stable_latencies_truncated: bool,
+    /// The latency margin: ∞ where nothing is lost, NaN where it is not known; none where latency has
+    /// no meaning.
+    #[serde(skip)]
+    pub latency_margin: Option<f64>,
     /// The real part at which infinitely many roots accumulate; null where they do nowhere.
     pub essential_abscissa: Option<f64>,
     /// The rightmost roots.
@@ -125,10 +135,25 @@ impl Stability {
     /// Of a linear model with the unit of time `time_unit`, at the delay `tau`.
     #[must_use]
     pub fn of(model: &LinearModel, time_unit: f64, tau: f64, wanted: Wanted) -> Self {
-        match model {
+        let mut stability = match model {
             LinearModel::Letter(groups) => Self::of_letter(*groups, time_unit, tau, wanted),
             LinearModel::General(system) => Self::of_system(system, time_unit, tau, wanted),
-        }
+        };
+        stability.add_latencies(&model.system(), (tau / time_unit, time_unit));
+        stability
+    }
+
+    /// All latencies at the dimensionless delay `tau`.
+    fn add_latencies(&mut self, system: &System, (tau, time_unit): (f64, f64)) {
+        self.latency_margin = system.latency_margin(tau).map(|margin| margin * time_unit);
+        let Some(line) = DelayLine::of_latencies(system, tau) else {
+            return;
+        };
+        let line = line.in_physical_time(time_unit);
+        let mut intervals = line.stable_intervals();
+        let stable: Vec<StableInterval> = intervals.by_ref().take(MOST_INTERVALS).collect();
+        self.stable_latencies_truncated = intervals.next().is_some() || intervals.gave_up();
+        self.stable_latencies = Some(ends(&stable));
     }
 
     fn of_letter(groups: Groups, time_unit: f64, tau: f64, wanted: Wanted) -> Self {
@@ -152,6 +177,9 @@ impl Stability {
             first_crossing: first.map(|(delay, _)| delay),
             first_change: first.map(|(_, change)| change),
             crossings: crossings.iter().map(PointCrossing::of).collect(),
+            stable_latencies: None,
+            stable_latencies_truncated: false,
+            latency_margin: None,
             essential_abscissa: None,
             spectrum: Spectrum::of_letter(groups, time_unit, tau, wanted.roots),
             right_of_line: wanted.line.map(|line| RightOfLine {
@@ -188,6 +216,9 @@ impl Stability {
             first_crossing: first.map(|change| change.tau),
             first_change: first.map(|change| change.by),
             crossings: line.crossings.iter().map(PointCrossing::of).collect(),
+            stable_latencies: None,
+            stable_latencies_truncated: false,
+            latency_margin: None,
             essential_abscissa: finite(essential),
             right_of_line: wanted.line.map(|line| RightOfLine {
                 line,

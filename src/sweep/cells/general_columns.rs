@@ -1,6 +1,7 @@
 //! The cells of a line of a general system: counts, roots, and why a cell is not like others.
 
 use std::ops::Range;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 use super::buffers::{N_UNSTABLE_FILL, TileBuffers};
 use super::line::Places;
@@ -33,6 +34,8 @@ pub(super) struct GeneralLine<'a> {
     pub first: usize,
     pub tolerance: MarginalTolerance,
     pub places: Places,
+    /// Once it is set, no more cells are computed that take long.
+    pub stop: &'a AtomicBool,
 }
 
 /// Fills the columns of one thread's tiles, with memory that is used again.
@@ -58,6 +61,7 @@ impl GeneralColumns {
         self.crossings = crossings.in_physical_time(line.time_unit);
         self.count(line);
         self.fill_margins(line, buffers);
+        self.fill_latency_margins(line, buffers);
         self.no_rightmost.clear();
         self.no_rightmost.resize(line.delays.len(), false);
         if let Some(roots) = roots {
@@ -113,6 +117,24 @@ impl GeneralColumns {
                 *status |= NOT_CONVERGED;
             }
             column.cells[line.places.of(i)] = margin;
+        }
+    }
+
+    fn fill_latency_margins(&mut self, line: &GeneralLine, buffers: &mut TileBuffers) {
+        let mut columns = buffers.columns.iter_mut();
+        let Some(column) = columns.find(|c| c.field == Field::LatencyMargin) else {
+            return;
+        };
+        for (i, (&tau, status)) in line.delays.iter().zip(&mut self.status).enumerate() {
+            if line.stop.load(Ordering::Relaxed) {
+                return;
+            }
+            let margin = line.system.latency_margin(tau / line.time_unit);
+            let margin = margin.unwrap_or(f64::NAN);
+            if margin.is_nan() {
+                *status |= NOT_CONVERGED;
+            }
+            column.cells[line.places.of(i)] = margin * line.time_unit;
         }
     }
 

@@ -155,7 +155,7 @@ impl<'p> Worker<'p> {
                     Some(groups)
                 }
                 Ok((LinearModel::General(system), time_unit)) => {
-                    self.fill_general(&system, time_unit, at);
+                    self.fill_general(&system, time_unit, at, stop);
                     None
                 }
                 Err(_) => return self.refuse_line(at),
@@ -186,7 +186,7 @@ impl<'p> Worker<'p> {
     }
 
     /// Computes the cells of a line of a general system.
-    fn fill_general(&mut self, system: &System, time_unit: f64, at: usize) {
+    fn fill_general(&mut self, system: &System, time_unit: f64, at: usize, stop: &AtomicBool) {
         let sensitive = self.roots.as_ref().is_some_and(RootColumns::sensitive);
         let of_loop = FeedbackLoop::of(&self.lines.setting).ok();
         let of_loop = of_loop.filter(|_| sensitive);
@@ -203,6 +203,7 @@ impl<'p> Worker<'p> {
                 at,
                 stride: self.stride,
             },
+            stop,
         };
         self.general
             .fill(&line, self.roots.as_mut(), &mut self.buffers);

@@ -482,10 +482,11 @@ catalogue! {
         /// The largest further latency of the feedback.
         LatencyMargin = Row {
             name: "latency_margin",
-            long_name: "largest further latency of the feedback up to which sliding stays stable",
+            long_name: "largest latency of the feedback, counted from none, up to which sliding \
+                        stays stable",
             short_name: "latency margin",
             measure: TIME,
-            comment: Some("infinity where no latency matters; 0 where unstable"),
+            comment: Some("infinity where no latency matters; 0 where unstable without latency"),
             spread: Spread::LongTail,
             stable: Some(|value| value > 0.0),
             ..margin(OfMargins::Latency)

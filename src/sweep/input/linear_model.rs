@@ -29,6 +29,22 @@ pub enum LinearModel {
     General(Box<System>),
 }
 
+impl LinearModel {
+    /// The system; the letter's own as one in feedback form.
+    #[must_use]
+    pub fn system(&self) -> System {
+        match self {
+            Self::Letter(Groups { b, a_v, a_n }) => FeedbackLoop {
+                a_n: *a_n,
+                a_v: *a_v,
+                ..FeedbackLoop::new(Friction::of_slope(*b), [0.0; 3])
+            }
+            .system(),
+            Self::General(system) => **system,
+        }
+    }
+}
+
 /// What friction makes of the block on its spring: (3), or another law's.
 #[derive(Debug, Clone, Copy)]
 struct Friction {

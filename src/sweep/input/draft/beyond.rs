@@ -60,7 +60,9 @@ impl Draft {
         // With a state the slope does not say all of the friction.
         let slope = |field: Field| field == Field::DAbscissaDMuPrime;
         let slope = self.limit.first_field(slope).filter(|_| with_state);
-        let margins = self.limit.first_field(Field::of_margins);
+        let margins = self
+            .limit
+            .first_field(|f| f.of_margins() && f != Field::LatencyMargin);
         let margin = margins
             .or(slope)
             .map(|(field, place)| (field.name(), place.clone()));
