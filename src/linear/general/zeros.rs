@@ -353,11 +353,11 @@ fn make_symmetric(at: &mut [Complex64]) {
     let mut i = 0;
     while i < at.len() && at[i].im != 0.0 {
         let mirrored = at[i].conj();
-        // One that is farther than the axis is the partner of another.
-        let near = |j: usize| norm(at[j] - mirrored) <= 2.0 * mirrored.im.abs();
         let partner = (i + 1..at.len())
-            .filter(|&j| at[j].im * at[i].im < 0.0 && near(j))
-            .min_by(|&j, &k| norm(at[j] - mirrored).total_cmp(&norm(at[k] - mirrored)));
+            .filter(|&j| at[j].im * at[i].im < 0.0)
+            .min_by(|&j, &k| norm(at[j] - mirrored).total_cmp(&norm(at[k] - mirrored)))
+            // Two real zeros have imaginary parts by rounding alone: these pair nothing.
+            .filter(|&j| norm(at[j] - mirrored) <= at[i].im.abs());
         if let Some(j) = partner {
             let middle = 0.5 * (at[i] + at[j].conj());
             at.swap(i + 1, j);
@@ -366,6 +366,31 @@ fn make_symmetric(at: &mut [Complex64]) {
         } else {
             at[i].im = 0.0;
             i += 1;
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Two of its real zeros are as near to one another as to the axis of the other: rounding gives
+    /// both an imaginary part, of opposite signs.
+    #[test]
+    fn real_zeros_with_imaginary_parts_by_rounding_are_no_pair() {
+        let polynomial = Polynomial::new(&[
+            -0.001478057050868198,
+            -0.19606071139401846,
+            2.8769642378540405,
+            -13.187972768143513,
+            21.649038098550594,
+            -11.551027939842418,
+            -0.7657016588038741,
+            1.0,
+        ])
+        .expect("a small degree");
+        for disc in Zeros::of(&polynomial).discs() {
+            assert!(disc.radius < 1e-10 && disc.centre.im == 0.0, "{disc:?}");
         }
     }
 }
