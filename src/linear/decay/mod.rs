@@ -157,12 +157,6 @@ impl<P: Plane> Tracer<'_, P> {
     fn walk(&mut self, start: Vertex, family: Family, sense: f64) -> Result<Way, TooManyCurves> {
         let way = self.plane.walk(start, family, sense, self.steps);
         let vertices: usize = way.arcs.iter().map(|arc| arc.vertices.len()).sum();
-        if vertices > 3000 {
-            eprintln!(
-                "{start:?} {vertices} {:?}",
-                way.arcs.last().unwrap().vertices.last()
-            );
-        }
         self.steps = self.steps.saturating_sub(vertices);
         self.check_limits(way.too_long)?;
         Ok(way)
