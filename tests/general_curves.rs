@@ -28,7 +28,7 @@ fn setting(system: System, tau: f64) -> Option<Setting> {
 fn letter(groups: Groups, memory: f64) -> System {
     let Groups { b, a_v, a_n } = groups;
     let open = polynomial(&[1.0, b, 1.0]);
-    System::feedback(open, polynomial(&[a_n + a_v * b, a_v]), memory)
+    System::feedback(open, polynomial(&[a_n + a_v * b, a_v]), memory, 0.0)
 }
 
 fn turning(zeta: f64, width: f64) -> System {
@@ -455,4 +455,57 @@ fn degrees_of_stability() {
         &at,
         0.4,
     );
+}
+
+/// The plane of both delays, τ and the latency δ. Where R = 0 its curves are known by ω:
+/// ωτ = ±arccos(1 − |B|²/2|A|²) + 2πu and ωδ = arg[A(1 − E)/B] + 2πv.
+#[test]
+fn delay_and_latency() {
+    use num_complex::Complex64;
+    let (b, a_v, a_n) = (-0.1, -0.4, -0.2);
+    let open = polynomial(&[1.0, b, 1.0]);
+    let gain = polynomial(&[a_n + a_v * b, a_v]);
+    let at = |tau: f64, latency: f64| setting(System::feedback(open, gain, 0.0, latency), tau);
+    let window = Window {
+        p: 0.05..=9.0,
+        q: 0.0..=4.0,
+    };
+    let curves = plane("delay and latency", &window, &at, [true, true]);
+    let (mut known, mut missing) = (0, 0);
+    for i in 1..3000 {
+        let lambda = Complex64::new(0.0, f64::from(i) * 1e-3);
+        let (of_open, of_gain) = (open.value(lambda), gain.value(lambda));
+        let cosine = 1.0 - of_open.norm_sqr() / (2.0 * of_gain.norm_sqr());
+        if cosine < -1.0 {
+            continue;
+        }
+        for turn in [cosine.acos(), -cosine.acos()] {
+            for (u, v) in (0..6).flat_map(|u| (0..6).map(move |v| (u, v))) {
+                let tau = (turn + TAU * f64::from(u)) / lambda.im;
+                let late = of_gain * (1.0 - (-lambda * tau).exp()) / of_open;
+                let latency = (late.arg() + TAU * f64::from(v)) / lambda.im;
+                let vertex = Vertex {
+                    p: tau,
+                    q: latency,
+                    omega: lambda.im,
+                };
+                let within = window.p.contains(&tau) && window.q.contains(&latency);
+                if within {
+                    let near = |piece: &&CurvePiece| distance(&window, &vertex, piece) < 1e-3;
+                    known += 1;
+                    missing += usize::from(!curves.pieces.iter().any(|p| near(&p)));
+                }
+            }
+        }
+    }
+    assert!(known > 500 && missing == 0, "{missing} of {known}");
+    // With memory, along the delay at one latency.
+    let window = Window {
+        p: -1.5..=0.3,
+        q: 0.2..=10.0,
+    };
+    lines("late feedback", &window, &|a_v| {
+        let gain = polynomial(&[a_v * -0.5, a_v]);
+        System::feedback(polynomial(&[1.0, -0.5, 1.0]), gain, 0.3, 0.4)
+    });
 }

@@ -221,7 +221,9 @@ fn degrees_of_stability_bound_what_they_say() {
             let side = match curve.piece.stable_side {
                 StableSide::Shorter => -1e-4,
                 StableSide::Longer => 1e-4,
-                StableSide::Neither => unreachable!("only what bounds is traced"),
+                StableSide::Neither | StableSide::Below | StableSide::Above => {
+                    unreachable!("only what bounds is traced")
+                }
             };
             // Next to a corner or a fold the decaying region is narrower than the step.
             let ends = [vertices[0], vertices[vertices.len() - 1]];
