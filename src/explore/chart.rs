@@ -94,7 +94,7 @@ impl ChartCurve {
             degree_of_stability,
             direction: piece.direction.sign(),
             stable_side: piece.stable_side.sign(),
-            vertices: piece.vertices.iter().map(|v| [v.p, v.tau]).collect(),
+            vertices: piece.vertices.iter().map(|v| [v.p, v.q]).collect(),
         }
     }
 }

@@ -13,6 +13,7 @@
 //! - [`gains`]: the crossing curve with one gain given and the other solved for
 //! - [`curves`]: crossing curves in a plane of a parameter and the delay, cut at their corners
 //! - [`decay`]: curves of a given degree of stability in such a plane: where max Re λ = −σ
+//! - [`plane`]: a characteristic function over a plane, as what follows curves takes it
 //! - [`lobes`]: where the stable regions of pure control end
 //! - [`best`]: the settings of fastest decay, for every stable region
 //! - [`margins`]: how far a setting is from the boundary of stability, in every direction
@@ -33,6 +34,7 @@ pub mod general;
 pub mod lobes;
 pub mod margins;
 pub mod newton;
+pub mod plane;
 pub mod rightmost;
 pub(crate) mod roots;
 mod rounded;

@@ -38,8 +38,10 @@ pub(super) struct BoundaryWriter {
 struct Maker<'a> {
     group: &'a Group,
     plan: &'a Plan,
-    /// The parameter of the planes.
+    /// The first parameter of the planes.
     parameter: Parameter,
+    /// The second one.
+    second: Parameter,
     /// The parameters of the axes outside the planes.
     outer: Vec<Parameter>,
     dimensions: &'a mut Dimensions,
@@ -78,7 +80,7 @@ impl Maker<'_> {
             }
             Named::Rate(name, meaning) => self.make::<T>(about.per, name, (meaning, &units.rate())),
             Named::Parameter(prefix) => self.of_parameter(about.per, prefix, self.parameter),
-            Named::Delay(prefix) => self.of_parameter(about.per, prefix, Parameter::Tau),
+            Named::Second(prefix) => self.of_parameter(about.per, prefix, self.second),
         }?;
         if let Some(counted) = about.counts {
             put_text(&dataset, "sample_dimension", counted)?;
@@ -154,12 +156,12 @@ fn append<T: H5Type>(dataset: &Dataset, values: &[T]) -> hdf5::Result<()> {
 }
 
 impl BoundaryWriter {
-    /// Creates the group, for the plane of `plan` spanned by the axes `p` and delay.
+    /// Creates the group, for the plane of `plan` spanned by the axes `p` and `q`.
     pub(super) fn create(
         parent: &Group,
         dimensions: &mut Dimensions,
         plan: &Plan,
-        (p, tau): (usize, usize),
+        (p, q): (usize, usize),
     ) -> hdf5::Result<Self> {
         let group = parent
             .create_group_builder()
@@ -180,15 +182,17 @@ impl BoundaryWriter {
             dimensions.add_bare(&group, "corner")?,
         ];
         let parameter = plan.spec.axes[p].parameter;
-        let plane = format!("{} {}", parameter.name(), Parameter::Tau.name());
+        let second = plan.spec.axes[q].parameter;
+        let plane = format!("{} {}", parameter.name(), second.name());
         put_text(&group, PLANE, &plane)?;
         let axes = plan.spec.axes.iter().enumerate();
-        let outer = axes.filter(|&(axis, _)| axis != p && axis != tau);
+        let outer = axes.filter(|&(axis, _)| axis != p && axis != q);
         let mut making = Making {
             maker: Maker {
                 group: &group,
                 plan,
                 parameter,
+                second,
                 outer: outer.map(|(_, axis)| axis.parameter).collect(),
                 dimensions,
                 ids,

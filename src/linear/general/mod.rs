@@ -10,22 +10,32 @@
 //! - [`line`]: all delays of a setting: crossings and counts
 //! - [`stable`]: the delays at which it is stable
 //! - [`latency`]: feedback that comes late
+//! - [`curves`]: exact boundaries over a plane of two parameters
+//! - `starts`: where the curves of a plane begin to be followed
+//! - `level`, `sides`: curves on which a function vanishes, and what holds on both sides of them
+//! - [`plane`]: a system over a plane of two of its parameters
 //! - [`reason`]: why a cell is not like the others
 
+pub mod curves;
 mod equation;
 mod latency;
+mod level;
 pub mod line;
+pub mod plane;
 pub mod polynomial;
 pub mod reason;
 pub mod right_of;
 pub mod rightmost;
+mod sides;
 pub mod stable;
+mod starts;
 mod switches;
 pub mod system;
 pub mod zeros;
 
 pub use latency::Form;
 pub use line::DelayLine;
+pub use plane::{Setting, SystemPlane};
 pub use polynomial::Polynomial;
 pub use reason::Reason;
 pub use right_of::{RightOf, RootCounter};

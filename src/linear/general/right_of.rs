@@ -224,6 +224,19 @@ impl RootCounter {
         (&self.p, &self.q)
     }
 
+    /// The frequencies above 0 at which a root can lie on `line` at the delay `tau`, the largest
+    /// first, each with the sign with which it counts in (7).
+    pub(super) fn frequencies(&self, tau: f64, line: f64) -> Vec<(f64, i8)> {
+        let mut switches = Switches::default();
+        if let Some(feedback) = self.system.late() {
+            feedback.switches_on(tau, line, &mut switches);
+        } else if let Some(decay) = Decay::new(line, tau) {
+            let modulus = self.system.modulus(line, decay).without_open_leading();
+            switches.find(&modulus);
+        }
+        switches.list.iter().map(|s| (s.omega, s.sign)).collect()
+    }
+
     /// The zeros of P, with latency those of B.
     pub(super) fn zeros_of_p(&self) -> &[Complex64] {
         self.p.zeros()

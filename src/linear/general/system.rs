@@ -209,6 +209,12 @@ impl System {
         }
     }
 
+    /// The coefficients of λ^`degree` in P and in Q.
+    #[must_use]
+    pub(super) fn coefficients(&self, degree: usize) -> [f64; 2] {
+        [&self.p, &self.q].map(|of| of.coefficients().get(degree).copied().unwrap_or(0.0))
+    }
+
     /// Its class.
     #[must_use]
     pub fn class(&self) -> Class {

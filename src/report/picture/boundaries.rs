@@ -136,7 +136,7 @@ fn families<'a>(map: &MapFile, view: &'a View, curves: &'a [MapCurve]) -> Vec<Fa
 /// The parts of a curve within a panel.
 fn traced(panel: &Panel, piece: &CurvePiece) -> Vec<Vec<Point>> {
     let vertices = piece.vertices.iter();
-    let points: Vec<Point> = vertices.map(|v| panel.at(v.p, v.tau)).collect();
+    let points: Vec<Point> = vertices.map(|v| panel.at(v.p, v.q)).collect();
     clip::within(&points, panel.area)
 }
 

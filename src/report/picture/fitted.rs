@@ -131,7 +131,7 @@ impl Grid<'_> {
 mod tests {
     use super::*;
     use crate::linear::Direction;
-    use crate::linear::curves::{StableSide, Vertex};
+    use crate::linear::curves::{CurveKind, StableSide, Vertex};
     use crate::report::picture::page::Area;
     use crate::report::picture::scale::Scale;
 
@@ -151,10 +151,11 @@ mod tests {
         };
         let vertex = |p| Vertex {
             p,
-            tau: p + 0.207,
+            q: p + 0.207,
             omega: 1.0,
         };
         let line = CurvePiece {
+            kind: CurveKind::Pair,
             branch: 0,
             direction: Direction::Left,
             stable_side: StableSide::Longer,

@@ -79,7 +79,12 @@ impl Feedback {
 
     /// Where (3) of [`on_line`] changes its sign on the imaginary axis; false where that is open.
     pub(super) fn late_switches(&self, switches: &mut Switches) -> bool {
-        let Some(on_line) = OnLine::new(self, 0.0, 0.0) else {
+        self.switches_on(0.0, 0.0, switches)
+    }
+
+    /// As [`Feedback::late_switches`], on any line at the delay `tau`.
+    pub(super) fn switches_on(&self, tau: f64, line: f64, switches: &mut Switches) -> bool {
+        let Some(on_line) = OnLine::new(self, tau, line) else {
             return false;
         };
         let wave = on_line.wave(Form::Delay);
