@@ -55,7 +55,7 @@ impl AlongDelay {
     }
 }
 
-/// Until where the line is told.
+/// The end of the line.
 fn longest(crossings: &Crossings, stable: &[StableInterval], tau: f64) -> f64 {
     let first = crossings.iter().map(|c| c.delay(c.first_branch));
     let ends = stable.iter().flat_map(|s| [s.from, s.to]);
