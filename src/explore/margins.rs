@@ -125,7 +125,7 @@ impl Margins {
             margins.undecided.push("tau_margin");
         }
         margins.phase_margin = None;
-        let latency = stability.latency_margin.unwrap_or(f64::NAN);
+        let latency = stability.latencies.margin.unwrap_or(f64::NAN);
         margins.latency_margin = finite(latency);
         margins.note("latency_margin", &[latency]);
         margins.stability_radius = None;

@@ -53,6 +53,23 @@ pub struct Stability {
     pub first_change: Option<i8>,
     /// Where roots cross the imaginary axis as the delay grows.
     pub crossings: Vec<PointCrossing>,
+    /// The latencies at the point's delay.
+    #[serde(flatten)]
+    pub latencies: Latencies,
+    /// The real part at which infinitely many roots accumulate; null where they do nowhere.
+    pub essential_abscissa: Option<f64>,
+    /// The rightmost roots.
+    #[serde(flatten)]
+    pub spectrum: Spectrum,
+    /// The roots right of a line that was asked for.
+    #[serde(flatten)]
+    pub right_of_line: Option<RightOfLine>,
+}
+
+/// What there is to know of the latencies of the feedback at one delay.
+#[derive(Debug, Clone, Default, Serialize)]
+#[cfg_attr(feature = "serve", derive(utoipa::ToSchema))]
+pub struct Latencies {
     /// All intervals of latencies in which sliding is stable at the point's delay, by shortest
     /// latency; the end of the last one is null where it has none. Null where latency has no meaning
     /// in the system.
@@ -62,15 +79,7 @@ pub struct Stability {
     /// The latency margin: ∞ where nothing is lost, NaN where it is not known; none where latency has
     /// no meaning.
     #[serde(skip)]
-    pub latency_margin: Option<f64>,
-    /// The real part at which infinitely many roots accumulate; null where they do nowhere.
-    pub essential_abscissa: Option<f64>,
-    /// The rightmost roots.
-    #[serde(flatten)]
-    pub spectrum: Spectrum,
-    /// The roots right of a line that was asked for.
-    #[serde(flatten)]
-    pub right_of_line: Option<RightOfLine>,
+    pub margin: Option<f64>,
 }
 
 /// A crossing frequency, with its delays `first_delay` + 2πk/ω.
@@ -139,21 +148,8 @@ impl Stability {
             LinearModel::Letter(groups) => Self::of_letter(*groups, time_unit, tau, wanted),
             LinearModel::General(system) => Self::of_system(system, time_unit, tau, wanted),
         };
-        stability.add_latencies(&model.system(), (tau / time_unit, time_unit));
+        stability.latencies = Latencies::of(&model.system(), (tau / time_unit, time_unit));
         stability
-    }
-
-    /// All latencies at the dimensionless delay `tau`.
-    fn add_latencies(&mut self, system: &System, (tau, time_unit): (f64, f64)) {
-        self.latency_margin = system.latency_margin(tau).map(|margin| margin * time_unit);
-        let Some(line) = DelayLine::of_latencies(system, tau) else {
-            return;
-        };
-        let line = line.in_physical_time(time_unit);
-        let mut intervals = line.stable_intervals();
-        let stable: Vec<StableInterval> = intervals.by_ref().take(MOST_INTERVALS).collect();
-        self.stable_latencies_truncated = intervals.next().is_some() || intervals.gave_up();
-        self.stable_latencies = Some(ends(&stable));
     }
 
     fn of_letter(groups: Groups, time_unit: f64, tau: f64, wanted: Wanted) -> Self {
@@ -177,9 +173,7 @@ impl Stability {
             first_crossing: first.map(|(delay, _)| delay),
             first_change: first.map(|(_, change)| change),
             crossings: crossings.iter().map(PointCrossing::of).collect(),
-            stable_latencies: None,
-            stable_latencies_truncated: false,
-            latency_margin: None,
+            latencies: Latencies::default(),
             essential_abscissa: None,
             spectrum: Spectrum::of_letter(groups, time_unit, tau, wanted.roots),
             right_of_line: wanted.line.map(|line| RightOfLine {
@@ -216,15 +210,30 @@ impl Stability {
             first_crossing: first.map(|change| change.tau),
             first_change: first.map(|change| change.by),
             crossings: line.crossings.iter().map(PointCrossing::of).collect(),
-            stable_latencies: None,
-            stable_latencies_truncated: false,
-            latency_margin: None,
+            latencies: Latencies::default(),
             essential_abscissa: finite(essential),
             right_of_line: wanted.line.map(|line| RightOfLine {
                 line,
                 n_right_of_line: counter.right_of(at, line * time_unit).finite(),
             }),
-            spectrum: Spectrum::of_system(&counter, found, (at, time_unit), wanted.roots),
+            spectrum: Spectrum::of_system(&counter, &found, (at, time_unit), wanted.roots),
+        }
+    }
+}
+
+impl Latencies {
+    /// At the dimensionless delay `tau`.
+    fn of(system: &System, (tau, time_unit): (f64, f64)) -> Self {
+        let Some(line) = DelayLine::of_latencies(system, tau) else {
+            return Self::default();
+        };
+        let line = line.in_physical_time(time_unit);
+        let mut intervals = line.stable_intervals();
+        let stable: Vec<StableInterval> = intervals.by_ref().take(MOST_INTERVALS).collect();
+        Self {
+            stable_latencies: Some(ends(&stable)),
+            stable_latencies_truncated: intervals.next().is_some() || intervals.gave_up(),
+            margin: system.latency_margin(tau).map(|margin| margin * time_unit),
         }
     }
 }
@@ -265,11 +274,11 @@ impl PointCrossing {
 }
 
 /// Rightmost roots, dimensionless.
-struct Roots<'r> {
+struct Listed<'r> {
     roots: &'r [Root],
     margin: f64,
     certified: bool,
-    missing: Option<Incomplete>,
+    missing: Option<&'r Incomplete>,
 }
 
 impl Spectrum {
@@ -277,28 +286,28 @@ impl Spectrum {
         let tau = tau / time_unit;
         let count = Crossings::of(groups).count(tau, MarginalTolerance::default());
         let found = Rightmost::at(groups, tau, wanted.into(), count);
-        let roots = Roots {
+        let listed = Listed {
             roots: &found.roots,
             margin: found.margin,
             certified: found.certified,
-            missing: found.missing,
+            missing: found.missing.as_ref(),
         };
         let no_more = no_more(tau == 0.0, groups.uncontrolled());
         let right_of = |line| roots_right_of(groups, tau, line);
-        Self::of(&roots, time_unit, wanted, no_more, right_of)
+        Self::of(&listed, time_unit, wanted, no_more, right_of)
     }
 
     fn of_system(
         counter: &RootCounter,
-        found: GeneralSpectrum,
+        found: &GeneralSpectrum,
         (tau, time_unit): (f64, f64),
         wanted: u8,
     ) -> Self {
-        let roots = Roots {
+        let listed = Listed {
             roots: &found.roots,
             margin: found.margin,
             certified: found.certified,
-            missing: found.missing,
+            missing: found.missing.as_ref(),
         };
         let no_more = match found.reason {
             Some(Reason::NoRightmostRoot) => {
@@ -310,7 +319,7 @@ impl Spectrum {
             _ => no_more(tau == 0.0, counter.system().uncontrolled()),
         };
         let right_of = |line| counter.right_of(tau, line).finite();
-        let spectrum = Self::of(&roots, time_unit, wanted, no_more, right_of);
+        let spectrum = Self::of(&listed, time_unit, wanted, no_more, right_of);
         Self {
             abscissa: finite(found.abscissa / time_unit),
             ..spectrum
@@ -320,7 +329,7 @@ impl Spectrum {
     /// In units of time of which `time_unit` makes one dimensionless; `no_more` says why there may
     /// be fewer roots than `wanted` though none is missing.
     fn of(
-        found: &Roots,
+        found: &Listed,
         time_unit: f64,
         wanted: u8,
         no_more: &str,
@@ -336,7 +345,7 @@ impl Spectrum {
             .iter()
             .map(|root| [root.lambda.re / time_unit, root.lambda.im / time_unit])
             .collect();
-        let missing = found.missing.as_ref();
+        let missing = found.missing;
         let fewer = missing.map_or_else(|| no_more.to_owned(), ToString::to_string);
         Self {
             abscissa: roots.first().map(|root| root[0]),
