@@ -29,6 +29,8 @@ fn case(law: FrictionLaw, v0: f64, gains: (f64, f64), tau: f64, switch_on: f64) 
         alpha_v: gains.0,
         alpha_n: gains.1,
         tau,
+        memory: 0.0,
+        latency: 0.0,
         v0,
         switch_on,
     }

@@ -30,6 +30,8 @@ fn coulomb(gamma: f64, tau: f64, stop: &Stop) -> Result<Problem, LetterError> {
         alpha_v: 0.0,
         alpha_n: -2.0 * gamma / (RATIO * tau),
         tau,
+        memory: 0.0,
+        latency: 0.0,
         stop: stop.clone(),
         options: Options::default(),
     })

@@ -173,6 +173,21 @@ fn solved(
     }
 }
 
+/// The polynomial over a step of `length` through the values of a function at the nodes, and the
+/// size of the last terms of Chebyshev's series.
+pub(super) fn fit(length: f64, function: impl Fn(f64) -> f64) -> (Coefficients, f64) {
+    let rule = &*RULE;
+    let values = rule.nodes.map(|node| function(node * length));
+    let mut c = [0.0; MOST_ORDER + 1];
+    let mut scale = 1.0;
+    for (c, row) in c.iter_mut().zip(&rule.powers) {
+        *c = dot(row, &values) * scale;
+        scale /= length;
+    }
+    let tails = rule.tail.iter().map(|row| dot(row, &values).abs());
+    (c, tails.fold(0.0, f64::max))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -6,7 +6,7 @@ use crate::critical::{
     along_delay, by_simulation, critical_velocity,
 };
 use crate::linear::roots::narrowed;
-use crate::linear::{Crossings, MarginalTolerance};
+use crate::linear::MarginalTolerance;
 use crate::model::ModelError;
 use crate::model::elementary::pow;
 use crate::slip::case::CaseUnits;
@@ -60,6 +60,8 @@ pub fn asked(setting: &Setting) -> Result<Asked, ModelError> {
         alpha_v: control.alpha_v * units.time,
         alpha_n: control.alpha_n / oscillator.stiffness(),
         tau: tau / units.time,
+        memory: setting.get(Parameter::Memory),
+        latency: setting.get(Parameter::Latency) / units.time,
         stop: Stop::default(),
         options: Options::default(),
     };
@@ -167,7 +169,7 @@ impl Asked {
     ) -> RegimeAtV0 {
         let Self { problem, units } = self;
         let speed = v0 / units.velocity;
-        let count = Crossings::of(problem.groups(speed)).count(problem.tau, tolerance);
+        let count = problem.sliding(speed).count(tolerance);
         if count.marginal {
             return RegimeAtV0::Undecided;
         }
@@ -465,6 +467,8 @@ mod tests {
             alpha_v: 0.0,
             alpha_n: 0.0,
             tau: 1.0,
+            memory: 0.0,
+            latency: 0.0,
             stop: Stop::default(),
             options: Options::default(),
         };

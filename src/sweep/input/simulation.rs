@@ -21,7 +21,11 @@ const MOST_STEPS: u64 = 1_000_000_000;
 pub(super) const POSITIVE: RangeInclusive<f64> = 1.0 / LARGEST..=LARGEST;
 
 /// What motions do not know.
-pub(crate) const NOT_IN_MOTIONS: &[Parameter] = &Parameter::BEYOND_LETTER;
+pub(crate) const NOT_IN_MOTIONS: &[Parameter] = &[
+    Parameter::LoadLag,
+    Parameter::VelocityLag,
+    Parameter::SensorLag,
+];
 
 /// The keys `horizon`, `tolerance` and `steps`: of a case file, and of the table `[simulation]` of
 /// a sweep file.
@@ -159,6 +163,8 @@ impl Simulation {
             law,
             control: setting.control(),
             tau: setting.get(Parameter::Tau),
+            memory: setting.get(Parameter::Memory),
+            latency: setting.get(Parameter::Latency),
             v0,
             switch_on,
             start,
