@@ -22,6 +22,7 @@ mod motion_text;
 mod open;
 mod open_files;
 mod output;
+mod parameter_values;
 mod parameters;
 mod plan;
 mod plan_case;

@@ -6,8 +6,8 @@
 //! κ/κ_c = T/[(β − α)(1 + 1/(αT))]                                                            (3)
 //! ```
 //!
-//! A is the direct effect, B that of evolution, D the slip distance, c how much a change of the load
-//! takes from the state (Linker and Dieterich 1992); c = 0: nothing. (2) and (3) are those of
+//! A is the direct effect, B that of evolution, D the slip distance, c how much a change of the
+//! load takes from the state (Linker and Dieterich 1992); c = 0: nothing. (2) and (3) are those of
 //! section 7 of the derivation for general systems: κ_c is the stiffness below which steady sliding
 //! without control is unstable.
 

@@ -80,8 +80,8 @@ fn count_on(line: &DelayLine, tau: f64, tolerance: MarginalTolerance) -> Count {
 mod tests {
     use super::*;
 
-    /// The least load gain that gives stable delays is −(1 + R)(b²/2 − b) for b < 0; with memory and
-    /// latency velocity control works at b = −1.
+    /// The least load gain that gives stable delays is −(1 + R)(b²/2 − b) for b < 0; with memory
+    /// and latency velocity control works at b = −1.
     #[test]
     fn memory_and_latency_are_counted() {
         let least = |memory: f64| -1.5 * (1.0 + memory);

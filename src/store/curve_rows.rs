@@ -265,7 +265,10 @@ impl EachColumn for Describing {
             | Named::Frequency(name, meaning)
             | Named::Rate(name, meaning) => (name.to_owned(), meaning.to_owned()),
             Named::Parameter(prefix) => (format!("{prefix}PARAMETER"), "the parameter".into()),
-            Named::Delay(prefix) => (format!("{prefix}tau"), "the delay".into()),
+            Named::Second(prefix) => (
+                format!("{prefix}SECOND"),
+                "the second parameter, the delay in planes with it".into(),
+            ),
         };
         if let Some((values, words)) = about.flags {
             let words = values.iter().zip(words.split(' '));

@@ -14,10 +14,11 @@
 
 use std::f64::consts::{PI, TAU};
 
+use super::parts::{Angle, Decay};
 use super::reason::Reason;
 use super::right_of::{RootCounter, Turning};
 use super::switches::{Switch, Switches};
-use super::system::{Angle, Class, Decay, System};
+use super::system::{Class, System};
 use super::zeros::Zeros;
 use crate::linear::count::{Count, MarginalTolerance};
 use crate::linear::crossing::{Crossing, Direction};

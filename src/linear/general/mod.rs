@@ -21,6 +21,7 @@ mod equation;
 mod latency;
 mod level;
 pub mod line;
+mod parts;
 pub mod plane;
 pub mod polynomial;
 pub mod reason;

@@ -20,9 +20,10 @@ use std::f64::consts::{PI, TAU};
 use num_complex::Complex64;
 
 use super::latency::Form;
+use super::parts::{Angle, Decay};
 use super::polynomial::{MOST_DEGREE, Polynomial};
 use super::switches::Switches;
-use super::system::{Angle, Class, Decay, System};
+use super::system::{Class, System};
 use super::zeros::Zeros;
 use crate::model::elementary::atan2;
 

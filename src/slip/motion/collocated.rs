@@ -72,7 +72,8 @@ impl Motion {
             true => &self.step.late,
             false => &self.step.delayed,
         };
-        let Some(solved) = solve((self.u, self.a), length, &past[..=order], rates) else {
+        let past = (&past[..=order], self.parameters.beyond_letter());
+        let Some(solved) = solve((self.u, self.a), length, past, rates) else {
             return false;
         };
         let size = self.a.abs().max(self.u.abs()).max(self.parameters.v0);

@@ -5,8 +5,8 @@ use crate::critical::{
     CriticalVelocity, CriticalWindows, Method, Options, Problem, RampOptions, Regime, Transition,
     along_delay, by_simulation, critical_velocity,
 };
-use crate::linear::roots::narrowed;
 use crate::linear::MarginalTolerance;
+use crate::linear::roots::narrowed;
 use crate::model::ModelError;
 use crate::model::elementary::pow;
 use crate::slip::case::CaseUnits;

@@ -18,13 +18,13 @@ mod roots;
 mod sum;
 mod wave;
 
+use super::parts::{Angle, Feedback};
 use super::polynomial::Polynomial;
 use super::switches::Switches;
-use super::system::{Class, Feedback, System};
+use super::system::{Class, System};
 use on_line::OnLine;
 
 pub use on_line::Form;
-pub(super) use roots::late;
 
 impl System {
     /// The feedback, where it comes late.
@@ -92,7 +92,7 @@ impl Feedback {
     }
 
     /// The argument of −P Q* at iω, P and Q being 𝒫 and 𝒬 of (1) in [`on_line`].
-    pub(super) fn late_phase(&self, omega: f64, error: f64) -> Option<super::system::Angle> {
+    pub(super) fn late_phase(&self, omega: f64, error: f64) -> Option<Angle> {
         OnLine::new(self, 0.0, 0.0)?.phase(Form::Delay, omega, error)
     }
 

@@ -21,8 +21,8 @@
 
 use num_complex::Complex64;
 
+use super::super::parts::{Angle, Decay, Feedback, remembered};
 use super::super::polynomial::{At, Polynomial};
-use super::super::system::{Angle, Decay, Feedback, remembered};
 use super::wave::{Wave, Window, before_zeros, beyond_zeros};
 use crate::linear::characteristic::one_minus_exp;
 use crate::linear::rounded::Rounded;

@@ -2,34 +2,10 @@
 
 use num_complex::Complex64;
 
+use super::super::parts::{Feedback, exponential, late};
 use super::super::polynomial::Polynomial;
-use super::super::system::Feedback;
 use crate::linear::collocation::{Late, late_eigenvalues};
-use crate::model::elementary::{exp, pow, sincos};
-
-/// e^z.
-fn exponential(z: Complex64) -> Complex64 {
-    let (sin, cos) = sincos(z.im);
-    exp(z.re) * Complex64::new(cos, sin)
-}
-
-/// A e^(−λδ) with its derivatives from those of A.
-pub(in super::super) fn late(
-    gain: [Complex64; 3],
-    latency: f64,
-    lambda: Complex64,
-) -> [Complex64; 3] {
-    if latency == 0.0 {
-        return gain;
-    }
-    let [value, first, second] = gain;
-    let by = exponential(-latency * lambda);
-    [
-        value * by,
-        (first - latency * value) * by,
-        (second + latency * (latency * value - 2.0 * first)) * by,
-    ]
-}
+use crate::model::elementary::{exp, pow};
 
 impl Feedback {
     /// How much larger than A the fed back A e^(−λδ) is at λ, with what rounding of λδ adds.
