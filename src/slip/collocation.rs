@@ -238,7 +238,8 @@ mod tests {
     #[test]
     fn the_rest_falls_with_the_length() {
         let error = |length: f64| {
-            let solved = solve((1.0, 0.0), length, (&[0.0], false), |u, _, _| (-u * u, 0.0)).unwrap();
+            let solved =
+                solve((1.0, 0.0), length, (&[0.0], false), |u, _, _| (-u * u, 0.0)).unwrap();
             let off = (value(&solved.u, length) - 1.0 / (1.0 + length)).abs();
             assert!(
                 off <= 10.0 * solved.rest + 1e-15,

@@ -11,6 +11,8 @@
 //! Equation numbers are those of the derivation for general systems. Degenerate cases are answered
 //! one by one: a root at 0 for every delay, which a real root may pass once; a zero on the axis
 //! that P and Q share; zeros of P + Q on the axis, from which a pair starts at τ = 0.
+//!
+//! Longer than most files: every degenerate case is answered in its own way.
 
 use std::f64::consts::{PI, TAU};
 

@@ -24,6 +24,7 @@ pub mod line;
 mod parts;
 pub mod plane;
 pub mod polynomial;
+mod products;
 pub mod reason;
 pub mod right_of;
 pub mod rightmost;

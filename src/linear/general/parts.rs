@@ -130,11 +130,7 @@ pub(super) fn exponential(z: Complex64) -> Complex64 {
 }
 
 /// A e^(−λδ) with its derivatives from those of A.
-pub(super) fn late(
-    gain: [Complex64; 3],
-    latency: f64,
-    lambda: Complex64,
-) -> [Complex64; 3] {
+pub(super) fn late(gain: [Complex64; 3], latency: f64, lambda: Complex64) -> [Complex64; 3] {
     if latency == 0.0 {
         return gain;
     }
@@ -146,4 +142,3 @@ pub(super) fn late(
         (second + latency * (latency * value - 2.0 * first)) * by,
     ]
 }
-
