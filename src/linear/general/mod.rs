@@ -8,10 +8,13 @@
 //! - `equation`: a system as what finds and follows roots takes it
 //! - [`rightmost`]: the rightmost roots, or where roots accumulate
 //! - [`line`]: all delays of a setting: crossings and counts
+//! - `count`: the count at one delay
+//! - `row`: counts and margins at many delays
 //! - [`stable`]: the delays at which it is stable
 //! - [`latency`]: feedback that comes late
 //! - [`reason`]: why a cell is not like the others
 
+mod count;
 mod equation;
 mod latency;
 pub mod line;
@@ -19,6 +22,7 @@ pub mod polynomial;
 pub mod reason;
 pub mod right_of;
 pub mod rightmost;
+mod row;
 pub mod stable;
 mod switches;
 pub mod system;

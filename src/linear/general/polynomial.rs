@@ -1,4 +1,6 @@
 //! Real polynomials with a bound on the error of every coefficient.
+//!
+//! Longer than most files: one type and its arithmetic.
 
 use num_complex::Complex64;
 
