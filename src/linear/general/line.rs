@@ -11,8 +11,6 @@
 //! Equation numbers are those of the derivation for general systems. Degenerate cases are answered
 //! one by one: a root at 0 for every delay, which a real root may pass once; a zero on the axis
 //! that P and Q share; zeros of P + Q on the axis, from which a pair starts at τ = 0.
-//!
-//! Longer than most files: every degenerate case is answered in its own way.
 
 use std::f64::consts::{PI, TAU};
 
@@ -22,7 +20,7 @@ use super::right_of::{RootCounter, Turning};
 use super::switches::{Switch, Switches};
 use super::system::{Class, System};
 use super::zeros::Zeros;
-use crate::linear::count::{Count, MarginalTolerance};
+use crate::linear::count::MarginalTolerance;
 use crate::linear::crossing::{Crossing, Direction};
 use crate::linear::equation::Pair;
 use crate::linear::newton::divide;
@@ -364,57 +362,6 @@ impl DelayLine {
             Some(n) => self.at_zero_delay = n,
             None => self.always_marginal = true,
         }
-    }
-
-    /// 2 Σ s_j #{k: τ_{j,k} < τ}, and the passage of the real root.
-    #[inline]
-    fn change_until(&self, tau: f64) -> i64 {
-        let mut change = 0;
-        for crossing in &self.crossings {
-            change += 2 * i64::from(crossing.direction.sign()) * crossing.count_below(tau) as i64;
-        }
-        match self.passage {
-            Some(passage) if passage.tau < tau => change + i64::from(passage.change),
-            _ => change,
-        }
-    }
-
-    /// (5), with whether `tau` ≥ 0 lies within rounding of a change.
-    #[must_use]
-    pub fn count(&self, tau: f64, tolerance: MarginalTolerance) -> Count {
-        Count {
-            n_unstable: self.n_unstable(tau),
-            marginal: self.marginal(tau, tolerance),
-        }
-    }
-
-    /// (5). On a crossing itself the pair on the axis is not counted as moved.
-    #[inline]
-    #[must_use]
-    pub fn n_unstable(&self, tau: f64) -> u64 {
-        if tau == 0.0 {
-            return self.without_delay;
-        }
-        let n = self.at_zero_delay as i64 + self.change_until(tau);
-        u64::try_from(n).unwrap_or(0)
-    }
-
-    /// Whether `tau` lies within rounding of a change, or a root is on the axis at every delay.
-    #[must_use]
-    pub fn marginal(&self, tau: f64, tolerance: MarginalTolerance) -> bool {
-        let allowed = |crossing: &Crossing, delay: f64| {
-            (tolerance.0 * delay.max(self.time_unit)).max(crossing.delay_error(delay))
-        };
-        self.always_marginal
-            || tau >= self.open_from
-            || (self.marginal_at_zero && tau <= tolerance.0 * self.time_unit)
-            || self.passage.is_some_and(|p| {
-                (tau - p.tau).abs() <= p.error.max(tolerance.0 * p.tau.max(self.time_unit))
-            })
-            || self
-                .crossings
-                .iter()
-                .any(|crossing| crossing.marginal_at(tau, |delay| allowed(crossing, delay)))
     }
 }
 

@@ -8,6 +8,8 @@
 //! - `equation`: a system as what finds and follows roots takes it
 //! - [`rightmost`]: the rightmost roots, or where roots accumulate
 //! - [`line`]: all delays of a setting: crossings and counts
+//! - `count`: the count at one delay
+//! - `row`: counts and margins at many delays
 //! - [`stable`]: the delays at which it is stable
 //! - [`latency`]: feedback that comes late
 //! - [`curves`]: exact boundaries over a plane of two parameters
@@ -16,6 +18,7 @@
 //! - [`plane`]: a system over a plane of two of its parameters
 //! - [`reason`]: why a cell is not like the others
 
+mod count;
 pub mod curves;
 mod equation;
 mod latency;
@@ -28,6 +31,7 @@ mod products;
 pub mod reason;
 pub mod right_of;
 pub mod rightmost;
+mod row;
 mod sides;
 pub mod stable;
 mod starts;

@@ -4,7 +4,7 @@ use std::f64::consts::{PI, TAU};
 
 use super::line::DelayLine;
 use crate::linear::crossing::Direction;
-use crate::linear::stable_delays::StableInterval;
+use crate::linear::stable_delays::{StableInterval, signed_distance};
 
 /// A change of the number of unstable roots along the delays.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -66,7 +66,7 @@ impl Iterator for Changes<'_> {
 }
 
 /// More changes than this are not gone through: near a touch there can be any number of them.
-const MOST_CHANGES: u64 = 1 << 24;
+const MOST_CHANGES: u64 = 1 << 20;
 
 /// The stable intervals of a line by growing delay.
 #[derive(Debug, Clone)]
@@ -141,19 +141,11 @@ impl MarginWalk<'_> {
             self.below = Some(next);
             self.above = self.intervals.next();
         }
-        if self.intervals.gave_up() {
+        let inside = self.below.is_some_and(|below| tau <= below.to);
+        if self.intervals.gave_up() && self.above.is_none() && !inside {
             return f64::NAN;
         }
-        let to_next = self.above.map_or(f64::INFINITY, |next| next.from - tau);
-        match self.below {
-            // Stability does not change at the lower end τ = 0 of all delays.
-            Some(StableInterval { from, to }) if tau <= to => match from {
-                0.0 => to - tau,
-                _ => (to - tau).min(tau - from),
-            },
-            Some(passed) => 0.0 - to_next.min(tau - passed.to),
-            None => 0.0 - to_next,
-        }
+        signed_distance(tau, self.below, self.above)
     }
 }
 
@@ -190,6 +182,12 @@ impl DelayLine {
             above: intervals.next(),
             intervals,
         }
+    }
+
+    /// The signed distance in τ to the nearest change of stability, see [`MarginWalk::margin_at`].
+    #[must_use]
+    pub fn delay_margin(&self, tau: f64) -> f64 {
+        self.margins().margin_at(tau)
     }
 
     /// A delay beyond which something is unstable; ∞ where there is none.

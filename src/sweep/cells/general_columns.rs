@@ -3,13 +3,14 @@
 use std::ops::Range;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use super::buffers::{N_UNSTABLE_FILL, TileBuffers};
+use super::buffers::TileBuffers;
 use super::line::Places;
 use super::root_columns::{Line, RootColumns};
 use crate::linear::MarginalTolerance;
 use crate::linear::general::rightmost::beside_accumulation;
 use crate::linear::general::{Class, DelayLine, Reason, RightOf, RootCounter, System};
-use crate::linear::status::{CERTIFIED, MARGINAL, MOST_COUNTED, NOT_CONVERGED, SATURATED};
+use crate::linear::row::Delays;
+use crate::linear::status::{CERTIFIED, MARGINAL, NOT_CONVERGED};
 use crate::model::Groups;
 use crate::sweep::input::field::Field;
 use crate::sweep::input::linear_model::FeedbackLoop;
@@ -29,7 +30,7 @@ pub(super) struct GeneralLine<'a> {
     /// How much each group grows with its parameter.
     pub per_parameter: Groups,
     /// The delays, increasing, in the units of the sweep.
-    pub delays: &'a [f64],
+    pub delays: &'a Delays,
     /// The index of the first of them on the whole line.
     pub first: usize,
     pub tolerance: MarginalTolerance,
@@ -63,7 +64,7 @@ impl GeneralColumns {
         self.fill_margins(line, buffers);
         self.fill_latency_margins(line, buffers);
         self.no_rightmost.clear();
-        self.no_rightmost.resize(line.delays.len(), false);
+        self.no_rightmost.resize(line.delays.values().len(), false);
         if let Some(roots) = roots {
             self.fill_roots(line, roots, buffers);
         }
@@ -79,29 +80,13 @@ impl GeneralColumns {
 
     /// Counts, with what they have to say of themselves.
     fn count(&mut self, line: &GeneralLine) {
-        self.counts.clear();
+        let len = line.delays.values().len();
+        self.counts.resize(len, 0);
         self.status.clear();
-        for &tau in line.delays {
-            let (n, status) = self.count_at(tau, line.tolerance);
-            self.counts.push(n);
-            self.status.push(status);
-        }
-    }
-
-    fn count_at(&self, tau: f64, tolerance: MarginalTolerance) -> (u16, u8) {
-        let crossings = &self.crossings;
-        if crossings.uncounted && tau > 0.0 {
-            return match crossings.reason {
-                Some(Reason::Infinite) => (N_UNSTABLE_FILL, SATURATED),
-                _ => (N_UNSTABLE_FILL, NOT_CONVERGED),
-            };
-        }
-        let count = crossings.count(tau, tolerance);
-        let marginal = if count.marginal { MARGINAL } else { 0 };
-        match u16::try_from(count.n_unstable) {
-            Ok(n) if n <= MOST_COUNTED => (n, marginal),
-            _ => (MOST_COUNTED, marginal | SATURATED),
-        }
+        self.status.resize(len, 0);
+        let (n, status) = (&mut self.counts, &mut self.status);
+        self.crossings
+            .fill_counts(line.delays, line.tolerance, n, status);
     }
 
     fn fill_margins(&mut self, line: &GeneralLine, buffers: &mut TileBuffers) {
@@ -111,7 +96,13 @@ impl GeneralColumns {
             .find(|c| c.field == Field::DelayMargin);
         let Some(column) = column else { return };
         let mut walk = self.crossings.margins();
-        for (i, (&tau, status)) in line.delays.iter().zip(&mut self.status).enumerate() {
+        for (i, (&tau, status)) in line
+            .delays
+            .values()
+            .iter()
+            .zip(&mut self.status)
+            .enumerate()
+        {
             let margin = walk.margin_at(tau);
             if margin.is_nan() && !self.crossings.uncounted {
                 *status |= NOT_CONVERGED;
@@ -125,7 +116,13 @@ impl GeneralColumns {
         let Some(column) = columns.find(|c| c.field == Field::LatencyMargin) else {
             return;
         };
-        for (i, (&tau, status)) in line.delays.iter().zip(&mut self.status).enumerate() {
+        for (i, (&tau, status)) in line
+            .delays
+            .values()
+            .iter()
+            .zip(&mut self.status)
+            .enumerate()
+        {
             if line.stop.load(Ordering::Relaxed) {
                 return;
             }
@@ -144,11 +141,11 @@ impl GeneralColumns {
         roots: &mut RootColumns,
         buffers: &mut TileBuffers,
     ) {
-        let len = line.delays.len();
+        let len = line.delays.values().len();
         let known = match (self.crossings.uncounted, line.system.class()) {
             (false, _) => len,
             // Without delay there is one more polynomial.
-            (true, Class::Infinite) if line.delays[0] == 0.0 => 1,
+            (true, Class::Infinite) if line.delays.values()[0] == 0.0 => 1,
             (true, _) => 0,
         };
         for i in known..len {
@@ -175,7 +172,7 @@ impl GeneralColumns {
                     of_loop: line.of_loop,
                     time_unit: line.time_unit,
                     per_parameter: line.per_parameter,
-                    delays: &line.delays[run.clone()],
+                    delays: &line.delays.values()[run.clone()],
                     first: line.first + run.start,
                 };
                 let places = Places {
@@ -190,7 +187,10 @@ impl GeneralColumns {
 
     /// Finds the cells where no root lies right of the line at which they accumulate.
     fn find_accumulations(&mut self, line: &GeneralLine, counter: &RootCounter, known: usize) {
-        for (tau, no_rightmost) in line.delays[..known].iter().zip(&mut self.no_rightmost) {
+        for (tau, no_rightmost) in line.delays.values()[..known]
+            .iter()
+            .zip(&mut self.no_rightmost)
+        {
             let tau = tau / line.time_unit;
             let beside = beside_accumulation(line.system, tau);
             *no_rightmost =
@@ -206,7 +206,7 @@ impl GeneralColumns {
         buffers: &mut TileBuffers,
     ) {
         for i in run {
-            let tau = line.delays[i] / line.time_unit;
+            let tau = line.delays.values()[i] / line.time_unit;
             let abscissa = line.system.essential_abscissa(tau);
             let beside = beside_accumulation(line.system, tau).unwrap_or(f64::NAN);
             let physical = abscissa / line.time_unit;
@@ -229,7 +229,7 @@ impl GeneralColumns {
         if !kinds && !buffers.columns.iter().any(|c| wanted(c.field)) {
             return;
         }
-        for (i, &tau) in line.delays.iter().enumerate() {
+        for (i, &tau) in line.delays.values().iter().enumerate() {
             let essential = line.system.essential_abscissa(tau / line.time_unit);
             let accumulate = self.no_rightmost[i].then_some(Reason::NoRightmostRoot);
             let reason = self.crossings.reason.or(accumulate);

@@ -196,7 +196,7 @@ impl<'p> Worker<'p> {
             time_unit,
             stiffness_ratio: self.lines.setting.stiffness_ratio().unwrap_or(f64::NAN),
             per_parameter: self.lines.groups_per_parameter(),
-            delays: self.delays.values(),
+            delays: &self.delays,
             first: self.delay_range.start,
             tolerance: self.plan.spec.tolerance,
             places: Places {

@@ -1089,8 +1089,9 @@ mod tests {
              d_abscissa_d_mu_prime, certificate_margin, essential_abscissa, stiffness_ratio, \
              reason, gain_margin_lower, gain_margin_upper, phase_margin, latency_margin, \
              stability_radius, settle_time, last_release, n_min, peak_force, basin_share, \
-             basin_share_error, basin_share_upper, vc, vc_lower, vc_upper, v_liftoff, stick_time, slip_time, v_smooth, vc_over_vtilde, omega0_T, \
-             liftoff_over_vtilde, vc_weak_control, vc_strong_control, weak_control_error, \
+             basin_share_error, basin_share_upper, vc, vc_lower, vc_upper, v_liftoff, stick_time, \
+             slip_time, v_smooth, vc_over_vtilde, omega0_T, liftoff_over_vtilde, \
+             vc_weak_control, vc_strong_control, weak_control_error, \
              strong_control_error"
         );
     }

@@ -128,7 +128,7 @@ fn what_has_no_value_is_told_in_its_place() {
     }
 }
 
-/// An expression as a tree, with its value by the rules of arithmetic: what `read` knows nothing of.
+/// An expression as a tree, with its value by the rules of arithmetic: `read` knows nothing of it.
 #[derive(Debug, Clone)]
 enum Tree {
     Number(f64),
