@@ -24,6 +24,8 @@ const CROWDED: f64 = 1e-12;
 const MOST_HALVINGS: u32 = 64;
 /// How near to the line at which roots accumulate they are looked for, in units of 1/τ.
 const BESIDE_ESSENTIAL: f64 = 1e-6;
+/// So many times as far from that line no more halvings are made towards it.
+const CLOSE: f64 = 16.0;
 /// How far from a cluster of nearly equal roots its number may be counted.
 const FARTHEST_COUNT: f64 = 0.03;
 
@@ -270,6 +272,7 @@ fn line_left_of(equation: impl Equation, tau: f64, wanted: u64, leftmost: f64) -
     let leftmost = leftmost
         .max(-FARTHEST_LEFT / equation.memory_span(tau))
         .max(beside_essential(equation, tau));
+    let accumulating = equation.essential_abscissa(tau).is_finite();
     // The line itself may hit a root; its neighbours then do not.
     let count = |line: f64| {
         [0.0, 1e-3, -1.7e-3]
@@ -291,7 +294,10 @@ fn line_left_of(equation: impl Equation, tau: f64, wanted: u64, leftmost: f64) -
             _ => {}
         }
         right = left;
-        left = (left - step).max(leftmost);
+        // Where roots accumulate a line next to that has too many right of it.
+        let halfway = 0.5 * (left + leftmost);
+        let close = !accumulating || left - leftmost <= CLOSE * BESIDE_ESSENTIAL / tau;
+        left = (left - step).max(if close { leftmost } else { halfway });
         step *= 2.0;
     }
     let Some((mut line, mut n)) = enough else {

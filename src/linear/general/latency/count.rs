@@ -12,15 +12,21 @@ use super::super::switches::{Switch, Switches};
 use super::super::system::{Angle, Class, Feedback};
 use super::on_line::{Form, OnLine};
 use super::sum::Sum;
-use super::wave::TooMany;
+use super::wave::{TooMany, Window};
 use crate::model::elementary::{arg, atan2, sincos};
 
 /// Below this part of a turn a root near the real axis cannot have made one.
 const NO_TURN: f64 = 0.25;
 
+/// Frequencies to so many digits, relative, decide nearly every turn.
+const ROUGH: f64 = 1e-3;
+/// Turns of the delay over the range of frequencies, less those of the latency, up to which the form
+/// with the latency costs less: it needs no arguments of sums.
+const CHEAPER: f64 = 12.0;
+
 /// Why a line has no count.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(in super::super) enum NoCount {
+enum NoCount {
     Infinite,
     Undecided,
 }
@@ -51,7 +57,7 @@ enum Rough {
 
 /// One line in one form.
 struct Way<'f> {
-    on_line: OnLine,
+    on_line: &'f OnLine,
     form: Form,
     arguments: Arguments<'f>,
     rough: Rough,
@@ -61,7 +67,7 @@ struct Way<'f> {
 
 impl<'f> Way<'f> {
     fn new(
-        on_line: OnLine,
+        on_line: &'f OnLine,
         form: Form,
         (open, gain): (&'f Factors, &'f Factors),
         switches: &mut Switches,
@@ -103,7 +109,7 @@ impl<'f> Way<'f> {
     /// φ and ψ.
     fn rough(&self, omega: f64) -> [f64; 2] {
         let [open, gain] = self.arguments.at(omega);
-        let of = &self.on_line;
+        let of = self.on_line;
         match &self.rough {
             Rough::Latency => {
                 let [kept, lost] = of.echoes(omega);
@@ -159,12 +165,17 @@ impl<'f> Way<'f> {
     }
 
     /// Tells `each` the turns of the line; what stands before them in (7).
-    fn turns(&self, mut each: impl FnMut(Turn) -> bool) -> Result<i64, NoCount> {
+    fn turns(
+        &self,
+        (window, precision): (Window, f64),
+        mut each: impl FnMut(Turn) -> bool,
+    ) -> Result<i64, NoCount> {
         let undecided = |_: TooMany| NoCount::Undecided;
         let wave = self.on_line.wave(self.form);
-        let last = self.on_line.last();
         let start = wave
-            .zeros(last, |switch| self.turn(&switch).is_some_and(&mut each))
+            .zeros(window, precision, |switch| {
+                self.turn(&switch).is_some_and(&mut each)
+            })
             .map_err(undecided)?;
         let longest = self.on_line.tau + self.on_line.latency;
         if start.open_below * longest > NO_TURN {
@@ -197,27 +208,42 @@ impl RootCounter {
         }
     }
 
-    /// As [`RootCounter::right_of`], with latency: by the form that swings less often, or else by
-    /// the other one.
+    /// As [`RootCounter::right_of`], with latency: by the form that costs less, its frequencies to
+    /// no more digits than it takes; where that leaves it open by the same with all digits, and by
+    /// the other form.
     pub(in super::super) fn late(&self, feedback: &Feedback, tau: f64, line: f64) -> RightOf {
-        let forms = if tau < feedback.latency {
+        let on_line = match self.late_line(feedback, tau, line) {
+            Ok(on_line) => on_line,
+            Err(why) => return why.into(),
+        };
+        let window = on_line.window();
+        let swings = (tau - feedback.latency) * (window.to - window.from);
+        let forms = if swings < CHEAPER {
             [Form::Latency, Form::Delay]
         } else {
             [Form::Delay, Form::Latency]
         };
-        match self.late_right_of(feedback, forms[0], tau, line) {
-            RightOf::Undecided => self.late_right_of(feedback, forms[1], tau, line),
-            found => found,
-        }
+        [(forms[0], ROUGH), (forms[0], 0.0), (forms[1], 0.0)]
+            .into_iter()
+            .map(|(form, precision)| self.by_form(&on_line, form, (window, precision)))
+            .find(|found| *found != RightOf::Undecided)
+            .unwrap_or(RightOf::Undecided)
     }
 
     fn late_right_of(&self, feedback: &Feedback, form: Form, tau: f64, line: f64) -> RightOf {
+        match self.late_line(feedback, tau, line) {
+            Ok(on_line) => self.by_form(&on_line, form, (on_line.window(), 0.0)),
+            Err(why) => why.into(),
+        }
+    }
+
+    fn by_form(&self, on_line: &OnLine, form: Form, to: (Window, f64)) -> RightOf {
         let turn_by = match form {
-            Form::Delay => tau,
-            Form::Latency => feedback.latency,
+            Form::Delay => on_line.tau,
+            Form::Latency => on_line.latency,
         };
         let mut sum = 0.0;
-        let found = self.on_late_line(feedback, form, (tau, line), |turn| {
+        let found = self.turns_of(on_line, form, to, |turn| {
             turn.turns(turn_by).is_some_and(|turns| {
                 sum += turn.sign * turns;
                 true
@@ -226,17 +252,17 @@ impl RootCounter {
         match found {
             Ok(without_turns) => u64::try_from(without_turns + 2 * sum as i64)
                 .map_or(RightOf::Undecided, RightOf::Roots),
-            Err(NoCount::Infinite) => RightOf::Infinite,
-            Err(NoCount::Undecided) => RightOf::Undecided,
+            Err(why) => why.into(),
         }
     }
 
     /// Equation (7) on the imaginary axis with latency: for every delay, or with a given delay for
     /// every latency.
     pub(in super::super) fn late_unstable(&self, form: Form, tau: f64) -> Option<Turning> {
-        let feedback = self.system().feedback?;
+        let on_line = self.late_line(self.system().late()?, tau, 0.0).ok()?;
         let mut turns = Vec::new();
-        let without_turns = self.on_late_line(&feedback, form, (tau, 0.0), |turn| {
+        let to = (on_line.window(), 0.0);
+        let without_turns = self.turns_of(&on_line, form, to, |turn| {
             turns.push(turn);
             true
         });
@@ -246,13 +272,7 @@ impl RootCounter {
         })
     }
 
-    fn on_late_line(
-        &self,
-        feedback: &Feedback,
-        form: Form,
-        (tau, line): (f64, f64),
-        each: impl FnMut(Turn) -> bool,
-    ) -> Result<i64, NoCount> {
+    fn late_line(&self, feedback: &Feedback, tau: f64, line: f64) -> Result<OnLine, NoCount> {
         let open = NoCount::Undecided;
         match self.system().class() {
             Class::DegreeUnknown | Class::Refused => return Err(open),
@@ -266,9 +286,28 @@ impl RootCounter {
         if !on_line.on_real_axis().decided() {
             return Err(open);
         }
+        Ok(on_line)
+    }
+
+    fn turns_of(
+        &self,
+        on_line: &OnLine,
+        form: Form,
+        to: (Window, f64),
+        each: impl FnMut(Turn) -> bool,
+    ) -> Result<i64, NoCount> {
         let mut switches = Switches::default();
         Way::new(on_line, form, self.late_factors(), &mut switches)
-            .ok_or(open)?
-            .turns(each)
+            .ok_or(NoCount::Undecided)?
+            .turns(to, each)
+    }
+}
+
+impl From<NoCount> for RightOf {
+    fn from(why: NoCount) -> Self {
+        match why {
+            NoCount::Infinite => Self::Infinite,
+            NoCount::Undecided => Self::Undecided,
+        }
     }
 }

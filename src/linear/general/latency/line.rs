@@ -67,7 +67,7 @@ impl DelayLine {
         let mut switches = Switches::default();
         let found = on_line.as_ref().is_some_and(|on_line| {
             let wave = on_line.wave(Form::Latency);
-            wave.switches(on_line.last(), &mut switches).is_ok()
+            wave.switches(on_line.window(), &mut switches).is_ok()
         });
         let Some(on_line) = on_line.filter(|_| found) else {
             // Too many to be listed: nothing is said but what holds without latency.

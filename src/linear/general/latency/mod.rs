@@ -83,7 +83,7 @@ impl Feedback {
             return false;
         };
         let wave = on_line.wave(Form::Delay);
-        wave.switches(on_line.last(), switches).is_ok()
+        wave.switches(on_line.window(), switches).is_ok()
     }
 
     /// The argument of −P Q* at iω, P and Q being 𝒫 and 𝒬 of (1) in [`on_line`].

@@ -11,13 +11,19 @@
 //! ```
 //!
 //! (3) swings with δ and holds for every τ on the imaginary axis, (4) the other way round. On that
-//! axis (3) is divided by 1 − R. Both are positive where (1 − |R|κ)|B| > (1 + κ)|𝒜|.
+//! axis (3) is divided by 1 − R. Both vanish only where B/𝒜 lies on a circle about the real axis,
+//!
+//! ```text
+//! |B/𝒜 − 1| = κ|1 − R B/𝒜|:   |B/𝒜| is between (1 + κ)/(1 + Rκ) and |1 − κ|/(1 − Rκ)         (5)
+//! ```
+//!
+//! and are positive where |B/𝒜| is larger than that.
 
 use num_complex::Complex64;
 
 use super::super::polynomial::{At, Polynomial};
 use super::super::system::{Angle, Decay, Feedback, remembered};
-use super::wave::{Wave, beyond_zeros};
+use super::wave::{Wave, Window, before_zeros, beyond_zeros};
 use crate::linear::characteristic::one_minus_exp;
 use crate::linear::rounded::Rounded;
 use crate::model::elementary::sincos;
@@ -38,6 +44,9 @@ pub(in super::super) struct OnLine {
     pub open: Polynomial,
     /// e^(−σδ) A(σ + z).
     pub gain: Polynomial,
+    /// |B|² and |𝒜|².
+    own: Polynomial,
+    fed: Polynomial,
     pub memory: f64,
     pub line: f64,
     pub tau: f64,
@@ -58,14 +67,16 @@ impl OnLine {
     /// None where e^(−στ) or e^(−σδ) overflows.
     pub(in super::super) fn new(feedback: &Feedback, tau: f64, line: f64) -> Option<Self> {
         let late = Decay::new(line, feedback.latency)?;
-        let gain = feedback.gain.shifted(line);
+        let open = feedback.open.shifted(line);
+        let mut gain = feedback.gain.shifted(line);
+        if line != 0.0 {
+            gain = gain.scaled(late.kappa);
+        }
         Some(Self {
-            open: feedback.open.shifted(line),
-            gain: if line == 0.0 {
-                gain
-            } else {
-                gain.scaled(late.kappa)
-            },
+            own: open.real_product(&open),
+            fed: gain.real_product(&gain),
+            open,
+            gain,
             memory: feedback.memory,
             line,
             tau,
@@ -78,14 +89,9 @@ impl OnLine {
         self.line == 0.0
     }
 
-    /// 1 − |R|κ.
-    fn kept(&self) -> Rounded {
-        remembered(self.memory.abs(), self.decay)
-    }
-
     /// Whether the line lies right of the one at which roots accumulate; none where that is open.
     pub(in super::super) fn right_of_essential(&self) -> Option<bool> {
-        let kept = self.kept();
+        let kept = remembered(self.memory.abs(), self.decay);
         kept.decided().then_some(kept.value > 0.0)
     }
 
@@ -95,21 +101,43 @@ impl OnLine {
         Rounded::sum([1.0, factor * kappa.value]).plus_error(factor.abs() * kappa.error)
     }
 
-    /// A frequency beyond which (3) and (4) are positive.
-    pub(in super::super) fn last(&self) -> f64 {
-        let (kept, both) = (self.kept(), self.one_and(1.0));
-        let own = self.open.real_product(&self.open).scaled(kept.times(kept));
-        let fed = self.gain.real_product(&self.gain).scaled(both.times(both));
-        beyond_zeros(&own.plus(&fed, -1.0))
+    /// Where (3) and (4) can vanish, right of the line at which roots accumulate.
+    pub(in super::super) fn window(&self) -> Window {
+        let (own, fed) = (&self.own, &self.fed);
+        // The ends of (5) as numerators and denominators.
+        let ends = [
+            (self.one_and(1.0), self.one_and(self.memory)),
+            (self.decay.lost, remembered(self.memory, self.decay)),
+        ];
+        let [plus, minus] = ends.map(|(above, below)| (above.value / below.value).abs());
+        let [outer, inner] = if plus >= minus { [0, 1] } else { [1, 0] };
+        let apart = |end: usize| {
+            let (above, below) = ends[end];
+            own.scaled(below.times(below))
+                .plus(&fed.scaled(above.times(above)), -1.0)
+        };
+        let outside = apart(outer);
+        let to = beyond_zeros(&outside);
+        // Up to there |B/𝒜| is beyond the same end as at ω = 0.
+        let constant = outside.coefficient(0);
+        let from = if constant.decided() && constant.value > 0.0 {
+            before_zeros(&outside)
+        } else {
+            let inside = apart(inner);
+            let constant = inside.coefficient(0);
+            if constant.decided() && constant.value < 0.0 {
+                before_zeros(&inside.scaled(exactly(-1.0)))
+            } else {
+                0.0
+            }
+        };
+        Window { from, to }
     }
 
     /// |B|² − |𝒜|² with factors: where one or the other is larger.
     pub(in super::super) fn difference(&self, open: f64, gain: f64) -> Polynomial {
-        let own = self.open.real_product(&self.open).scaled(exactly(open));
-        own.plus(
-            &self.gain.real_product(&self.gain).scaled(exactly(gain)),
-            -1.0,
-        )
+        let own = self.own.scaled(exactly(open));
+        own.plus(&self.fed.scaled(exactly(gain)), -1.0)
     }
 
     /// D(σ) = B(1 − Rκ) − 𝒜(1 − κ).
@@ -132,7 +160,7 @@ impl OnLine {
 
     /// (3).
     fn wave_of_latency(&self) -> Wave {
-        let own = self.open.real_product(&self.open);
+        let (own, fed) = (&self.own, &self.fed);
         let along = self.gain.real_product(&self.open);
         let across = self.gain.imaginary_product(&self.open);
         let (open, gain) = (self.open.coefficient(0), self.gain.coefficient(0));
@@ -154,7 +182,7 @@ impl OnLine {
             u = own
                 .scaled(outer)
                 .plus(&along.scaled(twice), -1.0)
-                .plus(&self.gain.real_product(&self.gain).scaled(lost), 1.0);
+                .plus(&fed.scaled(lost), 1.0);
             sum = self.on_real_axis();
             mirror = open
                 .times(self.one_and(self.memory))
@@ -173,8 +201,7 @@ impl OnLine {
 
     /// (4).
     fn wave_of_delay(&self) -> Wave {
-        let own = self.open.real_product(&self.open);
-        let fed = self.gain.real_product(&self.gain);
+        let (own, fed) = (&self.own, &self.fed);
         let kept = remembered(self.memory, self.decay);
         let mut u = own.scaled(kept.times(kept));
         if !self.on_axis() {
@@ -187,7 +214,7 @@ impl OnLine {
             u = u.with_constant(self.on_real_axis().times(mirror));
         }
         let twice = self.decay.kappa.scaled(2.0);
-        let swing = own.scaled(exactly(self.memory)).plus(&fed, -1.0);
+        let swing = own.scaled(exactly(self.memory)).plus(fed, -1.0);
         Wave {
             parts: [u, swing.scaled(twice), Polynomial::ZERO],
             t: self.tau,

@@ -19,7 +19,7 @@
 use super::super::polynomial::{MOST_DEGREE, Polynomial};
 use super::super::switches::{Switch, Switches, direction};
 use crate::linear::rounded::Rounded;
-use crate::model::elementary::{power, sincos};
+use crate::model::elementary::{power, rough_root, sincos};
 
 /// Steps after which the zeros are too many to be listed.
 const MOST_STEPS: usize = 1 << 17;
@@ -36,8 +36,10 @@ const SHORTEST_STEP: f64 = 1e-13;
 const A_LITTLE_LESS: f64 = 1.0 - 1e-9;
 /// Steps of Newton's method, with halvings between, until a zero is polished.
 const MOST_POLISHINGS: usize = 100;
+/// Nearer to the largest zero of a polynomial in steps of this factor.
+const NEARER: f64 = 0.7;
 /// Halvings of ω from the last zero down until the sign of f near 0 is known.
-const MOST_HALVINGS: u32 = 60;
+const MOST_HALVINGS: i32 = 60;
 
 /// The function (1).
 #[derive(Debug, Clone, Copy)]
@@ -46,6 +48,13 @@ pub(crate) struct Wave {
     pub parts: [Polynomial; 3],
     /// t ≥ 0.
     pub t: f64,
+}
+
+/// A range of frequencies.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Window {
+    pub from: f64,
+    pub to: f64,
 }
 
 /// The zeros are too many to be listed, or their number is open.
@@ -137,7 +146,12 @@ impl Prepared {
                 even * (error(next_u) + 2.0 * error(next_v)) + t * error(w),
             ];
             prepared.bends[k] = [
-                even * odd * (size(next_u) + 2.0 * size(next_v))
+                // Of (u + v) − v cos ωt.
+                even * odd
+                    * ((next_u.value + next_v.value).abs()
+                        + next_u.error
+                        + next_v.error
+                        + size(next_v))
                     + t * (t * size(v) + 2.0 * odd * size(w)),
                 2.0 * even * t * size(next_v) + even * (odd + 2.0) * size(next_w) + t * t * size(w),
             ];
@@ -209,7 +223,7 @@ impl Prepared {
 
     /// The zero between `from` and `to`, at which the signs of f differ, f being monotone between;
     /// with a bound on its error.
-    fn polish(&self, from: &At, to: &At) -> (f64, f64) {
+    fn polish(&self, from: &At, to: &At, precision: f64) -> (f64, f64) {
         let rising = to.value.value > 0.0;
         let (mut low, mut high) = (from.omega, to.omega);
         let start = if from.value.value.abs() < to.value.value.abs() {
@@ -223,7 +237,7 @@ impl Prepared {
             let newton = at.omega - at.value.value / at.slope.value;
             let step = (newton - at.omega).abs();
             let inside = low < newton && newton < high && step < 0.5 * last;
-            if inside && step <= 4.0 * f64::EPSILON * at.omega {
+            if inside && step <= precision.max(4.0 * f64::EPSILON) * at.omega {
                 break;
             }
             let next = if inside { newton } else { 0.5 * (low + high) };
@@ -266,15 +280,14 @@ struct Way<'p> {
     here: At,
     step: f64,
     to: f64,
+    precision: f64,
 }
 
 impl Way<'_> {
     /// Goes one step on; the switch that lies in it, if one does.
     fn go(&mut self) -> Option<Switch> {
         let from = self.here;
-        let longest = (GROWTH * self.step)
-            .min(self.to - from.omega)
-            .max(f64::MIN_POSITIVE);
+        let longest = GROWTH * self.step;
         let (step, monotone) = self.prepared.step(&from, longest);
         let step = step.min(longest);
         if step < SHORTEST_STEP * from.omega {
@@ -291,7 +304,7 @@ impl Way<'_> {
                 return None;
             }
             if monotone {
-                let (omega, error) = self.prepared.polish(&from, &there);
+                let (omega, error) = self.prepared.polish(&from, &there, self.precision);
                 return Some(Switch {
                     omega,
                     error,
@@ -306,7 +319,7 @@ impl Way<'_> {
 
     /// Over a stretch on which the sign of f is lost.
     fn leap(&mut self, from: &At) -> Option<Switch> {
-        let mut step = (SHORTEST_STEP * from.omega).max(1e-3 * self.step.min(from.omega * 1e-6));
+        let mut step = SHORTEST_STEP * from.omega.max(1e-3 * self.to);
         loop {
             let there = self.prepared.at(from.omega + step);
             if there.value.decided() {
@@ -348,29 +361,33 @@ pub(crate) struct Start {
 }
 
 impl Wave {
-    /// Tells `found` the positive zeros up to `to` by rising frequency; f must be positive beyond
-    /// that. f(0) is taken for 0 where it may be 0. `found` ends the search by returning false.
+    /// Tells `found` the positive zeros in the window by rising frequency, each to `precision`,
+    /// relative, or to rounding where that is 0; f must be positive beyond it. f(0) is taken for 0
+    /// where it may be 0. `found` ends the search by returning false.
     ///
     /// # Errors
     /// When there are too many, or `found` ended it.
     pub(crate) fn zeros(
         &self,
-        to: f64,
+        window: Window,
+        precision: f64,
         mut found: impl FnMut(Switch) -> bool,
     ) -> Result<Start, TooMany> {
-        if to == 0.0 {
+        let Window { from, to } = window;
+        if to == 0.0 || (from >= to && self.parts[0].coefficient(0).value > 0.0) {
             return Ok(Start {
                 positive: Some(true),
                 open_below: 0.0,
             });
         }
         let prepared = Prepared::new(self);
-        let (here, start) = self.start(&prepared, to)?;
+        let (here, start) = self.start(&prepared, window)?;
         let mut way = Way {
             prepared: &prepared,
             here,
-            step: 0.5 * FIRST_STEP * to,
+            step: 0.5 * FIRST_STEP * (to - here.omega),
             to,
+            precision,
         };
         for _ in 0..MOST_STEPS {
             if way.here.omega >= to {
@@ -386,9 +403,9 @@ impl Wave {
     }
 
     /// As [`Wave::zeros`], all of them in a list by falling frequency.
-    pub(crate) fn switches(&self, to: f64, switches: &mut Switches) -> Result<(), TooMany> {
+    pub(crate) fn switches(&self, window: Window, switches: &mut Switches) -> Result<(), TooMany> {
         switches.list.clear();
-        let start = self.zeros(to, |switch| {
+        let start = self.zeros(window, 0.0, |switch| {
             switches.list.push(switch);
             true
         })?;
@@ -399,33 +416,29 @@ impl Wave {
     }
 
     /// The first place with a known sign: 0 itself, or the lowest one found.
-    fn start(&self, prepared: &Prepared, to: f64) -> Result<(At, Start), TooMany> {
+    fn start(&self, prepared: &Prepared, window: Window) -> Result<(At, Start), TooMany> {
         let constant = self.parts[0].coefficient(0);
         if constant.decided() {
-            let mut here = prepared.at(0.0);
-            here.value = constant;
             let start = Start {
                 positive: Some(constant.value > 0.0),
                 open_below: 0.0,
             };
+            let first = prepared.at(window.from);
+            if window.from > 0.0 && first.sign() == start.positive {
+                return Ok((first, start));
+            }
+            let mut here = prepared.at(0.0);
+            here.value = constant;
             return Ok((here, start));
         }
         // f = f(0) + c ω² to third order.
         let curvature = self.curvature();
-        let third = self.third(to);
-        let (mut lowest, mut omega) = (None, to);
-        for _ in 0..MOST_HALVINGS {
-            let here = prepared.at(omega);
-            let decided = here.value.decided();
-            if !decided && lowest.is_some() {
-                break;
-            }
-            if decided {
-                lowest = Some(here);
-            }
-            omega *= 0.5;
-        }
+        let lowest = (0..=MOST_HALVINGS)
+            .rev()
+            .map(|halvings| prepared.at(window.to * power(0.5, halvings)))
+            .find(|here| here.value.decided());
         let here = lowest.ok_or(TooMany)?;
+        let third = self.third(here.omega);
         let size = curvature.value.abs() - curvature.error;
         let parabola = size > 0.0 && third * here.omega <= 3.0 * size;
         let same = (curvature.value > 0.0) == (here.value.value > 0.0);
@@ -479,6 +492,13 @@ impl Wave {
     }
 }
 
+/// A frequency below which `f`, a polynomial in x = ω² that is positive at 0, has no zero; a good
+/// one.
+pub(crate) fn before_zeros(f: &Polynomial) -> f64 {
+    let n = f.degree();
+    1.0 / beyond_zeros(&Polynomial::of(n, |k| f.coefficient(n - k)))
+}
+
 /// A frequency beyond which `f`, a polynomial in x = ω² with a positive highest coefficient, has no
 /// zero; a good one.
 pub(crate) fn beyond_zeros(f: &Polynomial) -> f64 {
@@ -489,21 +509,44 @@ pub(crate) fn beyond_zeros(f: &Polynomial) -> f64 {
         .map(|k| (k, f.coefficient(k)))
         .map(|(k, c)| (n - k, c.error - c.value))
         .filter(|(_, c)| *c > 0.0)
-        .map(|(order, c)| libm::pow(c / leading, 1.0 / order as f64))
+        .map(|(order, c)| rough_root(c / leading, order))
         .fold(0.0, f64::max);
     if bound == 0.0 {
         return 0.0;
     }
-    let mut x = 2.0 * bound * (1.0 + 1e-12);
-    // By Budan's theorem there is none beyond x where all Taylor coefficients there are positive.
+    let mut lowest = [0.0; LENGTH];
+    for (k, lowest) in lowest[..=n].iter_mut().enumerate() {
+        *lowest = f.coefficient(k).value - f.coefficient(k).error;
+    }
+    let mut x = 2.0 * bound * (1.0 + 1e-6);
     for _ in 0..MOST_HALVINGS {
-        let nearer = 0.8 * x;
-        let there = f.shifted(nearer);
-        let positive = |k: usize| there.coefficient(k).value > there.coefficient(k).error;
-        if !(0..=n).all(positive) {
+        if !positive_beyond(&lowest[..=n], NEARER * x) {
             break;
         }
-        x = nearer;
+        x *= NEARER;
     }
     x.sqrt() * (1.0 + 1e-12)
+}
+
+/// By Budan's theorem a polynomial has no zero beyond `x` where all its Taylor coefficients are
+/// positive there.
+fn positive_beyond(coefficients: &[f64], x: f64) -> bool {
+    let mut taylor = [0.0; LENGTH];
+    let n = coefficients.len() - 1;
+    taylor[..=n].copy_from_slice(coefficients);
+    // Rounding is far less than this part of the sizes.
+    let size = coefficients
+        .iter()
+        .rev()
+        .fold(0.0, |sum, c| sum * x + c.abs());
+    for low in 0..=n {
+        for k in (low..n).rev() {
+            taylor[k] += x * taylor[k + 1];
+        }
+        // Times xᵏ all of them are of one size.
+        if taylor[low] * power(x, low as i32) <= 1e-12 * size {
+            return false;
+        }
+    }
+    true
 }
