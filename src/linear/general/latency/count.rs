@@ -44,23 +44,15 @@ impl Arguments<'_> {
     }
 }
 
-/// What tells φ and ψ at a frequency to within a good part of a turn.
-#[allow(clippy::large_enum_variant, reason = "there is one at a time")]
-enum Rough {
-    Latency,
-    Delay {
-        first: Sum,
-        /// Of 𝒬, none where R = 0.
-        second: Option<Sum>,
-    },
-}
+/// 𝒫 and 𝒬 as sums, in the form with the latency inside; where R = 0 the second is 𝒜 alone.
+type Sums = (Sum, Option<Sum>);
 
 /// One line in one form.
 struct Way<'f> {
     on_line: &'f OnLine,
     form: Form,
     arguments: Arguments<'f>,
-    rough: Rough,
+    sums: Option<Sums>,
     /// n_𝒫.
     zeros: i64,
 }
@@ -75,8 +67,8 @@ impl<'f> Way<'f> {
         let line = on_line.line;
         let arguments = Arguments { open, gain, line };
         let mut zeros = open.right_of(line) as i64;
-        let rough = match form {
-            Form::Latency => Rough::Latency,
+        let sums = match form {
+            Form::Latency => None,
             Form::Delay => {
                 let (latency, memory) = (on_line.latency, on_line.memory);
                 let first = Sum::new(&on_line.difference(1.0, 1.0), switches, |omega| {
@@ -94,14 +86,14 @@ impl<'f> Way<'f> {
                     });
                     Some(sum?)
                 };
-                Rough::Delay { first, second }
+                Some((first, second))
             }
         };
         Some(Self {
             on_line,
             form,
             arguments,
-            rough,
+            sums,
             zeros,
         })
     }
@@ -110,8 +102,8 @@ impl<'f> Way<'f> {
     fn rough(&self, omega: f64) -> [f64; 2] {
         let [open, gain] = self.arguments.at(omega);
         let of = self.on_line;
-        match &self.rough {
-            Rough::Latency => {
+        match &self.sums {
+            None => {
                 let [kept, lost] = of.echoes(omega);
                 let lost = if of.decay.lost.value >= 0.0 {
                     // Principal, from −π/2 to π/2.
@@ -125,7 +117,7 @@ impl<'f> Way<'f> {
                 };
                 [open + arg(kept), gain + PI + lost]
             }
-            Rough::Delay { first, second } => {
+            Some((first, second)) => {
                 let (b, a) = of.at(omega, 0.0);
                 let (b, a) = (b.value, a.value);
                 let turned = gain - omega * of.latency;
