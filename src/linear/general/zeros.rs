@@ -369,3 +369,28 @@ fn make_symmetric(at: &mut [Complex64]) {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Two of its real zeros are as near to one another as to the axis of the other: rounding gives
+    /// both an imaginary part, of opposite signs.
+    #[test]
+    fn real_zeros_with_imaginary_parts_by_rounding_are_no_pair() {
+        let polynomial = Polynomial::new(&[
+            -0.001478057050868198,
+            -0.19606071139401846,
+            2.8769642378540405,
+            -13.187972768143513,
+            21.649038098550594,
+            -11.551027939842418,
+            -0.7657016588038741,
+            1.0,
+        ])
+        .expect("a small degree");
+        for disc in Zeros::of(&polynomial).discs() {
+            assert!(disc.radius < 1e-10 && disc.centre.im == 0.0, "{disc:?}");
+        }
+    }
+}

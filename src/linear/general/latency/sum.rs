@@ -22,6 +22,9 @@ use super::super::switches::Switches;
 use crate::linear::newton::divide;
 use crate::model::elementary::arg;
 
+/// Frequencies at which the larger term changes must be known to this part of them.
+const CERTAIN: f64 = 1e-3;
+
 /// Where the larger one of two terms X and Y changes.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Sum {
@@ -58,6 +61,9 @@ impl Sum {
         }
         let mut turns = 0.0;
         for switch in switches.list.iter().rev().filter(|s| s.sign != 0) {
+            if switch.error > CERTAIN * switch.omega {
+                return None;
+            }
             let [first, second] = arguments(switch.omega);
             let passed = ((first - second) / TAU).round();
             let sign = f64::from(switch.sign);
