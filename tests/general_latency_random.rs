@@ -265,8 +265,8 @@ fn compare(counted: Option<u64>, right: RightOf, place: &dyn std::fmt::Debug) {
     }
 }
 
-/// No zero of F is missed: each change of its sign on a fine grid has its crossing, and there are no
-/// others.
+/// No zero of F is missed: each change of its sign on a fine grid has its crossing, and there are
+/// no others.
 #[test]
 fn crossings_are_all_changes_of_sign_of_a_fine_scan() {
     let mut chance = Chance(asked("SLIPMAP_SEED", 32));
@@ -366,7 +366,8 @@ fn rightmost_roots_are_found_and_certified() {
         }
     }
     println!(
-        "{certified} of {cases} certified, {accumulating} without a rightmost root, {missing} not, {walked} walked"
+        "{certified} of {cases} certified, {accumulating} without a rightmost root, {missing} not, \
+         {walked} walked"
     );
     assert!(missing <= cases / 100, "{missing}");
     assert!(walked > 20, "{walked}");

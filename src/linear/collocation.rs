@@ -67,8 +67,8 @@ pub struct Late<'c> {
 
 /// As [`eigenvalues`], with latency.
 ///
-/// With z = (1 − R E) x only s = A x is fed back: B z = s(t − δ) − s(t − δ − τ) and s = A z + R s(t −
-/// τ). Its history over τ + δ is collocated, with barycentric values inside.
+/// With z = (1 − R E) x only s = A x is fed back: B z = s(t − δ) − s(t − δ − τ), and s = A z +
+/// R s(t − τ). Its history over τ + δ is collocated, with barycentric values inside.
 #[must_use]
 pub fn late_eigenvalues(of: &Late<'_>, nodes: usize) -> Option<Vec<Complex64>> {
     eigenvalues_of(&late_generator(of, nodes))

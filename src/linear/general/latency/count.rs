@@ -1,8 +1,8 @@
 //! How many roots of a system with latency lie right of a vertical line: equation (7) of
 //! [`right_of`](super::super::right_of) in either form of [`on_line`](super::on_line).
 //!
-//! With the delay inside, 𝒫 has the zeros of B right of the line, and arguments are those of B and A
-//! and the principal ones of 1 − RE and 1 − E. With the latency inside, 𝒫 and 𝒬 are sums of two
+//! With the delay inside, 𝒫 has the zeros of B right of the line, and arguments are those of B and
+//! A and the principal ones of 1 − RE and 1 − E. With the latency inside, 𝒫 and 𝒬 are sums of two
 //! terms each, and [`sum`](super::sum) carries their arguments along.
 
 use std::f64::consts::{PI, TAU};
@@ -13,7 +13,8 @@ use super::super::switches::{Switch, Switches};
 use super::super::system::Class;
 use super::on_line::{Form, OnLine};
 use super::sum::Sum;
-use super::wave::{TooMany, Window};
+use super::wave::TooMany;
+use super::window::Window;
 use crate::model::elementary::{arg, atan2, sincos};
 
 /// Below this part of a turn a root near the real axis cannot have made one.
@@ -21,8 +22,8 @@ const NO_TURN: f64 = 0.25;
 
 /// Frequencies to so many digits, relative, decide nearly every turn.
 const ROUGH: f64 = 1e-3;
-/// Turns of the delay over the range of frequencies, less those of the latency, up to which the form
-/// with the latency costs less: it needs no arguments of sums.
+/// Turns of the delay over the range of frequencies, less those of the latency, up to which the
+/// form with the latency costs less: it needs no arguments of sums.
 const CHEAPER: f64 = 12.0;
 
 /// Why a line has no count.

@@ -5,6 +5,8 @@
 //! fixed, and its zeros are found along ω.
 //!
 //! - [`wave`]: functions that swing with one delay, and all their zeros
+//! - [`prepared`]: such a function and its slope at one frequency, with bounds; steps and zeros
+//! - [`window`]: where zeros of a polynomial can be
 //! - [`on_line`]: D on a vertical line in its two forms
 //! - [`sum`]: the argument of a sum of two terms along a line
 //! - [`count`]: how many roots lie right of a line, in either form
@@ -14,9 +16,11 @@
 mod count;
 mod line;
 mod on_line;
+mod prepared;
 mod roots;
 mod sum;
 mod wave;
+mod window;
 
 use super::parts::{Angle, Feedback};
 use super::polynomial::Polynomial;

@@ -23,7 +23,8 @@ use num_complex::Complex64;
 
 use super::super::parts::{Angle, Decay, Feedback, remembered};
 use super::super::polynomial::{At, Polynomial};
-use super::wave::{Wave, Window, before_zeros, beyond_zeros};
+use super::wave::Wave;
+use super::window::{Window, before_zeros, beyond_zeros};
 use crate::linear::characteristic::one_minus_exp;
 use crate::linear::rounded::Rounded;
 use crate::model::elementary::sincos;

@@ -72,7 +72,8 @@ impl Feedback {
         2.0 * (1.0 + 1e-12) * (0..n).map(radius).fold(0.0, f64::max)
     }
 
-    /// D where both exponentials are parabolas: B(1 − R) + R B(λτ − λ²τ²/2) − A(λτ − λ²(τ²/2 + τδ)).
+    /// D where both exponentials are parabolas:
+    /// B(1 − R) + R B(λτ − λ²τ²/2) − A(λτ − λ²(τ²/2 + τδ)).
     pub(in super::super) fn slow(&self, tau: f64) -> Option<Polynomial> {
         let parabola = |bend: f64| Polynomial::new(&[0.0, tau, -bend]).ok();
         let half = 0.5 * tau * tau;

@@ -16,15 +16,15 @@
 //! of f is lost in rounding, as at a touch. Such a stretch is told as it is, with the signs of f on
 //! both sides.
 
-use super::super::polynomial::{MOST_DEGREE, Polynomial};
+use super::super::polynomial::Polynomial;
 use super::super::switches::{Switch, Switches, direction};
+use super::prepared::{At, Prepared};
+use super::window::Window;
 use crate::linear::rounded::Rounded;
-use crate::model::elementary::{power, rough_root, sincos};
+use crate::model::elementary::power;
 
 /// Steps after which the zeros are too many to be listed.
 const MOST_STEPS: usize = 1 << 17;
-/// Rounded operations behind each value, in units of ε of its terms.
-const ROUNDINGS: f64 = 4.0;
 /// A step is never more than so many times as long as the one before it: the bound M belongs to its
 /// end.
 const GROWTH: f64 = 2.0;
@@ -32,12 +32,6 @@ const GROWTH: f64 = 2.0;
 const FIRST_STEP: f64 = 1.0 / 16.0;
 /// Steps shorter than this part of ω lead nowhere.
 const SHORTEST_STEP: f64 = 1e-13;
-/// What rounding of the length of a step itself may add to it.
-const A_LITTLE_LESS: f64 = 1.0 - 1e-9;
-/// Steps of Newton's method, with halvings between, until a zero is polished.
-const MOST_POLISHINGS: usize = 100;
-/// Nearer to the largest zero of a polynomial in steps of this factor.
-const NEARER: f64 = 0.7;
 /// Halvings of ω from the last zero down until the sign of f near 0 is known.
 const MOST_HALVINGS: i32 = 60;
 
@@ -50,228 +44,9 @@ pub(crate) struct Wave {
     pub t: f64,
 }
 
-/// A range of frequencies.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Window {
-    pub from: f64,
-    pub to: f64,
-}
-
 /// The zeros are too many to be listed, or their number is open.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) struct TooMany;
-
-const VALUES: usize = 6;
-const ERRORS: usize = 5;
-const BENDS: usize = 2;
-const LENGTH: usize = MOST_DEGREE + 1;
-
-/// The coefficients of all that is evaluated at one frequency, side by side.
-struct Prepared {
-    /// u, v, w; u′/ω, v′/ω and (ωw)′.
-    values: [[f64; VALUES]; LENGTH],
-    /// Bounds on the errors of u, v and w; the even and the odd part of one on the error of f′.
-    errors: [[f64; ERRORS]; LENGTH],
-    /// The even and the odd part of M.
-    bends: [[f64; BENDS]; LENGTH],
-    length: usize,
-    t: f64,
-}
-
-/// f and f′ at one frequency with bounds on their errors.
-#[derive(Debug, Clone, Copy)]
-struct At {
-    omega: f64,
-    value: Rounded,
-    slope: Rounded,
-}
-
-impl At {
-    /// The sign of f, or none where it is lost.
-    #[inline]
-    fn sign(&self) -> Option<bool> {
-        self.value.decided().then_some(self.value.value > 0.0)
-    }
-}
-
-#[inline]
-fn horner<const N: usize>(coefficients: &[[f64; N]], x: f64) -> [f64; N] {
-    let mut sum = [0.0; N];
-    for c in coefficients.iter().rev() {
-        for (sum, c) in sum.iter_mut().zip(c) {
-            *sum = *sum * x + c;
-        }
-    }
-    sum
-}
-
-impl Prepared {
-    fn new(wave: &Wave) -> Self {
-        let degree = wave.parts.iter().map(Polynomial::degree).max().unwrap_or(0);
-        let mut prepared = Self {
-            values: [[0.0; VALUES]; LENGTH],
-            errors: [[0.0; ERRORS]; LENGTH],
-            bends: [[0.0; BENDS]; LENGTH],
-            length: degree + 1,
-            t: wave.t,
-        };
-        let t = wave.t;
-        let unit = (ROUNDINGS + 2.0 * degree as f64) * f64::EPSILON;
-        let coefficient = |part: usize, k: usize| match k {
-            k if k <= degree => wave.parts[part].coefficient(k),
-            _ => Rounded {
-                value: 0.0,
-                error: 0.0,
-            },
-        };
-        for k in 0..=degree {
-            let [u, v, w] = [0, 1, 2].map(|part| coefficient(part, k));
-            let [next_u, next_v, next_w] = [0, 1, 2].map(|part| coefficient(part, k + 1));
-            let (even, odd) = (2.0 * (k + 1) as f64, (2 * k + 1) as f64);
-            prepared.values[k] = [
-                u.value,
-                v.value,
-                w.value,
-                even * next_u.value,
-                even * next_v.value,
-                odd * w.value,
-            ];
-            let error = |c: Rounded| c.error + unit * c.value.abs();
-            let size = |c: Rounded| c.error + c.value.abs();
-            prepared.errors[k] = [
-                error(u),
-                error(v),
-                error(w),
-                t * error(v) + odd * error(w),
-                even * (error(next_u) + 2.0 * error(next_v)) + t * error(w),
-            ];
-            prepared.bends[k] = [
-                // Of (u + v) − v cos ωt.
-                even * odd
-                    * ((next_u.value + next_v.value).abs()
-                        + next_u.error
-                        + next_v.error
-                        + size(next_v))
-                    + t * (t * size(v) + 2.0 * odd * size(w)),
-                2.0 * even * t * size(next_v) + even * (odd + 2.0) * size(next_w) + t * t * size(w),
-            ];
-        }
-        prepared
-    }
-
-    #[inline]
-    fn at(&self, omega: f64) -> At {
-        let x = omega * omega;
-        let [u, v, w, u_slope, v_slope, w_slope] = horner(&self.values[..self.length], x);
-        let errors = horner(&self.errors[..self.length], x);
-        let angle = omega * self.t;
-        let (half_sin, half_cos) = sincos(0.5 * angle);
-        let (versine, sin) = (2.0 * half_sin * half_sin, 2.0 * half_sin * half_cos);
-        let cos = 1.0 - versine;
-        let value = u + v * versine + omega * w * sin;
-        let slope = omega * (u_slope + v_slope * versine)
-            + (v * self.t + w_slope) * sin
-            + omega * w * self.t * cos;
-        // The angle is rounded as well.
-        let turned = f64::EPSILON * angle;
-        let error = errors[0]
-            + errors[1] * versine
-            + omega * errors[2] * sin.abs()
-            + turned * (v.abs() * sin.abs() + omega * w.abs() * cos.abs());
-        let slope_error = errors[3] + omega * errors[4] + turned * self.bend(omega);
-        At {
-            omega,
-            value: Rounded { value, error },
-            slope: Rounded {
-                value: slope,
-                error: slope_error,
-            },
-        }
-    }
-
-    /// M up to `omega`.
-    #[inline]
-    fn bend(&self, omega: f64) -> f64 {
-        let [even, odd] = horner(&self.bends[..self.length], omega * omega);
-        even + omega * odd
-    }
-
-    /// A step from `from` within which f has one zero at most, no longer than `longest`, and
-    /// whether it can have one.
-    #[inline]
-    fn step(&self, from: &At, longest: f64) -> (f64, bool) {
-        let bend = self.bend(from.omega + longest);
-        let left = from.value.value.abs() - from.value.error;
-        let falling = -from
-            .slope
-            .value
-            .copysign(from.slope.value * from.value.value);
-        let falling = falling + from.slope.error;
-        let root = (falling * falling + 2.0 * bend * left).sqrt();
-        let clear = if falling > 0.0 {
-            2.0 * left / (falling + root)
-        } else {
-            (root - falling) / bend
-        };
-        let monotone = (from.slope.value.abs() - from.slope.error) / bend;
-        if clear >= monotone {
-            (A_LITTLE_LESS * clear, false)
-        } else {
-            (A_LITTLE_LESS * monotone, true)
-        }
-    }
-
-    /// The zero between `from` and `to`, at which the signs of f differ, f being monotone between;
-    /// with a bound on its error.
-    fn polish(&self, from: &At, to: &At, precision: f64) -> (f64, f64) {
-        let rising = to.value.value > 0.0;
-        let (mut low, mut high) = (from.omega, to.omega);
-        let start = if from.value.value.abs() < to.value.value.abs() {
-            from
-        } else {
-            to
-        };
-        let mut at = *start;
-        let mut last = f64::INFINITY;
-        for _ in 0..MOST_POLISHINGS {
-            let newton = at.omega - at.value.value / at.slope.value;
-            let step = (newton - at.omega).abs();
-            let inside = low < newton && newton < high && step < 0.5 * last;
-            if inside && step <= precision.max(4.0 * f64::EPSILON) * at.omega {
-                break;
-            }
-            let next = if inside { newton } else { 0.5 * (low + high) };
-            last = if inside { step } else { high - low };
-            if next <= low || next >= high {
-                break;
-            }
-            at = self.at(next);
-            if (at.value.value > 0.0) == rising {
-                high = next;
-            } else {
-                low = next;
-            }
-            if !at.value.decided() {
-                break;
-            }
-        }
-        (at.omega, self.error(&at, (from.omega, to.omega)))
-    }
-
-    /// How far the zero in the range of a monotone f can be from where `at` is.
-    fn error(&self, at: &At, (from, to): (f64, f64)) -> f64 {
-        let above = at.value.value.abs() + at.value.error;
-        let slope = at.slope.value.abs() - at.slope.error;
-        let near = 2.0 * above / slope;
-        // With |f′| at least half of what it is here, the zero is no farther than that.
-        let error = if near > 0.0 && self.bend(at.omega + near) * near <= 0.5 * slope {
-            near
-        } else {
-            (to - at.omega).max(at.omega - from)
-        };
-        error + f64::EPSILON * at.omega
-    }
-}
 
 /// A part of the way from one known sign of f to the next.
 struct Way<'p> {
@@ -380,7 +155,7 @@ impl Wave {
                 open_below: 0.0,
             });
         }
-        let prepared = Prepared::new(self);
+        let prepared = Prepared::new(&self.parts, self.t);
         let (here, start) = self.start(&prepared, window)?;
         let mut way = Way {
             prepared: &prepared,
@@ -490,63 +265,4 @@ impl Wave {
         };
         derivative(0, 0, 3) + wave(1, 0) + wave(2, 1)
     }
-}
-
-/// A frequency below which `f`, a polynomial in x = ω² that is positive at 0, has no zero; a good
-/// one.
-pub(crate) fn before_zeros(f: &Polynomial) -> f64 {
-    let n = f.degree();
-    1.0 / beyond_zeros(&Polynomial::of(n, |k| f.coefficient(n - k)))
-}
-
-/// A frequency beyond which `f`, a polynomial in x = ω² with a positive highest coefficient, has no
-/// zero; a good one.
-pub(crate) fn beyond_zeros(f: &Polynomial) -> f64 {
-    let n = f.degree();
-    let leading = f.leading().value - f.leading().error;
-    // Kioustelidis: twice the largest (−c_k/c_n)^(1/(n − k)).
-    let bound = (0..n)
-        .map(|k| (k, f.coefficient(k)))
-        .map(|(k, c)| (n - k, c.error - c.value))
-        .filter(|(_, c)| *c > 0.0)
-        .map(|(order, c)| rough_root(c / leading, order))
-        .fold(0.0, f64::max);
-    if bound == 0.0 {
-        return 0.0;
-    }
-    let mut lowest = [0.0; LENGTH];
-    for (k, lowest) in lowest[..=n].iter_mut().enumerate() {
-        *lowest = f.coefficient(k).value - f.coefficient(k).error;
-    }
-    let mut x = 2.0 * bound * (1.0 + 1e-6);
-    for _ in 0..MOST_HALVINGS {
-        if !positive_beyond(&lowest[..=n], NEARER * x) {
-            break;
-        }
-        x *= NEARER;
-    }
-    x.sqrt() * (1.0 + 1e-12)
-}
-
-/// By Budan's theorem a polynomial has no zero beyond `x` where all its Taylor coefficients are
-/// positive there.
-fn positive_beyond(coefficients: &[f64], x: f64) -> bool {
-    let mut taylor = [0.0; LENGTH];
-    let n = coefficients.len() - 1;
-    taylor[..=n].copy_from_slice(coefficients);
-    // Rounding is far less than this part of the sizes.
-    let size = coefficients
-        .iter()
-        .rev()
-        .fold(0.0, |sum, c| sum * x + c.abs());
-    for low in 0..=n {
-        for k in (low..n).rev() {
-            taylor[k] += x * taylor[k + 1];
-        }
-        // Times xᵏ all of them are of one size.
-        if taylor[low] * power(x, low as i32) <= 1e-12 * size {
-            return false;
-        }
-    }
-    true
 }

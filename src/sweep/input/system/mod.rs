@@ -21,7 +21,8 @@
 //! unit = "rpm"
 //! ```
 //!
-//! - `expression`, `part`: read them; `tape`: evaluates them; `bounded`: numbers with bounds on their error
+//! - `expression`, `part`: read them; `tape`: evaluates them; `bounded`: numbers with bounds on their
+//!   error
 //! - `file`: reads the file; `text`: writes it; [`shipped`]: systems that are part of the program
 //! - [`parameter`]: a parameter of a system's own
 
