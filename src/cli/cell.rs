@@ -174,6 +174,7 @@ pub(super) fn alone(flag: &str, given: bool) -> Result<(), Failure> {
             format!("{flag} is given with other flags of the point"),
             match flag {
                 "--map" => "the map says everything but the cell, which --at says",
+                "--system" => "--set and --tau say everything of it",
                 _ => "the file says everything",
             },
         )),

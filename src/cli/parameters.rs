@@ -19,11 +19,11 @@ use super::sweep_file::read_table;
 
 /// The values that flags give to parameters, each by the flag of its row.
 #[derive(Debug, Clone)]
-struct Values(Box<[Option<f64>; Parameter::ALL.len()]>);
+pub(super) struct Values(Box<[Option<f64>; Parameter::ALL.len()]>);
 
 impl Values {
     /// The flags of the parameters that are `wanted`.
-    fn flags(wanted: impl Fn(Group) -> bool) -> impl Iterator<Item = Arg> {
+    pub(super) fn flags(wanted: impl Fn(Group) -> bool) -> impl Iterator<Item = Arg> {
         let wanted = Parameter::ALL
             .into_iter()
             .filter(move |p| wanted(p.group()));
@@ -39,7 +39,7 @@ impl Values {
         })
     }
 
-    fn of(matches: &ArgMatches, wanted: impl Fn(Group) -> bool) -> Self {
+    pub(super) fn of(matches: &ArgMatches, wanted: impl Fn(Group) -> bool) -> Self {
         Self(Box::new(Parameter::ALL.map(|parameter| {
             let asked = wanted(parameter.group()) && parameter.flag().is_some();
             let value = || matches.get_one::<f64>(parameter.name()).copied();
@@ -47,7 +47,7 @@ impl Values {
         })))
     }
 
-    fn get(&self, parameter: Parameter) -> Option<f64> {
+    pub(super) fn get(&self, parameter: Parameter) -> Option<f64> {
         self.0[parameter as usize]
     }
 }
@@ -178,47 +178,6 @@ impl<A: Asks> FromArgMatches for ParameterArgs<A> {
     }
 }
 
-/// A point of the limit of a short delay.
-#[derive(Debug)]
-pub(super) struct LimitArgs(Values);
-
-impl LimitArgs {
-    const fn of_limit(group: Group) -> bool {
-        matches!(group, Group::Limit)
-    }
-
-    /// The value given to a parameter.
-    pub(super) fn get(&self, parameter: Parameter) -> Option<f64> {
-        self.0.get(parameter)
-    }
-
-    /// The first parameter that is given.
-    pub(super) fn any_given(&self) -> Option<Parameter> {
-        Parameter::ALL.into_iter().find(|p| self.get(*p).is_some())
-    }
-}
-
-impl Args for LimitArgs {
-    fn augment_args(command: Command) -> Command {
-        command.args(Values::flags(Self::of_limit))
-    }
-
-    fn augment_args_for_update(command: Command) -> Command {
-        Self::augment_args(command)
-    }
-}
-
-impl FromArgMatches for LimitArgs {
-    fn from_arg_matches(matches: &ArgMatches) -> Result<Self, clap::Error> {
-        Ok(Self(Values::of(matches, Self::of_limit)))
-    }
-
-    fn update_from_arg_matches(&mut self, matches: &ArgMatches) -> Result<(), clap::Error> {
-        *self = Self::from_arg_matches(matches)?;
-        Ok(())
-    }
-}
-
 /// The flag that gives a parameter; the name of one that has none.
 pub(super) fn flag(parameter: Parameter) -> String {
     match parameter.long_flag() {
@@ -228,7 +187,7 @@ pub(super) fn flag(parameter: Parameter) -> String {
 }
 
 impl<A: Asks> ParameterArgs<A> {
-    fn given(&self, parameter: Parameter) -> Option<f64> {
+    pub(super) fn given(&self, parameter: Parameter) -> Option<f64> {
         self.values.get(parameter)
     }
 
@@ -340,11 +299,16 @@ impl<A: Asks> ParameterArgs<A> {
         self.law.units.clone().unwrap_or_default()
     }
 
-    /// Whether any parameter is given.
-    pub(super) fn any_given(&self) -> bool {
-        let law = &self.law;
-        let flags = law.friction.is_some() || law.table.is_some() || law.units.is_some();
-        flags || Parameter::ALL.into_iter().any(|p| self.given(p).is_some())
+    /// Whether any parameter is given but one of these.
+    pub(super) fn any_but(&self, these: &[Parameter]) -> bool {
+        let given = |p: Parameter| !these.contains(&p) && self.given(p).is_some();
+        let LawArgs {
+            friction,
+            table,
+            units,
+        } = &self.law;
+        let flags = friction.is_some() || table.is_some() || units.is_some();
+        flags || Parameter::ALL.into_iter().any(given)
     }
 
     /// The setting of the flags but for the parameters `searched`, refused with `help`.

@@ -9,6 +9,7 @@ use slipmap::report::numbers::bytes;
 use slipmap::sweep::input::case_file::{TextKind, is_case_file};
 use slipmap::sweep::input::friction_table::table_of_law;
 use slipmap::sweep::input::point_file::{PointOf, PointSpec};
+use slipmap::sweep::input::system::SystemModel;
 use slipmap::sweep::input::table_file::Inlined;
 use slipmap::sweep::{CaseSpec, Plan, SpecError, SweepSpec};
 
@@ -63,6 +64,13 @@ pub(super) fn read_setting(path: &Path, of: PointOf) -> Result<PointSpec, Failur
 pub(super) fn read_table(path: &Path, mu_s: f64) -> Result<Table, Failure> {
     let (name, text) = text_of(path, "table")?;
     table_of_law(&text, mu_s).map_err(|error| Failure::in_file(error, &name, &text))
+}
+
+/// The system of the file at `path`.
+pub(super) fn read_system(path: &Path) -> Result<SystemModel, Failure> {
+    let (name, text) = text_of(path, "system")?;
+    text.parse()
+        .map_err(|error| Failure::in_file(error, &name, &text))
 }
 
 /// What stands for standard input in the place of a file.
