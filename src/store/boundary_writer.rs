@@ -8,6 +8,7 @@ use super::attributes::{put_numbers, put_text};
 use super::curve_rows::{BoundaryColumn, CurveRows, EachColumn, Named, Per};
 use super::netcdf::{DimensionId, Dimensions, named};
 use super::schema::{BOUNDARIES, PLANE};
+use crate::sweep::input::quantity::Quantity;
 use crate::sweep::{Parameter, Plan};
 
 /// Elements in a chunk of the appended datasets.
@@ -39,9 +40,9 @@ struct Maker<'a> {
     group: &'a Group,
     plan: &'a Plan,
     /// The parameter of the planes.
-    parameter: Parameter,
+    parameter: Quantity,
     /// The parameters of the axes outside the planes.
-    outer: Vec<Parameter>,
+    outer: Vec<Quantity>,
     dimensions: &'a mut Dimensions,
     ids: Ids,
 }
@@ -77,8 +78,10 @@ impl Maker<'_> {
                 self.make::<T>(about.per, name, (meaning, &units.angular_frequency()))
             }
             Named::Rate(name, meaning) => self.make::<T>(about.per, name, (meaning, &units.rate())),
-            Named::Parameter(prefix) => self.of_parameter(about.per, prefix, self.parameter),
-            Named::Delay(prefix) => self.of_parameter(about.per, prefix, Parameter::Tau),
+            Named::Parameter(prefix) => {
+                self.of_parameter(about.per, prefix, &self.parameter.clone())
+            }
+            Named::Delay(prefix) => self.of_parameter(about.per, prefix, &Parameter::Tau.into()),
         }?;
         if let Some(counted) = about.counts {
             put_text(&dataset, "sample_dimension", counted)?;
@@ -93,10 +96,10 @@ impl Maker<'_> {
         &mut self,
         per: Per,
         prefix: &str,
-        parameter: Parameter,
+        parameter: &Quantity,
     ) -> hdf5::Result<Dataset> {
         let name = format!("{prefix}{}", parameter.name());
-        let unit = self.plan.spec.units.of_parameter(parameter);
+        let unit = parameter.unit(&self.plan.spec.units);
         self.make::<f64>(per, &name, (parameter.long_name(), &unit))
     }
 
@@ -106,7 +109,7 @@ impl Maker<'_> {
         parameters
             .map(|parameter| {
                 Ok(OuterColumn {
-                    dataset: self.of_parameter(per, prefix, parameter)?,
+                    dataset: self.of_parameter(per, prefix, &parameter)?,
                     waiting: Vec::new(),
                 })
             })
@@ -179,7 +182,7 @@ impl BoundaryWriter {
             dimensions.add_bare(&group, "vertex")?,
             dimensions.add_bare(&group, "corner")?,
         ];
-        let parameter = plan.spec.axes[p].parameter;
+        let parameter = plan.spec.axes[p].parameter.clone();
         let plane = format!("{} {}", parameter.name(), Parameter::Tau.name());
         put_text(&group, PLANE, &plane)?;
         let axes = plan.spec.axes.iter().enumerate();
@@ -189,7 +192,7 @@ impl BoundaryWriter {
                 group: &group,
                 plan,
                 parameter,
-                outer: outer.map(|(_, axis)| axis.parameter).collect(),
+                outer: outer.map(|(_, axis)| axis.parameter.clone()).collect(),
                 dimensions,
                 ids,
             },

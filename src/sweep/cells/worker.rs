@@ -20,7 +20,9 @@ use crate::linear::status::NOT_CONVERGED;
 use crate::model::Groups;
 use crate::sweep::input::field::Field;
 use crate::sweep::input::linear_model::{FeedbackLoop, LinearModel};
+use crate::sweep::input::parameter::Parameter;
 use crate::sweep::input::source::{OfLinear, Source};
+use crate::sweep::input::system::SystemModel;
 use crate::sweep::plan::Plan;
 use crate::sweep::plan::tile::{Tile, for_each_index, place_of, strides_of};
 
@@ -63,6 +65,8 @@ pub struct Worker<'p> {
     map_strides: Vec<u64>,
     /// Whether cells have a sliding state.
     slides: bool,
+    /// The polynomials of the system depend on the delay.
+    by_delay: bool,
 }
 
 /// One row on its way to a tile whose delays are not next to one another in memory.
@@ -106,6 +110,11 @@ impl<'p> Worker<'p> {
             vc: VcColumns::new(&plan.spec),
             map_strides: strides_of(plan.shape()),
             slides: plan.spec.has_sliding(),
+            by_delay: plan
+                .spec
+                .fixed
+                .system()
+                .is_some_and(SystemModel::depends_on_delay),
         }
     }
 
@@ -145,6 +154,9 @@ impl<'p> Worker<'p> {
         for_each_index(&tile.extent, self.plan.tau_axis, |inside| {
             let at = place_of(inside, &self.strides);
             self.lines.move_to(&tile.offset, inside);
+            if self.by_delay {
+                return self.fill_by_delay(at);
+            }
             let groups = match self.lines.model() {
                 _ if !self.slides => {
                     self.fill_without_sliding(at);
@@ -188,8 +200,8 @@ impl<'p> Worker<'p> {
     /// Computes the cells of a line of a general system.
     fn fill_general(&mut self, system: &System, time_unit: f64, at: usize, stop: &AtomicBool) {
         let sensitive = self.roots.as_ref().is_some_and(RootColumns::sensitive);
-        let of_loop = FeedbackLoop::of(&self.lines.setting).ok();
-        let of_loop = of_loop.filter(|_| sensitive);
+        let of_loop = sensitive.then(|| FeedbackLoop::of(&self.lines.setting).ok());
+        let of_loop = of_loop.flatten();
         let line = GeneralLine {
             system,
             of_loop: of_loop.as_ref(),
@@ -207,6 +219,36 @@ impl<'p> Worker<'p> {
         };
         self.general
             .fill(&line, self.roots.as_mut(), &mut self.buffers);
+        self.unflagged = false;
+    }
+
+    /// Computes the cells of a line whose polynomials depend on the delay, each as a line of its own.
+    fn fill_by_delay(&mut self, at: usize) {
+        for i in 0..self.delays.values().len() {
+            let delay = &self.delays.values()[i..=i];
+            let place = at + i * self.stride;
+            self.lines.setting.set(Parameter::Tau, delay[0]);
+            let Ok((LinearModel::General(system), time_unit)) = self.lines.model() else {
+                self.refuse(place, 1);
+                continue;
+            };
+            let line = GeneralLine {
+                system: &system,
+                of_loop: None,
+                time_unit,
+                stiffness_ratio: f64::NAN,
+                per_parameter: self.lines.groups_per_parameter(),
+                delays: delay,
+                first: 0,
+                tolerance: self.plan.spec.tolerance,
+                places: Places {
+                    at: place,
+                    stride: 1,
+                },
+            };
+            self.general
+                .fill(&line, self.roots.as_mut(), &mut self.buffers);
+        }
         self.unflagged = false;
     }
 
@@ -364,7 +406,11 @@ impl<'p> Worker<'p> {
     /// A line outside the model's range: its cells keep fill values and say that nothing converged
     /// there.
     fn refuse_line(&mut self, at: usize) {
-        let len = self.delays.values().len();
+        self.refuse(at, self.delays.values().len());
+    }
+
+    /// The same of the first `len` cells from `at` on.
+    fn refuse(&mut self, at: usize, len: usize) {
         self.unflagged = false;
         for place in (at..).step_by(self.stride).take(len) {
             self.buffers.status[place] = NOT_CONVERGED;

@@ -17,6 +17,7 @@ pub mod linear_model;
 pub mod nearest;
 pub mod parameter;
 pub mod point_file;
+pub mod quantity;
 pub mod regime_at_v0;
 pub mod search;
 pub mod setting;

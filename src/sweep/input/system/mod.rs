@@ -35,11 +35,13 @@ mod tape;
 mod text;
 
 use std::ops::Range;
+use std::sync::Arc;
 
 use parameter::OwnParameter;
 use tape::{Stacks, Tape};
 
 use crate::linear::general::System;
+use crate::model::ModelError;
 
 /// A system whose parameters have no values yet.
 #[derive(Debug, Clone, PartialEq)]
@@ -48,7 +50,7 @@ pub struct SystemModel {
     pub title: String,
     form: Form,
     /// Its own parameters, in the order of the file.
-    pub parameters: Vec<OwnParameter>,
+    pub parameters: Vec<Arc<OwnParameter>>,
     /// How pictures over its delay may show it.
     pub speed_axis: Option<SpeedAxis>,
 }
@@ -148,6 +150,16 @@ pub struct Undefined {
     pub polynomial: &'static str,
     /// What is wrong.
     pub what: String,
+}
+
+impl From<Undefined> for ModelError {
+    fn from(undefined: Undefined) -> Self {
+        Self {
+            parameter: undefined.polynomial,
+            value: f64::NAN,
+            allowed: "an expression that has a finite value, A of a smaller degree than B",
+        }
+    }
 }
 
 impl SystemModel {
