@@ -61,7 +61,6 @@ impl SystemPoint {
         let own = model.parameters.iter().map(|own| own.name.clone());
         let line_of_delays = !model.depends_on_delay();
         let feedback = model.is_feedback();
-        let latency_margin = system.latency_margin(at.tau).and_then(finite);
         let system = LinearModel::General(Box::new(system));
         let mut stability = Stability::of(&system, 1.0, at.tau, wanted);
         if !line_of_delays {
@@ -74,7 +73,7 @@ impl SystemPoint {
             memory: feedback.then_some(at.memory),
             latency: feedback.then_some(at.latency),
             line_of_delays,
-            latency_margin,
+            latency_margin: stability.latency_margin.and_then(finite),
             stability,
         })
     }

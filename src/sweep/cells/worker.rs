@@ -67,6 +67,8 @@ pub struct Worker<'p> {
     slides: bool,
     /// The polynomials of the system depend on the delay.
     by_delay: bool,
+    /// The delay of a cell, where it is so.
+    one_delay: Delays,
 }
 
 /// One row on its way to a tile whose delays are not next to one another in memory.
@@ -115,6 +117,7 @@ impl<'p> Worker<'p> {
                 .fixed
                 .system()
                 .is_some_and(SystemModel::depends_on_delay),
+            one_delay: Delays::new(&[0.0]),
         }
     }
 
@@ -155,7 +158,7 @@ impl<'p> Worker<'p> {
             let at = place_of(inside, &self.strides);
             self.lines.move_to(&tile.offset, inside);
             if self.by_delay {
-                return self.fill_by_delay(at);
+                return self.fill_by_delay(at, stop);
             }
             let groups = match self.lines.model() {
                 _ if !self.slides => {
@@ -223,11 +226,11 @@ impl<'p> Worker<'p> {
     }
 
     /// Computes the cells of a line whose polynomials depend on the delay, each as a line of its own.
-    fn fill_by_delay(&mut self, at: usize) {
+    fn fill_by_delay(&mut self, at: usize, stop: &AtomicBool) {
         for i in 0..self.delays.values().len() {
-            let delay = &self.delays.values()[i..=i];
-            let place = at + i * self.stride;
-            self.lines.setting.set(Parameter::Tau, delay[0]);
+            let (tau, place) = (self.delays.values()[i], at + i * self.stride);
+            self.one_delay.set_one(tau);
+            self.lines.setting.set(Parameter::Tau, tau);
             let Ok((LinearModel::General(system), time_unit)) = self.lines.model() else {
                 self.refuse(place, 1);
                 continue;
@@ -238,13 +241,14 @@ impl<'p> Worker<'p> {
                 time_unit,
                 stiffness_ratio: f64::NAN,
                 per_parameter: self.lines.groups_per_parameter(),
-                delays: delay,
+                delays: &self.one_delay,
                 first: 0,
                 tolerance: self.plan.spec.tolerance,
                 places: Places {
                     at: place,
                     stride: 1,
                 },
+                stop,
             };
             self.general
                 .fill(&line, self.roots.as_mut(), &mut self.buffers);
