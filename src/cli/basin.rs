@@ -137,7 +137,7 @@ pub(super) fn main(args: &Args) -> Result<(), Failure> {
 impl Args {
     /// What is asked, from a map, a file or flags.
     fn read(&self) -> Result<Question, Failure> {
-        let by_flags = self.parameters.any_given();
+        let by_flags = self.parameters.any_but(&[]);
         let mut basin = Basin {
             starts: STARTS,
             ..Basin::default()

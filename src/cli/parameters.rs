@@ -138,47 +138,6 @@ impl<A: Asks> FromArgMatches for ParameterArgs<A> {
     }
 }
 
-/// A point of the limit of a short delay.
-#[derive(Debug)]
-pub(super) struct LimitArgs(Values);
-
-impl LimitArgs {
-    const fn of_limit(group: Group) -> bool {
-        matches!(group, Group::Limit)
-    }
-
-    /// The value given to a parameter.
-    pub(super) fn get(&self, parameter: Parameter) -> Option<f64> {
-        self.0.get(parameter)
-    }
-
-    /// The first parameter that is given.
-    pub(super) fn any_given(&self) -> Option<Parameter> {
-        Parameter::ALL.into_iter().find(|p| self.get(*p).is_some())
-    }
-}
-
-impl Args for LimitArgs {
-    fn augment_args(command: Command) -> Command {
-        command.args(Values::flags(Self::of_limit))
-    }
-
-    fn augment_args_for_update(command: Command) -> Command {
-        Self::augment_args(command)
-    }
-}
-
-impl FromArgMatches for LimitArgs {
-    fn from_arg_matches(matches: &ArgMatches) -> Result<Self, clap::Error> {
-        Ok(Self(Values::of(matches, Self::of_limit)))
-    }
-
-    fn update_from_arg_matches(&mut self, matches: &ArgMatches) -> Result<(), clap::Error> {
-        *self = Self::from_arg_matches(matches)?;
-        Ok(())
-    }
-}
-
 /// The flag that gives a parameter; the name of one that has none.
 pub(super) fn flag(parameter: Parameter) -> String {
     match parameter.long_flag() {
@@ -188,7 +147,7 @@ pub(super) fn flag(parameter: Parameter) -> String {
 }
 
 impl<A: Asks> ParameterArgs<A> {
-    fn given(&self, parameter: Parameter) -> Option<f64> {
+    pub(super) fn given(&self, parameter: Parameter) -> Option<f64> {
         self.values.get(parameter)
     }
 
@@ -301,11 +260,16 @@ impl<A: Asks> ParameterArgs<A> {
         self.law.units.clone().unwrap_or_default()
     }
 
-    /// Whether any parameter is given.
-    pub(super) fn any_given(&self) -> bool {
-        let law = &self.law;
-        let flags = law.friction.is_some() || law.table.is_some() || law.units.is_some();
-        flags || Parameter::ALL.into_iter().any(|p| self.given(p).is_some())
+    /// Whether any parameter is given but one of these.
+    pub(super) fn any_but(&self, these: &[Parameter]) -> bool {
+        let given = |p: Parameter| !these.contains(&p) && self.given(p).is_some();
+        let LawArgs {
+            friction,
+            table,
+            units,
+        } = &self.law;
+        let flags = friction.is_some() || table.is_some() || units.is_some();
+        flags || Parameter::ALL.into_iter().any(given)
     }
 
     /// The setting of the flags but for the parameters `searched`, refused with `help`.

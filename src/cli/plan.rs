@@ -97,7 +97,7 @@ struct Facts {
     axes: Vec<AxisFacts>,
     /// Units of the axes by name; `1` where there is none.
     #[schema(value_type = BTreeMap<String, String>)]
-    units: BTreeMap<&'static str, String>,
+    units: BTreeMap<String, String>,
     dimensionless: bool,
     fields: Vec<&'static str>,
     /// What is said of the start of motions that no key gives, and of many starts; null where a key
@@ -123,10 +123,13 @@ struct Facts {
 impl Facts {
     fn of(plan: &Plan, threads: usize) -> Result<Self, Failure> {
         let costs = Costs::of(plan)?;
-        let axis = |axis: &Axis| AxisFacts::of(axis.parameter, &axis.values);
+        let axis = |axis: &Axis| AxisFacts::of(&axis.parameter, &axis.values);
         let unit = |axis: &Axis| {
-            let parameter = axis.parameter;
-            (parameter.name(), plan.spec.units.of_parameter(parameter))
+            let parameter = &axis.parameter;
+            (
+                parameter.name().to_owned(),
+                parameter.unit(&plan.spec.units),
+            )
         };
         let (total, spread) = costs.seconds();
         let seconds = [(total - spread).max(0.0), total, total + spread];
@@ -155,7 +158,7 @@ impl Facts {
     fn tell(&self) -> Result<(), Failure> {
         let mut rows = Rows::begin();
         for axis in &self.axes {
-            let unit = self.units.get(axis.name).map_or("", String::as_str);
+            let unit = self.units.get(&axis.name).map_or("", String::as_str);
             rows.row("axis", axis.text(&unit_behind(unit)))?;
         }
         if self.dimensionless {

@@ -9,7 +9,8 @@ use slipmap::report::picture::{
     self, ColourMap, Picture, PictureError, PictureKind, PictureOptions,
 };
 use slipmap::store::{MapFile, TraceFile, trace_reader};
-use slipmap::sweep::{Field, Parameter};
+use slipmap::sweep::Field;
+use slipmap::sweep::input::quantity::Quantity;
 
 use super::cell::{At, parse_at};
 use super::failure::Failure;
@@ -158,9 +159,9 @@ fn shown_of(
     args: &Args,
     options: PictureOptions,
 ) -> Result<PictureOptions, Failure> {
-    let axes: Vec<Parameter> = map.axes().iter().map(|axis| axis.parameter).collect();
+    let axes: Vec<&Quantity> = map.axes().iter().map(|axis| &axis.parameter).collect();
     let at = args.at.iter();
-    let at = at.map(|at| at.axis(&axes).map(|axis| (axes[axis], at.value)));
+    let at = at.map(|at| at.axis(&axes).map(|axis| (axes[axis].clone(), at.value)));
     let field = args.field.as_deref().map(|name| held_field(map, name));
     Ok(PictureOptions {
         field: field.transpose()?,
@@ -252,7 +253,7 @@ fn failure(error: PictureError, args: &Args) -> Failure {
             let help = format!("its axes: {axes}");
             bad("--at: ", error, help)
         }
-        PictureError::OutsideAxis { parameter, .. } => {
+        PictureError::OutsideAxis { ref parameter, .. } => {
             let help = format!(
                 "slipmap info {} lists the axis {}",
                 args.map.display(),

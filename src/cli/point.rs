@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 use slipmap::explore::along_delay::AlongDelay;
 use slipmap::explore::point::Point;
 use slipmap::explore::stability::{Spectrum, Stability, Wanted};
+use slipmap::explore::system_point::SystemPoint;
 use slipmap::linear::general::Reason;
 use slipmap::report::numbers::unit_behind;
 use slipmap::report::picture::{self, Picture, PointPicture};
@@ -16,7 +17,8 @@ use super::failure::Failure;
 use super::json::{self, AnswerSchema, Inputs};
 use super::output::{check_picture, tell_dimensionless};
 use super::point_args::PointArgs;
-use super::say;
+use super::system_args::{OTHERS, SystemArgs};
+use super::{point_system, say};
 
 /// Roots in a picture, pairs counted once: enough to see how they lie.
 const ROOTS_DRAWN: u8 = 14;
@@ -32,6 +34,8 @@ const INTERVALS_SHOWN: usize = 12;
 pub(super) struct Args {
     #[command(flatten)]
     point: PointArgs,
+    #[command(flatten)]
+    system: SystemArgs,
     /// How many characteristic roots to list, from the right; pairs count once
     #[arg(long, value_name = "K", default_value_t = 4, allow_hyphen_values = true,
           value_parser = parse_roots)]
@@ -120,10 +124,13 @@ impl Args {
 
 /// What its JSON looks like.
 pub(super) fn described() -> AnswerSchema {
-    AnswerSchema::of("point").or::<Point>()
+    AnswerSchema::of("point").or::<Point>().or::<SystemPoint>()
 }
 
 pub(super) fn main(args: &Args) -> Result<(), Failure> {
+    if let Some(named) = &args.system.system {
+        return of_system(args, named);
+    }
     if let Some(plot) = &args.plot {
         check_picture("--plot", plot, args.point.map())?;
     }
@@ -159,6 +166,36 @@ pub(super) fn main(args: &Args) -> Result<(), Failure> {
     }
 }
 
+/// A point of a system from a file.
+fn of_system(args: &Args, named: &str) -> Result<(), Failure> {
+    args.point.check_alone("--system", &OTHERS)?;
+    if args.plot.is_some() {
+        return Err(Failure::bad_input_with_help(
+            "--plot has no picture of a point of --system",
+            "a sweep of the system draws its stability; --json has its roots",
+        ));
+    }
+    let Some((model, mut at)) = args.system.read(|p| args.point.given(p))? else {
+        return Ok(());
+    };
+    let point = SystemPoint::at(&model, &mut at, args.wanted(args.roots));
+    let point = point.map_err(|why| Failure::bad_input(why.to_string()))?;
+    let spectrum = &point.stability.spectrum;
+    if let Some(why) = spectrum.fewer.as_ref().filter(|_| spectrum.incomplete) {
+        say::remark(format_args!("warning: {why}"));
+    }
+    if args.json {
+        let inputs = point_system::inputs(named, &point, args.roots, args.line);
+        return json::print(&inputs, &point);
+    }
+    Ok(point_system::print(
+        &mut std::io::stdout().lock(),
+        &model,
+        &at,
+        &point,
+    )?)
+}
+
 /// Draws the point with the roots of a picture; with those of `listed` where some of the others
 /// are not found.
 fn draw(setting: &Setting, units: &Units, listed: &Point, path: &Path) -> Result<(), Failure> {
@@ -183,19 +220,23 @@ fn draw(setting: &Setting, units: &Units, listed: &Point, path: &Path) -> Result
     saved.map_err(|error| Failure::failed(error.to_string()))
 }
 
+/// Whether it is stable, in words.
+pub(super) fn verdict(stability: &Stability) -> &'static str {
+    match (stability.stable, stability.marginal, stability.reason) {
+        (_, true, _) => "marginal: within rounding of a stability boundary",
+        (true, false, _) => "stable",
+        (false, false, Some("degree-unknown")) => "not known to be stable or not",
+        (false, false, _) => "unstable",
+    }
+}
+
 fn print(
     out: &mut impl Write,
     (point, setting): (&Point, &Setting),
     units: &Units,
 ) -> std::io::Result<()> {
     let stability = &point.stability;
-    let verdict = match (stability.stable, stability.marginal, stability.reason) {
-        (_, true, _) => "marginal: within rounding of a stability boundary",
-        (true, false, _) => "stable",
-        (false, false, Some("degree-unknown")) => "not known to be stable or not",
-        (false, false, _) => "unstable",
-    };
-    writeln!(out, "continuous sliding is {verdict}")?;
+    writeln!(out, "continuous sliding is {}", verdict(stability))?;
     let mut row = |name: &str, value: String| writeln!(out, "  {name:<16} {value}");
     let given = [
         (Parameter::MuPrime, point.mu_prime),
@@ -215,12 +256,14 @@ fn print(
     if let Some(ratio) = point.stiffness_ratio {
         row(Field::StiffnessRatio.name(), ratio.to_string())?;
     }
-    print_stability(stability, units, &mut row)?;
+    print_stability(stability, true, units, &mut row)?;
     tell_dimensionless(out, units)
 }
 
-fn print_stability(
+/// Everything of it; what other delays would do only where they are known.
+pub(super) fn print_stability(
     stability: &Stability,
+    line_of_delays: bool,
     units: &Units,
     mut row: impl FnMut(&str, String) -> std::io::Result<()>,
 ) -> std::io::Result<()> {
@@ -246,7 +289,9 @@ fn print_stability(
         None if stability.delay_margin_sign == 0 => "unknown".into(),
         None => "infinite: no delay changes stability".into(),
     };
-    row("delay_margin", margin)?;
+    if line_of_delays {
+        row("delay_margin", margin)?;
+    }
     let spectrum = &stability.spectrum;
     for (name, value, unit) in [
         (Field::Abscissa.name(), spectrum.abscissa, units.rate()),
@@ -267,7 +312,9 @@ fn print_stability(
             format!("{essential}{unit}: roots accumulate there"),
         )?;
     }
-    print_delays(stability, units, &mut row)?;
+    if line_of_delays {
+        print_delays(stability, units, &mut row)?;
+    }
     print_spectrum(spectrum, units, &mut row)
 }
 

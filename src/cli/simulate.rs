@@ -150,7 +150,7 @@ impl Args {
 
     /// The case of the flags, as a file would say it: the trace holds that.
     fn case_of_flags(&self) -> Result<String, Failure> {
-        if !self.parameters.any_given() {
+        if !self.parameters.any_but(&[]) {
             return Err(Failure::bad_input_with_help(
                 "no case is given",
                 "slipmap simulate CASE.toml; or flags, such as --friction weakening --mu0 0.5 \
@@ -164,7 +164,7 @@ impl Args {
 
     /// A case or a map stands alone.
     fn check_alone(&self) -> Result<(), Failure> {
-        let flags = self.parameters.any_given();
+        let flags = self.parameters.any_but(&[]);
         match (&self.case, &self.cell.map) {
             (Some(_), _) => alone("CASE.toml", flags),
             (None, Some(_)) => alone("--map", flags),

@@ -34,6 +34,13 @@ impl Delays {
         }
     }
 
+    /// Becomes the one delay `tau`, in the memory that it has.
+    pub fn set_one(&mut self, tau: f64) {
+        self.fenced.clear();
+        self.fenced.extend([f64::NEG_INFINITY, tau, f64::INFINITY]);
+        self.per_step = 0.0;
+    }
+
     /// The delays themselves.
     #[inline]
     #[must_use]

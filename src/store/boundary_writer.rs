@@ -8,7 +8,8 @@ use super::attributes::{put_numbers, put_text};
 use super::curve_rows::{BoundaryColumn, CurveRows, EachColumn, Named, Per};
 use super::netcdf::{DimensionId, Dimensions, named};
 use super::schema::{BOUNDARIES, PLANE};
-use crate::sweep::{Parameter, Plan};
+use crate::sweep::Plan;
+use crate::sweep::input::quantity::Quantity;
 
 /// Elements in a chunk of the appended datasets.
 const CHUNK: usize = 1 << 13;
@@ -39,11 +40,11 @@ struct Maker<'a> {
     group: &'a Group,
     plan: &'a Plan,
     /// The first parameter of the planes.
-    parameter: Parameter,
+    parameter: Quantity,
     /// The second one.
-    second: Parameter,
+    second: Quantity,
     /// The parameters of the axes outside the planes.
-    outer: Vec<Parameter>,
+    outer: Vec<Quantity>,
     dimensions: &'a mut Dimensions,
     ids: Ids,
 }
@@ -79,8 +80,10 @@ impl Maker<'_> {
                 self.make::<T>(about.per, name, (meaning, &units.angular_frequency()))
             }
             Named::Rate(name, meaning) => self.make::<T>(about.per, name, (meaning, &units.rate())),
-            Named::Parameter(prefix) => self.of_parameter(about.per, prefix, self.parameter),
-            Named::Second(prefix) => self.of_parameter(about.per, prefix, self.second),
+            Named::Parameter(prefix) => {
+                self.of_parameter(about.per, prefix, &self.parameter.clone())
+            }
+            Named::Second(prefix) => self.of_parameter(about.per, prefix, &self.second.clone()),
         }?;
         if let Some(counted) = about.counts {
             put_text(&dataset, "sample_dimension", counted)?;
@@ -95,10 +98,10 @@ impl Maker<'_> {
         &mut self,
         per: Per,
         prefix: &str,
-        parameter: Parameter,
+        parameter: &Quantity,
     ) -> hdf5::Result<Dataset> {
         let name = format!("{prefix}{}", parameter.name());
-        let unit = self.plan.spec.units.of_parameter(parameter);
+        let unit = parameter.unit(&self.plan.spec.units);
         self.make::<f64>(per, &name, (parameter.long_name(), &unit))
     }
 
@@ -108,7 +111,7 @@ impl Maker<'_> {
         parameters
             .map(|parameter| {
                 Ok(OuterColumn {
-                    dataset: self.of_parameter(per, prefix, parameter)?,
+                    dataset: self.of_parameter(per, prefix, &parameter)?,
                     waiting: Vec::new(),
                 })
             })
@@ -181,8 +184,8 @@ impl BoundaryWriter {
             dimensions.add_bare(&group, "vertex")?,
             dimensions.add_bare(&group, "corner")?,
         ];
-        let parameter = plan.spec.axes[p].parameter;
-        let second = plan.spec.axes[q].parameter;
+        let parameter = plan.spec.axes[p].parameter.clone();
+        let second = plan.spec.axes[q].parameter.clone();
         let plane = format!("{} {}", parameter.name(), second.name());
         put_text(&group, PLANE, &plane)?;
         let axes = plan.spec.axes.iter().enumerate();
@@ -193,7 +196,7 @@ impl BoundaryWriter {
                 plan,
                 parameter,
                 second,
-                outer: outer.map(|(_, axis)| axis.parameter).collect(),
+                outer: outer.map(|(_, axis)| axis.parameter.clone()).collect(),
                 dimensions,
                 ids,
             },

@@ -95,8 +95,11 @@ pub(crate) fn check_schema(map: &MapFile, plan: &Plan, report: &mut Report, stop
             ));
         }
     }
+    if map.system() != plan.spec.fixed.system() {
+        faults.push("its system is not that of the sweep".into());
+    }
     for (parameter, value) in map.scalars() {
-        if value.to_bits() != plan.spec.fixed.get(parameter).to_bits() {
+        if value.to_bits() != plan.spec.fixed.value_of(&parameter).to_bits() {
             faults.push(format!("{} is not that of the sweep", parameter.name()));
         }
     }

@@ -15,6 +15,7 @@ use super::output::Output;
 use super::schema::{self, trace};
 use super::variables::FILL_VALUE;
 use crate::slip::case::Case;
+use crate::sweep::Parameter;
 use crate::sweep::cells::trace::{EVENTS, MODES, Sample, TraceEvent};
 use crate::sweep::input::units::Units;
 use crate::sweep::{CaseSpec, Trace};
@@ -125,9 +126,11 @@ fn fill_file(
 ) -> hdf5::Result<()> {
     put_provenance(file, &spec.title, provenance)?;
     put_root(file, spec, trace)?;
-    let scalars = put_scalars(file, &spec.setting, &spec.units, |p| {
-        spec.setting.uses(p) && !p.of_start()
-    })?;
+    let setting = &spec.setting;
+    let told = Parameter::ALL.into_iter();
+    let told = told.filter(|&p| setting.uses(p) && !p.of_start());
+    let told: Vec<_> = told.map(|p| (p.into(), setting.get(p))).collect();
+    let scalars = put_scalars(file, &told, &spec.units)?;
     let mut dimensions = Dimensions::default();
     let time = named(file.new_dataset_builder())
         .with_data(&column(trace, TIME.of))

@@ -73,7 +73,13 @@ impl Spectrum {
             spectrum.reason = spectrum.reason.or(Some(Reason::NoRightmostRoot));
             return spectrum;
         }
-        let found = Rightmost::at(counter, tau, wanted, count);
+        let mut found = Rightmost::at(counter, tau, wanted, count);
+        // Fewer than are wanted may lie right of where they accumulate.
+        let mut fewer = wanted;
+        while found.roots.is_empty() && fewer > 1 && essential_abscissa.is_finite() {
+            fewer -= 1;
+            found = Rightmost::at(counter, tau, fewer, count);
+        }
         spectrum.abscissa = found.roots.first().map_or(f64::NAN, |r| r.lambda.re);
         spectrum.margin = found.margin;
         spectrum.certified = found.certified;

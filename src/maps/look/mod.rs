@@ -279,7 +279,7 @@ mod tests {
         };
         Facts {
             axes: vec![MapAxis {
-                parameter: Parameter::Tau,
+                parameter: Parameter::Tau.into(),
                 values: (0..20).map(f64::from).collect(),
                 unit: "1".into(),
             }],

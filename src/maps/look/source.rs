@@ -198,9 +198,9 @@ fn facts_of_tiles(growing: &GrowingMap) -> Facts {
     let plan = growing.plan();
     let units = &plan.spec.units;
     let axes = plan.spec.axes.iter().map(|axis| MapAxis {
-        parameter: axis.parameter,
+        parameter: axis.parameter.clone(),
         values: axis.values.clone(),
-        unit: units.of_parameter(axis.parameter),
+        unit: axis.parameter.unit(units),
     });
     Facts {
         axes: axes.collect(),
@@ -218,8 +218,8 @@ fn facts_of_file(columns: &FileColumns) -> Facts {
     let plan = map.sweep().and_then(Plan::new).ok();
     let plan = plan.filter(|plan| {
         let told = plan.spec.axes.iter();
-        let told = told.map(|axis| (axis.parameter, &axis.values));
-        told.eq(axes.iter().map(|axis| (axis.parameter, &axis.values)))
+        let told = told.map(|axis| (&axis.parameter, &axis.values));
+        told.eq(axes.iter().map(|axis| (&axis.parameter, &axis.values)))
     });
     Facts {
         fields: map.fields().to_vec(),

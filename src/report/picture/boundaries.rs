@@ -278,7 +278,7 @@ fn legend(map: &MapFile, view: &View, families: &[Family], degrees: &Degrees) ->
         heading = vec![
             Rich::plain("stable inside,"),
             Rich::plain("at ")
-                .and_symbol(axis.parameter)
+                .and_symbol(&axis.parameter)
                 .and(&suffix(&axis.unit, " (", ")"))
                 .and(" ="),
         ];

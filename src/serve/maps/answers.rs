@@ -131,7 +131,7 @@ fn encoded(
 ) -> Result<[Vec<u8>; 2], serde_json::Error> {
     let mut arrays = Arrays::default();
     let mut axis = |axis: usize, shown: &Shown| WindowAxis {
-        name: facts.axes[axis].parameter.name(),
+        name: facts.axes[axis].parameter.name().to_owned(),
         index: arrays.push(shown.index.iter().copied()),
         values: arrays.push(shown.values.iter().copied()),
     };
@@ -167,7 +167,7 @@ fn at(facts: &Facts, index: &[usize], spanned: &[Option<usize>]) -> Vec<WindowAt
     let axes = facts.axes.iter().zip(index).enumerate();
     axes.filter(|(axis, _)| !spanned.contains(&Some(*axis)))
         .map(|(_, (axis, &index))| WindowAt {
-            name: axis.parameter.name(),
+            name: axis.parameter.name().to_owned(),
             index,
             value: axis.values[index],
         })
@@ -245,7 +245,7 @@ pub(super) fn cell(look: &Look, query: &CellQuery) -> Result<MapCell, Refused> {
     let texts = texts.unwrap_or_default();
     Ok(MapCell {
         axes: axes
-            .map(|(axis, &i)| (axis.parameter.name(), axis.values[i]))
+            .map(|(axis, &i)| (axis.parameter.name().to_owned(), axis.values[i]))
             .collect(),
         fields,
         kinds,

@@ -62,9 +62,11 @@ pub fn trace_plane(plan: &Plan, index: &[usize]) -> Result<BoundaryPlane, ModelE
                 p: ends(plan.spec.axes[p].range()),
                 q: ends(plan.spec.axes[tau].range()),
             };
-            let parameter = plan.spec.axes[p].parameter;
             let degrees = &plan.spec.degrees_of_stability;
-            trace_window(&plan.setting(index), parameter, &window, degrees)?
+            match plan.spec.axes[p].parameter.known() {
+                Some(p) => trace_window(&plan.setting(index), p, &window, degrees)?,
+                None => Vec::new(),
+            }
         }
         None => Vec::new(),
     };

@@ -3,7 +3,9 @@
 use crate::model::{Control, Groups, ModelError, Oscillator, SlidingPoint};
 use crate::sweep::input::linear_model::LinearModel;
 use crate::sweep::input::parameter::Parameter;
+use crate::sweep::input::quantity::Quantity;
 use crate::sweep::input::setting::Setting;
+use crate::sweep::input::system::Evaluation;
 use crate::sweep::plan::Plan;
 
 /// The groups of one line after the other. What does not change from line to line is not computed
@@ -15,6 +17,8 @@ pub(super) struct Lines<'p> {
     index: Vec<usize>,
     /// Some line may be beyond the letter's own system.
     beyond_letter: bool,
+    /// Room for the expressions of a system from a file.
+    evaluation: Evaluation,
     /// What the gains do not change.
     uncontrolled: Option<Result<(Oscillator, SlidingPoint), ModelError>>,
 }
@@ -27,6 +31,7 @@ impl<'p> Lines<'p> {
             setting: plan.setting(&index),
             index,
             beyond_letter: plan.spec.beyond_letter(),
+            evaluation: Evaluation::default(),
             uncontrolled: None,
         }
     }
@@ -39,10 +44,10 @@ impl<'p> Lines<'p> {
             if *known != index {
                 *known = index;
                 let axis = &self.plan.spec.axes[axis];
-                self.setting.set(axis.parameter, axis.values[index]);
+                self.setting.vary(&axis.parameter, axis.values[index]);
                 if !matches!(
                     axis.parameter,
-                    Parameter::AlphaV | Parameter::AlphaN | Parameter::Tau
+                    Quantity::Known(Parameter::AlphaV | Parameter::AlphaN | Parameter::Tau)
                 ) {
                     self.uncontrolled = None;
                 }
@@ -54,6 +59,9 @@ impl<'p> Lines<'p> {
     #[inline(always)]
     pub(super) fn model(&mut self) -> Result<(LinearModel, f64), ModelError> {
         if self.beyond_letter {
+            if let Some(system) = self.setting.own_system(&mut self.evaluation) {
+                return Ok((LinearModel::General(Box::new(system?)), 1.0));
+            }
             let model = self.setting.linear()?;
             if matches!(model.0, LinearModel::General(_)) {
                 // Rates of its parameters are needed all the same.

@@ -1,4 +1,6 @@
 //! One thread's work: the cells of a tile, line by line, into buffers that are used again.
+//!
+//! Longer than most files: each kind of line, of the letter and beyond, is filled from here.
 
 use std::ops::Range;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -20,7 +22,9 @@ use crate::linear::status::NOT_CONVERGED;
 use crate::model::Groups;
 use crate::sweep::input::field::Field;
 use crate::sweep::input::linear_model::{FeedbackLoop, LinearModel};
+use crate::sweep::input::parameter::Parameter;
 use crate::sweep::input::source::{OfLinear, Source};
+use crate::sweep::input::system::SystemModel;
 use crate::sweep::plan::Plan;
 use crate::sweep::plan::tile::{Tile, for_each_index, place_of, strides_of};
 
@@ -63,6 +67,10 @@ pub struct Worker<'p> {
     map_strides: Vec<u64>,
     /// Whether cells have a sliding state.
     slides: bool,
+    /// The polynomials of the system depend on the delay.
+    by_delay: bool,
+    /// The delay of a cell, where it is so.
+    one_delay: Delays,
 }
 
 /// One row on its way to a tile whose delays are not next to one another in memory.
@@ -106,6 +114,12 @@ impl<'p> Worker<'p> {
             vc: VcColumns::new(&plan.spec),
             map_strides: strides_of(plan.shape()),
             slides: plan.spec.has_sliding(),
+            by_delay: plan
+                .spec
+                .fixed
+                .system()
+                .is_some_and(SystemModel::depends_on_delay),
+            one_delay: Delays::new(&[0.0]),
         }
     }
 
@@ -145,6 +159,9 @@ impl<'p> Worker<'p> {
         for_each_index(&tile.extent, self.plan.tau_axis, |inside| {
             let at = place_of(inside, &self.strides);
             self.lines.move_to(&tile.offset, inside);
+            if self.by_delay {
+                return self.fill_by_delay(at, stop);
+            }
             let groups = match self.lines.model() {
                 _ if !self.slides => {
                     self.fill_without_sliding(at);
@@ -188,8 +205,8 @@ impl<'p> Worker<'p> {
     /// Computes the cells of a line of a general system.
     fn fill_general(&mut self, system: &System, time_unit: f64, at: usize, stop: &AtomicBool) {
         let sensitive = self.roots.as_ref().is_some_and(RootColumns::sensitive);
-        let of_loop = FeedbackLoop::of(&self.lines.setting).ok();
-        let of_loop = of_loop.filter(|_| sensitive);
+        let of_loop = sensitive.then(|| FeedbackLoop::of(&self.lines.setting).ok());
+        let of_loop = of_loop.flatten();
         let line = GeneralLine {
             system,
             of_loop: of_loop.as_ref(),
@@ -207,6 +224,37 @@ impl<'p> Worker<'p> {
         };
         self.general
             .fill(&line, self.roots.as_mut(), &mut self.buffers);
+        self.unflagged = false;
+    }
+
+    /// Computes the cells of a line whose polynomials depend on the delay, each as a line of its own.
+    fn fill_by_delay(&mut self, at: usize, stop: &AtomicBool) {
+        for i in 0..self.delays.values().len() {
+            let (tau, place) = (self.delays.values()[i], at + i * self.stride);
+            self.one_delay.set_one(tau);
+            self.lines.setting.set(Parameter::Tau, tau);
+            let Ok((LinearModel::General(system), time_unit)) = self.lines.model() else {
+                self.refuse(place, 1);
+                continue;
+            };
+            let line = GeneralLine {
+                system: &system,
+                of_loop: None,
+                time_unit,
+                stiffness_ratio: f64::NAN,
+                per_parameter: self.lines.groups_per_parameter(),
+                delays: &self.one_delay,
+                first: 0,
+                tolerance: self.plan.spec.tolerance,
+                places: Places {
+                    at: place,
+                    stride: 1,
+                },
+                stop,
+            };
+            self.general
+                .fill(&line, self.roots.as_mut(), &mut self.buffers);
+        }
         self.unflagged = false;
     }
 
@@ -364,7 +412,11 @@ impl<'p> Worker<'p> {
     /// A line outside the model's range: its cells keep fill values and say that nothing converged
     /// there.
     fn refuse_line(&mut self, at: usize) {
-        let len = self.delays.values().len();
+        self.refuse(at, self.delays.values().len());
+    }
+
+    /// The same of the first `len` cells from `at` on.
+    fn refuse(&mut self, at: usize, len: usize) {
         self.unflagged = false;
         for place in (at..).step_by(self.stride).take(len) {
             self.buffers.status[place] = NOT_CONVERGED;

@@ -2,6 +2,7 @@
 
 mod beyond;
 mod checks;
+mod of_system;
 
 use std::ops::Range;
 
@@ -12,12 +13,14 @@ use super::given::{GivenParameters, read_units};
 use super::keys::{SWEEP, names};
 use super::limit_spec::LimitDraft;
 use super::parameter::Parameter;
+use super::quantity::Quantity;
 use super::search::LIMIT;
 use super::simulation::{DISTURBED, Simulation};
 use super::spec::{SweepSpec, beyond_letter};
 use super::spec_values::{
     read_degrees, read_field, read_fields, read_list, read_range, read_tolerance,
 };
+use super::system_draft::SystemDraft;
 use super::toml_reader::{Entry, SpecError, entries, parse};
 use super::units::Units;
 use super::vc_keys::VcKeys;
@@ -47,9 +50,18 @@ impl SweepSpec {
     pub fn read(text: &str, most_points: u64) -> Result<Self, SpecError> {
         let document = parse(text)?;
         let mut draft = Draft::default();
-        for entry in entries(document.get_ref(), "") {
+        let all = entries(document.get_ref(), "");
+        // What names mean depends on it, wherever it stands.
+        if let Some(system) = all.iter().find(|entry| entry.key == "system") {
+            draft.system = Some(SystemDraft::read(system, text)?);
+        }
+        for entry in all {
             draft.limit.note_key(&entry);
+            if draft.system.is_some() {
+                SystemDraft::check_key(&entry)?;
+            }
             match entry.key {
+                "system" => {}
                 "title" => entry.line()?.clone_into(&mut draft.title),
                 "protocol" if entry.string()? == LIMIT => {
                     draft.is_limit = true;
@@ -63,7 +75,10 @@ impl SweepSpec {
                 "degree_of_stability" => draft.read_degrees(&entry)?,
                 "best" => draft.best = entry.boolean()?.then(|| entry.key_span.clone()),
                 "axes" => draft.read_axes(&entry, most_points.min(MOST_POINTS))?,
-                "fixed" => draft.given.read_fixed(&entry, |_| true)?,
+                "fixed" => match &mut draft.system {
+                    Some(system) => system.read_fixed(&entry)?,
+                    None => draft.given.read_fixed(&entry, |_| true)?,
+                },
                 "friction" => draft.given.read_friction(&entry)?,
                 "start" => draft.given.read_start(&entry)?,
                 "simulation" => draft.read_simulation(&entry)?,
@@ -111,6 +126,8 @@ struct Draft {
     degrees_place: Option<Range<usize>>,
     /// Where the best settings are asked for, if they are.
     best: Option<Range<usize>>,
+    /// The system, where it is not the letter's.
+    system: Option<SystemDraft>,
     axes: Vec<Axis>,
     axes_place: Option<Range<usize>>,
     given: GivenParameters,
@@ -158,9 +175,7 @@ impl Draft {
     fn read_axes(&mut self, axes: &Entry, most_points: u64) -> Result<(), SpecError> {
         self.axes_place = Some(axes.key_span.clone());
         for entry in axes.table()? {
-            let parameter = Parameter::from_name(entry.key)
-                .ok_or_else(|| entry.unknown(&Parameter::ALL.map(Parameter::name)))?;
-            self.given.give(&entry, parameter)?;
+            let parameter = self.give_axis(&entry)?;
             let points: u64 = self.axes.iter().map(|axis| axis.len() as u64).sum();
             if points > MOST_POINTS_TOGETHER {
                 let message = format!(
@@ -172,12 +187,23 @@ impl Draft {
             let values = if entry.is_table() {
                 read_range(&entry, most_points)?
             } else {
-                read_list(&entry, parameter)?
+                read_list(&entry, &parameter)?
             };
             let axis = Axis::new(parameter, values).map_err(|e| entry.error(e.0))?;
             self.axes.push(axis);
         }
         Ok(())
+    }
+
+    /// The parameter of an axis.
+    fn give_axis(&mut self, entry: &Entry) -> Result<Quantity, SpecError> {
+        if let Some(system) = &mut self.system {
+            return system.give(entry);
+        }
+        let parameter = Parameter::from_name(entry.key)
+            .ok_or_else(|| entry.unknown(&Parameter::ALL.map(Parameter::name)))?;
+        self.given.give(entry, parameter)?;
+        Ok(parameter.into())
     }
 
     fn finish(self, text: &str) -> Result<SweepSpec, SpecError> {
@@ -189,7 +215,9 @@ impl Draft {
                     .help("for example: [axes] tau = { from = 0, to = 12, points = 1201 }")
             });
         }
-        let (fixed, critical, default_fields) = if self.is_limit {
+        let (fixed, critical, default_fields) = if let Some(system) = &self.system {
+            (self.check_system(system)?, None, vec![Field::NUnstable])
+        } else if self.is_limit {
             (
                 self.limit.check(&self.given, self.axes_place.as_ref())?,
                 None,
@@ -205,6 +233,7 @@ impl Draft {
         }
         let mut fields = self.fields.unwrap_or(default_fields);
         let beyond = fixed.has_state()
+            || fixed.system().is_some()
             || beyond_letter(&fixed, &self.axes, &Parameter::BEYOND_LETTER).is_some();
         if beyond && fields.iter().any(|f| f.of_sliding()) && !fields.contains(&Field::Reason) {
             fields.push(Field::Reason);

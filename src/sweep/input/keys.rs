@@ -74,8 +74,14 @@ const UNITS_KEY: Key = key(
 );
 
 /// The keys of a sweep file.
-pub const SWEEP: [Key; 17] = [
+pub const SWEEP: [Key; 18] = [
     TITLE,
+    key(
+        "system",
+        "a system file, the name of a shipped system, or a table",
+        "the letter's",
+        "the linear system; axes and `[fixed]` take its parameters, and tau",
+    ),
     key(
         "picture",
         "the name of one of the fields",

@@ -39,6 +39,11 @@ impl LimitDraft {
         Ok(())
     }
 
+    /// All fields that are asked for, with their places.
+    pub(super) fn fields(&self) -> impl Iterator<Item = &(Field, Range<usize>)> {
+        self.fields.iter()
+    }
+
     /// The first field that is asked for and of this kind, and where.
     pub(super) fn first_field(&self, of: fn(Field) -> bool) -> Option<&(Field, Range<usize>)> {
         self.fields.iter().find(|(field, _)| of(*field))

@@ -16,6 +16,7 @@ use num_complex::Complex64;
 
 use super::parameter::Parameter;
 use super::setting::Setting;
+use super::system::Evaluation;
 use crate::linear::characteristic::one_minus_exp;
 use crate::linear::general::{Polynomial, System};
 use crate::model::{Groups, ModelError, StateGroups};
@@ -201,6 +202,9 @@ impl Setting {
     /// # Errors
     /// When a parameter is outside the model's range.
     pub fn linear(&self) -> Result<(LinearModel, f64), ModelError> {
+        if let Some(system) = self.own_system(&mut Evaluation::default()) {
+            return Ok((LinearModel::General(Box::new(system?)), 1.0));
+        }
         if !self.has_state() && self.beyond_letter(&Parameter::BEYOND_LETTER).is_none() {
             let oscillator = self.oscillator()?;
             let groups = oscillator.groups(self.sliding_point()?, self.control());

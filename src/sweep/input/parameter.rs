@@ -557,6 +557,16 @@ impl Parameter {
     /// The lags of load, velocity and sensor.
     pub const LAGS: [Self; 3] = [Self::LoadLag, Self::VelocityLag, Self::SensorLag];
 
+    /// The parameters of every system from a file besides its own: the delay, in feedback form also
+    /// memory and latency.
+    #[must_use]
+    pub const fn of_systems(feedback: bool) -> &'static [Self] {
+        match feedback {
+            true => &[Self::Tau, Self::Memory, Self::Latency],
+            false => &[Self::Tau],
+        }
+    }
+
     /// True for [`Parameter::BEYOND_LETTER`].
     #[must_use]
     pub const fn beyond_letter(self) -> bool {

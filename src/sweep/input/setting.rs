@@ -1,9 +1,14 @@
 //! One value for every parameter, and what has to be given for it.
 
 use std::cmp::Ordering;
+use std::sync::Arc;
 
 use super::law_kind::{LawKind, OF_VELOCITY};
 use super::parameter::{Group, Parameter};
+use super::quantity::Quantity;
+use super::system::parameter::OwnParameter;
+use super::system::{Evaluation, SystemModel, Undefined};
+use crate::linear::general::System;
 use crate::model::{
     Control, FrictionLaw, Groups, ModelError, Oscillator, RateAndState, SlidingPoint,
 };
@@ -90,6 +95,14 @@ impl GivenError {
 pub struct Setting {
     values: [f64; Parameter::ALL.len()],
     law: Option<LawKind>,
+    system: Option<OwnSystem>,
+}
+
+/// A system from a file, with values of its own parameters.
+#[derive(Debug, Clone, PartialEq)]
+struct OwnSystem {
+    model: Arc<SystemModel>,
+    own: Vec<f64>,
 }
 
 impl Setting {
@@ -98,7 +111,72 @@ impl Setting {
     #[must_use]
     pub fn new(law: Option<LawKind>) -> Self {
         let values = Parameter::ALL.map(|p| p.default_value().unwrap_or(f64::NAN));
-        Self { values, law }
+        Self {
+            values,
+            law,
+            system: None,
+        }
+    }
+
+    /// The default values of a system from a file; its delay is NaN until it is set.
+    #[must_use]
+    pub fn of_system(model: Arc<SystemModel>) -> Self {
+        let own = model.parameters.iter().map(|own| own.default).collect();
+        Self {
+            system: Some(OwnSystem { model, own }),
+            ..Self::new(None)
+        }
+    }
+
+    /// The system from a file, where it is not the letter's.
+    #[must_use]
+    pub fn system(&self) -> Option<&SystemModel> {
+        self.system.as_ref().map(|system| &*system.model)
+    }
+
+    /// The own parameters of the system, with their values.
+    pub fn own(&self) -> impl Iterator<Item = (&Arc<OwnParameter>, f64)> {
+        let system = self.system.iter();
+        system.flat_map(|system| {
+            system
+                .model
+                .parameters
+                .iter()
+                .zip(system.own.iter().copied())
+        })
+    }
+
+    /// The system from a file at this setting, evaluated in `at`; none where it is the letter's.
+    ///
+    /// # Errors
+    /// Where an expression has no finite value.
+    pub fn own_system(&self, at: &mut Evaluation) -> Option<Result<System, Undefined>> {
+        let OwnSystem { model, own } = self.system.as_ref()?;
+        at.own.clone_from(own);
+        at.tau = self.get(Parameter::Tau);
+        at.memory = self.get(Parameter::Memory);
+        at.latency = self.get(Parameter::Latency);
+        Some(model.at(at))
+    }
+
+    /// The value of what an axis is of.
+    #[must_use]
+    pub fn value_of(&self, quantity: &Quantity) -> f64 {
+        match (quantity, &self.system) {
+            (Quantity::Known(parameter), _) => self.get(*parameter),
+            (Quantity::Own(own), Some(system)) => system.own[own.index],
+            (Quantity::Own(_), None) => f64::NAN,
+        }
+    }
+
+    /// Sets the value of what an axis is of.
+    #[inline]
+    pub fn vary(&mut self, quantity: &Quantity, value: f64) {
+        match (quantity, &mut self.system) {
+            (Quantity::Known(parameter), _) => self.set(*parameter, value),
+            (Quantity::Own(own), Some(system)) => system.own[own.index] = value,
+            (Quantity::Own(_), None) => {}
+        }
     }
 
     /// The value of a parameter.
@@ -125,7 +203,10 @@ impl Setting {
     /// [`SweepSpec::uses`](super::spec::SweepSpec::uses).
     #[must_use]
     pub fn uses(&self, parameter: Parameter) -> bool {
-        let taken = parameter.of_start() || Self::takes(self.law.as_ref(), parameter);
+        let taken = match &self.system {
+            Some(system) => Parameter::of_systems(system.model.is_feedback()).contains(&parameter),
+            None => parameter.of_start() || Self::takes(self.law.as_ref(), parameter),
+        };
         let value = self.get(parameter);
         taken && !value.is_nan() && !(parameter.beyond_letter() && value == 0.0)
     }
@@ -157,6 +238,13 @@ impl Setting {
         of: &[Parameter],
         allowed: &'static str,
     ) -> Result<(), ModelError> {
+        if self.system.is_some() {
+            return Err(ModelError {
+                parameter: "system",
+                value: f64::NAN,
+                allowed: "the letter's where a block on its spring is meant",
+            });
+        }
         if self.has_state() {
             return Err(ModelError::of_law(OF_VELOCITY));
         }
@@ -291,7 +379,8 @@ impl Setting {
     /// Whether there is a delay that nothing acts on: both gains are 0.
     #[must_use]
     pub fn has_idle_delay(&self) -> bool {
-        self.control() == Control::default() && self.get(Parameter::Tau) > 0.0
+        let idle = self.system.is_none() && self.control() == Control::default();
+        idle && self.get(Parameter::Tau) > 0.0
     }
 
     /// Both gains.

@@ -178,7 +178,7 @@ impl Plan {
     pub fn setting(&self, index: &[usize]) -> Setting {
         let mut setting = self.spec.fixed.clone();
         for (axis, &i) in self.spec.axes.iter().zip(index) {
-            setting.set(axis.parameter, axis.values[i]);
+            setting.vary(&axis.parameter, axis.values[i]);
         }
         setting
     }
@@ -219,6 +219,10 @@ impl Plan {
             facts.push((TableColumn::Speeds.name(), table.speeds().into()));
             facts.push((TableColumn::MuK.name(), table.mu_k().into()));
         }
+        if let Some(system) = fixed.system() {
+            let text = system.to_toml().into_bytes();
+            facts.push(("system", text.into_iter().map(f64::from).collect()));
+        }
         facts.push(("axes", one(spec.axes.len() as f64)));
         for axis in &spec.axes {
             facts.push((axis.parameter.name(), axis.values.as_slice().into()));
@@ -226,6 +230,11 @@ impl Plan {
         for parameter in Parameter::ALL.into_iter().filter(|&p| spec.uses(p)) {
             if !spec.axes.iter().any(|a| a.parameter == parameter) {
                 facts.push((parameter.name(), one(fixed.get(parameter))));
+            }
+        }
+        for (own, value) in fixed.own() {
+            if !spec.axes.iter().any(|a| a.parameter.name() == own.name) {
+                facts.push((&own.name, one(value)));
             }
         }
         facts.extend(spec.fields.iter().map(|f| (f.first_name(), none())));

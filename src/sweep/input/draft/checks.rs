@@ -77,11 +77,14 @@ impl Draft {
         for axis in &self.axes {
             let (smallest, largest) = axis.range();
             // With a slope at rest, μ0 grows with v_s and with the slope's size.
-            let value = match axis.parameter {
+            let Some(parameter) = axis.parameter.known() else {
+                continue;
+            };
+            let value = match parameter {
                 Parameter::Mu0 | Parameter::VS => largest,
                 _ => smallest,
             };
-            worst.set(axis.parameter, value);
+            worst.set(parameter, value);
         }
         worst
             .friction_law()

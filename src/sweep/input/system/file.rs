@@ -1,6 +1,7 @@
 //! Reads a system, from a file of its own or as a table of a sweep file.
 
 use std::ops::Range;
+use std::sync::Arc;
 
 use super::expression::{self, FUNCTIONS, VARIABLE};
 use super::parameter::{OwnParameter, WIDEST};
@@ -95,7 +96,6 @@ impl std::str::FromStr for SystemModel {
 
 impl SystemModel {
     /// Reads a system that is a table of the text `whole`.
-    #[allow(dead_code, reason = "sweep files take it next")]
     pub(in crate::sweep::input) fn of_table(table: &Entry, whole: &str) -> Result<Self, SpecError> {
         Self::of_entries(table.table()?, whole, Some(&table.key_span))
     }
@@ -141,7 +141,10 @@ impl Draft {
                 let message = format!("more than {MOST_PARAMETERS} parameters");
                 return Err(SpecError::at(entry.key_span.clone(), message));
             }
-            let own = read_parameter(&entry)?;
+            let own = OwnParameter {
+                index: self.parameters.len(),
+                ..read_parameter(&entry)?
+            };
             self.parameters.push((own, entry.key_span.clone()));
         }
         Ok(())
@@ -184,7 +187,11 @@ impl Draft {
         let model = SystemModel {
             title: self.title,
             form,
-            parameters: self.parameters.iter().map(|(own, _)| own.clone()).collect(),
+            parameters: self
+                .parameters
+                .iter()
+                .map(|(own, _)| Arc::new(own.clone()))
+                .collect(),
             speed_axis: self.speed_axis,
         };
         for (index, (own, place)) in self.parameters.iter().enumerate() {
@@ -250,6 +257,7 @@ fn check_name(entry: &Entry) -> Result<(), SpecError> {
 
 fn read_parameter(of: &Entry) -> Result<OwnParameter, SpecError> {
     let mut own = OwnParameter {
+        index: 0,
         name: of.key.to_owned(),
         long_name: of.key.to_owned(),
         default: 0.0,

@@ -21,8 +21,8 @@
 //! unit = "rpm"
 //! ```
 //!
-//! - `expression`, `part`: read them; `tape`: evaluates them; `bounded`: numbers with bounds on their
-//!   error
+//! - `expression`, `part`: read them; `tape`: evaluates them; `bounded`: numbers with bounds on
+//!   their error
 //! - `file`: reads the file; `text`: writes it; [`shipped`]: systems that are part of the program
 //! - [`parameter`]: a parameter of a system's own
 
@@ -36,11 +36,13 @@ mod tape;
 mod text;
 
 use std::ops::Range;
+use std::sync::Arc;
 
 use parameter::OwnParameter;
 use tape::{Stacks, Tape};
 
 use crate::linear::general::System;
+use crate::model::ModelError;
 
 /// A system whose parameters have no values yet.
 #[derive(Debug, Clone, PartialEq)]
@@ -49,7 +51,7 @@ pub struct SystemModel {
     pub title: String,
     form: Form,
     /// Its own parameters, in the order of the file.
-    pub parameters: Vec<OwnParameter>,
+    pub parameters: Vec<Arc<OwnParameter>>,
     /// How pictures over its delay may show it.
     pub speed_axis: Option<SpeedAxis>,
 }
@@ -149,6 +151,16 @@ pub struct Undefined {
     pub polynomial: &'static str,
     /// What is wrong.
     pub what: String,
+}
+
+impl From<Undefined> for ModelError {
+    fn from(undefined: Undefined) -> Self {
+        Self {
+            parameter: undefined.polynomial,
+            value: f64::NAN,
+            allowed: "an expression that has a finite value, A of a smaller degree than B",
+        }
+    }
 }
 
 impl SystemModel {

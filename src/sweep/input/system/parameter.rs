@@ -6,6 +6,8 @@ use crate::sweep::input::parameter::LARGEST;
 /// A parameter that a system file names.
 #[derive(Debug, Clone, PartialEq)]
 pub struct OwnParameter {
+    /// Its number in the system, from 0 on.
+    pub index: usize,
     /// The name, one word everywhere.
     pub name: String,
     /// What it is; the name where the file does not say.

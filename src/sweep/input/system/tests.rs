@@ -27,7 +27,11 @@ fn shipped_systems_are_read_and_written_as_the_same() {
 fn their_parameters_are_those_of_the_tables() {
     let names = |name: &str| -> Vec<String> {
         let model = system(name).unwrap();
-        model.parameters.into_iter().map(|own| own.name).collect()
+        model
+            .parameters
+            .iter()
+            .map(|own| own.name.clone())
+            .collect()
     };
     for (name, parameters) in [
         ("letter", "mu_prime alpha_v alpha_n"),

@@ -38,6 +38,18 @@ impl SpeedAxis {
 }
 
 impl SystemModel {
+    /// What it is, with its polynomials, for people.
+    #[must_use]
+    pub fn in_one_line(&self) -> String {
+        let title = Some(&self.title).filter(|title| !title.is_empty());
+        let texts = self.expressions().map(|(name, text)| {
+            let words: Vec<&str> = text.split_whitespace().collect();
+            format!("{name} = {}", words.join(" "))
+        });
+        let texts = texts.collect::<Vec<_>>().join(", ");
+        title.map_or(texts.clone(), |title| format!("{title}: {texts}"))
+    }
+
     /// Its keys with their values, each on a line of its own but for `between`.
     fn pairs(&self) -> Vec<(&'static str, String)> {
         let mut pairs = Vec::new();
