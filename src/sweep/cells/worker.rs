@@ -227,7 +227,7 @@ impl<'p> Worker<'p> {
         self.unflagged = false;
     }
 
-    /// Computes the cells of a line whose polynomials depend on the delay, each as a line of its own.
+    /// Computes the cells of a line whose polynomials depend on the delay, each as its own line.
     fn fill_by_delay(&mut self, at: usize, stop: &AtomicBool) {
         for i in 0..self.delays.values().len() {
             let (tau, place) = (self.delays.values()[i], at + i * self.stride);
