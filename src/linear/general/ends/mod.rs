@@ -16,7 +16,10 @@
 //! which Newton's method solves for y and μ. It starts from the lobe's end without memory and latency
 //! and follows it along both.
 
+mod small;
+
 use num_complex::Complex64;
+use small::{MOST, Values, differences, solve};
 
 use super::polynomial::Polynomial;
 use super::right_of::{RightOf, RootCounter};
@@ -30,16 +33,12 @@ const LATENCY_STEP: f64 = 0.02;
 /// A latency longer than this is not looked at for the best one.
 const LONGEST_LATENCY: f64 = 20.0;
 const MOST_ITERATIONS: u32 = 60;
-/// Steps of difference quotients, over max(1, |y|).
-const DIFFERENCE: f64 = 1e-5;
 /// A step of Newton's method changes nothing by more than this.
 const LONGEST: f64 = 0.1;
 /// How far right of the axis another root is one that is unstable: a double root is blurred.
 const BESIDE: f64 = 1e-3;
 /// Distances from the frequency of a double pair at which two pairs are looked for.
 const APART: [f64; 3] = [0.05, 0.2, 0.4];
-/// Unknowns at most: b, g, τ, δ, two frequencies and four multipliers.
-const MOST: usize = 10;
 
 /// The latency of the feedback.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -84,29 +83,6 @@ struct Problem {
     /// δ where it is given.
     latency: Option<f64>,
     touch: Touch,
-}
-
-/// Values of all unknowns, or of equations; as many as count.
-#[derive(Clone, Copy)]
-struct Values {
-    of: [f64; MOST],
-    count: usize,
-}
-
-impl Values {
-    const NONE: Self = Self {
-        of: [0.0; MOST],
-        count: 0,
-    };
-
-    fn push(&mut self, value: f64) {
-        self.of[self.count] = value;
-        self.count += 1;
-    }
-
-    fn all(&self) -> &[f64] {
-        &self.of[..self.count]
-    }
 }
 
 /// Where lobe number `lobe` of pure control ends (0 is the one at the shortest delays), with memory
@@ -383,57 +359,6 @@ impl Problem {
         let system = System::feedback(open, gain, self.memory, end.latency);
         RootCounter::new(&system).right_of(end.tau, BESIDE) == RightOf::Roots(0)
     }
-}
-
-/// The derivatives of `of` with respect to each of `y`, by central differences.
-fn differences(of: &dyn Fn(&[f64]) -> Values, y: &[f64]) -> [Values; MOST] {
-    let mut slopes = [Values::NONE; MOST];
-    let mut moved = [0.0; MOST];
-    moved[..y.len()].copy_from_slice(y);
-    for (i, slope) in slopes.iter_mut().enumerate().take(y.len()) {
-        let h = DIFFERENCE * y[i].abs().max(1.0);
-        let mut at = |x: f64| {
-            moved[i] = x;
-            of(&moved[..y.len()])
-        };
-        let (above, below) = (at(y[i] + h), at(y[i] - h));
-        moved[i] = y[i];
-        for (a, b) in above.all().iter().zip(below.all()) {
-            slope.push((a - b) / (2.0 * h));
-        }
-    }
-    slopes
-}
-
-/// The solution x of Σ x_i `columns`_i = `right`, by Gaussian elimination with pivoting; none where
-/// the columns are dependent.
-fn solve(columns: &[Values], right: &[f64]) -> Option<[f64; MOST]> {
-    let n = columns.len();
-    let mut rows = [[0.0; MOST + 1]; MOST];
-    for (i, row) in rows.iter_mut().enumerate().take(n) {
-        for (j, column) in columns.iter().enumerate() {
-            row[j] = column.of[i];
-        }
-        row[n] = right[i];
-    }
-    for k in 0..n {
-        let size = |i: &usize| rows[*i][k].abs();
-        let pivot = (k..n).max_by(|i, j| size(i).total_cmp(&size(j)))?;
-        rows.swap(k, pivot);
-        let above = rows[k];
-        for row in &mut rows[k + 1..n] {
-            let factor = row[k] / above[k];
-            for (entry, from) in row.iter_mut().zip(above).skip(k) {
-                *entry -= factor * from;
-            }
-        }
-    }
-    let mut x = [0.0; MOST];
-    for i in (0..n).rev() {
-        let known: f64 = (i + 1..n).map(|j| rows[i][j] * x[j]).sum();
-        x[i] = (rows[i][n] - known) / rows[i][i];
-    }
-    x[..n].iter().all(|v| v.is_finite()).then_some(x)
 }
 
 #[cfg(test)]
