@@ -300,8 +300,8 @@ impl Problem {
                 return None;
             }
             let part = (LONGEST / size).min(1.0);
-            for i in 0..z.count {
-                z.of[i] -= part * step[i];
+            for (x, by) in z.of.iter_mut().zip(step) {
+                *x -= part * by;
             }
             // At the level of rounding steps no longer shrink.
             if size < 1e-14 || (size < 1e-7 && size >= 0.5 * last) {
@@ -321,10 +321,10 @@ impl Problem {
         let count = slopes[0].count;
         let mut columns = [Values::NONE; MOST];
         let mut right = Values::NONE;
-        for j in 0..count {
+        for (j, column) in columns.iter_mut().enumerate().take(count) {
             for i in 0..count {
                 let sum: f64 = slopes.iter().map(|of| of.of[i] * of.of[j]).sum();
-                columns[j].push(sum);
+                column.push(sum);
             }
             right.push(slopes[0].of[j]);
         }
