@@ -81,7 +81,8 @@ fn says_more(map: &MapFile) -> Option<Field> {
 fn default_field(map: &MapFile) -> Field {
     says_more(map)
         .or_else(|| map.stability_field())
-        .or_else(|| map.fields().first().copied())
+        // What is special of cells says least where nothing is.
+        .or_else(|| map.fields().iter().copied().find(|f| *f != Field::Reason))
         .unwrap_or(Field::NUnstable)
 }
 

@@ -286,6 +286,28 @@ catalogue! {
             ),
             ..ROW
         };
+        /// Why the cell is not like others: 0, or the number of a [`Reason`].
+        Reason = Row {
+            name: "reason",
+            long_name: "why the linear stability of the cell is not like that of others",
+            short_name: "reason",
+            storage: Storage::Kind,
+            kinds: Some(|| {
+                let names = Reason::ALL.into_iter().map(Reason::name);
+                std::iter::once("none").chain(names).collect()
+            }),
+            source: Source::Linear(OfLinear::Reason),
+            comment: Some(
+                "root-at-origin, root-on-axis: at every delay a root lies on the imaginary axis, \
+                 marginal in status; infinite: infinitely many unstable roots, n_unstable has no \
+                 value; neutral-limit: roots accumulate at the imaginary axis, it is never \
+                 exponentially stable; no-rightmost-root: the abscissa is the essential one, a \
+                 supremum, and there are no other roots, told beside fields of roots; \
+                 degree-unknown: the highest coefficient is within rounding of 0; refused: the \
+                 imaginary axis is crossed everywhere or nowhere",
+            ),
+            ..ROW
+        };
         /// Signed distance in τ to the nearest change of stability.
         DelayMargin = Row {
             name: "delay_margin",
@@ -425,28 +447,6 @@ catalogue! {
             comment: Some(
                 "of rate-and-state friction; infinity where evolution_effect is not larger than \
                  direct_effect: stable at every stiffness",
-            ),
-            ..ROW
-        };
-        /// Why the cell is not like others: 0, or the number of a [`Reason`].
-        Reason = Row {
-            name: "reason",
-            long_name: "why the linear stability of the cell is not like that of others",
-            short_name: "reason",
-            storage: Storage::Kind,
-            kinds: Some(|| {
-                let names = Reason::ALL.into_iter().map(Reason::name);
-                std::iter::once("none").chain(names).collect()
-            }),
-            source: Source::Linear(OfLinear::Reason),
-            comment: Some(
-                "root-at-origin, root-on-axis: at every delay a root lies on the imaginary axis, \
-                 marginal in status; infinite: infinitely many unstable roots, n_unstable has no \
-                 value; neutral-limit: roots accumulate at the imaginary axis, it is never \
-                 exponentially stable; no-rightmost-root: the abscissa is the essential one, a \
-                 supremum, and there are no other roots, told beside fields of roots; \
-                 degree-unknown: the highest coefficient is within rounding of 0; refused: the \
-                 imaginary axis is crossed everywhere or nowhere",
             ),
             ..ROW
         };
@@ -990,6 +990,17 @@ mod tests {
     use super::*;
     use crate::linear::track::MOST_ROOTS;
 
+    /// In the order in which a tile has its columns, and so in which a map takes them.
+    #[test]
+    fn counts_stand_before_kinds_and_kinds_before_numbers() {
+        let place = |field: Field| match field.storage() {
+            Storage::Count => 0,
+            Storage::Kind | Storage::Few => 1,
+            Storage::Real => 2,
+        };
+        assert!(Field::ALL.is_sorted_by_key(|field| place(*field)));
+    }
+
     #[test]
     fn every_field_has_a_name_and_a_meaning_of_its_own() {
         for field in Field::ALL {
@@ -1083,11 +1094,11 @@ mod tests {
     fn numbered_names_are_listed_as_ranges() {
         assert_eq!(
             known_fields(),
-            "n_unstable, outcome, method, regime, windows, delay_margin, abscissa, abscissa_2 … \
-             abscissa_8, frequency, frequency_2 … frequency_8, relaxation_time, \
+            "n_unstable, outcome, method, regime, windows, reason, delay_margin, abscissa, \
+             abscissa_2 … abscissa_8, frequency, frequency_2 … frequency_8, relaxation_time, \
              d_abscissa_d_tau, d_abscissa_d_alpha_v, d_abscissa_d_alpha_n, \
              d_abscissa_d_mu_prime, certificate_margin, essential_abscissa, stiffness_ratio, \
-             reason, gain_margin_lower, gain_margin_upper, phase_margin, latency_margin, \
+             gain_margin_lower, gain_margin_upper, phase_margin, latency_margin, \
              stability_radius, settle_time, last_release, n_min, peak_force, basin_share, \
              basin_share_error, basin_share_upper, vc, vc_lower, vc_upper, v_liftoff, stick_time, \
              slip_time, v_smooth, vc_over_vtilde, omega0_T, liftoff_over_vtilde, \
