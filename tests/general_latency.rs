@@ -7,7 +7,7 @@ mod chance;
 mod general_rows;
 
 use chance::Chance;
-use general_rows::{Row, with_latency};
+use general_rows::{Row, with_latency, without_latency};
 use slipmap::linear::general::{
     DelayLine, Form, Polynomial, Reason, RightOf, RootCounter, Spectrum, System,
 };
@@ -358,4 +358,75 @@ fn pairs_that_start_on_the_axis() {
         }
     }
     assert!(unstable > 100);
+}
+
+/// The systems of the other tables in feedback form, with lags, memory or a friction state, made
+/// late: both lines and both forms say the same, and the rightmost roots are certified.
+#[test]
+fn lags_memory_and_friction_states_with_latency() {
+    let mut chance = Chance(7);
+    let (mut systems, mut cells, mut open, mut uncertified) = (0, 0, 0, 0);
+    for (row, system) in without_latency() {
+        let tau = row.or_zero("tau");
+        let Some(late) = system.with_latency(chance.log(0.01, 6.0)) else {
+            continue;
+        };
+        systems += 1;
+        let delays = DelayLine::of(&late);
+        let latencies = DelayLine::of_latencies(&late, tau).expect("feedback");
+        let counter = RootCounter::new(&late);
+        cells += 1;
+        let by_delay = delays.count(tau, MarginalTolerance::default());
+        let by_latency = latencies.count(late.latency(), MarginalTolerance::default());
+        if by_delay.marginal || by_latency.marginal {
+            open += 1;
+            continue;
+        }
+        assert_eq!(by_delay, by_latency, "{}", row.place);
+        for line in [0.0, chance.between(-0.3, 0.5)] {
+            let [one, other] =
+                [Form::Delay, Form::Latency].map(|form| counter.right_of_by(form, tau, line));
+            if one == RightOf::Undecided || other == RightOf::Undecided {
+                open += 1;
+                continue;
+            }
+            assert_eq!(one, other, "{} {line}", row.place);
+            if line == 0.0 {
+                assert_eq!(one, RightOf::Roots(by_delay.n_unstable), "{}", row.place);
+            }
+        }
+        let found = Spectrum::at(&counter, &delays, tau, 1);
+        uncertified += u32::from(!found.certified);
+        if late.latency_margin(tau).expect("feedback") > late.latency() {
+            assert_eq!(by_delay.n_unstable, 0, "{}", row.place);
+        }
+    }
+    println!("{systems} systems, {open} of {cells} cells open, {uncertified} not certified");
+    assert!(
+        systems > 150 && open <= 2 && uncertified <= 2,
+        "{systems} {open} {uncertified}"
+    );
+}
+
+/// Long latencies: the chain of roots that the feedback makes, and nothing right of the rightmost.
+#[test]
+fn long_latencies() {
+    for (memory, tau) in [(0.0, 3.0), (0.0, 40.0), (0.5, 3.0)] {
+        for latency in [20.0, 100.0] {
+            let system = letter(-0.2, -0.5, -1.2, memory, latency);
+            let counter = RootCounter::new(&system);
+            let line = DelayLine::of(&system);
+            let found = Spectrum::at(&counter, &line, tau, 4);
+            assert!(
+                found.certified && found.roots.len() == 4,
+                "{memory} {tau} {latency} {found:?}"
+            );
+            let n = line.count(tau, MarginalTolerance::default()).n_unstable;
+            for form in [Form::Delay, Form::Latency] {
+                assert_eq!(counter.right_of_by(form, tau, 0.0), RightOf::Roots(n));
+            }
+            // About (τ + δ)/2π of them for each unit of frequency up to where |B| = 2|A|/(1 + R).
+            assert!(n > 10 || latency < 100.0, "{n}");
+        }
+    }
 }

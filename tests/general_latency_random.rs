@@ -150,7 +150,7 @@ impl Late {
             let mut step = 0.1 * length;
             while gone < length {
                 // |D′| step ≤ |D|/2: the argument turns by 30° at most.
-                step = 2.0 * step;
+                step *= 2.0;
                 // Also where the bound overflows.
                 let near = |step| self.slope(z, step) * step <= 0.5 * here.norm();
                 while !near(step) {
