@@ -188,9 +188,7 @@ fn upper_bound<const L: usize>(c: &[f64; L], e: &[f64; L]) -> Option<Option<f64>
     if power.abs() * (L as i64) >= 900 {
         return None;
     }
-    Some(Some(
-        UNEVEN * f64::from_bits(((1023 + power) as u64) << 52),
-    ))
+    Some(Some(UNEVEN * f64::from_bits(((1023 + power) as u64) << 52)))
 }
 
 /// What does not change from interval to interval.
@@ -246,8 +244,8 @@ impl<const L: usize> Search<'_, L> {
         for j in 1..L {
             for i in 0..L - j {
                 right[i] = 0.5 * (right[i] + right[i + 1]);
-                right_errors[i] = 0.5 * (right_errors[i] + right_errors[i + 1])
-                    + f64::EPSILON * right[i].abs();
+                right_errors[i] =
+                    0.5 * (right_errors[i] + right_errors[i + 1]) + f64::EPSILON * right[i].abs();
             }
             below[j] = right[0];
             below_errors[j] = right_errors[0];
@@ -310,8 +308,8 @@ impl<const L: usize> Search<'_, L> {
                 next = 0.5 * (low + high);
             }
             if (next - t).abs() <= LAST_STEP * t {
-                let radius = wider
-                    * (2.0 * self.error(next) / slope.abs() + 4.0 * f64::EPSILON * next);
+                let radius =
+                    wider * (2.0 * self.error(next) / slope.abs() + 4.0 * f64::EPSILON * next);
                 if self.holds(next, radius, rising) {
                     return self.add(next, radius);
                 }
@@ -327,7 +325,11 @@ impl<const L: usize> Search<'_, L> {
     fn holds(&self, t: f64, radius: f64, rising: bool) -> bool {
         let (below, above) = (self.value(t - radius), self.value(t + radius));
         let error = self.error(t);
-        let (below, above) = if rising { (-below, above) } else { (below, -above) };
+        let (below, above) = if rising {
+            (-below, above)
+        } else {
+            (below, -above)
+        };
         radius < 1e-4 * t && below > error && above > error
     }
 

@@ -14,15 +14,20 @@
 //! - [`latency`]: feedback that comes late
 //! - [`reason`]: why a cell is not like the others
 
+mod angle;
 mod count;
+mod decay;
 mod equation;
+mod isolate;
 mod latency;
 pub mod line;
 pub mod polynomial;
 pub mod reason;
 pub mod right_of;
 pub mod rightmost;
+mod routh;
 mod row;
+mod shifted;
 pub mod stable;
 mod switches;
 pub mod system;

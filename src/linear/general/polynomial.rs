@@ -345,6 +345,26 @@ impl Polynomial {
         slope
     }
 
+    /// |self(iω)|² as a polynomial in x = ω².
+    #[must_use]
+    pub(super) fn square(&self) -> Self {
+        Self::of(self.degree, |k| {
+            let middle = self.coefficient(k);
+            let mut sum = product(middle, middle);
+            let (mut size, mut terms) = (sum.value, f64::from(u8::from(sum.value != 0.0)));
+            let mut factor = -2.0;
+            for i in 1..=k.min(self.degree - k) {
+                let term = product(self.coefficient(k - i), self.coefficient(k + i));
+                sum.value += factor * term.value;
+                sum.error += 2.0 * term.error;
+                size += 2.0 * term.value.abs();
+                terms += f64::from(u8::from(term.value != 0.0));
+                factor = -factor;
+            }
+            sum.plus_error((terms - 1.0_f64).max(0.0) * 0.5 * f64::EPSILON * size)
+        })
+    }
+
     /// Re s^… of the product with the conjugate of `other` on the imaginary axis: a polynomial in
     /// x = ω² with Re[self(iω) other(iω)*] as its value.
     #[must_use]

@@ -4,12 +4,14 @@
 
 use num_complex::Complex64;
 
+use super::decay::Decay;
 use super::latency::late;
-use super::polynomial::{At, DegreeTooLarge, Polynomial};
+use super::polynomial::{DegreeTooLarge, Polynomial};
 use super::reason::Reason;
+use super::shifted::Shifted;
 use crate::linear::characteristic::{Jet, one_minus_exp};
 use crate::linear::rounded::Rounded;
-use crate::model::elementary::{arg, atan2, exp, expm1, ln, pow};
+use crate::model::elementary::{exp, ln, pow};
 
 /// D(λ) = P(λ) + Q(λ) e^(−λτ) with every parameter but the delay given.
 #[derive(Debug, Clone, Copy)]
@@ -68,56 +70,6 @@ impl Class {
         }
     }
 }
-
-/// e^(−στ) and what is made of it without cancellation.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Decay {
-    /// κ = e^(−στ).
-    pub kappa: Rounded,
-    /// 1 − κ.
-    pub lost: Rounded,
-}
-
-impl Decay {
-    /// On the imaginary axis.
-    pub(super) const NONE: Self = Self {
-        kappa: Rounded {
-            value: 1.0,
-            error: 0.0,
-        },
-        lost: Rounded {
-            value: 0.0,
-            error: 0.0,
-        },
-    };
-
-    /// None where κ overflows.
-    pub(super) fn new(line: f64, tau: f64) -> Option<Self> {
-        if line == 0.0 || tau == 0.0 {
-            return Some(Self::NONE);
-        }
-        let growth = expm1(-line * tau);
-        let kappa = growth + 1.0;
-        let error = f64::EPSILON * kappa * (1.0 + (line * tau).abs());
-        kappa.is_finite().then_some(Self {
-            kappa: Rounded {
-                value: kappa,
-                error: error + f64::EPSILON * kappa,
-            },
-            lost: Rounded {
-                value: -growth,
-                error: error.min(2.0 * f64::EPSILON * growth.abs() * (1.0 + (line * tau).abs()))
-                    + f64::EPSILON * growth.abs(),
-            },
-        })
-    }
-}
-
-/// 1 without error.
-const ONE: Rounded = Rounded {
-    value: 1.0,
-    error: 0.0,
-};
 
 impl System {
     /// From P and Q themselves.
@@ -189,7 +141,7 @@ impl System {
         if m < n {
             return Class::Retarded;
         }
-        let modulus = self.modulus(0.0, Decay::NONE);
+        let modulus = self.on_axis().modulus();
         if modulus.vanishes() {
             return Class::Refused;
         }
@@ -260,108 +212,21 @@ impl System {
         }
     }
 
-    /// D on the real axis at σ = `line`, of which sign and rounding matter.
-    pub(super) fn on_real_axis(&self, line: f64, decay: Decay) -> Rounded {
-        let at = |p: &Polynomial| p.shifted(line).coefficient(0);
-        if let Some(Feedback {
-            open, gain, memory, ..
-        }) = &self.feedback
-        {
-            // B(1 − Rκ) − A(1 − κ).
-            return at(open)
-                .times(remembered(*memory, decay))
-                .minus(at(gain).times(decay.lost));
-        }
-        let echo = at(&self.q).times(decay.kappa);
-        Rounded::sum([at(&self.p).value, echo.value]).plus_error(at(&self.p).error + echo.error)
-    }
-
-    /// p(0) − q(0) on the real axis at σ = `line`: F_σ(0) is D(σ) times this.
-    fn mirror(&self, line: f64, decay: Decay) -> Rounded {
-        let at = |p: &Polynomial| p.shifted(line).coefficient(0);
-        let minus = |a: Rounded, b: Rounded| a.minus(b);
+    /// P and Q on the line Re λ = `line`.
+    #[inline]
+    pub(super) fn on_line(&self, line: f64, decay: Decay) -> Shifted {
         match &self.feedback {
-            // B(1 + Rκ) − A(1 + κ).
             Some(Feedback {
                 open, gain, memory, ..
-            }) => {
-                let whole = |by: f64| {
-                    Rounded::sum([1.0, by * decay.kappa.value])
-                        .plus_error(by.abs() * decay.kappa.error)
-                };
-                minus(at(open).times(whole(*memory)), at(gain).times(whole(1.0)))
-            }
-            None => minus(at(&self.p), at(&self.q).times(decay.kappa)),
+            }) => Shifted::of_feedback([open, gain], *memory, line, decay),
+            None => Shifted::direct([&self.p, &self.q], line, decay),
         }
     }
 
-    /// F_σ of equations (6) and (8): |P|² − κ²|Q|² on the line σ = `line`, a polynomial in x = ω².
-    /// On the imaginary axis it may be one divided by a positive constant.
-    pub(super) fn modulus(&self, line: f64, decay: Decay) -> Polynomial {
-        let modulus = self.modulus_by_squares(line, decay);
-        let sum = match &self.feedback {
-            Some(Feedback { open, .. }) if line == 0.0 => open.coefficient(0),
-            _ => self.on_real_axis(line, decay),
-        };
-        // The product keeps its sign where a root is near σ, the difference of squares does not.
-        modulus.with_constant(sum.times(self.mirror(line, decay)))
-    }
-
-    fn modulus_by_squares(&self, line: f64, decay: Decay) -> Polynomial {
-        let square = decay.kappa.times(decay.kappa);
-        if let Some(Feedback {
-            open, gain, memory, ..
-        }) = &self.feedback
-        {
-            let (open, gain) = (open.shifted(line), gain.shifted(line));
-            let both = gain.real_product(&open);
-            let own = open.real_product(&open);
-            if line == 0.0 {
-                let factor = Rounded {
-                    value: 1.0 + memory,
-                    error: if *memory == 0.0 { 0.0 } else { f64::EPSILON },
-                };
-                return own.scaled(factor).plus(&both, -2.0);
-            }
-            // 1 − κ² = (1 − κ)(1 + κ).
-            let lost = decay
-                .lost
-                .times(Rounded::sum([1.0, decay.kappa.value]).plus_error(decay.kappa.error));
-            let remembered_square = remembered(*memory, decay).times(
-                Rounded::sum([1.0, memory * decay.kappa.value])
-                    .plus_error(memory.abs() * decay.kappa.error),
-            );
-            let middle = Rounded::sum([lost.value, square.value * (1.0 - memory)])
-                .plus_error(lost.error + square.error * (1.0 - memory));
-            return own
-                .scaled(remembered_square)
-                .plus(&both.scaled(middle), -2.0)
-                .plus(&gain.real_product(&gain).scaled(lost), 1.0);
-        }
-        let (p, q) = (self.p.shifted(line), self.q.shifted(line));
-        p.real_product(&p)
-            .plus(&q.real_product(&q).scaled(square), -1.0)
-    }
-
-    /// The argument α of −P Q* at σ + iω and a bound on its error, `omega` being known to within
-    /// `error`: none where nothing is known of it.
-    ///
-    /// D vanishes there where |P| = κ|Q| and α + ωτ is a multiple of 2π.
-    pub(super) fn phase(&self, line: f64, omega: f64, error: f64) -> Option<Angle> {
-        if let Some(feedback) = &self.feedback {
-            let b = feedback.open.shifted(line).on_axis(omega, error);
-            let a = feedback.gain.shifted(line).on_axis(omega, error);
-            return Angle::of_feedback(b, a, feedback.memory);
-        }
-        let p = self.p.shifted(line).on_axis(omega, error);
-        let q = self.q.shifted(line).on_axis(omega, error);
-        let product = -(p.value * q.value.conj());
-        let relative = |at: At| at.error / (at.value.norm_sqr().sqrt() - at.error).max(0.0);
-        let error = 2.0 * (relative(p) + relative(q)) + 4.0 * f64::EPSILON;
-        (error < 1.0).then(|| Angle {
-            value: arg(product),
-            error,
-        })
+    /// P and Q on the imaginary axis.
+    #[inline]
+    pub(super) fn on_axis(&self) -> Shifted {
+        self.on_line(0.0, Decay::NONE)
     }
 
     /// A radius within which every root with Re λ ≥ `line` lies; infinite where κρ ≥ 1.
@@ -445,59 +310,5 @@ impl System {
             }
             None => part(&self.p, 1.0) + part(&self.q, delayed + turned),
         }
-    }
-}
-
-/// 1 − Rκ without cancellation: (1 − R) + R(1 − κ).
-pub(super) fn remembered(memory: f64, decay: Decay) -> Rounded {
-    if memory == 0.0 {
-        return ONE;
-    }
-    Rounded::sum([1.0 - memory, memory * decay.lost.value])
-        .plus_error(memory.abs() * decay.lost.error + f64::EPSILON)
-}
-
-/// An angle and a bound on its error.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Angle {
-    /// In [−π, π].
-    pub value: f64,
-    pub error: f64,
-}
-
-impl Angle {
-    /// Of −P Q* = |A|² + R|B|² − R A B* − B A* from the values of B and A: small angles keep their
-    /// digits where A is large.
-    pub(super) fn of_feedback(b: At, a: At, memory: f64) -> Option<Self> {
-        let both = a.value * b.value.conj();
-        let (a_size, b_size) = (a.value.norm_sqr(), b.value.norm_sqr());
-        let re = a_size + memory * b_size - (1.0 + memory) * both.re;
-        let im = (1.0 - memory) * both.im;
-        let size = (a_size * b_size).sqrt();
-        let both_error = a_size.sqrt() * b.error
-            + b_size.sqrt() * a.error
-            + a.error * b.error
-            + 4.0 * f64::EPSILON * size;
-        let squares = 2.0 * a_size.sqrt() * a.error + a.error * a.error;
-        let others = 2.0 * b_size.sqrt() * b.error + b.error * b.error;
-        let re_error = squares
-            + others
-            + 2.0 * both_error
-            + 4.0 * f64::EPSILON * (a_size + b_size + 2.0 * size);
-        Self::of(re, im, re_error, 2.0 * both_error)
-    }
-
-    /// Of `re` + i `im`, each with its error; none where the point may be the origin.
-    fn of(re: f64, im: f64, re_error: f64, im_error: f64) -> Option<Self> {
-        let size = (re * re + im * im).sqrt();
-        if re_error + im_error >= 0.5 * size {
-            return None;
-        }
-        let aside = (re.abs() * im_error + im.abs() * re_error) / (size * size);
-        let value = atan2(im, re);
-        Some(Self {
-            value,
-            error: 4.0 * aside + 4.0 * f64::EPSILON * value.abs(),
-        })
     }
 }

@@ -7,9 +7,10 @@
 
 use std::f64::consts::{PI, TAU};
 
+use super::super::angle::Angle;
 use super::super::right_of::{Factors, RightOf, RootCounter, SAME_TURN, Turn, Turning};
 use super::super::switches::{Switch, Switches};
-use super::super::system::{Angle, Class, Feedback};
+use super::super::system::{Class, Feedback};
 use super::on_line::{Form, OnLine};
 use super::sum::Sum;
 use super::wave::TooMany;

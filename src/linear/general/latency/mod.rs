@@ -91,7 +91,7 @@ impl Feedback {
     }
 
     /// The argument of −P Q* at iω, P and Q being 𝒫 and 𝒬 of (1) in [`on_line`].
-    pub(super) fn late_phase(&self, omega: f64, error: f64) -> Option<super::system::Angle> {
+    pub(super) fn late_phase(&self, omega: f64, error: f64) -> Option<super::angle::Angle> {
         OnLine::new(self, 0.0, 0.0)?.phase(Form::Delay, omega, error)
     }
 

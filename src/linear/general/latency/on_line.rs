@@ -21,8 +21,10 @@
 
 use num_complex::Complex64;
 
+use super::super::angle::Angle;
+use super::super::decay::{Decay, remembered};
 use super::super::polynomial::{At, Polynomial};
-use super::super::system::{Angle, Decay, Feedback, remembered};
+use super::super::system::Feedback;
 use super::wave::Wave;
 use super::window::{Window, before_zeros, beyond_zeros};
 use crate::linear::characteristic::one_minus_exp;
