@@ -31,7 +31,7 @@ impl Draft {
     }
 
     /// There are boundaries beside which to trace degrees of stability.
-    fn check_degrees(&self) -> Result<(), SpecError> {
+    pub(super) fn check_degrees(&self) -> Result<(), SpecError> {
         let Some(place) = &self.degrees_place else {
             return Ok(());
         };
