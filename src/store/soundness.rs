@@ -76,28 +76,7 @@ fn opened(path: &Path) -> Result<MapFile, StoreError> {
 /// it.
 pub(crate) fn check_schema(map: &MapFile, plan: &Plan, report: &mut Report, stop: &AtomicBool) {
     let faults = &mut report.faults;
-    let axes = &plan.spec.axes;
-    if map.axes().len() != axes.len() {
-        faults.push(format!(
-            "it has {} axes, its sweep {}",
-            map.axes().len(),
-            axes.len()
-        ));
-    }
-    for (there, asked) in map.axes().iter().zip(axes) {
-        let same = |a: &[f64], b: &[f64]| {
-            a.len() == b.len() && a.iter().zip(b).all(|(a, b)| a.to_bits() == b.to_bits())
-        };
-        if there.parameter != asked.parameter || !same(&there.values, &asked.values) {
-            faults.push(format!(
-                "the axis {} is not that of the sweep",
-                there.parameter.name()
-            ));
-        }
-    }
-    if map.system() != plan.spec.fixed.system() {
-        faults.push("its system is not that of the sweep".into());
-    }
+    check_axes(map, plan, faults);
     for (parameter, value) in map.scalars() {
         if value.to_bits() != plan.spec.fixed.value_of(&parameter).to_bits() {
             faults.push(format!("{} is not that of the sweep", parameter.name()));
@@ -137,6 +116,32 @@ pub(crate) fn check_schema(map: &MapFile, plan: &Plan, report: &mut Report, stop
     });
     if let Err(error) = read {
         faults.push(error.to_string());
+    }
+}
+
+/// Whether the axes of a map and its system are those of `plan`.
+fn check_axes(map: &MapFile, plan: &Plan, faults: &mut Vec<String>) {
+    let axes = &plan.spec.axes;
+    if map.axes().len() != axes.len() {
+        faults.push(format!(
+            "it has {} axes, its sweep {}",
+            map.axes().len(),
+            axes.len()
+        ));
+    }
+    for (there, asked) in map.axes().iter().zip(axes) {
+        let same = |a: &[f64], b: &[f64]| {
+            a.len() == b.len() && a.iter().zip(b).all(|(a, b)| a.to_bits() == b.to_bits())
+        };
+        if there.parameter != asked.parameter || !same(&there.values, &asked.values) {
+            faults.push(format!(
+                "the axis {} is not that of the sweep",
+                there.parameter.name()
+            ));
+        }
+    }
+    if map.system() != plan.spec.fixed.system() {
+        faults.push("its system is not that of the sweep".into());
     }
 }
 

@@ -150,18 +150,15 @@ impl Motion {
         let (v, order) = self.signal_of_step();
         let radius = radius.min(self.radius_of_past());
         let memory = self.parameters.memory;
-        let has_room = match memory == 0.0 {
-            true => {
-                let a = &self.step.a[..=self.step.order];
-                self.history.push(self.t, radius, a, self.kink)
+        let has_room = if memory == 0.0 {
+            let a = &self.step.a[..=self.step.order];
+            self.history.push(self.t, radius, a, self.kink)
+        } else {
+            let mut w = v.map(|v| -memory * v);
+            for (w, a) in w.iter_mut().zip(&self.step.a).take(self.step.order + 1) {
+                *w += a;
             }
-            false => {
-                let mut w = v.map(|v| -memory * v);
-                for (w, a) in w.iter_mut().zip(&self.step.a).take(self.step.order + 1) {
-                    *w += a;
-                }
-                self.history.push(self.t, radius, &w[..=order], self.kink)
-            }
+            self.history.push(self.t, radius, &w[..=order], self.kink)
         };
         let kink = self.signal_kink;
         has_room && (!self.step.is_late || self.signal.push(self.t, radius, &v[..=order], kink))

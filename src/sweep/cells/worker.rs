@@ -67,10 +67,8 @@ pub struct Worker<'p> {
     map_strides: Vec<u64>,
     /// Whether cells have a sliding state.
     slides: bool,
-    /// The polynomials of the system depend on the delay.
-    by_delay: bool,
-    /// The delay of a cell, where it is so.
-    one_delay: Delays,
+    /// The delay of a cell, where the polynomials of the system depend on it.
+    one_delay: Option<Delays>,
 }
 
 /// One row on its way to a tile whose delays are not next to one another in memory.
@@ -87,6 +85,7 @@ impl<'p> Worker<'p> {
         let delay_range = plan.delay_range(&plan.tiles.tile(0));
         let longest = delay_range.len();
         let strides = plan.tiles.strides();
+        let system = plan.spec.fixed.system();
         Self {
             plan,
             lines: Lines::new(plan),
@@ -114,12 +113,9 @@ impl<'p> Worker<'p> {
             vc: VcColumns::new(&plan.spec),
             map_strides: strides_of(plan.shape()),
             slides: plan.spec.has_sliding(),
-            by_delay: plan
-                .spec
-                .fixed
-                .system()
-                .is_some_and(SystemModel::depends_on_delay),
-            one_delay: Delays::new(&[0.0]),
+            one_delay: system
+                .is_some_and(SystemModel::depends_on_delay)
+                .then(|| Delays::new(&[0.0])),
         }
     }
 
@@ -159,7 +155,7 @@ impl<'p> Worker<'p> {
         for_each_index(&tile.extent, self.plan.tau_axis, |inside| {
             let at = place_of(inside, &self.strides);
             self.lines.move_to(&tile.offset, inside);
-            if self.by_delay {
+            if self.one_delay.is_some() {
                 return self.fill_by_delay(at, stop);
             }
             let groups = match self.lines.model() {
@@ -229,9 +225,12 @@ impl<'p> Worker<'p> {
 
     /// Computes the cells of a line whose polynomials depend on the delay, each as its own line.
     fn fill_by_delay(&mut self, at: usize, stop: &AtomicBool) {
+        let Some(mut one_delay) = self.one_delay.take() else {
+            return;
+        };
         for i in 0..self.delays.values().len() {
             let (tau, place) = (self.delays.values()[i], at + i * self.stride);
-            self.one_delay.set_one(tau);
+            one_delay.set_one(tau);
             self.lines.setting.set(Parameter::Tau, tau);
             let Ok((LinearModel::General(system), time_unit)) = self.lines.model() else {
                 self.refuse(place, 1);
@@ -243,7 +242,7 @@ impl<'p> Worker<'p> {
                 time_unit,
                 stiffness_ratio: f64::NAN,
                 per_parameter: self.lines.groups_per_parameter(),
-                delays: &self.one_delay,
+                delays: &one_delay,
                 first: 0,
                 tolerance: self.plan.spec.tolerance,
                 places: Places {
@@ -255,6 +254,7 @@ impl<'p> Worker<'p> {
             self.general
                 .fill(&line, self.roots.as_mut(), &mut self.buffers);
         }
+        self.one_delay = Some(one_delay);
         self.unflagged = false;
     }
 
