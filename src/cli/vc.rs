@@ -13,10 +13,11 @@ use slipmap::sweep::input::search::{self, PHASES};
 use slipmap::sweep::input::units::Units;
 use slipmap::sweep::{Field, Parameter, Setting};
 
+use super::asks::OfStickSlip;
 use super::cell::{CellArgs, alone};
 use super::failure::Failure;
 use super::json::{self, AnswerSchema, Inputs};
-use super::parameters::{LimitArgs, OfStickSlip, ParameterArgs, flag};
+use super::parameters::{LimitArgs, ParameterArgs, flag};
 use super::setting::SettingArgs;
 
 #[derive(Debug, clap::Args)]
