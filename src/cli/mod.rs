@@ -1,5 +1,6 @@
 //! The command line: one file per subcommand, each thin.
 
+mod asks;
 mod axis_facts;
 mod basin;
 mod best;

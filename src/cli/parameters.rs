@@ -12,6 +12,7 @@ use slipmap::sweep::input::parameter::Group;
 use slipmap::sweep::input::setting::Setting;
 use slipmap::sweep::input::units::Units;
 
+use super::asks::{Asks, OfSliding};
 use super::failure::Failure;
 use super::output::warn_of_idle_delay;
 use super::parameter_values::Values;
@@ -42,39 +43,10 @@ fn law_names() -> PossibleValuesParser {
     PossibleValuesParser::new(formulas.chain([table]))
 }
 
-/// What a command asks of a point, and so which flags it can use.
-pub(super) trait Asks {
-    /// Whether it needs a whole friction law.
-    const LAW: bool;
-    /// Whether it looks for the delay.
-    const SEARCHES_DELAY: bool;
-}
-
-/// Sliding, by a friction law or by the slope alone.
-#[derive(Debug)]
-pub(super) struct OfSliding;
-
-impl Asks for OfSliding {
-    const LAW: bool = false;
-    const SEARCHES_DELAY: bool = false;
-}
-
-/// The same, at a delay that is looked for.
-#[derive(Debug)]
-pub(super) struct AtAnyDelay;
-
-impl Asks for AtAnyDelay {
-    const LAW: bool = false;
-    const SEARCHES_DELAY: bool = true;
-}
-
-/// Stick and slip, which a friction law says.
-#[derive(Debug)]
-pub(super) struct OfStickSlip;
-
-impl Asks for OfStickSlip {
-    const LAW: bool = true;
-    const SEARCHES_DELAY: bool = false;
+/// Why a law with a state is refused where motions are followed.
+fn no_motions() -> Failure {
+    let law = Formula::RateAndState.name();
+    Failure::bad_input_with_help(format!("--friction {law} has no motions here"), NO_MOTIONS)
 }
 
 /// A point of parameter space.
@@ -209,13 +181,7 @@ impl<A: Asks> ParameterArgs<A> {
                 format!("{} does not say enough: {why}", flag(parameter)),
                 help,
             )),
-            None if A::LAW && self.has_state() => Err(Failure::bad_input_with_help(
-                format!(
-                    "--friction {} has no motions here",
-                    Formula::RateAndState.name()
-                ),
-                NO_MOTIONS,
-            )),
+            None if A::LAW && self.has_state() => Err(no_motions()),
             None if A::LAW && self.law.friction.is_none() => Err(Failure::bad_input_with_help(
                 format!("--friction is not given: {why}"),
                 help,
@@ -240,13 +206,7 @@ impl<A: Asks> ParameterArgs<A> {
     /// The setting of motions: a friction law and v0, and a delay only where control acts.
     pub(super) fn setting_of_motions(&self) -> Result<Setting, Failure> {
         match self.law.friction {
-            Some(_) if self.has_state() => Err(Failure::bad_input_with_help(
-                format!(
-                    "--friction {} has no motions here",
-                    Formula::RateAndState.name()
-                ),
-                NO_MOTIONS,
-            )),
+            Some(_) if self.has_state() => Err(no_motions()),
             Some(_) => self.setting(),
             None => Err(Failure::bad_input_with_help(
                 "--friction is not given: motions stick and slip by a friction law",

@@ -276,8 +276,8 @@ pub(super) fn print_stability(
     if let Some(reason) = stability.reason {
         row("reason", reason.into())?;
     }
-    if let Some(right) = stability.right_of_line {
-        let line = format!("{} of {}", or_unknown(right.n_right_of_line), right.line);
+    if let Some(line) = stability.line {
+        let line = format!("{} of {line}", or_unknown(stability.n_right_of_line));
         row(
             "right of line",
             format!("{line}{}", unit_behind(&units.rate())),

@@ -15,13 +15,14 @@ use slipmap::sweep::input::simulation::DISTURBED;
 use slipmap::sweep::{CaseSpec, Parameter, Trace};
 use utoipa::ToSchema;
 
+use super::asks::OfStickSlip;
 use super::case_facts::CaseFacts;
 use super::cell::{CellArgs, alone};
 use super::failure::Failure;
 use super::json::{self, AnswerSchema, Inputs};
 use super::motion_text;
 use super::output::{check_picture, output_path, provenance, warn_of_idle_delay};
-use super::parameters::{OfStickSlip, ParameterArgs};
+use super::parameters::ParameterArgs;
 use super::plot;
 use super::say;
 use super::signals::Signals;

@@ -13,11 +13,12 @@ use slipmap::sweep::input::search::{self, PHASES};
 use slipmap::sweep::input::units::Units;
 use slipmap::sweep::{Field, Parameter, Setting};
 
+use super::asks::OfStickSlip;
 use super::cell::{CellArgs, alone};
 use super::failure::Failure;
 use super::json::{self, AnswerSchema, Inputs};
 use super::limit_args::LimitArgs;
-use super::parameters::{OfStickSlip, ParameterArgs, flag};
+use super::parameters::{ParameterArgs, flag};
 use super::setting::SettingArgs;
 
 #[derive(Debug, clap::Args)]

@@ -61,9 +61,11 @@ pub struct Stability {
     /// The rightmost roots.
     #[serde(flatten)]
     pub spectrum: Spectrum,
-    /// The roots right of a line that was asked for.
-    #[serde(flatten)]
-    pub right_of_line: Option<RightOfLine>,
+    /// Re λ of the line right of which roots were to be counted; null where none was asked for.
+    pub line: Option<f64>,
+    /// The number of roots right of that line; null where none was asked for, where a root lies within
+    /// rounding of it, and where there are infinitely many: it is less than `essential_abscissa`.
+    pub n_right_of_line: Option<u64>,
 }
 
 /// What there is to know of the latencies of the feedback at one delay.
@@ -120,17 +122,6 @@ pub struct Spectrum {
     pub incomplete: bool,
 }
 
-/// How many roots lie right of a vertical line.
-#[derive(Debug, Clone, Copy, Serialize)]
-#[cfg_attr(feature = "serve", derive(utoipa::ToSchema))]
-pub struct RightOfLine {
-    /// Re λ of the line.
-    pub line: f64,
-    /// The number of roots right of it; null where one lies within rounding of it, and where there
-    /// are infinitely many: `line` is less than `essential_abscissa`.
-    pub n_right_of_line: Option<u64>,
-}
-
 /// What is asked of a linear model.
 #[derive(Debug, Clone, Copy)]
 pub struct Wanted {
@@ -176,10 +167,8 @@ impl Stability {
             latencies: Latencies::default(),
             essential_abscissa: None,
             spectrum: Spectrum::of_letter(groups, time_unit, tau, wanted.roots),
-            right_of_line: wanted.line.map(|line| RightOfLine {
-                line,
-                n_right_of_line: count_right(line),
-            }),
+            line: wanted.line,
+            n_right_of_line: wanted.line.and_then(count_right),
         }
     }
 
@@ -196,6 +185,7 @@ impl Stability {
         let count = found.count;
         let stable_here = count.is_some_and(|count| count.stable());
         let essential = found.essential_abscissa / time_unit;
+        let count_right = |line: f64| counter.right_of(at, line * time_unit).finite();
         Self {
             n_unstable: count.map(|count| count.n_unstable),
             // At ρ = 1 nothing decays at a rate of its own.
@@ -212,10 +202,8 @@ impl Stability {
             crossings: line.crossings.iter().map(PointCrossing::of).collect(),
             latencies: Latencies::default(),
             essential_abscissa: finite(essential),
-            right_of_line: wanted.line.map(|line| RightOfLine {
-                line,
-                n_right_of_line: counter.right_of(at, line * time_unit).finite(),
-            }),
+            line: wanted.line,
+            n_right_of_line: wanted.line.and_then(count_right),
             spectrum: Spectrum::of_system(&counter, &found, (at, time_unit), wanted.roots),
         }
     }

@@ -197,8 +197,8 @@ fn concerning(field: Field, open: bool, status: u8, with_roots: bool) -> u8 {
         Source::Line if field == Field::NUnstable && open => of_count | NOT_CONVERGED,
         Source::Line if with_roots && !certified => of_count | DISAGREE,
         Source::Line => of_count,
-        // A radius that is not tight is proved all the same.
         Source::Linear(_) => 0,
+        // A radius that is not tight is proved all the same.
         Source::Margins(_) if open => of_count | NOT_CONVERGED,
         Source::Margins(_) => of_count,
         Source::Roots(_) if certified => of_count,

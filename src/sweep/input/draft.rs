@@ -237,6 +237,7 @@ impl Draft {
             || beyond_letter(&fixed, &self.axes, &Parameter::BEYOND_LETTER).is_some();
         if beyond && fields.iter().any(|f| f.of_sliding()) && !fields.contains(&Field::Reason) {
             fields.push(Field::Reason);
+            fields.sort_unstable();
         }
         let basin = match &self.basin_place {
             Some(_) => Some(self.basin.basin()?),
