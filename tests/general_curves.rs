@@ -17,7 +17,7 @@ fn polynomial(coefficients: &[f64]) -> Polynomial {
 }
 
 fn setting(system: System, tau: f64) -> Option<Setting> {
-    Some(Setting {
+    (tau >= 0.0).then_some(Setting {
         system,
         tau,
         unit: 1.0,
@@ -296,7 +296,7 @@ fn triangles_of_the_delayed_oscillator() {
 }
 
 #[test]
-fn further_planes() {
+fn pendulum() {
     let window = Window {
         p: -0.5..=2.0,
         q: 0.05..=6.0,
@@ -335,6 +335,11 @@ fn further_planes() {
             .iter()
             .any(|p| p.stable_side == StableSide::Above)
     );
+}
+
+/// Neutral equations: feedback of the acceleration, memory.
+#[test]
+fn neutral_planes() {
     // Feedback of the acceleration: neutral beyond k_a = 1.
     let at = |k_a: f64, tau: f64| {
         setting(
@@ -395,21 +400,36 @@ fn degrees_of_stability() {
         }
         check_sides("letter", &at, &window, &curves, sigma);
     }
-    let checked = |name: &str, window: &Window, plane: &SystemPlane, at: At, sigma: f64| {
-        let curves = trace(plane, sigma).unwrap();
-        let sides = check_sides(name, at, window, &curves, sigma);
-        println!(
-            "{name}, σ = {sigma}: {} pieces, {sides} sides",
-            curves.pieces.len()
-        );
-        assert!(sides > 20, "{name}");
-        curves
+}
+
+fn check_degree(
+    name: &str,
+    window: &Window,
+    plane: &SystemPlane,
+    at: At,
+    sigma: f64,
+) -> PlaneCurves {
+    let curves = trace(plane, sigma).unwrap();
+    let sides = check_sides(name, at, window, &curves, sigma);
+    println!(
+        "{name}, σ = {sigma}: {} pieces, {sides} sides",
+        curves.pieces.len()
+    );
+    assert!(sides > 20, "{name}");
+    curves
+}
+
+#[test]
+fn degrees_of_stability_of_other_systems() {
+    let window = Window {
+        p: -1.6..=0.4,
+        q: 0.0..=12.0,
     };
     let at = |p: f64, tau: f64| setting(letter(Groups::new(-0.1, p, 0.0), 0.3), tau);
     let of_memory = SystemPlane::of_lines(&at, &window);
-    checked("memory", &window, &of_memory, &at, 0.1);
+    check_degree("memory", &window, &of_memory, &at, 0.1);
     // Roots accumulate at ln 0.3/τ: right of the line from τ = −ln 0.3/σ on.
-    let curves = checked("memory", &window, &of_memory, &at, 0.2);
+    let curves = check_degree("memory", &window, &of_memory, &at, 0.2);
     let limit = curves
         .pieces
         .iter()
@@ -431,7 +451,7 @@ fn degrees_of_stability() {
         p: -0.1..=0.6,
         q: 0.0..=15.0,
     };
-    checked(
+    check_degree(
         "two modes",
         &window,
         &SystemPlane::of_lines(&at, &window),
@@ -448,7 +468,7 @@ fn degrees_of_stability() {
         p: -0.5..=8.0,
         q: -1.0..=6.0,
     };
-    checked(
+    check_degree(
         "gains",
         &window,
         &SystemPlane::new(&at, &window, [false, false]),

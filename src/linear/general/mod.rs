@@ -13,6 +13,7 @@
 //! - [`stable`]: the delays at which it is stable
 //! - [`latency`]: feedback that comes late
 //! - [`curves`]: exact boundaries over a plane of two parameters
+//! - [`ends`]: where lobes of feedback with memory and latency end
 //! - `starts`: where the curves of a plane begin to be followed
 //! - `level`, `sides`: curves on which a function vanishes, and what holds on both sides of them
 //! - [`plane`]: a system over a plane of two of its parameters
@@ -20,6 +21,7 @@
 
 mod count;
 pub mod curves;
+pub mod ends;
 mod equation;
 mod latency;
 mod level;
