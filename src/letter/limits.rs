@@ -1,5 +1,7 @@
 //! Where controls end: the slope beyond which velocity control fails, the weakest gains of load
 //! control, and short delays.
+//!
+//! Longer than most files: three claims of one kind, each with its evidence and its texts.
 
 use super::LetterError;
 use super::claim::{Claim, Value, Verdict};

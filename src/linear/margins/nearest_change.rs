@@ -112,7 +112,14 @@ impl<S: Fn(f64) -> Option<bool>> Search<'_, S> {
         if sign * (bad - beyond) > 0.0 {
             bad = beyond;
         }
-        while sign * (bad - good) > 0.25 * step {
+        let bad = self.halved((good, bad), 0.25 * step);
+        if holds(bad) { bad } else { f64::NAN }
+    }
+
+    /// The end of a stretch from a stable value to another, halved until it is as short as `width`.
+    fn halved(&self, (mut good, mut bad): (f64, f64), width: f64) -> f64 {
+        let sign = (bad - good).signum();
+        while sign * (bad - good) > width {
             let middle = 0.5 * (good + bad);
             if middle == good || middle == bad {
                 break;
@@ -122,7 +129,7 @@ impl<S: Fn(f64) -> Option<bool>> Search<'_, S> {
                 _ => bad = middle,
             }
         }
-        if holds(bad) { bad } else { f64::NAN }
+        bad
     }
 }
 
