@@ -178,7 +178,7 @@ fn curves_in_the_map_separate_its_stable_cells() {
             let stable = |tau: f64| {
                 Crossings::of(slipmap::model::Groups::new(mu_prime, 0.0, v.p)).n_unstable(tau) == 0
             };
-            let (before, after) = (stable(v.q - 1e-9), stable(v.q + 1e-9));
+            let (before, after) = (stable(v.tau - 1e-9), stable(v.tau + 1e-9));
             // At the ends of a piece another curve passes through the same point.
             if before != after {
                 assert_eq!(before, curve.piece.stable_side == StableSide::Shorter);
@@ -221,17 +221,15 @@ fn degrees_of_stability_bound_what_they_say() {
             let side = match curve.piece.stable_side {
                 StableSide::Shorter => -1e-4,
                 StableSide::Longer => 1e-4,
-                StableSide::Neither | StableSide::Below | StableSide::Above => {
-                    unreachable!("only what bounds is traced")
-                }
+                StableSide::Neither => unreachable!("only what bounds is traced"),
             };
             // Next to a corner or a fold the decaying region is narrower than the step.
             let ends = [vertices[0], vertices[vertices.len() - 1]];
-            if v.q < 1e-3 || ends.iter().any(|w| (v.q - w.q).hypot(v.p - w.p) < 0.05) {
+            if v.tau < 1e-3 || ends.iter().any(|w| (v.tau - w.tau).hypot(v.p - w.p) < 0.05) {
                 continue;
             }
-            assert_eq!(count(v.q + side), Some(0), "{v:?}");
-            assert_eq!(count(v.q - side), Some(2), "{v:?}");
+            assert_eq!(count(v.tau + side), Some(0), "{v:?}");
+            assert_eq!(count(v.tau - side), Some(2), "{v:?}");
             checked[number] += 1;
         }
     }

@@ -1,5 +1,4 @@
-//! The facts of the case of one motion: `plan` prints them before it is simulated, `info` of its
-//! trace.
+//! What is told of the case of one motion: before it is simulated, and of its trace.
 
 use serde::Serialize;
 use slipmap::model::Control;

@@ -11,7 +11,6 @@ use slipmap::sweep::input::axis::{Axis, nearest};
 use slipmap::sweep::input::basin::Basin;
 use slipmap::sweep::input::nearest::did_you_mean;
 use slipmap::sweep::input::point_file::{PointOf, PointSpec};
-use slipmap::sweep::input::quantity::Quantity;
 use slipmap::sweep::input::simulation::Simulation;
 use slipmap::sweep::{Parameter, Plan, Setting};
 
@@ -50,7 +49,7 @@ pub(super) fn parse_at(text: &str) -> Result<At, String> {
 
 impl At {
     /// The number of its axis among `axes`, those of a map.
-    pub(super) fn axis(&self, axes: &[&Quantity]) -> Result<usize, Failure> {
+    pub(super) fn axis(&self, axes: &[Parameter]) -> Result<usize, Failure> {
         let names = || axes.iter().map(|axis| axis.name());
         let place = names().position(|name| name == self.name);
         place.ok_or_else(|| {
@@ -88,7 +87,7 @@ impl CellArgs {
         let mut there = Vec::new();
         for axis in &plan.spec.axes {
             let place = self.place(axis)?;
-            let unit = unit_behind(&axis.parameter.unit(&plan.spec.units));
+            let unit = unit_behind(&plan.spec.units.of_parameter(axis.parameter));
             let (name, value) = (axis.parameter.name(), axis.values[place]);
             there.push(format!("{name} = {value}{unit}"));
             index.push(place);
@@ -134,7 +133,7 @@ impl CellArgs {
 
     /// Values are given on axes alone.
     fn check_axes(&self, plan: &Plan) -> Result<(), Failure> {
-        let axes: Vec<_> = plan.spec.axes.iter().map(|axis| &axis.parameter).collect();
+        let axes: Vec<_> = plan.spec.axes.iter().map(|axis| axis.parameter).collect();
         self.at.iter().try_for_each(|at| at.axis(&axes).map(drop))
     }
 
@@ -154,12 +153,12 @@ impl CellArgs {
             }
             _ => return Err(Failure::bad_input(format!("--at {name} is given twice"))),
         };
-        place_on(&axis.parameter, &axis.values, value)
+        place_on(axis.parameter, &axis.values, value)
     }
 }
 
 /// The place on an axis of the value nearest to `value`, which the axis reaches.
-pub(super) fn place_on(of: &Quantity, values: &[f64], value: f64) -> Result<usize, Failure> {
+pub(super) fn place_on(of: Parameter, values: &[f64], value: f64) -> Result<usize, Failure> {
     nearest(values, value).map_err(|[low, high]| {
         let message = format!("--at {}={value} is outside the axis", of.name());
         let help = format!("it goes from {low} to {high}");
@@ -167,7 +166,7 @@ pub(super) fn place_on(of: &Quantity, values: &[f64], value: f64) -> Result<usiz
     })
 }
 
-/// Refuses other flags of the setting where a cell of a map or a file gives it.
+/// Nothing else says what is asked where a cell or a file does.
 pub(super) fn alone(flag: &str, given: bool) -> Result<(), Failure> {
     match given {
         false => Ok(()),
@@ -175,7 +174,6 @@ pub(super) fn alone(flag: &str, given: bool) -> Result<(), Failure> {
             format!("{flag} is given with other flags of the point"),
             match flag {
                 "--map" => "the map says everything but the cell, which --at says",
-                "--system" => "--set and --tau say everything of it",
                 _ => "the file says everything",
             },
         )),
@@ -241,8 +239,7 @@ mod tests {
         for (text, value) in [("mu_prime=-0.3", -0.3), ("mu-prime = 1e-2", 0.01)] {
             let at = parse_at(text).unwrap();
             assert_eq!((at.name.as_str(), at.value), ("mu_prime", value));
-            let axes = [Parameter::Tau, Parameter::MuPrime].map(Quantity::from);
-            let axes = axes.each_ref();
+            let axes = [Parameter::Tau, Parameter::MuPrime];
             assert!(matches!(at.axis(&axes), Ok(1)));
             assert!(at.axis(&axes[..1]).is_err());
         }

@@ -97,8 +97,8 @@ pub(super) fn print(
         row(&name, text)?;
     }
     print_loop(&mut row, margins, units)?;
-    if let (Some(found), Some(proved)) = (&margins.stability_box, margins.stability_radius) {
-        row("stability_radius", radius(proved, found))?;
+    if let Some(found) = &margins.stability_box {
+        row("stability_radius", radius(margins.stability_radius, found))?;
     }
     tell_dimensionless(out, units)
 }

@@ -1,6 +1,5 @@
 //! The command line: one file per subcommand, each thin.
 
-mod asks;
 mod axis_facts;
 mod basin;
 mod best;
@@ -9,32 +8,26 @@ mod best_text;
 mod case_facts;
 mod cell;
 mod colours;
-mod completions;
 mod export;
 mod failure;
 mod info;
 mod info_trace;
 mod json;
 mod kind;
-mod limit_args;
-mod man;
 mod margins;
 mod merge;
 mod motion_text;
 mod open;
 mod open_files;
 mod output;
-mod parameter_values;
 mod parameters;
 mod plan;
 mod plan_case;
 mod plot;
 mod point;
 mod point_args;
-mod point_system;
 mod read_map;
 mod recommended;
-mod reference;
 mod reproduce;
 mod run;
 mod say;
@@ -46,7 +39,6 @@ mod signals;
 mod simulate;
 mod status;
 mod sweep_file;
-mod system_args;
 mod text_output;
 mod vc;
 mod verify;
@@ -117,17 +109,10 @@ enum Command {
     Reproduce(reproduce::Args),
     /// Print the JSON Schema of what another command prints with --json
     Schema(schema::Args),
-    /// Print the completions of a shell
-    Completions(completions::Args),
-    /// Print the manual page of a command, or write those of all
-    Man(man::Args),
-    /// Print a page of the guide's reference
-    #[command(hide = true)]
-    Reference(reference::Args),
 }
 
-/// Prints help, or what is wrong with the arguments. Names among these may hold control
-/// characters, which are shown and not sent to the terminal.
+/// Help, or what is wrong with the arguments, of which some may be names that hold control
+/// characters.
 fn say_usage(error: &clap::Error) -> ExitCode {
     let odd = |arg: std::ffi::OsString| {
         let arg = arg.to_string_lossy().into_owned();
@@ -174,9 +159,6 @@ pub(crate) fn main() -> ExitCode {
         Command::Info(args) => info::main(&args),
         Command::Reproduce(args) => reproduce::main(&args),
         Command::Schema(args) => schema::main(&args),
-        Command::Completions(args) => completions::main(&args),
-        Command::Man(args) => man::main(&args),
-        Command::Reference(args) => reference::main(&args),
     };
     match result {
         Ok(()) => ExitCode::SUCCESS,

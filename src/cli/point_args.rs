@@ -2,9 +2,9 @@
 
 use std::path::Path;
 
+use slipmap::sweep::Setting;
 use slipmap::sweep::input::point_file::PointOf;
 use slipmap::sweep::input::units::Units;
-use slipmap::sweep::{Parameter, Setting};
 
 use super::cell::{CellArgs, alone};
 use super::failure::Failure;
@@ -27,21 +27,9 @@ impl PointArgs {
         self.cell.map.as_deref()
     }
 
-    /// The value of the flag of a parameter.
-    pub(super) fn given(&self, parameter: Parameter) -> Option<f64> {
-        self.parameters.given(parameter)
-    }
-
-    /// Nothing but the flags of these parameters is given beside the flag `with`, which says the
-    /// rest.
-    pub(super) fn check_alone(&self, with: &str, but: &[Parameter]) -> Result<(), Failure> {
-        let others = self.cell.map.is_some() || self.file.is_given();
-        alone(with, others || self.parameters.any_but(but))
-    }
-
     /// The setting, from a map or from flags, and its units.
     pub(super) fn read(&self) -> Result<(Setting, Units), Failure> {
-        let given = self.parameters.any_but(&[]);
+        let given = self.parameters.any_given();
         if let Some(point) = self.file.point(PointOf::Sliding)? {
             alone("--setting", given)?;
             return Ok((point.setting, point.units));

@@ -19,7 +19,7 @@ pub(super) enum Control {
     Load,
 }
 
-/// The best settings, and the margins and v_c of the one that is recommended.
+/// What was found, and what there is to know of the setting that is recommended.
 pub(super) struct Recommended {
     pub(super) control: Control,
     pub(super) ranges: Ranges,

@@ -19,7 +19,7 @@ use super::failure::Failure;
 use super::json::{self, AnswerSchema, Inputs};
 use super::say::Rows;
 
-/// The most bytes at the end of a log that are read to tell the rate of a run.
+/// A run tells its rate from so many bytes of its log at most.
 const MOST_OF_LOG: u64 = 64 << 20;
 
 #[derive(Debug, clap::Args)]
@@ -100,7 +100,7 @@ impl ShardAnswer {
     }
 }
 
-/// The progress of a map, as JSON and for people.
+/// What is told of a map.
 struct Status {
     complete: bool,
     cells: u64,

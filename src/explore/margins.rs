@@ -3,7 +3,6 @@
 use serde::Serialize;
 
 use super::finite;
-use super::stability::Stability;
 use crate::linear::margins::{Limits, Margins as Search, Radius};
 use crate::model::ModelError;
 use crate::sweep::cells::margins::Around;
@@ -22,8 +21,8 @@ pub struct Margins {
     /// The least angle, rad, of either sign by which the loop may turn; null where it is infinite:
     /// the loop is nowhere as large as 1. 0 where the setting has not the decay rate.
     pub phase_margin: Option<f64>,
-    /// The largest latency of the feedback, counted from none; null where it is infinite. 0 where the
-    /// setting without latency has not the decay rate.
+    /// The largest further latency of the feedback; null where it is infinite. 0 where the setting
+    /// has not the decay rate.
     pub latency_margin: Option<f64>,
     /// The delays between which it stays; null where the setting has it not.
     pub tau_margin: Option<Margin>,
@@ -34,12 +33,11 @@ pub struct Margins {
     /// setting has it not, and where there is no friction law.
     pub v0_margin: Option<Margin>,
     /// The largest relative box of gain, delay and μ_K′ or v0 that is proved to have it; 0 where
-    /// the setting has it not, null where that is not known.
-    pub stability_radius: Option<f64>,
+    /// the setting has it not.
+    pub stability_radius: f64,
     /// That box; null where the setting has not the decay rate.
     pub stability_box: Option<StabilityBox>,
-    /// The margins above that could not be decided, or are not known of such a system: they are
-    /// null for that.
+    /// The margins above that could not be decided.
     pub undecided: Vec<&'static str>,
 }
 
@@ -90,70 +88,22 @@ impl Margins {
     pub fn at(setting: &Setting, decay: f64) -> Result<Self, ModelError> {
         let around = Around::of(setting, decay)?;
         let mut margins = Self {
+            required_decay: decay,
             decays: around.stable(),
-            ..Self::lost(decay)
-        };
-        if margins.decays {
-            margins.fill(&around, setting);
-        }
-        Ok(margins)
-    }
-
-    /// Of a system beyond the letter's, as far as its stability over the delay tells: at the delay
-    /// `tau`.
-    #[must_use]
-    pub fn of_stability(stability: &Stability, tau: f64) -> Self {
-        let mut margins = Self {
-            decays: stability.stable,
-            ..Self::lost(0.0)
-        };
-        if !margins.decays {
-            return margins;
-        }
-        let inside = |&&[from, to]: &&[Option<f64>; 2]| {
-            from.unwrap_or(0.0) <= tau && to.is_none_or(|to| tau < to)
-        };
-        let interval = stability.stable_delays.iter().find(inside);
-        margins.tau_margin = interval.map(|[from, to]| {
-            let limits = Limits {
-                lower: from.unwrap_or(0.0),
-                upper: to.unwrap_or(f64::INFINITY),
-            };
-            Margin::of(tau, limits, 0.0)
-        });
-        if interval.is_none() {
-            margins.undecided.push("tau_margin");
-        }
-        margins.phase_margin = None;
-        let latency = stability.latencies.margin.unwrap_or(f64::NAN);
-        margins.latency_margin = finite(latency);
-        margins.note("latency_margin", &[latency]);
-        margins.stability_radius = None;
-        margins.undecided.extend([
-            "gain_margin",
-            "phase_margin",
-            "mu_prime_margin",
-            "v0_margin",
-            "stability_radius",
-        ]);
-        margins
-    }
-
-    /// Where the setting has not the decay rate, nothing is left of any margin.
-    fn lost(required_decay: f64) -> Self {
-        Self {
-            required_decay,
-            decays: false,
             gain_margin: None,
             phase_margin: Some(0.0),
             latency_margin: Some(0.0),
             tau_margin: None,
             mu_prime_margin: None,
             v0_margin: None,
-            stability_radius: Some(0.0),
+            stability_radius: 0.0,
             stability_box: None,
             undecided: Vec::new(),
+        };
+        if margins.decays {
+            margins.fill(&around, setting);
         }
+        Ok(margins)
     }
 
     fn fill(&mut self, around: &Around, setting: &Setting) {
@@ -183,7 +133,7 @@ impl Margins {
             self.mu_prime_margin = Some(Margin::of(at, limits, f64::NEG_INFINITY));
         }
         let radius = around.radius();
-        self.stability_radius = Some(radius.proved);
+        self.stability_radius = radius.proved;
         self.stability_box = Some(StabilityBox::of(&radius, third));
     }
 

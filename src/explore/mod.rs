@@ -3,9 +3,7 @@
 //!
 //! - [`chart`]: cells and curves of a sweep, computed into memory within limits; [`chart_bytes`]:
 //!   the same as bytes, laid out as in [`encoded`]
-//! - [`point`]: linear stability at a point, with its roots: [`stability`] of its linear model;
-//!   [`along_delay`]: over its delays
-//! - [`system_point`]: the same of a system from a file
+//! - [`point`]: linear stability at a point, with its roots; [`along_delay`]: over its delays
 //! - [`margins`]: how far a point is from the boundary of stability
 //! - [`vc`]: the critical velocity at a point
 //! - [`basin`]: the share of starts from which control ends in sliding
@@ -30,8 +28,6 @@ pub mod motion;
 pub mod motion_bytes;
 pub mod point;
 pub mod problem;
-pub mod stability;
-pub mod system_point;
 pub mod vc;
 #[cfg(all(feature = "wasm", target_family = "wasm"))]
 pub mod wasm;

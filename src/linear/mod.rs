@@ -13,7 +13,6 @@
 //! - [`gains`]: the crossing curve with one gain given and the other solved for
 //! - [`curves`]: crossing curves in a plane of a parameter and the delay, cut at their corners
 //! - [`decay`]: curves of a given degree of stability in such a plane: where max Re λ = −σ
-//! - [`plane`]: a characteristic function over a plane, as what follows curves takes it
 //! - [`lobes`]: where the stable regions of pure control end
 //! - [`best`]: the settings of fastest decay, for every stable region
 //! - [`margins`]: how far a setting is from the boundary of stability, in every direction
@@ -23,18 +22,14 @@ mod branches;
 pub mod certificate;
 pub mod characteristic;
 pub mod collocation;
-mod controlled;
 pub mod count;
 pub mod crossing;
 pub mod curves;
 pub mod decay;
-pub mod equation;
 pub mod gains;
-pub mod general;
 pub mod lobes;
 pub mod margins;
 pub mod newton;
-pub mod plane;
 pub mod rightmost;
 pub(crate) mod roots;
 mod rounded;

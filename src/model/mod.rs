@@ -19,12 +19,10 @@ mod friction_ranges;
 mod groups;
 pub mod known_cases;
 mod oscillator;
-pub mod rate_and_state;
 pub mod table;
 
 pub use error::{ModelError, Shown};
 pub use friction::FrictionLaw;
 pub use groups::Groups;
 pub use oscillator::{Control, Oscillator, SlidingPoint};
-pub use rate_and_state::{RateAndState, StateGroups};
 pub use table::Table;

@@ -72,7 +72,7 @@ pub(super) enum Refused {
     Unprocessable(Problem),
 }
 
-/// The answer where an address has no resource.
+/// What is told where there is nothing.
 pub(super) fn nothing_here() -> Problem {
     Problem::of(StatusCode::NOT_FOUND, "there is nothing at this address")
 }

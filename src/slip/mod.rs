@@ -4,7 +4,6 @@
 //! - [`cycle`]: motions that begin in uncontrolled stick-slip
 //! - [`motion`]: steps from event to event
 //! - [`outcome`]: what becomes of a motion
-//! - [`sliding`]: linear stability of sliding
 //! - [`step`]: the polynomials of one step
 //! - [`series`]: polynomials in time, their first zeros
 //! - [`stop`]: a flag that ends motions
@@ -18,7 +17,6 @@ mod history;
 pub mod motion;
 pub mod outcome;
 pub mod series;
-pub mod sliding;
 pub mod step;
 pub mod stop;
 mod table_series;

@@ -8,8 +8,7 @@ use super::attributes::{put_numbers, put_text};
 use super::curve_rows::{BoundaryColumn, CurveRows, EachColumn, Named, Per};
 use super::netcdf::{DimensionId, Dimensions, named};
 use super::schema::{BOUNDARIES, PLANE};
-use crate::sweep::Plan;
-use crate::sweep::input::quantity::Quantity;
+use crate::sweep::{Parameter, Plan};
 
 /// Elements in a chunk of the appended datasets.
 const CHUNK: usize = 1 << 13;
@@ -39,12 +38,10 @@ pub(super) struct BoundaryWriter {
 struct Maker<'a> {
     group: &'a Group,
     plan: &'a Plan,
-    /// The first parameter of the planes.
-    parameter: Quantity,
-    /// The second one.
-    second: Quantity,
+    /// The parameter of the planes.
+    parameter: Parameter,
     /// The parameters of the axes outside the planes.
-    outer: Vec<Quantity>,
+    outer: Vec<Parameter>,
     dimensions: &'a mut Dimensions,
     ids: Ids,
 }
@@ -80,10 +77,8 @@ impl Maker<'_> {
                 self.make::<T>(about.per, name, (meaning, &units.angular_frequency()))
             }
             Named::Rate(name, meaning) => self.make::<T>(about.per, name, (meaning, &units.rate())),
-            Named::Parameter(prefix) => {
-                self.of_parameter(about.per, prefix, &self.parameter.clone())
-            }
-            Named::Second(prefix) => self.of_parameter(about.per, prefix, &self.second.clone()),
+            Named::Parameter(prefix) => self.of_parameter(about.per, prefix, self.parameter),
+            Named::Delay(prefix) => self.of_parameter(about.per, prefix, Parameter::Tau),
         }?;
         if let Some(counted) = about.counts {
             put_text(&dataset, "sample_dimension", counted)?;
@@ -98,10 +93,10 @@ impl Maker<'_> {
         &mut self,
         per: Per,
         prefix: &str,
-        parameter: &Quantity,
+        parameter: Parameter,
     ) -> hdf5::Result<Dataset> {
         let name = format!("{prefix}{}", parameter.name());
-        let unit = parameter.unit(&self.plan.spec.units);
+        let unit = self.plan.spec.units.of_parameter(parameter);
         self.make::<f64>(per, &name, (parameter.long_name(), &unit))
     }
 
@@ -111,7 +106,7 @@ impl Maker<'_> {
         parameters
             .map(|parameter| {
                 Ok(OuterColumn {
-                    dataset: self.of_parameter(per, prefix, &parameter)?,
+                    dataset: self.of_parameter(per, prefix, parameter)?,
                     waiting: Vec::new(),
                 })
             })
@@ -159,12 +154,12 @@ fn append<T: H5Type>(dataset: &Dataset, values: &[T]) -> hdf5::Result<()> {
 }
 
 impl BoundaryWriter {
-    /// Creates the group, for the plane of `plan` spanned by the axes `p` and `q`.
+    /// Creates the group, for the plane of `plan` spanned by the axes `p` and delay.
     pub(super) fn create(
         parent: &Group,
         dimensions: &mut Dimensions,
         plan: &Plan,
-        (p, q): (usize, usize),
+        (p, tau): (usize, usize),
     ) -> hdf5::Result<Self> {
         let group = parent
             .create_group_builder()
@@ -184,19 +179,17 @@ impl BoundaryWriter {
             dimensions.add_bare(&group, "vertex")?,
             dimensions.add_bare(&group, "corner")?,
         ];
-        let parameter = plan.spec.axes[p].parameter.clone();
-        let second = plan.spec.axes[q].parameter.clone();
-        let plane = format!("{} {}", parameter.name(), second.name());
+        let parameter = plan.spec.axes[p].parameter;
+        let plane = format!("{} {}", parameter.name(), Parameter::Tau.name());
         put_text(&group, PLANE, &plane)?;
         let axes = plan.spec.axes.iter().enumerate();
-        let outer = axes.filter(|&(axis, _)| axis != p && axis != q);
+        let outer = axes.filter(|&(axis, _)| axis != p && axis != tau);
         let mut making = Making {
             maker: Maker {
                 group: &group,
                 plan,
                 parameter,
-                second,
-                outer: outer.map(|(_, axis)| axis.parameter.clone()).collect(),
+                outer: outer.map(|(_, axis)| axis.parameter).collect(),
                 dimensions,
                 ids,
             },

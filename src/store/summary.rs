@@ -1,6 +1,5 @@
-//! The range of values of each column of a map, and how many cells have each kind. They are counted
-//! when a tile is computed, added up when the map is written, and stored as attributes, so that no
-//! reader has to go through all cells.
+//! What values the columns of a map hold: counted once when a tile is computed, added up when the
+//! map is written, and told by attributes, so that nobody has to read every cell to know it.
 
 use hdf5::{Dataset, H5Type};
 use serde::{Deserialize, Serialize};
@@ -29,7 +28,7 @@ pub struct FieldSummary {
 }
 
 impl FieldSummary {
-    /// Counts real values; NaN stands for no value.
+    /// Of real values, NaN where there is none.
     #[must_use]
     pub fn of_reals(cells: &[f64]) -> Self {
         let finite = || cells.iter().copied().filter(|value| value.is_finite());
@@ -44,7 +43,7 @@ impl FieldSummary {
         }
     }
 
-    /// Counts whole numbers; `fill`, the largest number of the type, stands for no value.
+    /// Of whole numbers, `fill`, the largest of them, where there is none.
     fn of_counts<T: Copy + Ord + Default + Into<f64>>(cells: &[T], fill: T) -> Self {
         let (low, mut high) = ends(cells, fill, |value| value);
         let mut finite = cells.len() as u64;
@@ -86,7 +85,7 @@ impl FieldSummary {
         Self::of_counts(cells, N_UNSTABLE_FILL)
     }
 
-    /// Adds the summary of other cells of the same field.
+    /// Takes in that of other cells of the same field.
     pub fn add(&mut self, other: &Self) {
         self.range = match (self.range, other.range) {
             (Some((low, high)), Some((l, h))) => Some((low.min(l), high.max(h))),
@@ -103,7 +102,7 @@ impl FieldSummary {
         }
     }
 
-    /// How many of `cells` have no value.
+    /// Number of cells without a value, of so many.
     #[must_use]
     pub fn missing(&self, cells: u64) -> u64 {
         cells.saturating_sub(self.finite + self.infinite.iter().sum::<u64>())
@@ -210,7 +209,7 @@ pub struct StatusCounts {
 }
 
 impl StatusCounts {
-    /// Counts these statuses.
+    /// Of these statuses.
     #[must_use]
     pub fn of(cells: &[u8]) -> Self {
         // Most tiles of counts have no flag at all, and one look is enough.
@@ -230,7 +229,7 @@ impl StatusCounts {
         }
     }
 
-    /// Adds the summary of other cells.
+    /// Takes in those of other cells.
     pub fn add(&mut self, other: &Self) {
         self.computed += other.computed;
         self.unflagged += other.unflagged;
@@ -279,7 +278,7 @@ impl CellsSummary {
         }
     }
 
-    /// Adds the summary of other cells.
+    /// Takes in that of other cells.
     pub(crate) fn add(&mut self, other: &Self) {
         let fields = self.fields.len().max(other.fields.len());
         self.fields.resize(fields, FieldSummary::default());

@@ -133,7 +133,7 @@ impl Look {
         (source.version, source.cells_done)
     }
 
-    /// The description of the map, from its file or its tiles.
+    /// What is told of the map itself, by its file or its tiles.
     pub fn told<T>(
         &self,
         of_file: impl FnOnce(&crate::store::MapFile) -> T,
@@ -279,7 +279,7 @@ mod tests {
         };
         Facts {
             axes: vec![MapAxis {
-                parameter: Parameter::Tau.into(),
+                parameter: Parameter::Tau,
                 values: (0..20).map(f64::from).collect(),
                 unit: "1".into(),
             }],

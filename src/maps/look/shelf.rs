@@ -45,8 +45,7 @@ pub(super) struct Shelf {
 }
 
 impl Shelf {
-    /// The cells under this key, if they are in memory and of this version of the map; `now` counts
-    /// accesses.
+    /// Cells that are there, of a map of this version; `now` grows with what is looked at.
     pub(super) fn get(&mut self, key: &Key, version: u64, now: u64) -> Option<AnyCells> {
         let kept = self.kept.get_mut(key)?;
         if kept.missing.is_some_and(|then| then != version) {

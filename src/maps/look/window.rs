@@ -1,4 +1,4 @@
-//! A window on a map: the request and the answer.
+//! What is asked of a window on a map, and what is told.
 
 use super::pixels::Stretch;
 use crate::sweep::Field;
@@ -12,7 +12,7 @@ pub struct Asked {
     pub x: usize,
     /// The axis from bottom to top; none: a line along `x`.
     pub y: Option<usize>,
-    /// The index along every axis; the entries of `x` and `y` are not used.
+    /// The index along every axis; those of `x` and `y` mean nothing.
     pub at: Vec<usize>,
     /// The pixels along `x`.
     pub across: Stretch,

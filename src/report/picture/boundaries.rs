@@ -136,7 +136,7 @@ fn families<'a>(map: &MapFile, view: &'a View, curves: &'a [MapCurve]) -> Vec<Fa
 /// The parts of a curve within a panel.
 fn traced(panel: &Panel, piece: &CurvePiece) -> Vec<Vec<Point>> {
     let vertices = piece.vertices.iter();
-    let points: Vec<Point> = vertices.map(|v| panel.at(v.p, v.q)).collect();
+    let points: Vec<Point> = vertices.map(|v| panel.at(v.p, v.tau)).collect();
     clip::within(&points, panel.area)
 }
 
@@ -278,7 +278,7 @@ fn legend(map: &MapFile, view: &View, families: &[Family], degrees: &Degrees) ->
         heading = vec![
             Rich::plain("stable inside,"),
             Rich::plain("at ")
-                .and_symbol(&axis.parameter)
+                .and_symbol(axis.parameter)
                 .and(&suffix(&axis.unit, " (", ")"))
                 .and(" ="),
         ];

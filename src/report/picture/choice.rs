@@ -81,8 +81,7 @@ fn says_more(map: &MapFile) -> Option<Field> {
 fn default_field(map: &MapFile) -> Field {
     says_more(map)
         .or_else(|| map.stability_field())
-        // What is special of cells says least where nothing is.
-        .or_else(|| map.fields().iter().copied().find(|f| *f != Field::Reason))
+        .or_else(|| map.fields().first().copied())
         .unwrap_or(Field::NUnstable)
 }
 

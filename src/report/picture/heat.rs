@@ -130,7 +130,7 @@ fn cut(
 fn draw_curve(panel: &Panel, curve: &MapCurve, degrees: &Degrees, scene: &mut Scene) {
     if curve.piece.stable_side != StableSide::Neither {
         let vertices = curve.piece.vertices.iter();
-        let points: Vec<_> = vertices.map(|v| panel.at(v.p, v.q)).collect();
+        let points: Vec<_> = vertices.map(|v| panel.at(v.p, v.tau)).collect();
         if curve.degree_of_stability > 0.0 {
             degrees.draw(curve.degree_of_stability, &points, INK, scene);
         } else {

@@ -15,8 +15,7 @@ const SQUARE: f64 = 10.0;
 const SMALL_REGION: f64 = 0.25;
 /// Room around the small regions, as a part of what they take.
 const ROOM: f64 = 0.06;
-/// An inset is drawn if it makes the area of the regions larger by the first factor, and neither
-/// axis shorter than by the second.
+/// So much larger has their area to become, and by no less than so much along either axis.
 const WORTH: f64 = 3.0;
 const LEAST: f64 = 1.0;
 /// Empty squares around an inset.
@@ -161,7 +160,7 @@ impl Squares {
         }
     }
 
-    /// The area that frames all small regions; none where there are none, or where all are small.
+    /// The area of all regions that are small; none where there is none, or no other.
     fn small_regions(&self) -> Option<Area> {
         let mut seen = vec![false; self.taken.len()];
         let mut all: Option<Area> = None;

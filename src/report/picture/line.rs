@@ -306,7 +306,7 @@ fn legend(map: &MapFile, view: &View, lines: &[Graph]) -> Legend {
             parameter, unit, ..
         } = &map.axes()[axis];
         let unit = suffix(unit, " (", ")");
-        let heading = Rich::symbol(parameter).and(&unit).and(" =");
+        let heading = Rich::symbol(*parameter).and(&unit).and(" =");
         legend.heading.push(heading);
     }
     if lines.len() > 1 {

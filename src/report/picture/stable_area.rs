@@ -80,8 +80,7 @@ pub(super) fn intervals(
         match side {
             StableSide::Longer => start = start.or(Some(here)),
             StableSide::Shorter => intervals.extend(start.take().map(|from| (from, here))),
-            // Lines of one p are at none.
-            StableSide::Neither | StableSide::Below | StableSide::Above => {}
+            StableSide::Neither => {}
         }
     }
     intervals.extend(start.map(|from| (from, top)));
@@ -120,14 +119,13 @@ fn delay_at(vertices: &[Vertex], p: f64) -> Option<f64> {
     } else {
         (p - a.p) / (b.p - a.p)
     };
-    Some(a.q + part * (b.q - a.q))
+    Some(a.tau + part * (b.tau - a.tau))
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::linear::Direction;
-    use crate::linear::curves::CurveKind;
     use crate::report::picture::page::Area;
     use crate::report::picture::scale::Scale;
 
@@ -145,9 +143,8 @@ mod tests {
     }
 
     fn piece(side: StableSide, from: (f64, f64), to: (f64, f64)) -> CurvePiece {
-        let vertex = |(p, q)| Vertex { p, q, omega: 1.0 };
+        let vertex = |(p, tau)| Vertex { p, tau, omega: 1.0 };
         CurvePiece {
-            kind: CurveKind::Pair,
             branch: 0,
             direction: Direction::Right,
             stable_side: side,

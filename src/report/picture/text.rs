@@ -2,9 +2,8 @@
 
 use super::font;
 use crate::store::map_file::MapAxis;
-use crate::sweep::Field;
-use crate::sweep::input::quantity::Quantity;
 use crate::sweep::input::source::{OfRoots, Source};
+use crate::sweep::{Field, Parameter};
 
 /// Subscripts relative to the text.
 const SUBSCRIPT_SIZE: f64 = 0.72;
@@ -25,7 +24,7 @@ impl Rich {
     }
 
     /// The symbol of a parameter.
-    pub(super) fn symbol(parameter: impl Into<Quantity>) -> Self {
+    pub(super) fn symbol(parameter: Parameter) -> Self {
         Self::default().and_symbol(parameter)
     }
 
@@ -53,15 +52,9 @@ impl Rich {
         self
     }
 
-    /// The text followed by the symbol of a parameter; a 0 at its end is a subscript. A name of
-    /// several words is no formula.
-    pub(super) fn and_symbol(self, parameter: impl Into<Quantity>) -> Self {
-        let parameter = parameter.into();
+    /// The text followed by the symbol of a parameter; a 0 at its end is a subscript.
+    pub(super) fn and_symbol(self, parameter: Parameter) -> Self {
         let symbol = parameter.symbol();
-        let mut behind = symbol.split('_').skip(1);
-        if symbol.is_ascii() && behind.any(|part| part.len() != 1) {
-            return self.and(symbol);
-        }
         match symbol.strip_suffix('0') {
             Some(base) => self.and_formula(&format!("{base}_0")),
             None => self.and_formula(symbol),
@@ -113,7 +106,7 @@ fn run_size(size: f64, lowered: bool) -> f64 {
 }
 
 /// "μ′ = −0.3 s m⁻¹".
-pub(super) fn assignment(parameter: impl Into<Quantity>, value: f64, unit: &str) -> Rich {
+pub(super) fn assignment(parameter: Parameter, value: f64, unit: &str) -> Rich {
     Rich::symbol(parameter).and(&format!(" = {}{}", number(value), suffix(unit, " ", "")))
 }
 
@@ -121,7 +114,7 @@ pub(super) fn assignment(parameter: impl Into<Quantity>, value: f64, unit: &str)
 pub(super) fn axis_title(axis: &MapAxis) -> Rich {
     Rich::plain(axis.parameter.long_name())
         .and("  ")
-        .and_symbol(&axis.parameter)
+        .and_symbol(axis.parameter)
         .and(&suffix(&axis.unit, "  (", ")"))
 }
 
@@ -243,7 +236,6 @@ fn with_minus(text: &str) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::sweep::Parameter;
 
     #[test]
     fn numbers_are_short_and_have_a_minus_sign() {

@@ -6,7 +6,6 @@ use crate::store::MapFile;
 use crate::store::map_file::MapAxis;
 use crate::sweep::Parameter;
 use crate::sweep::input::axis::nearest;
-use crate::sweep::input::quantity::Quantity;
 use crate::sweep::input::units::Units;
 
 /// More panels, or more colours, than this are not told apart.
@@ -17,7 +16,7 @@ pub(super) const MOST_PANELS: usize = 12;
 pub(super) struct View {
     /// Axis from left to right.
     pub x: usize,
-    /// The axis from bottom to top; none in a picture along one axis.
+    /// Axis from bottom to top; none where only one axis is left.
     pub y: Option<usize>,
     /// The axis along which the panels differ; none for a single one.
     pub along: Option<usize>,
@@ -32,7 +31,7 @@ type Asked = Option<Vec<usize>>;
 
 impl View {
     /// The view of `map` at the values `at` (the nearest on their axes) of as many axes.
-    pub(super) fn new(map: &MapFile, at: &[(Quantity, f64)]) -> Result<Self, PictureError> {
+    pub(super) fn new(map: &MapFile, at: &[(Parameter, f64)]) -> Result<Self, PictureError> {
         let asked = asked(map, at)?;
         let free: Vec<usize> = (0..map.axes().len())
             .filter(|&a| asked[a].is_none() && map.axes()[a].values.len() > 1)
@@ -118,7 +117,7 @@ impl View {
             unit,
             values,
         } = &map.axes()[axis];
-        Some(assignment(parameter, values[panel[axis]], unit))
+        Some(assignment(*parameter, values[panel[axis]], unit))
     }
 
     /// What all panels have in common, and how many are left out.
@@ -126,24 +125,21 @@ impl View {
         let mut notes = Vec::new();
         if let Some(axis) = self.along.filter(|_| self.of > self.panels.len()) {
             let text = format!("{} of {} values of ", self.panels.len(), self.of);
-            notes.push(Rich::plain(&text).and_symbol(&map.axes()[axis].parameter));
+            notes.push(Rich::plain(&text).and_symbol(map.axes()[axis].parameter));
         }
         for (a, axis) in map.axes().iter().enumerate() {
             if a != self.x && Some(a) != self.y && Some(a) != self.along {
                 let value = self.panels.first().map_or(0, |panel| panel[a]);
-                notes.push(assignment(&axis.parameter, axis.values[value], &axis.unit));
+                notes.push(assignment(axis.parameter, axis.values[value], &axis.unit));
             }
         }
         let units = map.units();
         // Only what differs from the default, and the gains, since a gain of 0 means no such
         // control.
         for (parameter, value) in map.scalars() {
-            let gain = matches!(
-                parameter,
-                Quantity::Known(Parameter::AlphaV | Parameter::AlphaN)
-            );
+            let gain = matches!(parameter, Parameter::AlphaV | Parameter::AlphaN);
             if gain || parameter.default_value() != Some(value) {
-                notes.push(assignment(&parameter, value, &parameter.unit(&units)));
+                notes.push(assignment(parameter, value, &units.of_parameter(parameter)));
             }
         }
         if units == Units::default() {
@@ -153,10 +149,9 @@ impl View {
     }
 }
 
-fn asked(map: &MapFile, at: &[(Quantity, f64)]) -> Result<Vec<Asked>, PictureError> {
+fn asked(map: &MapFile, at: &[(Parameter, f64)]) -> Result<Vec<Asked>, PictureError> {
     let mut asked: Vec<Asked> = vec![None; map.axes().len()];
-    for (parameter, value) in at {
-        let (parameter, value) = (parameter.clone(), *value);
+    for &(parameter, value) in at {
         let found = map.axes().iter().position(|a| a.parameter == parameter);
         let Some(axis) = found else {
             let names: Vec<&str> = map.axes().iter().map(|a| a.parameter.name()).collect();
@@ -188,8 +183,8 @@ fn several(map: &MapFile, asked: &[Asked]) -> Result<Option<usize>, PictureError
     let first = axes.next();
     if let (Some(first), Some(second)) = (first, axes.next()) {
         return Err(PictureError::SeveralValues {
-            first: map.axes()[first].parameter.clone(),
-            second: map.axes()[second].parameter.clone(),
+            first: map.axes()[first].parameter,
+            second: map.axes()[second].parameter,
         });
     }
     Ok(first)

@@ -68,8 +68,6 @@ export function withoutZero([from, to]) {
 export class Catalogue {
   /** @param {{parameters: object[], laws: object[], fields: object[]}} told as slipmap answers */
   constructor({ parameters, laws, fields }) {
-    // The page follows motions under every law that it offers.
-    laws = laws.filter((law) => law.motions);
     Object.assign(this, { parameters, laws, fields });
     this.byName = new Map(parameters.map((parameter) => [parameter.name, parameter]));
   }

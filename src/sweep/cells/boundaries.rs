@@ -60,13 +60,11 @@ pub fn trace_plane(plan: &Plan, index: &[usize]) -> Result<BoundaryPlane, ModelE
         Some((p, tau)) => {
             let window = Window {
                 p: ends(plan.spec.axes[p].range()),
-                q: ends(plan.spec.axes[tau].range()),
+                tau: ends(plan.spec.axes[tau].range()),
             };
+            let parameter = plan.spec.axes[p].parameter;
             let degrees = &plan.spec.degrees_of_stability;
-            match plan.spec.axes[p].parameter.known() {
-                Some(p) => trace_window(&plan.setting(index), p, &window, degrees)?,
-                None => Vec::new(),
-            }
+            trace_window(&plan.setting(index), parameter, &window, degrees)?
         }
         None => Vec::new(),
     };
@@ -176,7 +174,7 @@ fn split(window: &Window, jumps: &[[f64; 2]]) -> Vec<Window> {
     parts.push(start..=end);
     let part = |p| Window {
         p,
-        q: window.q.clone(),
+        tau: window.tau.clone(),
     };
     parts.into_iter().map(part).collect()
 }
@@ -230,7 +228,7 @@ mod tests {
                     for pair in piece.vertices.windows(2) {
                         let (p, q) = (pair[0], pair[1]);
                         if (p.p <= v0) != (q.p <= v0) {
-                            at.push(p.q + (q.q - p.q) * (v0 - p.p) / (q.p - p.p));
+                            at.push(p.tau + (q.tau - p.tau) * (v0 - p.p) / (q.p - p.p));
                         }
                     }
                 }

@@ -1,7 +1,6 @@
 //! The axes of a sweep.
 
 use super::parameter::Parameter;
-use super::quantity::Quantity;
 use crate::model::Shown;
 use crate::model::elementary::pow;
 
@@ -21,7 +20,7 @@ pub enum Spacing {
 #[derive(Debug, Clone, PartialEq)]
 pub struct Axis {
     /// The parameter.
-    pub parameter: Quantity,
+    pub parameter: Parameter,
     /// Its values, at least one.
     pub values: Vec<f64>,
 }
@@ -36,11 +35,8 @@ pub fn plane_of_curves(axes: &[Axis]) -> Option<(usize, usize)> {
     let tau = axes.iter().position(|axis| several(axis, true))?;
     let last = |gain: bool| {
         axes.iter().rposition(|axis| {
-            let Some(parameter) = axis.parameter.known() else {
-                return false;
-            };
-            let is_gain = matches!(parameter, Parameter::AlphaV | Parameter::AlphaN);
-            several(axis, false) && (is_gain || !(gain || parameter.of_start()))
+            let is_gain = matches!(axis.parameter, Parameter::AlphaV | Parameter::AlphaN);
+            several(axis, false) && (is_gain || !(gain || axis.parameter.of_start()))
         })
     };
     Some((last(true).or_else(|| last(false))?, tau))
@@ -121,13 +117,14 @@ impl Axis {
     /// # Errors
     /// When a value is outside the parameter's range, or the values are not strictly monotonic.
     /// Delays must increase.
-    pub fn new(parameter: impl Into<Quantity>, values: Vec<f64>) -> Result<Self, AxisError> {
-        let parameter = parameter.into();
+    pub fn new(parameter: Parameter, values: Vec<f64>) -> Result<Self, AxisError> {
         if values.is_empty() {
             return Err(AxisError("the list is empty".into()));
         }
         for &value in &values {
-            parameter.check(value).map_err(AxisError)?;
+            parameter
+                .check(value)
+                .map_err(|e| AxisError(e.to_string()))?;
         }
         let increasing = values.windows(2).all(|w| w[0] < w[1]);
         let decreasing = values.windows(2).all(|w| w[0] > w[1]);

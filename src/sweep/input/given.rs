@@ -3,9 +3,8 @@
 
 use std::ops::Range;
 
-use super::friction_table::GivenTable;
-use super::keys::{FRICTION_TABLE, UNITS, names};
-use super::law_kind::{Formula, LawKind, NO_MOTIONS};
+use super::friction_table::{GivenTable, PAIRS};
+use super::law_kind::{Formula, LawKind};
 use super::nearest::did_you_mean;
 use super::parameter::Parameter;
 use super::setting::{GivenError, Setting};
@@ -108,11 +107,10 @@ impl GivenParameters {
     /// Reads the table `[friction]`.
     pub(super) fn read_friction(&mut self, friction: &Entry) -> Result<(), SpecError> {
         let of_laws = Parameter::ALL.into_iter().filter(|p| p.of_friction_law());
-        let [law, table @ ..] = FRICTION_TABLE.map(|key| key.name);
-        let known: Vec<_> = [law]
+        let names: Vec<_> = ["law"]
             .into_iter()
             .chain(of_laws.map(Parameter::name))
-            .chain(table)
+            .chain(["speeds", "mu_k", PAIRS])
             .collect();
         let mut law = None;
         for entry in friction.table()? {
@@ -120,7 +118,7 @@ impl GivenParameters {
                 Some(parameter) => self.read_value(&entry, parameter)?,
                 None if entry.key == "law" => law = Some(entry),
                 None if self.table.read(&entry)? => {}
-                None => return Err(entry.unknown(&known)),
+                None => return Err(entry.unknown(&names)),
             }
         }
         let Some(law) = law else {
@@ -151,17 +149,6 @@ impl GivenParameters {
             );
         }
         Ok(LawKind::Formula(law))
-    }
-
-    /// Motions can be followed under the law, as far as that alone tells.
-    pub(super) fn check_motions(&self) -> Result<(), SpecError> {
-        match &self.law {
-            Some((law, place)) if law.has_state() => {
-                let message = format!("the {} law has no motions here", law.name());
-                Err(SpecError::at(place.clone(), message).help(NO_MOTIONS))
-            }
-            _ => Ok(()),
-        }
     }
 
     /// Where to tell that the friction law is ill-posed: at what it is at rest, or at its name.
@@ -239,7 +226,7 @@ pub(super) fn read_units(units: &Entry) -> Result<Units, SpecError> {
             "force" => &mut force,
             "length" => &mut length,
             "time" => &mut time,
-            _ => return Err(entry.unknown(&names(&UNITS))),
+            _ => return Err(entry.unknown(&["force", "length", "time"])),
         };
         let name = entry.string()?;
         Units::check_name(name).map_err(|why| entry.error(why))?;

@@ -2,8 +2,7 @@
 
 use super::axis::{Spacing, spaced};
 use super::field::{Field, fields_meant, known_fields};
-use super::keys::{RANGE, TOLERANCE, names};
-use super::quantity::Quantity;
+use super::parameter::Parameter;
 use super::toml_reader::{Entry, SpecError};
 use crate::linear::MarginalTolerance;
 use crate::model::Shown;
@@ -32,7 +31,7 @@ pub(super) fn read_range(axis: &Entry, most: u64) -> Result<Vec<f64>, SpecError>
                     }
                 }
             }
-            _ => return Err(entry.unknown(&names(&RANGE))),
+            _ => return Err(entry.unknown(&["from", "to", "points", "spacing"])),
         }
     }
     let missing = |name| axis.error(format!("{name} is missing"));
@@ -46,7 +45,7 @@ pub(super) fn read_range(axis: &Entry, most: u64) -> Result<Vec<f64>, SpecError>
     spaced(from, to, points, spacing).map_err(|e| axis.error(e.0))
 }
 
-pub(super) fn read_list(axis: &Entry, parameter: &Quantity) -> Result<Vec<f64>, SpecError> {
+pub(super) fn read_list(axis: &Entry, parameter: Parameter) -> Result<Vec<f64>, SpecError> {
     let elements = axis
         .array()
         .map_err(|e| e.help("an axis is a list of values or { from = …, to = …, points = … }"))?;
@@ -56,7 +55,7 @@ pub(super) fn read_list(axis: &Entry, parameter: &Quantity) -> Result<Vec<f64>, 
             let value = element.number()?;
             parameter
                 .check(value)
-                .map_err(|why| SpecError::at(element.span.clone(), why))
+                .map_err(|e| SpecError::at(element.span.clone(), e.to_string()))
         })
         .collect()
 }
@@ -130,7 +129,7 @@ pub(super) fn read_tolerance(tolerance: &Entry) -> Result<MarginalTolerance, Spe
             "marginal" => {
                 result = MarginalTolerance(entry.number_within(f64::EPSILON..=0.01)?);
             }
-            _ => return Err(entry.unknown(&names(&TOLERANCE))),
+            _ => return Err(entry.unknown(&["marginal"])),
         }
     }
     Ok(result)

@@ -117,12 +117,12 @@ fn longest_delay(plan: &Plan) -> f64 {
     for axis in &plan.spec.axes {
         let (from, to) = axis.range();
         // The unit of time is the shorter the smaller the mass and the larger the stiffness.
-        let (at, other) = match axis.parameter.known() {
-            Some(Parameter::Mass) => (from, to),
+        let (at, other) = match axis.parameter {
+            Parameter::Mass => (from, to),
             _ => (to, from),
         };
-        longest.vary(&axis.parameter, at);
-        others.vary(&axis.parameter, other);
+        longest.set(axis.parameter, at);
+        others.set(axis.parameter, other);
     }
     delay(&longest).max(delay(&others))
 }

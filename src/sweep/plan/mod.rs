@@ -178,7 +178,7 @@ impl Plan {
     pub fn setting(&self, index: &[usize]) -> Setting {
         let mut setting = self.spec.fixed.clone();
         for (axis, &i) in self.spec.axes.iter().zip(index) {
-            setting.vary(&axis.parameter, axis.values[i]);
+            setting.set(axis.parameter, axis.values[i]);
         }
         setting
     }
@@ -219,10 +219,6 @@ impl Plan {
             facts.push((TableColumn::Speeds.name(), table.speeds().into()));
             facts.push((TableColumn::MuK.name(), table.mu_k().into()));
         }
-        if let Some(system) = fixed.system() {
-            let text = system.to_toml().into_bytes();
-            facts.push(("system", text.into_iter().map(f64::from).collect()));
-        }
         facts.push(("axes", one(spec.axes.len() as f64)));
         for axis in &spec.axes {
             facts.push((axis.parameter.name(), axis.values.as_slice().into()));
@@ -230,11 +226,6 @@ impl Plan {
         for parameter in Parameter::ALL.into_iter().filter(|&p| spec.uses(p)) {
             if !spec.axes.iter().any(|a| a.parameter == parameter) {
                 facts.push((parameter.name(), one(fixed.get(parameter))));
-            }
-        }
-        for (own, value) in fixed.own() {
-            if !spec.axes.iter().any(|a| a.parameter.name() == own.name) {
-                facts.push((&own.name, one(value)));
             }
         }
         facts.extend(spec.fields.iter().map(|f| (f.first_name(), none())));
@@ -323,8 +314,7 @@ pub fn in_hexadecimal(bytes: &[u8]) -> String {
 
 /// The plane of crossing curves; none where there is no such plane, or where it is not wanted.
 fn boundary_plane(spec: &SweepSpec) -> Option<(usize, usize)> {
-    let (p, tau) =
-        plane_of_curves(&spec.axes).filter(|_| spec.has_sliding() && !spec.beyond_letter())?;
+    let (p, tau) = plane_of_curves(&spec.axes).filter(|_| spec.has_sliding())?;
     let planes: u64 = spec
         .axes
         .iter()

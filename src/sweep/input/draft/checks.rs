@@ -24,8 +24,6 @@ impl Draft {
         self.check_best()?;
         let fixed = self.given.setting();
         self.check_law(&fixed)?;
-        self.check_beyond_letter(&fixed)?;
-        self.check_stiffness_ratio(&fixed)?;
         let critical = self.check_nonlinear(&fixed)?;
         Ok((fixed, critical))
     }
@@ -77,14 +75,11 @@ impl Draft {
         for axis in &self.axes {
             let (smallest, largest) = axis.range();
             // With a slope at rest, μ0 grows with v_s and with the slope's size.
-            let Some(parameter) = axis.parameter.known() else {
-                continue;
-            };
-            let value = match parameter {
+            let value = match axis.parameter {
                 Parameter::Mu0 | Parameter::VS => largest,
                 _ => smallest,
             };
-            worst.set(parameter, value);
+            worst.set(axis.parameter, value);
         }
         worst
             .friction_law()
