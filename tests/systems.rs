@@ -460,3 +460,241 @@ fn mistakes_are_shown_in_place() {
     }
     insta::assert_snapshot!("mistakes", shown);
 }
+
+const LOBES: &str = "title = \"Lobes\"\nsystem = \"turning\"\n\
+    fields = [\"n_unstable\", \"abscissa\", \"frequency\", \"delay_margin\"]\n\
+    [axes]\nwidth = { from = 0.0, to = 0.5, points = 6 }\n\
+    tau = { from = 0.5, to = 9.5, points = 10 }\n[fixed]\nzeta = 0.05\n";
+
+const BY_DELAY: &str = "system = \"damped.toml\"\nfields = [\"n_unstable\", \"abscissa\"]\n\
+    [axes]\ntau = [0.0, 0.7, 3.0, 11.0]\nwidth = [0.0, 0.2, 0.4]\n";
+
+/// The rows of a map as text, by the names of the columns.
+fn exported(folder: &Folder, map: &str) -> Vec<Row> {
+    let output = folder.run(&["export", map]);
+    assert_eq!(output.status.code(), Some(0), "{}", err(&output));
+    rows(map, &out(&output))
+}
+
+/// Every cell of a map is what `point` says there, and `verify` finds nothing.
+fn check_map(folder: &Folder, sweep: &str, system: &[&str], fields: &[&str]) {
+    let output = folder.run(&["run", sweep, "-o", "map.h5", "--quiet", "--fresh"]);
+    assert_eq!(output.status.code(), Some(0), "{}", err(&output));
+    expect(&folder.run(&["verify", "map.h5"]), 0, "");
+    for row in exported(folder, "map.h5") {
+        let (width, tau) = (row.text("width"), row.text("tau"));
+        let set = format!("width={width}");
+        let found = json(folder, &[system, &["--set", &set, "--tau", tau]].concat());
+        for field in fields {
+            match found[field].as_f64() {
+                Some(expected) => {
+                    let cell = row.number(field).unwrap();
+                    let apart = (cell - expected).abs();
+                    assert!(
+                        apart <= 1e-11 * expected.abs().max(1.0),
+                        "{} {field}",
+                        row.place
+                    );
+                }
+                None => assert!(
+                    row.number(field).is_none_or(f64::is_infinite),
+                    "{}",
+                    row.place
+                ),
+            }
+        }
+        assert_eq!(row.text("reason"), "0", "{}", row.place);
+        let at = [
+            "--map",
+            "map.h5",
+            "--at",
+            &set,
+            "--at",
+            &format!("tau={tau}"),
+        ];
+        let of_cell = json(folder, &at);
+        for field in ["n_unstable", "roots", "parameters", "tau"] {
+            assert_eq!(of_cell[field], found[field], "{field}");
+        }
+    }
+}
+
+#[test]
+fn cells_of_a_sweep_are_points_of_the_system() {
+    let folder = Folder::with(&[
+        ("lobes.toml", LOBES),
+        ("by_delay.toml", BY_DELAY),
+        ("damped.toml", TAU_DEPENDENT),
+    ]);
+    let system = ["--system", "turning", "--set", "zeta=0.05"];
+    let fields = ["n_unstable", "abscissa", "frequency", "delay_margin"];
+    check_map(&folder, "lobes.toml", &system, &fields);
+    let system = ["--system", "damped.toml"];
+    check_map(
+        &folder,
+        "by_delay.toml",
+        &system,
+        &["n_unstable", "abscissa"],
+    );
+    // The delay need not be the innermost axis, nor be one.
+    let other = BY_DELAY.replace("tau = [0.0, 0.7, 3.0, 11.0]\n", "");
+    let other = other.replace("width =", "width =") + "[fixed]\ntau = 3.0\n";
+    let folder = Folder::with(&[("by_delay.toml", &*other), ("damped.toml", TAU_DEPENDENT)]);
+    let run = folder.run(&["run", "by_delay.toml", "-o", "map.h5", "--quiet"]);
+    assert_eq!(run.status.code(), Some(0), "{}", err(&run));
+    assert_eq!(exported(&folder, "map.h5").len(), 3);
+}
+
+/// A map says all of its system: the file it was in, and the names in it, are not needed again.
+#[test]
+fn a_map_is_complete_without_the_file_of_its_system() {
+    let folder = Folder::with(&[("by_delay.toml", BY_DELAY), ("damped.toml", TAU_DEPENDENT)]);
+    let run = |args: &[&str]| {
+        let output = folder.run(&[&["run", "by_delay.toml", "-o", "map.h5"], args].concat());
+        assert_eq!(output.status.code(), Some(0), "{}", err(&output));
+        err(&output) + &out(&output)
+    };
+    run(&["--quiet"]);
+    assert!(run(&[]).contains("already complete"));
+    let info = folder.run(&["info", "map.h5", "--json"]);
+    let info: Value = serde_json::from_str(&out(&info)).unwrap();
+    let system = info["origin"]["system"].as_str().unwrap();
+    assert!(system.contains("Q = -width"), "{system}");
+    assert_eq!(info["units"]["width"], "N m-1");
+    assert_eq!(info["fixed"]["zeta"], 0.02);
+    // Another text of the system is another plan.
+    let text = TAU_DEPENDENT.replace("tau/10", "tau/11");
+    std::fs::write(folder.path().join("damped.toml"), text).unwrap();
+    let other = folder.run(&["run", "by_delay.toml", "-o", "map.h5"]);
+    assert_eq!(other.status.code(), Some(2), "{}", err(&other));
+    std::fs::remove_file(folder.path().join("damped.toml")).unwrap();
+    for args in [
+        &["verify", "map.h5"][..],
+        &["plot", "map.h5", "-o", "map.svg"],
+        &["info", "map.h5"],
+        &["status", "map.h5"],
+        &["export", "map.h5", "--comments"],
+        &[
+            "point",
+            "--map",
+            "map.h5",
+            "--at",
+            "tau=3",
+            "--at",
+            "width=0.2",
+        ],
+    ] {
+        expect(&folder.run(args), 0, "");
+    }
+    let picture = std::fs::read_to_string(folder.path().join("map.svg")).unwrap();
+    assert!(
+        picture.contains("width") && picture.contains("(N m⁻¹)"),
+        "{picture}"
+    );
+    for command in ["vc", "simulate", "margins"] {
+        let at = ["--map", "map.h5", "--at", "tau=3", "--at", "width=0.2"];
+        expect(
+            &folder.run(&[&[command], &at[..]].concat()),
+            2,
+            "a system from a file",
+        );
+    }
+}
+
+/// The same cells whole and in shards.
+#[test]
+fn shards_of_a_system_are_merged() {
+    let folder = Folder::with(&[("lobes.toml", LOBES)]);
+    for shard in ["1/2", "2/2"] {
+        let args = [
+            "run",
+            "lobes.toml",
+            "-o",
+            "parts.h5",
+            "--shard",
+            shard,
+            "--quiet",
+        ];
+        expect(&folder.run(&args), 0, "");
+    }
+    expect(&folder.run(&["merge", "parts.h5"]), 0, "");
+    expect(
+        &folder.run(&["run", "lobes.toml", "-o", "whole.h5", "--quiet"]),
+        0,
+        "",
+    );
+    let text = |map: &str| out(&folder.run(&["export", map]));
+    assert_eq!(text("parts.h5"), text("whole.h5"));
+    assert!(text("whole.h5").lines().count() == 61);
+}
+
+/// Lobes stand over the speed of the spindle, from left to right.
+#[test]
+fn lobes_are_drawn_over_the_speed() {
+    let physical = "title = \"Lobes\"\nfields = [\"n_unstable\"]\n\
+        system = { P = \"s^2 + 2*zeta*omega*s + omega^2*(1 + w)\", Q = \"-omega^2*w\", \
+        parameters = { zeta = 0.05, omega = 600, w = 0 }, \
+        speed_axis = { name = \"spindle speed\", unit = \"rpm\" } }\n\
+        [axes]\nw = { from = 0.0, to = 0.5, points = 21 }\n\
+        tau = { from = 0.01, to = 0.06, points = 51 }\n[units]\nforce = \"N\"\n\
+        length = \"m\"\ntime = \"s\"\n";
+    let folder = Folder::with(&[("lobes.toml", physical)]);
+    expect(
+        &folder.run(&["run", "lobes.toml", "-o", "map.h5", "--quiet"]),
+        0,
+        "",
+    );
+    expect(&folder.run(&["plot", "map.h5", "-o", "map.svg"]), 0, "");
+    let picture = std::fs::read_to_string(folder.path().join("map.svg")).unwrap();
+    for label in ["spindle speed  (rpm)", "2000", "6000"] {
+        assert!(picture.contains(label), "{label}");
+    }
+    assert!(!picture.contains("delay of the feedback"));
+    expect(
+        &folder.run(&["plot", "map.h5", "--at", "w=0.3", "-o", "line.svg"]),
+        0,
+        "",
+    );
+    let picture = std::fs::read_to_string(folder.path().join("line.svg")).unwrap();
+    assert!(picture.contains("spindle speed  (rpm)"));
+}
+
+#[test]
+fn mistakes_of_sweeps_are_shown_in_place() {
+    let mut shown = String::new();
+    let fields = |field: &str| LOBES.replace("\"delay_margin\"", &format!("\"{field}\""));
+    for text in [
+        LOBES.replace("\"turning\"", "\"turnig\""),
+        LOBES.replace("\"turning\"", "\"bad.toml\""),
+        LOBES.replace("\"turning\"", "3"),
+        LOBES.replace("\"turning\"", "{ P = \"s^2 + x\", Q = \"1\" }"),
+        LOBES.replace("zeta", "zita"),
+        LOBES.replace("zeta = 0.05", "zeta = -0.05"),
+        LOBES.replace("width = { from = 0.0", "zeta = { from = 0.0"),
+        LOBES.replace("zeta = 0.05", "zeta = 0.05\ntau = 3"),
+        LOBES.replace("tau = { from = 0.5, to = 9.5, points = 10 }\n", ""),
+        LOBES.replace("zeta = 0.05", "memory = 0.5"),
+        LOBES.to_owned() + "[friction]\nlaw = \"coulomb\"\n",
+        "best = true\n".to_owned() + LOBES,
+        "protocol = \"limit\"\n".to_owned() + LOBES,
+        "boundaries = true\n".to_owned() + LOBES,
+        fields("vc"),
+        fields("outcome"),
+        fields("gain_margin_upper"),
+        fields("latency_margin"),
+        fields("stiffness_ratio"),
+        fields("d_abscissa_d_tau"),
+        BY_DELAY.replace("\"abscissa\"", "\"delay_margin\""),
+    ] {
+        let bad = TAU_DEPENDENT.replace("width*tau", "width*taw");
+        let folder = Folder::with(&[
+            ("sweep.toml", &*text),
+            ("bad.toml", &*bad),
+            ("damped.toml", TAU_DEPENDENT),
+        ]);
+        let output = folder.run(&["plan", "sweep.toml"]);
+        assert_eq!(output.status.code(), Some(2), "{text}: {}", err(&output));
+        shown += &err(&output);
+    }
+    insta::assert_snapshot!("mistakes_of_sweeps", shown);
+}

@@ -76,14 +76,32 @@ impl CellArgs {
         self.at.iter().map(|at| format!(" --at {at}")).collect()
     }
 
-    /// What can be asked at the cell, and its setting; none where no map is given. Says which cell
-    /// it is.
+    /// The setting of the cell, where the map is one of a system from a file.
+    pub(super) fn of_system(&self) -> Result<Option<Setting>, Failure> {
+        let Some(path) = &self.map else {
+            return Ok(None);
+        };
+        let plan = plan_of(path)?;
+        match plan.spec.fixed.system() {
+            Some(_) => Ok(Some(plan.setting(&self.index(&plan)?))),
+            None => Ok(None),
+        }
+    }
+
+    /// What can be asked at the cell, and its setting; none where no map is given.
     fn texts(&self) -> Result<Option<(CellTexts, Setting)>, Failure> {
         let Some(path) = &self.map else {
             return Ok(None);
         };
         let plan = plan_of(path)?;
-        self.check_axes(&plan)?;
+        let index = self.index(&plan)?;
+        let setting = plan.setting(&index);
+        Ok(Some((CellTexts::of(&plan, &index), setting)))
+    }
+
+    /// Where the cell is along every axis. Says which cell it is.
+    fn index(&self, plan: &Plan) -> Result<Vec<usize>, Failure> {
+        self.check_axes(plan)?;
         let mut index = Vec::new();
         let mut there = Vec::new();
         for axis in &plan.spec.axes {
@@ -94,8 +112,7 @@ impl CellArgs {
             index.push(place);
         }
         say::note(format_args!("the cell at {}", there.join(", ")));
-        let setting = plan.setting(&index);
-        Ok(Some((CellTexts::of(&plan, &index), setting)))
+        Ok(index)
     }
 
     /// The point of sliding at the cell, or its critical velocity.
@@ -204,6 +221,12 @@ impl Needed {
 
 /// A cell lacks what a command needs.
 fn without(setting: &Setting, needed: &[Needed]) -> Failure {
+    if setting.system().is_some() {
+        return Failure::bad_input_with_help(
+            "this map is one of a system from a file, which has counts, roots and delays alone",
+            "slipmap point --map takes its cells",
+        );
+    }
     let lacking = needed.iter().filter_map(|needed| needed.lacking(setting));
     match lacking.collect::<Vec<_>>()[..] {
         // A cell of the limit of a short delay has all of its own.

@@ -10,6 +10,7 @@ use slipmap::explore::system_point::SystemPoint;
 use slipmap::linear::general::Reason;
 use slipmap::report::numbers::unit_behind;
 use slipmap::report::picture::{self, Picture, PointPicture};
+use slipmap::sweep::input::system::{Evaluation, SystemModel};
 use slipmap::sweep::input::units::Units;
 use slipmap::sweep::{Field, Parameter, Setting, relaxation_time};
 
@@ -129,7 +130,16 @@ pub(super) fn described() -> AnswerSchema {
 
 pub(super) fn main(args: &Args) -> Result<(), Failure> {
     if let Some(named) = &args.system.system {
-        return of_system(args, named);
+        args.point.check_alone("--system", &OTHERS)?;
+        return match args.system.read(|p| args.point.given(p))? {
+            Some((model, at)) => of_system(args, (&model, at), ("system", named)),
+            None => Ok(()),
+        };
+    }
+    if let (Some(setting), Some(map)) = (args.point.cell_of_system()?, args.point.map())
+        && let Some(system) = setting.evaluation()
+    {
+        return of_system(args, system, ("map", &map.display().to_string()));
     }
     if let Some(plot) = &args.plot {
         check_picture("--plot", plot, args.point.map())?;
@@ -166,31 +176,31 @@ pub(super) fn main(args: &Args) -> Result<(), Failure> {
     }
 }
 
-/// A point of a system from a file.
-fn of_system(args: &Args, named: &str) -> Result<(), Failure> {
-    args.point.check_alone("--system", &OTHERS)?;
+/// A point of a system from a file; `from` is the flag that gave it, with its value.
+fn of_system(
+    args: &Args,
+    (model, mut at): (&SystemModel, Evaluation),
+    from: (&str, &str),
+) -> Result<(), Failure> {
     if args.plot.is_some() {
         return Err(Failure::bad_input_with_help(
-            "--plot has no picture of a point of --system",
+            "--plot has no picture of a point of a system from a file",
             "a sweep of the system draws its stability; --json has its roots",
         ));
     }
-    let Some((model, mut at)) = args.system.read(|p| args.point.given(p))? else {
-        return Ok(());
-    };
-    let point = SystemPoint::at(&model, &mut at, args.wanted(args.roots));
+    let point = SystemPoint::at(model, &mut at, args.wanted(args.roots));
     let point = point.map_err(|why| Failure::bad_input(why.to_string()))?;
     let spectrum = &point.stability.spectrum;
     if let Some(why) = spectrum.fewer.as_ref().filter(|_| spectrum.incomplete) {
         say::remark(format_args!("warning: {why}"));
     }
     if args.json {
-        let inputs = point_system::inputs(named, &point, args.roots, args.line);
+        let inputs = point_system::inputs(from, &point, args.roots, args.line);
         return json::print(&inputs, &point);
     }
     Ok(point_system::print(
         &mut std::io::stdout().lock(),
-        &model,
+        model,
         &at,
         &point,
     )?)

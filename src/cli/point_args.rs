@@ -27,6 +27,15 @@ impl PointArgs {
         self.cell.map.as_deref()
     }
 
+    /// The setting of the cell of a map, where that is one of a system from a file.
+    pub(super) fn cell_of_system(&self) -> Result<Option<Setting>, Failure> {
+        let setting = self.cell.of_system()?;
+        if setting.is_some() {
+            alone("--map", self.parameters.any_but(&[]))?;
+        }
+        Ok(setting)
+    }
+
     /// The value of the flag of a parameter.
     pub(super) fn given(&self, parameter: Parameter) -> Option<f64> {
         self.parameters.given(parameter)

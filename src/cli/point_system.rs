@@ -10,9 +10,14 @@ use super::json::Inputs;
 use super::point::{print_stability, verdict};
 
 /// What was asked.
-pub(super) fn inputs(named: &str, point: &SystemPoint, roots: u8, line: Option<f64>) -> Inputs {
+pub(super) fn inputs(
+    (flag, named): (&str, &str),
+    point: &SystemPoint,
+    roots: u8,
+    line: Option<f64>,
+) -> Inputs {
     let mut inputs = Inputs::default()
-        .and("system", named)
+        .and(flag, named)
         .and("set", &point.parameters)
         .and("tau", point.tau)
         .and("roots", roots);

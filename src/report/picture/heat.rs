@@ -12,6 +12,7 @@ use super::page::{self, Area};
 use super::panels::{Panel, Panels, Words};
 use super::scale::Scale;
 use super::scene::{Mark, Scene};
+use super::speed;
 use super::stable_area::stable_throughout;
 use super::symbols;
 use super::text::axis_title;
@@ -60,9 +61,9 @@ pub(super) fn draw(
         false => Some(body.cut_right(key.width(u), GAP * u)),
     };
     let (x_axis, y_axis) = (&map.axes()[view.x], &map.axes()[y]);
-    let scales = (Scale::around(&x_axis.values), Scale::around(&y_axis.values));
+    let scales = (speed::scale(map, x_axis), Scale::around(&y_axis.values));
     let headings = view.panels.iter().map(|p| view.heading(map, p)).collect();
-    let words = Words::of(axis_title(x_axis), axis_title(y_axis), headings);
+    let words = Words::of(speed::title(map, x_axis), axis_title(y_axis), headings);
     let panels = Panels::new(scene, body, scales, words);
     let parts = panels.list.iter().zip(planes).zip(&view.panels);
     for (((panel, plane), index), symbols) in parts.zip(&symbols) {

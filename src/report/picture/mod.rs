@@ -14,6 +14,7 @@
 //!   them, and free places on curves
 //! - `trace`, `stack`: a motion over time, in panels above one another
 //! - `roots`: the characteristic roots of a point, and its line of delays
+//! - `speed`: delays that are periods, by their speed
 //! - `degrees`: dashed curves of degrees of stability; `symbols`: places with a meaning
 //! - `colour`, `gradient`, `text`, `font`: how things look
 
@@ -46,6 +47,7 @@ mod render;
 mod roots;
 mod scale;
 mod scene;
+mod speed;
 mod stable_area;
 mod stable_line;
 mod stack;

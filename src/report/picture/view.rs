@@ -1,6 +1,7 @@
 //! What of a map is shown: the axes of the plane, and the values along the others.
 
 use super::error::PictureError;
+use super::speed;
 use super::text::{Rich, assignment};
 use crate::store::MapFile;
 use crate::store::map_file::MapAxis;
@@ -41,6 +42,8 @@ impl View {
             (_, []) => return Err(PictureError::NothingToDraw),
             (_, &[x]) => (x, None),
             (Some((p, tau)), free) if free.contains(&p) && free.contains(&tau) => (p, Some(tau)),
+            (_, &[.., a, b]) if speed::is_shown(map, &map.axes()[a]) => (a, Some(b)),
+            (_, &[.., a, b]) if speed::is_shown(map, &map.axes()[b]) => (b, Some(a)),
             (_, &[.., a, b]) if map.axes()[a].parameter == Parameter::Tau => (b, Some(a)),
             (_, &[.., a, b]) => (a, Some(b)),
         };

@@ -15,6 +15,7 @@ pub mod law_kind;
 mod limit_spec;
 pub mod linear_model;
 pub mod nearest;
+mod own_system;
 pub mod parameter;
 pub mod point_file;
 pub mod quantity;

@@ -4,6 +4,7 @@ use std::cmp::Ordering;
 use std::sync::Arc;
 
 use super::law_kind::{LawKind, OF_VELOCITY};
+use super::own_system::OwnSystem;
 use super::parameter::{Group, Parameter};
 use super::quantity::Quantity;
 use super::system::parameter::OwnParameter;
@@ -98,13 +99,6 @@ pub struct Setting {
     system: Option<OwnSystem>,
 }
 
-/// A system from a file, with values of its own parameters.
-#[derive(Debug, Clone, PartialEq)]
-struct OwnSystem {
-    model: Arc<SystemModel>,
-    own: Vec<f64>,
-}
-
 impl Setting {
     /// The default values; those without a default are NaN until they are set. `law`: where μ_K and
     /// μ_K′ come from.
@@ -121,9 +115,8 @@ impl Setting {
     /// The default values of a system from a file; its delay is NaN until it is set.
     #[must_use]
     pub fn of_system(model: Arc<SystemModel>) -> Self {
-        let own = model.parameters.iter().map(|own| own.default).collect();
         Self {
-            system: Some(OwnSystem { model, own }),
+            system: Some(OwnSystem::new(model)),
             ..Self::new(None)
         }
     }
@@ -136,14 +129,16 @@ impl Setting {
 
     /// The own parameters of the system, with their values.
     pub fn own(&self) -> impl Iterator<Item = (&Arc<OwnParameter>, f64)> {
-        let system = self.system.iter();
-        system.flat_map(|system| {
-            system
-                .model
-                .parameters
-                .iter()
-                .zip(system.own.iter().copied())
-        })
+        self.system.iter().flat_map(OwnSystem::parameters)
+    }
+
+    /// Values at which the system from a file is evaluated; none where it is the letter's.
+    #[must_use]
+    pub fn evaluation(&self) -> Option<(&SystemModel, Evaluation)> {
+        let system = self.system.as_ref()?;
+        let mut at = Evaluation::default();
+        system.put_into(&mut at, self.every_systems());
+        Some((&system.model, at))
     }
 
     /// The system from a file at this setting, evaluated in `at`; none where it is the letter's.
@@ -151,12 +146,14 @@ impl Setting {
     /// # Errors
     /// Where an expression has no finite value.
     pub fn own_system(&self, at: &mut Evaluation) -> Option<Result<System, Undefined>> {
-        let OwnSystem { model, own } = self.system.as_ref()?;
-        at.own.clone_from(own);
-        at.tau = self.get(Parameter::Tau);
-        at.memory = self.get(Parameter::Memory);
-        at.latency = self.get(Parameter::Latency);
-        Some(model.at(at))
+        let system = self.system.as_ref()?;
+        system.put_into(at, self.every_systems());
+        Some(system.model.at(at))
+    }
+
+    /// What every system has besides its own: delay, memory and latency.
+    fn every_systems(&self) -> [f64; 3] {
+        [Parameter::Tau, Parameter::Memory, Parameter::Latency].map(|p| self.get(p))
     }
 
     /// The value of what an axis is of.
@@ -164,7 +161,7 @@ impl Setting {
     pub fn value_of(&self, quantity: &Quantity) -> f64 {
         match (quantity, &self.system) {
             (Quantity::Known(parameter), _) => self.get(*parameter),
-            (Quantity::Own(own), Some(system)) => system.own[own.index],
+            (Quantity::Own(own), Some(system)) => system.get(own),
             (Quantity::Own(_), None) => f64::NAN,
         }
     }
@@ -174,7 +171,7 @@ impl Setting {
     pub fn vary(&mut self, quantity: &Quantity, value: f64) {
         match (quantity, &mut self.system) {
             (Quantity::Known(parameter), _) => self.set(*parameter, value),
-            (Quantity::Own(own), Some(system)) => system.own[own.index] = value,
+            (Quantity::Own(own), Some(system)) => system.set(own, value),
             (Quantity::Own(_), None) => {}
         }
     }
