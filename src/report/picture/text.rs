@@ -119,8 +119,13 @@ pub(super) fn assignment(parameter: impl Into<Quantity>, value: f64, unit: &str)
 
 /// "gain of velocity control α_v (s⁻¹)".
 pub(super) fn axis_title(axis: &MapAxis) -> Rich {
-    Rich::plain(axis.parameter.long_name())
-        .and("  ")
+    let (long, symbol) = (axis.parameter.long_name(), axis.parameter.symbol());
+    // Of a system's own parameter there may be nothing to say but its name.
+    let named = match long == symbol {
+        true => Rich::default(),
+        false => Rich::plain(long).and("  "),
+    };
+    named
         .and_symbol(&axis.parameter)
         .and(&suffix(&axis.unit, "  (", ")"))
 }
