@@ -1,7 +1,6 @@
 //! Systems from files through the real program: every row of the tables that a shipped system
 //! carries, mistakes, and what the JSON says of what there is not.
 
-#[allow(dead_code, reason = "systems come from files here")]
 #[path = "common/general_rows.rs"]
 mod general_rows;
 #[path = "common/program.rs"]
@@ -82,6 +81,13 @@ fn check_row(folder: &Folder, system: &str, parameters: &[&str], row: &Row) -> V
             None => assert_eq!(found[key], Value::Null, "{place}: {key}"),
         }
     }
+    check_line(found, row);
+    answer
+}
+
+/// Crossings and stable delays of the row's line.
+fn check_line(found: &Value, row: &Row) {
+    let place = &row.place;
     let moving = found["crossings"].as_array().unwrap().iter();
     let moving = moving.filter(|c| c["direction"] != "touch").count();
     assert_eq!(
@@ -96,7 +102,6 @@ fn check_row(folder: &Folder, system: &str, parameters: &[&str], row: &Row) -> V
         near(&found[0], *from, ENDS, place);
         near(&found[1], *to, ENDS, place);
     }
-    answer
 }
 
 fn table(name: &str) -> Vec<Row> {
@@ -266,10 +271,10 @@ fn the_letter_as_a_system_is_the_letter() {
 const TAU_DEPENDENT: &str = "P = \"s^2 + (2*zeta + width*tau/10)*s + 1 + width\"\nQ = \"-width\"\n\
     [parameters]\nzeta = 0.02\nwidth = { unit = \"N m-1\" }\n";
 
-#[test]
-fn what_there_is_not_is_null_and_has_its_reason() {
+/// A folder with systems out of the ordinary.
+fn odd_systems() -> Folder {
     let system = |p: &str, q: &str| format!("P = \"{p}\"\nQ = \"{q}\"\n");
-    let folder = Folder::with(&[
+    Folder::with(&[
         ("damped.toml", TAU_DEPENDENT),
         ("infinite.toml", &system("s^2 + s + 1", "2*s^2")),
         ("limit.toml", &system("s^2 + 3*s + 1", "s^2")),
@@ -280,14 +285,22 @@ fn what_there_is_not_is_null_and_has_its_reason() {
             "supremum.toml",
             &system("(s + 9)*(s + 9)", "0.5*s^2 + 9*s + 40"),
         ),
-    ]);
-    let at = |file: &str, more: &[&str]| {
-        json(
-            &folder,
-            &[&["--system", file, "--tau", "0.2"], more].concat(),
-        )
-    };
-    let infinite = at("infinite.toml", &[]);
+    ])
+}
+
+/// One of them at a delay.
+fn odd(folder: &Folder, file: &str, more: &[&str]) -> Value {
+    json(
+        folder,
+        &[&["--system", file, "--tau", "0.2"], more].concat(),
+    )
+}
+
+#[test]
+fn what_there_is_not_is_null_and_has_its_reason() {
+    let folder = odd_systems();
+    let at = |file: &str| odd(&folder, file, &[]);
+    let infinite = at("infinite.toml");
     for key in [
         "n_unstable",
         "n_at_zero_delay",
@@ -304,7 +317,7 @@ fn what_there_is_not_is_null_and_has_its_reason() {
         ("origin.toml", "root-at-origin"),
         ("axis.toml", "root-on-axis"),
     ] {
-        let found = at(file, &[]);
+        let found = at(file);
         assert_eq!(
             (&found["reason"], &found["marginal"]),
             (&reason.into(), &true.into()),
@@ -312,6 +325,12 @@ fn what_there_is_not_is_null_and_has_its_reason() {
         );
         assert_eq!(found["stable"], false, "{file}");
     }
+}
+
+#[test]
+fn what_depends_on_the_delay_knows_no_other() {
+    let folder = odd_systems();
+    let at = |file: &str, more: &[&str]| odd(&folder, file, more);
     let damped = at("damped.toml", &["--set", "width=0.3", "--line", "-0.5"]);
     for key in [
         "n_at_zero_delay",
@@ -393,6 +412,34 @@ fn the_schema_says_what_null_means() {
     assert!(nullable > 20, "{nullable}");
 }
 
+/// Variants of a good system, each with one mistake.
+fn bad_systems(good: &str) -> Vec<String> {
+    vec![
+        good.replace("2*zeta", "2*zeat"),
+        good.replace("2*zeta*s", "2 zeta s"),
+        good.replace("s^2", "s**2"),
+        good.replace("+ 1\"", "+\""),
+        good.replace("+ 1\"", "+ (1\""),
+        good.replace("s^2", "s^17"),
+        good.replace("s^2", "s^0.5"),
+        good.replace("s^2", "s^2/s"),
+        good.replace("-zeta", "exp(-s)"),
+        good.replace("-zeta", "sqr(zeta)"),
+        good.replace("-zeta", "1/zeta"),
+        good.replace("-zeta", "1"),
+        good.replace("minimum", "minimun"),
+        good.replace("zeta = {", "tau = {"),
+        good.replace("zeta = {", "exp = {"),
+        good.replace('P', "B"),
+        good.replace('Q', "R"),
+        good.replace("Q = \"-zeta\"\n", ""),
+        good.replace('P', "B")
+            .replace('Q', "A")
+            .replace("-zeta", "zeta*s^2"),
+        "speed_axis = { name = \"speed\", unit = \"mph\" }".into(),
+    ]
+}
+
 #[test]
 fn mistakes_are_shown_in_place() {
     let good = "P = \"s^2 + 2*zeta*s + 1\"\nQ = \"-zeta\"\n[parameters]\nzeta = { minimum = 0 }\n";
@@ -427,30 +474,7 @@ fn mistakes_are_shown_in_place() {
     let letter = ["point", "--system", "letter", "--tau", "1", "--set"];
     refused(&folder, &[&letter[..], &["memory=1"]].concat());
     refused(&folder, &[&letter[..], &["latency=-1"]].concat());
-    for text in [
-        good.replace("2*zeta", "2*zeat"),
-        good.replace("2*zeta*s", "2 zeta s"),
-        good.replace("s^2", "s**2"),
-        good.replace("+ 1\"", "+\""),
-        good.replace("+ 1\"", "+ (1\""),
-        good.replace("s^2", "s^17"),
-        good.replace("s^2", "s^0.5"),
-        good.replace("s^2", "s^2/s"),
-        good.replace("-zeta", "exp(-s)"),
-        good.replace("-zeta", "sqr(zeta)"),
-        good.replace("-zeta", "1/zeta"),
-        good.replace("-zeta", "1"),
-        good.replace("minimum", "minimun"),
-        good.replace("zeta = {", "tau = {"),
-        good.replace("zeta = {", "exp = {"),
-        good.replace('P', "B"),
-        good.replace('Q', "R"),
-        good.replace("Q = \"-zeta\"\n", ""),
-        good.replace('P', "B")
-            .replace('Q', "A")
-            .replace("-zeta", "zeta*s^2"),
-        "speed_axis = { name = \"speed\", unit = \"mph\" }".into(),
-    ] {
+    for text in bad_systems(good) {
         let folder = Folder::with(&[("system.toml", &*text)]);
         let args = ["point", "--system", "system.toml", "--tau", "1"];
         let output = folder.run(&args);
@@ -539,7 +563,7 @@ fn cells_of_a_sweep_are_points_of_the_system() {
     );
     // The delay need not be the innermost axis, nor be one.
     let other = BY_DELAY.replace("tau = [0.0, 0.7, 3.0, 11.0]\n", "");
-    let other = other.replace("width =", "width =") + "[fixed]\ntau = 3.0\n";
+    let other = other + "[fixed]\ntau = 3.0\n";
     let folder = Folder::with(&[("by_delay.toml", &*other), ("damped.toml", TAU_DEPENDENT)]);
     let run = folder.run(&["run", "by_delay.toml", "-o", "map.h5", "--quiet"]);
     assert_eq!(run.status.code(), Some(0), "{}", err(&run));
@@ -698,4 +722,48 @@ fn mistakes_of_sweeps_are_shown_in_place() {
         shown += &err(&output);
     }
     insta::assert_snapshot!("mistakes_of_sweeps", shown);
+}
+
+/// Python's h5py reads the axes, the cells and what the system is.
+#[cfg(feature = "external-readers")]
+#[test]
+fn h5py_reads_a_map_of_turning() {
+    const SCRIPT: &str = "import h5py, json, sys\n\
+        with h5py.File(sys.argv[1]) as f:\n\
+        \x20   print(json.dumps({\n\
+        \x20       'system': f.attrs['system'].decode(),\n\
+        \x20       'dims': [d[0].name for d in f['n_unstable'].dims],\n\
+        \x20       'width': f['width'][:].tolist(),\n\
+        \x20       'about': f['width'].attrs['long_name'].decode(),\n\
+        \x20       'zeta': f['zeta'][()],\n\
+        \x20       'n_unstable': f['n_unstable'][:].ravel().tolist()}))\n";
+    let folder = Folder::with(&[("lobes.toml", LOBES)]);
+    expect(
+        &folder.run(&["run", "lobes.toml", "-o", "map.h5", "--quiet"]),
+        0,
+        "",
+    );
+    let program = std::env::var("SLIPMAP_PYTHON").unwrap_or_else(|_| "python3".into());
+    let mut python = std::process::Command::new(program);
+    let output = python
+        .args(["-c", SCRIPT, "map.h5"])
+        .current_dir(folder.path())
+        .output();
+    let output = output.unwrap();
+    assert!(output.status.success(), "{}", err(&output));
+    let read: Value = serde_json::from_str(&out(&output)).unwrap();
+    let system: slipmap::sweep::input::system::SystemModel =
+        read["system"].as_str().unwrap().parse().unwrap();
+    assert_eq!(
+        Some(system),
+        slipmap::sweep::input::system::shipped::system("turning")
+    );
+    assert_eq!(read["dims"], serde_json::json!(["/width", "/tau"]));
+    assert_eq!(read["about"], "chip width over stiffness");
+    assert_eq!(read["zeta"], 0.05);
+    assert_eq!(read["width"].as_array().unwrap().len(), 6);
+    let cells = exported(&folder, "map.h5").into_iter();
+    let cells: Vec<i64> = cells.map(|row| row.or_zero("n_unstable") as i64).collect();
+    assert_eq!(read["n_unstable"], serde_json::json!(cells));
+    assert!(cells.contains(&0) && cells.contains(&2));
 }

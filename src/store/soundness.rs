@@ -72,6 +72,18 @@ fn opened(path: &Path) -> Result<MapFile, StoreError> {
     }
 }
 
+/// The system and the parameters that are no axes are those of the sweep.
+fn check_fixed(map: &MapFile, plan: &Plan, faults: &mut Vec<String>) {
+    if map.system() != plan.spec.fixed.system() {
+        faults.push("its system is not that of the sweep".into());
+    }
+    for (parameter, value) in map.scalars() {
+        if value.to_bits() != plan.spec.fixed.value_of(&parameter).to_bits() {
+            faults.push(format!("{} is not that of the sweep", parameter.name()));
+        }
+    }
+}
+
 /// Whether axes, fields, dimensions and curves are those of `plan`; after `stop` is set, some of
 /// it.
 pub(crate) fn check_schema(map: &MapFile, plan: &Plan, report: &mut Report, stop: &AtomicBool) {
@@ -95,14 +107,7 @@ pub(crate) fn check_schema(map: &MapFile, plan: &Plan, report: &mut Report, stop
             ));
         }
     }
-    if map.system() != plan.spec.fixed.system() {
-        faults.push("its system is not that of the sweep".into());
-    }
-    for (parameter, value) in map.scalars() {
-        if value.to_bits() != plan.spec.fixed.value_of(&parameter).to_bits() {
-            faults.push(format!("{} is not that of the sweep", parameter.name()));
-        }
-    }
+    check_fixed(map, plan, faults);
     for field in plan
         .spec
         .fields

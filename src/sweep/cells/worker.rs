@@ -24,7 +24,6 @@ use crate::sweep::input::field::Field;
 use crate::sweep::input::linear_model::{FeedbackLoop, LinearModel};
 use crate::sweep::input::parameter::Parameter;
 use crate::sweep::input::source::{OfLinear, Source};
-use crate::sweep::input::system::SystemModel;
 use crate::sweep::plan::Plan;
 use crate::sweep::plan::tile::{Tile, for_each_index, place_of, strides_of};
 
@@ -67,10 +66,8 @@ pub struct Worker<'p> {
     map_strides: Vec<u64>,
     /// Whether cells have a sliding state.
     slides: bool,
-    /// The polynomials of the system depend on the delay.
-    by_delay: bool,
-    /// The delay of a cell, where it is so.
-    one_delay: Delays,
+    /// The delay of a cell, where the polynomials of the system depend on it.
+    by_delay: Option<Delays>,
 }
 
 /// One row on its way to a tile whose delays are not next to one another in memory.
@@ -118,8 +115,8 @@ impl<'p> Worker<'p> {
                 .spec
                 .fixed
                 .system()
-                .is_some_and(SystemModel::depends_on_delay),
-            one_delay: Delays::new(&[0.0]),
+                .filter(|system| system.depends_on_delay())
+                .map(|_| Delays::new(&[0.0])),
         }
     }
 
@@ -159,8 +156,10 @@ impl<'p> Worker<'p> {
         for_each_index(&tile.extent, self.plan.tau_axis, |inside| {
             let at = place_of(inside, &self.strides);
             self.lines.move_to(&tile.offset, inside);
-            if self.by_delay {
-                return self.fill_by_delay(at, stop);
+            if let Some(mut one) = self.by_delay.take() {
+                self.fill_by_delay(&mut one, at, stop);
+                self.by_delay = Some(one);
+                return;
             }
             let groups = match self.lines.model() {
                 _ if !self.slides => {
@@ -228,10 +227,10 @@ impl<'p> Worker<'p> {
     }
 
     /// Computes the cells of a line whose polynomials depend on the delay, each as its own line.
-    fn fill_by_delay(&mut self, at: usize, stop: &AtomicBool) {
+    fn fill_by_delay(&mut self, one: &mut Delays, at: usize, stop: &AtomicBool) {
         for i in 0..self.delays.values().len() {
             let (tau, place) = (self.delays.values()[i], at + i * self.stride);
-            self.one_delay.set_one(tau);
+            one.set_one(tau);
             self.lines.setting.set(Parameter::Tau, tau);
             let Ok((LinearModel::General(system), time_unit)) = self.lines.model() else {
                 self.refuse(place, 1);
@@ -243,7 +242,7 @@ impl<'p> Worker<'p> {
                 time_unit,
                 stiffness_ratio: f64::NAN,
                 per_parameter: self.lines.groups_per_parameter(),
-                delays: &self.one_delay,
+                delays: one,
                 first: 0,
                 tolerance: self.plan.spec.tolerance,
                 places: Places {

@@ -53,96 +53,98 @@ fn their_parameters_are_those_of_the_tables() {
     }
 }
 
-/// Each with what is pointed at.
+/// Texts, each with what is pointed at and what is said.
+const MISFITS: &[(&str, Option<&str>, &str)] = &[
+    ("", None, "a system needs its polynomials"),
+    ("P = \"s\"", None, "P alone makes no system"),
+    ("P = \"s\"\nA = \"1\"", Some("A"), "not both"),
+    ("P = \"s\"\nQ = \"1\"\nB = \"1\"", Some("B"), "not both"),
+    ("B = \"s\"\nA = \"s\"", Some("\"s\""), "the smaller one"),
+    ("P = 3\nQ = \"1\"", Some("3"), "expected a string"),
+    ("P = \"s + x\"\nQ = \"1\"", Some("x"), "P: unknown name `x`"),
+    ("P = \"s +\"\nQ = \"1\"", Some("\""), "found the end"),
+    (
+        "P = '''\n s + x'''\nQ = \"1\"",
+        Some("x"),
+        "unknown name `x`",
+    ),
+    (
+        "P = \"s + \\u0078\"\nQ = \"1\"",
+        Some("\"s + \\u0078\""),
+        "unknown name",
+    ),
+    ("p = \"s\"", Some("p"), "unknown key `p`"),
+    ("parameters = 3", Some("3"), "expected a table"),
+    ("[parameters]\ns = 1", Some("s"), "s is reserved"),
+    ("[parameters]\ntau = 1", Some("tau"), "tau is reserved"),
+    ("[parameters]\nsqrt = 1", Some("sqrt"), "it is a function"),
+    (
+        "[parameters]\nabscissa = 1",
+        Some("abscissa"),
+        "maps have a variable",
+    ),
+    ("[parameters]\n_a = 1", Some("_a"), "no name of a parameter"),
+    (
+        "[parameters]\n\"a b\" = 1",
+        Some("\"a b\""),
+        "no name of a parameter",
+    ),
+    (
+        "[parameters]\na = \"1\"",
+        Some("\"1\""),
+        "expected a number",
+    ),
+    (
+        "[parameters]\na = { defualt = 1 }",
+        Some("defualt"),
+        "unknown key",
+    ),
+    (
+        "[parameters]\na = { minimum = 1 }",
+        Some("a"),
+        "its default 0 is not among 1 or more",
+    ),
+    (
+        "[parameters]\na = { default = 3, maximum = 2 }",
+        Some("3"),
+        "its default 3 is not among -1000000000000 to 2",
+    ),
+    (
+        "[parameters]\na = { minimum = 1, maximum = 0 }",
+        Some("{ minimum = 1, maximum = 0 }"),
+        "larger than its maximum",
+    ),
+    (
+        "[parameters]\na = { unit = \"\" }",
+        Some("\"\""),
+        "expected a unit",
+    ),
+    (
+        "P = \"s\"\nQ = \"1\"\n[parameters]\na = 1",
+        Some("a"),
+        "no effect",
+    ),
+    (
+        "B = \"s\"\nA = \"memory\"\n[parameters]\nmemory = 1",
+        Some("memory"),
+        "memory is reserved",
+    ),
+    ("speed_axis = {}", Some("{}"), "name is missing"),
+    (
+        "speed_axis = { unit = \"rmp\" }",
+        Some("\"rmp\""),
+        "unknown unit",
+    ),
+    (
+        "speed_axis = { period = \"a\" }",
+        Some("\"a\""),
+        "expected \"tau\"",
+    ),
+];
+
 #[test]
 fn what_does_not_fit_is_told_in_its_place() {
-    for (text, part, says) in [
-        ("", None, "a system needs its polynomials"),
-        ("P = \"s\"", None, "P alone makes no system"),
-        ("P = \"s\"\nA = \"1\"", Some("A"), "not both"),
-        ("P = \"s\"\nQ = \"1\"\nB = \"1\"", Some("B"), "not both"),
-        ("B = \"s\"\nA = \"s\"", Some("\"s\""), "the smaller one"),
-        ("P = 3\nQ = \"1\"", Some("3"), "expected a string"),
-        ("P = \"s + x\"\nQ = \"1\"", Some("x"), "P: unknown name `x`"),
-        ("P = \"s +\"\nQ = \"1\"", Some("\""), "found the end"),
-        (
-            "P = '''\n s + x'''\nQ = \"1\"",
-            Some("x"),
-            "unknown name `x`",
-        ),
-        (
-            "P = \"s + \\u0078\"\nQ = \"1\"",
-            Some("\"s + \\u0078\""),
-            "unknown name",
-        ),
-        ("p = \"s\"", Some("p"), "unknown key `p`"),
-        ("parameters = 3", Some("3"), "expected a table"),
-        ("[parameters]\ns = 1", Some("s"), "s is reserved"),
-        ("[parameters]\ntau = 1", Some("tau"), "tau is reserved"),
-        ("[parameters]\nsqrt = 1", Some("sqrt"), "it is a function"),
-        (
-            "[parameters]\nabscissa = 1",
-            Some("abscissa"),
-            "maps have a variable",
-        ),
-        ("[parameters]\n_a = 1", Some("_a"), "no name of a parameter"),
-        (
-            "[parameters]\n\"a b\" = 1",
-            Some("\"a b\""),
-            "no name of a parameter",
-        ),
-        (
-            "[parameters]\na = \"1\"",
-            Some("\"1\""),
-            "expected a number",
-        ),
-        (
-            "[parameters]\na = { defualt = 1 }",
-            Some("defualt"),
-            "unknown key",
-        ),
-        (
-            "[parameters]\na = { minimum = 1 }",
-            Some("a"),
-            "its default 0 is not among 1 or more",
-        ),
-        (
-            "[parameters]\na = { default = 3, maximum = 2 }",
-            Some("3"),
-            "its default 3 is not among -1000000000000 to 2",
-        ),
-        (
-            "[parameters]\na = { minimum = 1, maximum = 0 }",
-            Some("{ minimum = 1, maximum = 0 }"),
-            "larger than its maximum",
-        ),
-        (
-            "[parameters]\na = { unit = \"\" }",
-            Some("\"\""),
-            "expected a unit",
-        ),
-        (
-            "P = \"s\"\nQ = \"1\"\n[parameters]\na = 1",
-            Some("a"),
-            "no effect",
-        ),
-        (
-            "B = \"s\"\nA = \"memory\"\n[parameters]\nmemory = 1",
-            Some("memory"),
-            "memory is reserved",
-        ),
-        ("speed_axis = {}", Some("{}"), "name is missing"),
-        (
-            "speed_axis = { unit = \"rmp\" }",
-            Some("\"rmp\""),
-            "unknown unit",
-        ),
-        (
-            "speed_axis = { period = \"a\" }",
-            Some("\"a\""),
-            "expected \"tau\"",
-        ),
-    ] {
+    for (text, part, says) in MISFITS.iter().copied() {
         let error = text.parse::<SystemModel>().expect_err(text);
         let found = error.span.clone().map(|span| &text[span]);
         assert_eq!(found, part, "{text}: {error:?}");
