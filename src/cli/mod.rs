@@ -8,12 +8,14 @@ mod best_text;
 mod case_facts;
 mod cell;
 mod colours;
+mod completions;
 mod export;
 mod failure;
 mod info;
 mod info_trace;
 mod json;
 mod kind;
+mod man;
 mod margins;
 mod merge;
 mod motion_text;
@@ -28,6 +30,7 @@ mod point;
 mod point_args;
 mod read_map;
 mod recommended;
+mod reference;
 mod reproduce;
 mod run;
 mod say;
@@ -109,10 +112,17 @@ enum Command {
     Reproduce(reproduce::Args),
     /// Print the JSON Schema of what another command prints with --json
     Schema(schema::Args),
+    /// Print the completions of a shell
+    Completions(completions::Args),
+    /// Print the manual page of a command, or write those of all
+    Man(man::Args),
+    /// Print a page of the guide's reference
+    #[command(hide = true)]
+    Reference(reference::Args),
 }
 
-/// Help, or what is wrong with the arguments, of which some may be names that hold control
-/// characters.
+/// Prints help, or what is wrong with the arguments. Names among these may hold control
+/// characters, which are shown and not sent to the terminal.
 fn say_usage(error: &clap::Error) -> ExitCode {
     let odd = |arg: std::ffi::OsString| {
         let arg = arg.to_string_lossy().into_owned();
@@ -159,6 +169,9 @@ pub(crate) fn main() -> ExitCode {
         Command::Info(args) => info::main(&args),
         Command::Reproduce(args) => reproduce::main(&args),
         Command::Schema(args) => schema::main(&args),
+        Command::Completions(args) => completions::main(&args),
+        Command::Man(args) => man::main(&args),
+        Command::Reference(args) => reference::main(&args),
     };
     match result {
         Ok(()) => ExitCode::SUCCESS,

@@ -229,7 +229,48 @@ boundary_columns! {
     }
 }
 
+/// A column as the reference of map files tells it: what it has a number for, its name, what it is.
+pub type DescribedColumn = (&'static str, String, String);
+
+struct Describing(Vec<DescribedColumn>);
+
+impl EachColumn for Describing {
+    fn see<T: H5Type>(&mut self, about: &'static BoundaryColumn, _: &[T]) -> hdf5::Result<()> {
+        let per = match about.per {
+            Per::Curve => "curve",
+            Per::Vertex => "vertex",
+            Per::Corner => "corner",
+        };
+        let (name, mut meaning) = match about.named {
+            Named::Number(name, meaning)
+            | Named::Frequency(name, meaning)
+            | Named::Rate(name, meaning) => (name.to_owned(), meaning.to_owned()),
+            Named::Parameter(prefix) => (format!("{prefix}PARAMETER"), "the parameter".into()),
+            Named::Delay(prefix) => (format!("{prefix}tau"), "the delay".into()),
+        };
+        if let Some((values, words)) = about.flags {
+            let words = values.iter().zip(words.split(' '));
+            let words: Vec<_> = words
+                .map(|(value, word)| format!("{value} {word}"))
+                .collect();
+            meaning = format!("{meaning}: {}", words.join(", "));
+        }
+        self.0.push((per, name, meaning));
+        Ok(())
+    }
+}
+
 impl CurveRows {
+    /// All columns in words.
+    ///
+    /// # Errors
+    /// None: nothing is read or written.
+    pub fn described() -> hdf5::Result<Vec<DescribedColumn>> {
+        let mut described = Describing(Vec::new());
+        Self::default().each(&mut described)?;
+        Ok(described.0)
+    }
+
     /// The rows of the curves of a plane.
     #[must_use]
     pub fn of(plane: &BoundaryPlane) -> Self {
