@@ -1,4 +1,4 @@
-//! What is told of an axis, of a sweep and of a map alike.
+//! The facts of an axis, printed alike for a sweep and for a map.
 
 use serde::Serialize;
 use slipmap::report::numbers::grouped;

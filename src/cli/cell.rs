@@ -48,7 +48,7 @@ pub(super) fn parse_at(text: &str) -> Result<At, String> {
 }
 
 impl At {
-    /// The number of its axis among `axes`, those of a map.
+    /// The place of its axis among the `axes` of a map.
     pub(super) fn axis(&self, axes: &[Parameter]) -> Result<usize, Failure> {
         let names = || axes.iter().map(|axis| axis.name());
         let place = names().position(|name| name == self.name);
@@ -166,7 +166,7 @@ pub(super) fn place_on(of: Parameter, values: &[f64], value: f64) -> Result<usiz
     })
 }
 
-/// Nothing else says what is asked where a cell or a file does.
+/// Refuses other flags of the setting where a cell of a map or a file gives it.
 pub(super) fn alone(flag: &str, given: bool) -> Result<(), Failure> {
     match given {
         false => Ok(()),

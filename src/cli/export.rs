@@ -168,7 +168,7 @@ fn refuse_fields(args: &Args, table: TableName) -> Result<(), Failure> {
     Err(Failure::bad_input(message))
 }
 
-/// For every axis the place at which it is held.
+/// For every axis, the index at which it is held; none where it is free.
 fn held(map: &MapFile, args: &Args) -> Result<Vec<Option<usize>>, Failure> {
     let axes: Vec<Parameter> = map.axes().iter().map(|axis| axis.parameter).collect();
     let mut held = vec![None; axes.len()];

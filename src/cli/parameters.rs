@@ -278,7 +278,8 @@ impl<A: Asks> ParameterArgs<A> {
         }
     }
 
-    /// A friction law is given where it is needed, and nothing in its place.
+    /// Refuses a missing friction law where one is needed, and flags that have no meaning beside
+    /// one.
     fn check_law(&self) -> Result<(), Failure> {
         let help = "for example: --friction weakening --mu0 0.5 --v-s 0.5";
         let mut of_slope = Parameter::ALL.into_iter();

@@ -112,10 +112,10 @@ struct Facts {
     /// Bytes of all cells in memory, and about those of the map on disk.
     bytes: u64,
     bytes_on_disk: u64,
-    /// The most memory on so many threads, in bytes.
+    /// The most memory that these threads take, in bytes.
     memory: u64,
     threads: usize,
-    /// Seconds on so many threads, at least, about and at most, by the tiles that were timed.
+    /// Seconds on these threads, at least, about and at most, from the tiles that were timed.
     seconds: [f64; 3],
     tiles_timed: usize,
 }
@@ -191,7 +191,7 @@ impl Facts {
     }
 }
 
-/// What was measured of some pieces of a kind, and how many there are of it.
+/// Times of some pieces of one kind, and the number of all pieces of that kind.
 struct Sample {
     values: Vec<f64>,
     of: usize,

@@ -152,7 +152,7 @@ pub(super) fn main(args: &Args) -> Result<(), Failure> {
     say::result(path.display())
 }
 
-/// The options with what is asked for of this map.
+/// The options of the picture, from the flags and this map.
 fn shown_of(
     map: &MapFile,
     args: &Args,
@@ -193,7 +193,7 @@ fn refuse_of_maps(args: &Args) -> Result<(), Failure> {
     }
 }
 
-/// What tells the picture asked for from the one that a run draws, in words for its name.
+/// How the picture that is asked for differs from that of a run: the words that its name gets.
 fn shown(args: &Args) -> Vec<String> {
     let kind = args.kind.and_then(|kind| kind.to_possible_value());
     let name = |name: &String| Field::from_name(name).map_or(name.clone(), |f| f.name().into());

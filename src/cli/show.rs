@@ -16,7 +16,7 @@ use super::{plot, say};
 
 /// Columns of the picture on the terminal: as many as every terminal has.
 const PREVIEW_WIDTH: usize = 78;
-/// Planes whose best settings are told; the map has all.
+/// The most planes whose best settings are printed; the map holds those of all.
 const PLANES_TOLD: usize = 8;
 
 /// Says that a map is complete, and draws it where an earlier command did not come to that, or

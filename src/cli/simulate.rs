@@ -49,7 +49,7 @@ pub(super) struct Args {
     /// Replace the trace of another case, or a text
     #[arg(long)]
     fresh: bool,
-    /// One JSON object on standard output; what there is none of is null
+    /// One JSON object on standard output; null where there is no value
     #[arg(long)]
     json: bool,
 }
@@ -172,7 +172,7 @@ impl Args {
         }
     }
 
-    /// Where samples go as text; none where the trace goes to HDF5.
+    /// Where samples are written as text; none where the trace is written as HDF5.
     fn text(&self) -> Result<Option<To<'_>>, Failure> {
         let Some(path) = &self.output else {
             return Ok(None);

@@ -15,8 +15,8 @@ use slipmap::sweep::{CaseSpec, Plan, SpecError, SweepSpec};
 use super::failure::Failure;
 use super::kind::Kind;
 
-/// A file larger than this is none of these. The text goes into maps and, with up to twice as many
-/// bytes, into manifests.
+/// A larger file is refused as a sweep or case file. The text goes into maps and, with up to twice
+/// as many bytes, into manifests.
 const MOST_BYTES: u64 = 16 << 20;
 
 /// The plan of the sweep file at `path`.

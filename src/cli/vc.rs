@@ -41,7 +41,7 @@ pub(super) struct Args {
     phase: Option<String>,
     #[command(flatten)]
     limit: LimitArgs,
-    /// One JSON object on standard output; what there is not is null
+    /// One JSON object on standard output; null where there is no value
     #[arg(long)]
     json: bool,
 }

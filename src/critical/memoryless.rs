@@ -35,7 +35,7 @@ impl<'p> Memoryless<'p> {
         cycle.map(Period::of)
     }
 
-    /// The end of stick-slip from a point on; none where it is not come to without memory.
+    /// The end of stick-slip from a point on; none where slips without memory do not lead to it.
     fn end(&mut self, mut from: Point) -> Option<Ending> {
         let problem = self.problem;
         let (options, checks) = (&problem.options.continuation, &problem.options.transition);

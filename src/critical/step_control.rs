@@ -61,7 +61,7 @@ pub(super) struct StepControl<'o> {
     failed: Option<(f64, f64)>,
 }
 
-/// What is tried from near a v0 that failed: from so near, as a share of the step that failed.
+/// What is tried near a v0 that failed, and how near, as a share of the step that failed.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Retry {
     /// A step of that size, beyond it: continuation, which is not asked for a bracket.

@@ -63,7 +63,7 @@ pub struct Windows {
     pub top_within: [f64; 2],
     /// The smallest v0 at which N ≤ 0 occurs; none where it does not.
     pub v_liftoff: Option<f64>,
-    /// Whether something was told at every v0, and no edge is that of irregular stick-slip.
+    /// Whether every v0 had an answer, and no edge is one of irregular stick-slip.
     pub decided: bool,
     /// Whether every v0 was tried within the steps allowed.
     pub complete: bool,

@@ -96,7 +96,7 @@ impl AlongDelay {
     }
 }
 
-/// Until where the line of the delay `tau` is told.
+/// The end of the line, which holds the delay `tau`.
 fn longest<'c>(
     crossings: impl Iterator<Item = &'c Crossing>,
     stable: &[StableInterval],

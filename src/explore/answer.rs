@@ -220,7 +220,7 @@ mod tests {
 
     const LAW: &str = "[friction]\nlaw = \"weakening\"\nmu0 = 0.5\nv_s = 0.5\n";
 
-    /// What takes long is not answered once nobody waits.
+    /// A long computation ends once its caller has gone.
     #[test]
     fn a_stop_is_heeded() {
         let vc = format!("[fixed]\nalpha_v = -0.33\ntau = 4.15\n{LAW}");

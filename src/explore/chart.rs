@@ -1,4 +1,4 @@
-//! What a chart shows: the cells and curves of a sweep, computed into memory at once.
+//! Charts: the cells and curves of a sweep, computed into memory.
 
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;

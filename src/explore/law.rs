@@ -22,7 +22,7 @@ pub struct LawCurve {
     pub law: &'static str,
     /// Its formula; none for a table.
     pub formula: Option<&'static str>,
-    /// Speeds, evenly spaced; those of 201.
+    /// 201 speeds, evenly spaced.
     pub v: Vec<f64>,
     /// μ_K there, at speed 0 its limit.
     pub mu_k: Vec<f64>,

@@ -63,7 +63,7 @@ pub enum LetterError {
         /// What is wrong.
         error: SpecError,
     },
-    /// A file is there that this program did not make, or made from something else.
+    /// A file with this name is there that this run did not make.
     #[error("{} is already there, and not of this run", path.display())]
     Foreign {
         /// The file.

@@ -19,7 +19,7 @@ use crate::sweep::{Parameter, Setting};
 /// Settings with unstable roots, by a sequence that fills the box evenly (Halton).
 const SETTINGS: [u32; 2] = [20_000, 2_000];
 
-/// The place number `i` of the Halton sequence with so many settings: b, a_v, a_n, τ.
+/// Setting number `i`, a point of the Halton sequence: b, a_v, a_n, τ.
 fn place(i: u32) -> (Groups, f64) {
     let share = |base: u32| {
         let (mut left, mut unit, mut share) = (i + 1, 1.0, 0.0);

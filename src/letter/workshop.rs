@@ -23,7 +23,7 @@ use crate::sweep::{CaseSpec, Field, Parameter, Plan, SweepSpec, Trace};
 /// A sweep or a case behind claims.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Source {
-    /// Its name: that of its file below `sweeps`.
+    /// The name of its file in `sweeps`.
     pub name: &'static str,
     /// The text of that file.
     pub text: &'static str,
@@ -44,7 +44,7 @@ impl Source {
     }
 }
 
-/// The source `sweeps/NAME.toml`, with what is replaced in it.
+/// The source `sweeps/NAME.toml`, with replacements in its text.
 macro_rules! source {
     ($name:literal) => {
         source!($name, always: [], quick: [])
@@ -99,7 +99,7 @@ pub struct Workshop<'a> {
     pub attended: Attended<'a>,
     /// Is told of each step.
     pub tell: &'a dyn Fn(&str),
-    /// What was made so far.
+    /// The maps and traces that were made so far, by name.
     pub(super) made: BTreeMap<&'static str, Figure>,
 }
 

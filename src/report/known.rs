@@ -80,7 +80,7 @@ impl Gap {
 pub(super) struct Known {
     /// The numbers that the map holds.
     pub(super) plane: Plane,
-    /// For each of them why it is not to be shown; none where it is.
+    /// Why each cell is not shown; none where it is.
     pub(super) gaps: Vec<Option<Gap>>,
 }
 

@@ -63,8 +63,7 @@ struct Variable<T> {
 }
 
 impl<T: H5Type + Copy + PartialEq> Variable<T> {
-    /// Integers of which none is missing have no `_FillValue`, by which readers would turn them
-    /// into floats.
+    /// Integers without a missing one get no `_FillValue`: readers would turn them into floats.
     fn write(&self) -> hdf5::Result<()> {
         let missing = |value: &T| *value == self.fill;
         let real = !missing(&self.fill);

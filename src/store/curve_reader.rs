@@ -26,7 +26,7 @@ pub struct MapCurve {
     pub piece: CurvePiece,
 }
 
-/// Curves whose rows are read at once, and vertices of them, about.
+/// About so many curves, and vertices of them, are read at once.
 const CURVES_AT_ONCE: usize = 1 << 12;
 const VERTICES_AT_ONCE: usize = 1 << 17;
 /// No curve has more vertices than this.

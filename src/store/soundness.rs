@@ -36,9 +36,9 @@ pub struct Report {
     pub answers: Vec<(Question, [u64; 3])>,
     /// Tiles that were computed again.
     pub tiles: u64,
-    /// Tiles computed again of which all bytes are equal.
+    /// Tiles that were computed again with the same bytes.
     pub tiles_equal: u64,
-    /// Tiles that were to be, and are not in a map that is not complete.
+    /// Tiles that were chosen for the check but are missing, in a map that is not complete.
     pub tiles_absent: u64,
 }
 

@@ -21,7 +21,7 @@ use crate::sweep::{CaseSpec, Trace};
 
 /// Elements in a chunk.
 const CHUNK: usize = 1 << 13;
-/// Mode and kind that stand for: no value.
+/// The number of a mode or kind that stands for no value.
 const FLAG_FILL: u8 = 255;
 
 /// Bytes of a sample before compression: time, the quantities, the mode.
@@ -165,7 +165,7 @@ fn number<T: PartialEq>(all: &[(T, &str)], value: &T) -> u8 {
     place.map_or(FLAG_FILL, |place| place as u8)
 }
 
-/// What stands of a case as attributes of the root, besides its parameters, by name.
+/// The attributes of the root that describe a case, besides its parameters, by name.
 #[must_use]
 pub fn numbers_of_case(case: &Case) -> [(&'static str, f64); 5] {
     let (x_dot0, a0) = case.initial_state();

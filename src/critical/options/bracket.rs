@@ -1,7 +1,7 @@
 //! Options of the bounds of a critical velocity that is not decided.
 
 options! {
-    /// How the bounds that several searches give are looked at longer. Distances are relative.
+    /// How bounds are found where searches disagree. Distances are relative.
     BracketOptions {
         /// How far the lower bound lies below the lowest end: at least, and as a share of the
         /// spread of the ends of slow searches. Still slower ones end up to that much lower.

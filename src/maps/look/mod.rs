@@ -133,7 +133,7 @@ impl Look {
         (source.version, source.cells_done)
     }
 
-    /// What is told of the map itself, by its file or its tiles.
+    /// The description of the map, from its file or its tiles.
     pub fn told<T>(
         &self,
         of_file: impl FnOnce(&crate::store::MapFile) -> T,

@@ -85,7 +85,7 @@ pub(super) fn fitted(panel: &Panel, known: Known, sides: &Sides, u: f64) -> Know
     }
 }
 
-/// The middles of so many equal parts of every cell.
+/// The middles of `parts` equal parts of every cell.
 fn divided(edges: &[f64], parts: usize) -> Vec<f64> {
     let middle = |i: usize| (i as f64 + 0.5) / parts as f64;
     let cell = |pair: &[f64]| {

@@ -105,7 +105,7 @@ impl PictureOptions {
         }
     }
 
-    /// Refuses what is about a scale of values, for pictures that have none.
+    /// Refuses options about a scale of values for pictures that have no such scale.
     pub(super) fn about_values(&self, why: &'static str) -> Result<(), PictureError> {
         let asked = [
             (self.range.is_some(), "--range"),

@@ -21,7 +21,7 @@ const DOT: f64 = 11.0;
 const RING: f64 = 23.0;
 const HOLE: f64 = 17.0;
 const WIDTH: f64 = 2.6;
-/// The line of the delay asked for, and that of the certificate.
+/// The width of the lines at the delay that is asked for and at the certificate.
 const MARK_WIDTH: f64 = 2.0;
 const DASH: (f64, f64) = (9.0, 7.0);
 /// How much of the colours of stable delays and of the unstable half-plane is left.
@@ -69,7 +69,7 @@ pub(super) fn draw(picture: &PointPicture, scene: &mut Scene) {
     legend.draw(scene, column);
 }
 
-/// The setting, and what is known of it.
+/// The setting, its roots and stable delays.
 fn notes(picture: &PointPicture) -> Vec<Rich> {
     let PointPicture { point, units, .. } = picture;
     let given = [

@@ -86,7 +86,7 @@ pub(super) fn of_view(map: &MapFile, view: &View, y: usize) -> Result<Vec<Placed
     Ok(view.panels.iter().map(of).collect())
 }
 
-/// What the symbols of some panels mean, each once.
+/// The meanings of the symbols in some panels, each once.
 pub(super) fn entries(panels: &[Placed]) -> Vec<(Swatch, Rich)> {
     let all = panels.iter().flatten();
     let mut there: Vec<Symbol> = Vec::new();

@@ -16,7 +16,7 @@ pub(super) const MOST_PANELS: usize = 12;
 pub(super) struct View {
     /// Axis from left to right.
     pub x: usize,
-    /// Axis from bottom to top; none where only one axis is left.
+    /// The axis from bottom to top; none in a picture along one axis.
     pub y: Option<usize>,
     /// The axis along which the panels differ; none for a single one.
     pub along: Option<usize>,

@@ -1,8 +1,8 @@
 //! Tables as text (CSV): one row of names, then one row for each cell, vertex, sample or event.
 //!
-//! Numbers have as many digits as tell them from all others, infinities are `inf` and `-inf`, what
-//! there is not is empty, kinds are words. Comments, where they are asked for, are lines before the
-//! names that begin with `#`.
+//! Numbers have the fewest digits that read back as the same bits. Infinities are `inf` and `-inf`,
+//! a missing value is empty, kinds are words. Comments, where they are asked for, are lines that
+//! begin with `#`, before the names.
 
 mod cells;
 mod curves;

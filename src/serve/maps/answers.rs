@@ -1,4 +1,4 @@
-//! What is told of a map's cells and curves, by the process that reads it.
+//! Answers about a map's cells and curves, made by the process that reads it.
 
 use std::collections::BTreeMap;
 use std::sync::{Mutex, PoisonError};
@@ -16,7 +16,7 @@ use crate::sweep::Field;
 use crate::sweep::engine::{FEW_FILL, N_UNSTABLE_FILL, STATUS_FILL};
 use crate::sweep::input::field::Storage;
 
-/// A window is waited for so long; then what was read so far is told.
+/// How long an answer waits for a whole window; then it has what was read so far.
 const PATIENCE: Duration = Duration::from_millis(250);
 /// The most bytes of the values of a window: half as many reals.
 const MOST_BYTES: usize = MOST_PIXELS * MOST_PIXELS * 4;
