@@ -14,11 +14,11 @@ use super::regime::{Followed, Observation, Regime, Simulated};
 use super::search::{Chance, Search};
 use crate::slip::motion::Accuracy;
 
-/// An answer, with its bounds: where it is decided, itself; else those that slow searches give,
-/// beside the `searches` and `others`, the answers that were come to besides.
+/// An answer with its bounds. A decided answer bounds itself; else the bounds come from two slow
+/// searches, from the `searches` made before and from `others`, further answers.
 ///
-/// What chance had a part in, or what takes long to show, is decided where slow steps come to it as
-/// well.
+/// An answer in which chance had a part, or that takes long to show, is decided only where slow
+/// steps lead to it as well.
 pub(super) fn bounded(
     problem: &Problem,
     critical: CriticalVelocity,
@@ -188,7 +188,7 @@ fn from_low(problem: &Problem, options: &RampOptions) -> Search {
 
 /// The smallest v0 that was tried, from above the end at `from` on, at which the stick-slip of some
 /// blocks is lost from every phase of its cycle; none up to the end of the range, or where there is
-/// no block. They are left where they come to.
+/// no block. The blocks are left in their last states.
 fn lost_for_good<F: Followed>(
     blocks: &mut [F],
     from: f64,

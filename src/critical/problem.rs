@@ -1,5 +1,5 @@
-//! What is asked, the controlled oscillator whose critical velocity is looked for, and what is
-//! told.
+//! The question and the answer: the controlled oscillator whose critical velocity is asked for, and
+//! what is found.
 
 use super::options::{Options, RampOptions};
 use super::transition::Transition;
@@ -58,9 +58,8 @@ impl Problem {
         motion
     }
 
-    /// What `begin` comes to at the first of the protocol's start velocities at which it comes to
-    /// something. After lift-off only smaller ones are tried: what is asked for is the smallest v0
-    /// of it.
+    /// The result of `begin` at the first of the protocol's start velocities at which it has one.
+    /// After lift-off only smaller ones are tried, since the smallest v0 of lift-off is asked for.
     pub(super) fn at_first_start<T>(
         &self,
         mut begin: impl FnMut(f64) -> Result<T, NoStart>,
@@ -175,8 +174,8 @@ impl Method {
     }
 }
 
-/// The critical velocity of a problem, in the units of [`crate::slip::motion`]; NaN for what there
-/// is not.
+/// The critical velocity of a problem, in the units of [`crate::slip::motion`]; NaN stands for a
+/// number that does not exist.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct CriticalVelocity {
     /// The largest v0 at which stick-slip persists; 0 where it never does.
@@ -297,10 +296,10 @@ impl CriticalVelocity {
 /// The critical velocity with all windows of v0 in which stick-slip survives.
 #[derive(Debug, Clone, PartialEq)]
 pub struct CriticalWindows {
-    /// v_c and what there is at it.
+    /// v_c, and how stick-slip ends there.
     pub critical: CriticalVelocity,
-    /// Where stick-slip survives, up to the largest v0 at which it is looked for: v0 from and to,
-    /// increasing. The last one may end at v_c, where N ≤ 0 occurs, or with the range.
+    /// The windows of v0 in which stick-slip survives, up to the largest v0 that is tried: from and
+    /// to, increasing. The last one may end at v_c, where N ≤ 0 occurs, or with the range.
     pub windows: Vec<[f64; 2]>,
 }
 

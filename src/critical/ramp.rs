@@ -60,7 +60,7 @@ pub(super) fn from(problem: &Problem, motion: Motion, options: &RampOptions) -> 
     }
 }
 
-/// Follows stick-slip from the v0 it has, while v0 is raised, and leaves it where it comes to.
+/// Raises v0 from its present value and follows stick-slip; the block is left in its last state.
 pub(super) fn raise<F: Followed>(
     block: &mut F,
     options: &RampOptions,

@@ -15,8 +15,8 @@ use crate::slip::watch::follow;
 pub enum Phase {
     /// At this time after a release, modulo the uncontrolled period; in units of √(M/κ).
     After(f64),
-    /// At each of so many phases, evenly over the uncontrolled period: stick-slip survives if it
-    /// does for one of them.
+    /// At this number of phases, evenly over the uncontrolled period: stick-slip survives if it
+    /// does at one of them.
     Worst(u32),
 }
 
@@ -120,8 +120,8 @@ impl<'p> Trials<'p> {
         }
     }
 
-    /// Survives if it does at one phase; else what is told first of: irregular, lift-off,
-    /// undecided, the end.
+    /// The worst regime of all phases: periodic stick-slip at one phase counts, else irregular
+    /// stick-slip, else lift-off, else undecided, else the end.
     fn worst(&mut self, v0: f64, phases: u32) -> Regime {
         let long = self.problem.options.switch_on.longest;
         let (mut worst, period) = self.once(v0, 0.0, long);
@@ -211,7 +211,7 @@ pub fn windows(problem: &Problem, phase: Phase, scan: &Scan, accuracy: Accuracy)
     walk.end()
 }
 
-/// A velocity, and what switching on comes to there.
+/// A velocity, and the regime after switching on there.
 type Tried = (f64, Regime);
 
 /// What is found on the way from one velocity to the next.

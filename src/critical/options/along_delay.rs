@@ -10,7 +10,8 @@ options! {
         /// earlier. Where these kinds are other ones at its end a segment is halved whatever its
         /// length.
         short_segment: usize = 16, in 2..=128;
-        /// An end that surprises is looked for from scratch, unless one was so few cells before.
+        /// An end that surprises is searched from scratch, unless one of the last so many cells
+        /// was.
         surprises: usize = 2, in 1..=128;
         /// An end that far from where it was expected surprises: it changes fast along the line.
         surprise: f64 = 3e-4, in 1e-9..=0.1;
@@ -44,12 +45,12 @@ options! {
         /// An orbit without a second past starts below by this share of the change of the end at
         /// least.
         off_by_change: f64 = 0.15, in 0.0..=1.0;
-        /// Where a start comes to no period it is made farther off, by these factors.
+        /// Where no period is found from a start, it is moved farther off, by these factors.
         farther: [f64; 2] = [4.0, 30.0], in 1.0..=1_000.0;
-        /// Where that does not help it is made so many times [`Self::farthest`] off.
+        /// Where that does not help, it is moved off by this many times [`Self::farthest`].
         farthest_of_all: f64 = 2.0, in 1.0..=9.0;
-        /// A cell starts so many times further below its end than the transient of the cell before
-        /// reached.
+        /// A cell starts below its end by this many times what the transient of the cell before
+        /// needed.
         room: f64 = 1.5, in 1.0..=100.0;
         /// By how much nearer each cell starts at least.
         nearer: f64 = 0.5, in 0.01..=1.0;
