@@ -57,7 +57,8 @@ const ROOT: [(&str, &str); 20] = [
 ];
 
 /// Attributes of datasets of cells, each with what it is.
-const OF_CELLS: [(&str, &str); 8] = [
+const OF_CELLS: [(&str, &str); 9] = [
+    ("coordinates", "the parameters that do not vary"),
     (
         schema::CHUNKS_SHA256,
         "SHA-256 of the stored bytes of all chunks, one after the other",
