@@ -240,7 +240,7 @@ fn masked(page: &Page) -> String {
         let command = line.starts_with("$ ");
         match &mut commands {
             Some(ends) if command || line == "```" => {
-                text.push_str(*ends);
+                text.push_str(ends);
                 *ends = "\n";
                 text.push_str(line);
             }
