@@ -346,7 +346,7 @@ fn what_depends_on_the_delay_knows_no_other() {
     }
     assert_eq!(damped["n_unstable"], 0);
     assert!(damped["n_right_of_line"].is_u64());
-    assert!(at("damped.toml", &[]).get("n_right_of_line").is_none());
+    assert_eq!(at("damped.toml", &[])["n_right_of_line"], Value::Null);
     let args = [
         "point",
         "--system",
