@@ -1,5 +1,7 @@
 //! Where controls end: the slope beyond which velocity control fails, the weakest gains of load
 //! control, and short delays.
+//!
+//! Longer than most files: four claims, each with its evidence, what is said of it and its verdict.
 
 use super::LetterError;
 use super::claim::{Claim, Value, Verdict};

@@ -414,8 +414,8 @@ catalogue! {
             long_name: "factor of both gains, above 1, at which sliding is no longer stable",
             short_name: "upper gain margin",
             comment: Some(
-                "infinity where every larger gain is stable, up to 1e12 times as large where no bound \
-                 is known; no value where sliding is not, or the end is not known",
+                "infinity where every larger gain is stable, up to 1e12 times as large where no \
+                 bound is known; no value where sliding is not, or the end is not known",
             ),
             spread: Spread::LongTail,
             ..margin(OfMargins::GainUpper)
