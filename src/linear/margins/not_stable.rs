@@ -55,12 +55,11 @@ impl Surroundings<'_> {
             Some(_) if tau == 0.0 => return None,
             Some(found) => {
                 let [below, above] = [found.from, found.to].map(|end| end / tau - 1.0);
-                let nearest = if -below < above && found.from > 0.0 {
+                if -below < above && found.from > 0.0 {
                     below
                 } else {
                     above
-                };
-                nearest
+                }
             }
         };
         let found = [gain, change, third];
