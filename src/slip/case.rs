@@ -229,12 +229,11 @@ impl Case {
         Ok(())
     }
 
-    /// Re λ of the rightmost root of sliding under the control that acts in the end, in 1/time, if
-    /// it is stable.
+    /// Sliding under the control that acts in the end, in the units of a motion.
     ///
     /// # Errors
     /// When v0 is out of range.
-    pub fn stable_abscissa(&self) -> Result<Option<f64>, ModelError> {
+    pub fn sliding(&self) -> Result<Sliding, ModelError> {
         let control = if self.switch_on.is_finite() {
             self.control
         } else {
@@ -242,12 +241,22 @@ impl Case {
         };
         let sliding = SlidingPoint::of_law(&self.law, self.v0)?;
         let unit = self.oscillator.time_unit();
-        let sliding = Sliding {
+        Ok(Sliding {
             groups: self.oscillator.groups(sliding, control),
             tau: self.tau / unit,
             memory: self.memory,
             latency: self.latency / unit,
-        };
+        })
+    }
+
+    /// Re λ of the rightmost root of sliding under the control that acts in the end, in 1/time, if
+    /// it is stable.
+    ///
+    /// # Errors
+    /// When v0 is out of range.
+    pub fn stable_abscissa(&self) -> Result<Option<f64>, ModelError> {
+        let unit = self.oscillator.time_unit();
+        let sliding = self.sliding()?;
         Ok(sliding.stable_abscissa().map(|abscissa| abscissa / unit))
     }
 

@@ -192,8 +192,8 @@ pub(crate) fn problem(setting: &Setting) -> Problem {
         alpha_v: setting.alpha_v,
         alpha_n: setting.alpha_n,
         tau: setting.tau,
-        memory: 0.0,
-        latency: 0.0,
+        memory: setting.memory,
+        latency: setting.latency,
         stop: Stop::default(),
         options: Options::default(),
     }

@@ -364,7 +364,8 @@ impl<'p> Worker<'p> {
     }
 
     /// Computes margins and the fields of motions and of the critical velocity, in a line whose
-    /// status is there; margins and motions where there is a sliding state, with its groups.
+    /// status is there; motions where there is a sliding state, margins where it is the letter's,
+    /// with its groups.
     fn fill_slowly(
         &mut self,
         offset: &[usize],
@@ -396,8 +397,8 @@ impl<'p> Worker<'p> {
         if let (Some(margins), Some(_)) = (&mut self.margins, groups) {
             margins.fill(&line, &mut self.buffers);
         }
-        if let (Some(slip), Some(groups)) = (&mut self.slip, groups) {
-            slip.fill(&line, groups, &mut self.buffers);
+        if let (Some(slip), true) = (&mut self.slip, self.slides) {
+            slip.fill(&line, &mut self.buffers);
         }
         if let Some(basin) = &mut self.basin {
             basin.fill(&line, &mut self.buffers);
