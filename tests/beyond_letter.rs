@@ -439,16 +439,6 @@ fn what_cannot_be_had_is_told_at_its_key() {
         ),
         ("best = true\n", "mu_prime = -0.1\nload_lag = 0.2\n", ""),
         (
-            "boundaries = true\n",
-            "mu_prime = -0.1\nlatency = 0.2\n",
-            "",
-        ),
-        (
-            "degree_of_stability = [0.1]\n",
-            "mu_prime = -0.1\nmemory = -0.2\n",
-            "",
-        ),
-        (
             "fields = [\"outcome\"]\n",
             "v0 = 0.1\nsensor_lag = 0.2\n",
             friction,

@@ -497,7 +497,8 @@ fn boundaries_can_be_asked_for_in_other_planes() {
     for (number, (text, plane)) in [
         ("[axes]\nmu_prime = { from = -1, to = 0.5, points = 50 }\ntau = { from = 0, to = 9, points = 50 }\n[fixed]\nalpha_n = -1\n", Some((0, 1))),
         ("[axes]\ntau = { from = 0, to = 9, points = 50 }\nv0 = { from = 0.1, to = 2, points = 50 }\n[fixed]\nalpha_n = -1\n[friction]\nlaw = \"weakening\"\nmu0 = 0.5\nv_s = 0.5\n", Some((1, 0))),
-        ("boundaries = true\n[axes]\nmu_prime = [-1, 1]\nalpha_n = [-1, 0]\n[fixed]\ntau = 1\n", None),
+        ("boundaries = true\n[axes]\nmu_prime = [-1, 1]\nalpha_n = [-1, 0]\n[fixed]\ntau = 1\n", Some((0, 1))),
+        ("[axes]\nmu_prime = [-1, 1]\nalpha_n = [-1, 0]\n[fixed]\ntau = 1\n", None),
         ("boundaries = false\n[axes]\nalpha_n = [-1, 0]\ntau = [0, 1]\n[fixed]\nmu_prime = 1\n", None),
     ].into_iter().enumerate() {
         let path = folder.path().join(format!("{number}.h5"));
@@ -505,6 +506,88 @@ fn boundaries_can_be_asked_for_in_other_planes() {
         let map = MapFile::open(&path).unwrap();
         assert_eq!(map.boundary_plane(), plane, "{text}");
         assert_eq!(map.curves_where(|_| true).unwrap().is_empty(), plane.is_none());
+    }
+}
+
+/// Planes of other systems and of other parameters: right beside a boundary one side is stable, the
+/// other is not.
+#[test]
+fn boundaries_of_any_plane() {
+    let folder = tempfile::tempdir().unwrap();
+    let cases = [
+        (
+            "[axes]\nalpha_v = { from = -1.5, to = 0.2, points = 20 }\ntau = { from = 0.1, to = 9, points = 20 }\n[fixed]\nmu_prime = -0.5\nmemory = 0.4\n",
+            "alpha_v tau",
+        ),
+        (
+            "[axes]\nlatency = { from = 0, to = 2, points = 20 }\ntau = { from = 0.1, to = 9, points = 20 }\n[fixed]\nmu_prime = -0.2\nalpha_v = -0.4\n",
+            "latency tau",
+        ),
+        (
+            "[axes]\nmemory = { from = -0.8, to = 0.8, points = 20 }\nalpha_v = { from = -1.5, to = 0.2, points = 20 }\n[fixed]\nmu_prime = -0.5\ntau = 5\n",
+            "memory alpha_v",
+        ),
+        (
+            "boundaries = true\n[axes]\nalpha_n = { from = -4, to = 1, points = 20 }\nalpha_v = { from = -1.5, to = 0.5, points = 20 }\n[fixed]\nmu_prime = -0.2\ntau = 1.5\n",
+            "alpha_n alpha_v",
+        ),
+        (
+            "system = \"turning\"\ndegree_of_stability = [0.01]\n[axes]\nwidth = { from = 0, to = 0.5, points = 20 }\ntau = { from = 1, to = 20, points = 20 }\n",
+            "width tau",
+        ),
+        (
+            "system = \"pd\"\n[axes]\nk_p = { from = -1, to = 3, points = 20 }\nk_d = { from = -1, to = 3, points = 20 }\n[fixed]\nstiffness = -0.5\ntau = 0.4\n",
+            "k_p k_d",
+        ),
+    ];
+    for (number, (text, plane)) in cases.into_iter().enumerate() {
+        let path = folder.path().join(format!("{number}.h5"));
+        let plan = plan(text);
+        write(&plan, 1, &path);
+        let map = MapFile::open(&path).unwrap();
+        let (p, q) = map.boundary_plane().unwrap_or_else(|| panic!("{text}"));
+        let [p, q] = [p, q].map(|axis| &plan.spec.axes[axis]);
+        assert_eq!(
+            format!("{} {}", p.parameter.name(), q.parameter.name()),
+            plane
+        );
+        let stable = |at_p: f64, at_q: f64, sigma: f64| {
+            let mut setting = plan.spec.fixed.clone();
+            setting.vary(&p.parameter, at_p);
+            setting.vary(&q.parameter, at_q);
+            let (model, unit) = setting.linear().unwrap();
+            let counter = slipmap::linear::general::RootCounter::new(&model.system());
+            let count = counter.right_of(setting.get(Parameter::Tau) / unit, -sigma * unit);
+            count == slipmap::linear::general::RightOf::Roots(0)
+        };
+        let (mut checked, mut degrees) = (0, 0);
+        for curve in map.curves_where(|_| true).unwrap() {
+            let vertices = &curve.piece.vertices;
+            let side = match curve.piece.stable_side {
+                StableSide::Neither => continue,
+                StableSide::Shorter => (0.0, -1e-5),
+                StableSide::Longer => (0.0, 1e-5),
+                StableSide::Below => (-1e-5, 0.0),
+                StableSide::Above => (1e-5, 0.0),
+            };
+            degrees += u32::from(curve.degree_of_stability > 0.0);
+            // In the middle of a piece no other one is near.
+            let v = vertices[vertices.len() / 2];
+            let beside = |sign: f64| {
+                let (p, q) = (v.p + sign * side.0, v.q + sign * side.1);
+                stable(p, q, curve.degree_of_stability)
+            };
+            if vertices.len() > 2 {
+                assert!(
+                    beside(1.0) && !beside(-1.0),
+                    "{text}: {v:?} {:?}",
+                    curve.piece.kind
+                );
+                checked += 1;
+            }
+        }
+        assert!(checked > 0, "{text}");
+        assert_eq!(degrees > 0, text.contains("degree"), "{text}");
     }
 }
 

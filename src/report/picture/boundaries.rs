@@ -7,6 +7,7 @@ use super::curve_labels::{Curves, Place, places};
 use super::degrees::Degrees;
 use super::error::PictureError;
 use super::inset::{self, Inset};
+use super::kinds;
 use super::legend::{Legend, Swatch};
 use super::options::PictureOptions;
 use super::page::{self, SMALL};
@@ -187,12 +188,13 @@ fn draw_curves(families: &[Family], degrees: &Degrees, panel: &Panel, scene: &mu
                 degrees.draw(curve.degree_of_stability, &points, family.colour, scene);
             }
         }
-        for points in family
-            .bounding
-            .iter()
-            .flat_map(|piece| traced(panel, piece))
-        {
-            scene.path(points, family.colour, WIDTH * u);
+        for piece in &family.bounding {
+            for points in traced(panel, piece) {
+                match kinds::dash(piece.kind) {
+                    Some(dash) => scene.dashed(&points, family.colour, WIDTH * u, dash),
+                    None => scene.path(points, family.colour, WIDTH * u),
+                }
+            }
         }
     }
 }
@@ -304,6 +306,13 @@ fn legend(map: &MapFile, view: &View, families: &[Family], degrees: &Degrees) ->
         [family] => family.colour,
         _ => INK,
     };
+    entries.extend(kinds::entries(
+        families
+            .iter()
+            .flat_map(|family| family.bounding.iter().copied()),
+        colour,
+        WIDTH,
+    ));
     entries.extend(degrees.entries(colour));
     Legend { heading, entries }
 }

@@ -7,6 +7,7 @@ use super::error::PictureError;
 use super::fitted::{Sides, fitted};
 use super::hatch;
 use super::key::{BOUNDARY_WIDTH, Key};
+use super::kinds;
 use super::options::PictureOptions;
 use super::page::{self, Area};
 use super::panels::{Panel, Panels, Words};
@@ -17,7 +18,7 @@ use super::stable_area::stable_throughout;
 use super::symbols;
 use super::text::axis_title;
 use super::view::View;
-use crate::linear::curves::StableSide;
+use crate::linear::curves::{CurvePiece, StableSide};
 use crate::report::known::Known;
 use crate::store::MapFile;
 use crate::store::map_file::MapCurve;
@@ -54,7 +55,8 @@ pub(super) fn draw(
         .collect::<Result<_, _>>()?;
     let degrees = Degrees::of(map, curves);
     let symbols = symbols::of_view(map, view, y)?;
-    let entries = [degrees.entries(INK), symbols::entries(&symbols)].concat();
+    let kinds = kinds::entries(bounding(curves), INK, BOUNDARY_WIDTH);
+    let entries = [kinds, degrees.entries(INK), symbols::entries(&symbols)].concat();
     let key = Key::new((field, &unit), &planes, !curves.is_empty(), options)?.with(entries);
     let column = match options.no_legend {
         true => None,
@@ -96,6 +98,13 @@ pub(super) fn draw(
     Ok(())
 }
 
+/// The curves that bound the stable region.
+fn bounding(curves: &[MapCurve]) -> impl Iterator<Item = &CurvePiece> + Clone {
+    let bounds =
+        |c: &&MapCurve| c.degree_of_stability == 0.0 && c.piece.stable_side != StableSide::Neither;
+    curves.iter().filter(bounds).map(|curve| &curve.piece)
+}
+
 /// Whether the field is another one on the other side of the boundary of stability.
 fn changes_at_boundary(field: Field) -> bool {
     field == Field::Regime || (field.of_sliding() && field.storage() == Storage::Count)
@@ -134,6 +143,8 @@ fn draw_curve(panel: &Panel, curve: &MapCurve, degrees: &Degrees, scene: &mut Sc
         let points: Vec<_> = vertices.map(|v| panel.at(v.p, v.q)).collect();
         if curve.degree_of_stability > 0.0 {
             degrees.draw(curve.degree_of_stability, &points, INK, scene);
+        } else if let Some(dash) = kinds::dash(curve.piece.kind) {
+            scene.dashed(&points, INK, BOUNDARY_WIDTH * scene.unit(), dash);
         } else {
             scene.path(points, INK, BOUNDARY_WIDTH * scene.unit());
         }

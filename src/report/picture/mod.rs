@@ -34,6 +34,7 @@ mod hatch;
 mod heat;
 mod inset;
 mod key;
+mod kinds;
 mod legend;
 mod line;
 mod off_scale;

@@ -1,5 +1,6 @@
 //! The cells of a tile, and what belongs to planes of cells: one thread's work.
 
+mod any_plane;
 pub mod basin;
 mod basin_columns;
 pub mod best;

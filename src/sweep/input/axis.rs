@@ -26,24 +26,32 @@ pub struct Axis {
     pub values: Vec<f64>,
 }
 
-/// The axes of the planes in which curves can be traced, (parameter, delay): the last gain axis,
-/// else the last other axis on which linear stability depends, and the delay. None where there are
-/// no two such axes with two values or more.
+/// The axes of the planes in which curves can be traced, (p, q). With a delay that varies it is q, and
+/// p the last gain axis, else the last other axis on which linear stability depends. Without one they
+/// are the last two such axes. None where there are no two of them with two values or more.
 #[must_use]
 pub fn plane_of_curves(axes: &[Axis]) -> Option<(usize, usize)> {
-    let several =
-        |axis: &Axis, delay: bool| axis.len() > 1 && (axis.parameter == Parameter::Tau) == delay;
-    let tau = axes.iter().position(|axis| several(axis, true))?;
-    let last = |gain: bool| {
-        axes.iter().rposition(|axis| {
-            let Some(parameter) = axis.parameter.known() else {
-                return false;
-            };
-            let is_gain = matches!(parameter, Parameter::AlphaV | Parameter::AlphaN);
-            several(axis, false) && (is_gain || !(gain || parameter.of_start()))
-        })
+    let matters = |axis: &Axis| {
+        let of_start = axis.parameter.known().is_some_and(Parameter::of_start);
+        axis.len() > 1 && !of_start
     };
-    Some((last(true).or_else(|| last(false))?, tau))
+    let is_delay = |axis: &Axis| axis.parameter == Parameter::Tau;
+    let is_gain =
+        |axis: &Axis| axis.parameter == Parameter::AlphaV || axis.parameter == Parameter::AlphaN;
+    let place = |wanted: &dyn Fn(&Axis) -> bool| {
+        axes.iter().rposition(|axis| matters(axis) && wanted(axis))
+    };
+    match place(&is_delay) {
+        Some(tau) => {
+            let p = place(&is_gain).or_else(|| place(&|axis| !is_delay(axis)))?;
+            Some((p, tau))
+        }
+        None => {
+            let q = place(&|_| true)?;
+            let p = axes[..q].iter().rposition(matters)?;
+            Some((p, q))
+        }
+    }
 }
 
 /// Values that make no axis, in words.

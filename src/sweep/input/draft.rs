@@ -70,7 +70,6 @@ impl SweepSpec {
                 "fields" => draft.read_fields(&entry)?,
                 "boundaries" => {
                     draft.boundaries = Some(entry.boolean()?);
-                    draft.boundaries_place = Some(entry.key_span.clone());
                 }
                 "degree_of_stability" => draft.read_degrees(&entry)?,
                 "best" => draft.best = entry.boolean()?.then(|| entry.key_span.clone()),
@@ -121,7 +120,6 @@ struct Draft {
     simulation: Simulation,
     simulation_place: Option<Range<usize>>,
     boundaries: Option<bool>,
-    boundaries_place: Option<Range<usize>>,
     degrees: Vec<f64>,
     degrees_place: Option<Range<usize>>,
     /// Where the best settings are asked for, if they are.

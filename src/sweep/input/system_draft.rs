@@ -23,9 +23,6 @@ const OF_THE_BLOCK: [&str; 8] = [
     "best",
 ];
 
-/// Keys that are about the plane of a gain and the delay.
-const OF_CURVES: [&str; 2] = ["boundaries", "degree_of_stability"];
-
 /// The system of a sweep, and the values that the file gives its parameters.
 pub(super) struct SystemDraft {
     pub model: Arc<SystemModel>,
@@ -93,9 +90,6 @@ impl SystemDraft {
                 "it is about a block on its spring; a system from a file has counts, roots and \
                  delays alone",
             ));
-        }
-        if OF_CURVES.contains(&entry.key) {
-            return Err(entry.elsewhere("curves are traced of the letter's system alone"));
         }
         Ok(())
     }

@@ -34,6 +34,8 @@ pub const MOST_TILES: usize = 1 << 21;
 const MOST_PLANES: u64 = 1_000_000;
 /// Planes up to which crossing curves are traced without being asked for.
 const PLANES_TRACED_UNASKED: u64 = 1000;
+/// And where every curve is followed step by step.
+const PLANES_WALKED_UNASKED: u64 = 100;
 
 /// A sweep ready to run.
 #[derive(Debug, Clone)]
@@ -323,18 +325,30 @@ pub fn in_hexadecimal(bytes: &[u8]) -> String {
 
 /// The plane of crossing curves; none where there is no such plane, or where it is not wanted.
 fn boundary_plane(spec: &SweepSpec) -> Option<(usize, usize)> {
-    let (p, tau) =
-        plane_of_curves(&spec.axes).filter(|_| spec.has_sliding() && !spec.beyond_letter())?;
+    let (p, q) = plane_of_curves(&spec.axes).filter(|_| spec.has_sliding())?;
     let planes: u64 = spec
         .axes
         .iter()
         .enumerate()
-        .filter(|&(i, _)| i != p && i != tau)
+        .filter(|&(i, _)| i != p && i != q)
         .map(|(_, axis)| axis.len() as u64)
         .product();
     let asked = spec
         .boundaries
         .or((!spec.degrees_of_stability.is_empty()).then_some(true));
-    let wanted = asked.unwrap_or(planes <= PLANES_TRACED_UNASKED);
-    wanted.then_some((p, tau))
+    let most = match (traced_by_closed_form(spec, q), spec.beyond_letter()) {
+        (true, _) => PLANES_TRACED_UNASKED,
+        (false, true) => PLANES_WALKED_UNASKED,
+        // The letter's own planes without the delay have them where they are asked for.
+        (false, false) => 0,
+    };
+    let wanted = asked.unwrap_or(planes <= most);
+    wanted.then_some((p, q))
+}
+
+/// Whether the curves of planes whose second axis is `q` are those of the letter's own lines of
+/// delays.
+#[must_use]
+pub fn traced_by_closed_form(spec: &SweepSpec, q: usize) -> bool {
+    spec.axes[q].parameter == Parameter::Tau && !spec.beyond_letter()
 }

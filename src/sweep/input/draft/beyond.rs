@@ -14,7 +14,7 @@ use crate::sweep::input::toml_reader::SpecError;
 const LINEAR: &str = "fields of linear stability take it: n_unstable, abscissa and others";
 
 impl Draft {
-    /// Motions, margins, best settings and curves know memory, latency, lags and a state of
+    /// Motions, margins and best settings know memory, latency, lags and a state of
     /// friction as far as they do.
     pub(super) fn check_beyond_letter(&self, fixed: &Setting) -> Result<(), SpecError> {
         self.check_motions_are_known(fixed)?;
@@ -67,13 +67,7 @@ impl Draft {
             .or(slope)
             .map(|(field, place)| (field.name(), place.clone()));
         let best = self.best.as_ref().map(|place| ("best", place.clone()));
-        let curves = self.boundaries_place.as_ref();
-        let curves = curves.filter(|_| self.boundaries == Some(true));
-        let degrees = self.degrees_place.as_ref();
-        margin
-            .or(best)
-            .or(degrees.map(|place| ("degree_of_stability", place.clone())))
-            .or(curves.map(|place| ("boundaries", place.clone())))
+        margin.or(best)
     }
 
     /// The ratio of stiffnesses is that of one law.

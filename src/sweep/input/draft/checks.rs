@@ -31,7 +31,7 @@ impl Draft {
     }
 
     /// There are boundaries beside which to trace degrees of stability.
-    fn check_degrees(&self) -> Result<(), SpecError> {
+    pub(super) fn check_degrees(&self) -> Result<(), SpecError> {
         let Some(place) = &self.degrees_place else {
             return Ok(());
         };
@@ -47,7 +47,8 @@ impl Draft {
         if plane_of_curves(&self.axes).is_none() {
             return refuse(
                 "there is no plane for its curves",
-                "an axis tau and another axis are needed, with two values or more each",
+                "two axes of linear stability are needed, such as a gain and tau, with two values or more \
+                each",
             );
         }
         Ok(())

@@ -9,6 +9,7 @@ use crate::sweep::input::toml_reader::SpecError;
 impl Draft {
     /// Everything fits together in a sweep of a system; gives the parameters that are no axes.
     pub(super) fn check_system(&self, system: &SystemDraft) -> Result<Setting, SpecError> {
+        self.check_degrees()?;
         let tau = Parameter::Tau;
         if !system.given.iter().any(|(of, _)| *of == tau) {
             return Err(SpecError {
