@@ -235,12 +235,12 @@ fn what_is_not_run_is_listed_and_exists() {
 /// line, as trycmd has them.
 fn masked(page: &Page) -> String {
     let mut text = String::new();
-    let mut commands = None;
+    let mut commands: Option<&str> = None;
     for line in page.text.lines() {
         let command = line.starts_with("$ ");
         match &mut commands {
             Some(ends) if command || line == "```" => {
-                text.push_str(*ends);
+                text.push_str(ends);
                 *ends = "\n";
                 text.push_str(line);
             }

@@ -2,6 +2,7 @@
 
 use std::fmt::Write;
 
+use clap::builder::PossibleValue;
 use clap::{Arg, Command, CommandFactory};
 
 use super::super::Cli;
@@ -94,7 +95,7 @@ fn about(arg: &Arg) -> String {
     }
     let possible = arg.get_possible_values();
     if !possible.is_empty() && arg.get_action().takes_values() {
-        let names: Vec<_> = possible.iter().map(|value| value.get_name()).collect();
+        let names: Vec<_> = possible.iter().map(PossibleValue::get_name).collect();
         let _ = write!(text, " [values: {}]", names.join(", "));
     }
     text
