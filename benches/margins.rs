@@ -4,17 +4,21 @@
 //! `cargo bench --bench margins`. Both ways take turns, five rounds; medians and the slowest
 //! setting are shown. Bisection is given the direction and looks for the first change in 64 steps
 //! up to twice the limit: it may miss what lies between two of them.
+//!
+//! Then the stability radius over a spread of laws, gains and delays, of which some are hard: the
+//! time of each once.
 
 use std::hint::black_box;
 use std::time::{Duration, Instant};
 
-use slipmap::linear::margins::{self, Limits, Margins, Setting};
+use slipmap::linear::margins::{self, Limits, Margins, Setting, SlidingLaw};
 use slipmap::linear::{Crossings, MarginalTolerance};
-use slipmap::model::Groups;
+use slipmap::model::{Control, FrictionLaw, Groups, Oscillator, Table};
 
 const SETTINGS: usize = 2000;
 const ROUNDS: usize = 5;
 const STEPS: u32 = 64;
+const LAW_SETTINGS: usize = 500;
 
 fn settings() -> Vec<Setting> {
     let mut state = 5_u64;
@@ -141,6 +145,68 @@ fn with_decay(setting: &Setting) {
     }
 }
 
+/// The stability radius at stable settings of velocity control, load control and both, for four
+/// laws and for none, delays of 0.001 to 1000 and velocities of 0.02 to 10.
+fn radii_of_laws() {
+    let mut state = 11_u64;
+    let mut chance = || {
+        state = state
+            .wrapping_mul(6_364_136_223_846_793_005)
+            .wrapping_add(1_442_695_040_888_963_407);
+        (state >> 11) as f64 / (1_u64 << 53) as f64
+    };
+    let table = Table::new(
+        vec![0.05, 0.2, 0.6, 1.0, 4.0],
+        vec![0.9, 0.6, 0.45, 0.5, 0.7],
+    );
+    let laws = [
+        FrictionLaw::weakening(0.5, 0.5, 1.0).expect("a law"),
+        FrictionLaw::stribeck(0.4, 0.5, 1.0).expect("a law"),
+        FrictionLaw::table(table.expect("a table"), 1.0).expect("a law"),
+        FrictionLaw::coulomb(0.5, 1.0).expect("a law"),
+    ];
+    let oscillator = Oscillator::new(1.0, 1.0, 1.0).expect("a block");
+    let (mut times, mut loose) = (Vec::new(), 0);
+    while times.len() < LAW_SETTINGS {
+        let i = times.len();
+        let mut between = |from: f64, to: f64| from + (to - from) * chance();
+        let (alpha_v, alpha_n) = match i % 3 {
+            0 => (between(-1.5, 0.7), 0.0),
+            1 => (0.0, between(-20.0, 2.0)),
+            _ => (between(-1.0, 0.5), between(-10.0, 2.0)),
+        };
+        let tau = between(1e-3_f64.ln(), 1e3_f64.ln()).exp();
+        let v0 = between(0.02_f64.ln(), 10_f64.ln()).exp();
+        let b = between(-0.9, 0.9);
+        let law = laws.get(i % 5).map(|law| SlidingLaw {
+            law,
+            oscillator: &oscillator,
+            control: Control { alpha_v, alpha_n },
+        });
+        let groups = law.map_or(Groups::new(b, alpha_v, alpha_n), |law| law.groups(v0));
+        let decay = 0.0;
+        let setting = Setting { groups, tau, decay };
+        if !setting.stable() {
+            continue;
+        }
+        let start = Instant::now();
+        let found = match law {
+            Some(law) => margins::radius_with_law(&setting, &law, v0),
+            None => margins::radius(&setting),
+        };
+        times.push(start.elapsed());
+        loose += usize::from(!found.tight);
+    }
+    times.sort();
+    let mean = times.iter().sum::<Duration>() / times.len() as u32;
+    println!(
+        "stability radius of {LAW_SETTINGS} settings with laws: mean {mean:.2?}, median {:.2?}, \
+         longest {:.2?}; {loose} given up",
+        times[times.len() / 2],
+        times[times.len() - 1],
+    );
+}
+
 fn main() {
     let settings = settings();
     let mut search = Margins::default();
@@ -158,4 +224,5 @@ fn main() {
         let (mean, longest) = times[ROUNDS / 2];
         println!("{name:>38}: mean {mean:>10.2?}, longest {longest:>10.2?}");
     }
+    radii_of_laws();
 }

@@ -2,6 +2,7 @@
 //! and turns of D along the imaginary axis where the feedback comes late.
 
 use std::f64::consts::PI;
+use std::time::{Duration, Instant};
 
 use num_complex::Complex64;
 use slipmap::linear::certificate::roots_right_of;
@@ -423,4 +424,115 @@ fn a_friction_law_leads_from_one_velocity_to_another() {
             }
         });
     }
+}
+
+/// Long and short delays, sliding velocities at which the slope hardly matters or jumps nearby: a
+/// part of a second each, and what is proved holds, tight or not.
+#[test]
+fn radii_of_any_setting_take_a_part_of_a_second() {
+    let mut chance = Chance(11);
+    let oscillator = Oscillator::new(1.0, 1.0, 1.0).unwrap();
+    let (mut tried, mut loose) = (0, 0);
+    while tried < 60 {
+        let law = &laws()[tried % 4];
+        let control = match tried % 3 {
+            0 => (chance.between(-1.5, 0.7), 0.0),
+            1 => (0.0, chance.between(-20.0, 2.0)),
+            _ => (chance.between(-1.0, 0.5), chance.between(-10.0, 2.0)),
+        };
+        let sliding = SlidingLaw {
+            law,
+            oscillator: &oscillator,
+            control: Control {
+                alpha_v: control.0,
+                alpha_n: control.1,
+            },
+        };
+        let tau = chance.between(1e-3_f64.ln(), 1e3_f64.ln()).exp();
+        let v0 = chance.between(0.02_f64.ln(), 10_f64.ln()).exp();
+        let at = |v: f64, tau: f64| Setting {
+            groups: sliding.groups(v),
+            tau,
+            decay: 0.0,
+        };
+        if !stable(at(v0, tau)) {
+            continue;
+        }
+        tried += 1;
+        let start = Instant::now();
+        let found = margins::radius_with_law(&at(v0, tau), &sliding, v0);
+        // 0.6 s at most; other tests run beside this one.
+        assert!(
+            start.elapsed() < Duration::from_secs(6),
+            "{control:?} {tau} {v0}"
+        );
+        loose += u32::from(!found.tight);
+        let bound = found
+            .unstable
+            .map_or(1.0, |at| at.iter().fold(0.0, |m: f64, d| m.max(d.abs())));
+        assert!(found.proved <= bound && found.tight == (found.proved >= 0.995 * bound));
+        for _ in 0..2000 {
+            let [gain, delay, velocity] = in_box(&mut chance, found.proved * (1.0 - 1e-9));
+            let Groups { b, a_v, a_n } = sliding.groups(v0 * (1.0 + velocity));
+            let k = 1.0 + gain;
+            let setting = Setting {
+                groups: Groups::new(b, k * a_v, k * a_n),
+                tau: tau * (1.0 + delay),
+                decay: 0.0,
+            };
+            let count = Crossings::of(setting.groups).n_unstable(setting.tau);
+            assert_eq!(
+                count, 0,
+                "{control:?} {tau} {v0} {found:?} {gain} {delay} {velocity}"
+            );
+        }
+    }
+    // Velocity control at short delays, or near a jump of a table's slope.
+    assert!(loose <= 8, "{loose}");
+}
+
+/// With a decay rate just below that of the setting, limits of the gain lie close to 1, where
+/// little of them is told from rounding: right to 1e-9, or not told.
+#[test]
+fn limits_at_nearly_all_of_the_decay_are_right_or_not_known() {
+    let mut chance = Chance(29);
+    let (mut search, mut finder) = (Margins::default(), RootFinder::default());
+    let (mut known, mut unknown) = (0, 0);
+    for Setting { groups, tau, .. } in settings(400, 0.0) {
+        let roots = finder.rightmost(groups, tau, 1, f64::NEG_INFINITY).unwrap();
+        let short = chance.between(1e-9_f64.ln(), 0.1_f64.ln()).exp();
+        let decay = -roots[0].lambda.re * (1.0 - short);
+        let setting = Setting { groups, tau, decay };
+        if decay <= 0.0 || !stable(setting) {
+            continue;
+        }
+        let Groups { b, a_v, a_n } = groups;
+        let with = |k: f64| Setting {
+            groups: Groups::new(b, k * a_v, k * a_n),
+            ..setting
+        };
+        let limits = search.gain(&setting);
+        for (limit, far) in [(limits.lower, 0.0), (limits.upper, 300.0)] {
+            if limit.is_nan() {
+                unknown += 1;
+                continue;
+            }
+            known += 1;
+            check("gain", 1.0, limit, far, &with);
+        }
+        let with = |b: f64| Setting {
+            groups: Groups::new(b, a_v, a_n),
+            ..setting
+        };
+        let limits = search.slope(&setting);
+        for (limit, far) in [(limits.lower, -300.0), (limits.upper, 300.0)] {
+            if limit.is_nan() {
+                unknown += 1;
+                continue;
+            }
+            known += 1;
+            check("slope", b, limit, far, &with);
+        }
+    }
+    assert!(known > 1000 && 50 * unknown <= known, "{known} {unknown}");
 }

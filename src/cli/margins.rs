@@ -71,17 +71,18 @@ pub(super) fn print(
     writeln!(out, "continuous sliding is {wanted}; it stays so")?;
     let mut row = |name: &str, value: String| writeln!(out, "  {name:<16} {value}");
     let undecided = |name: &str| margins.undecided.contains(&name);
+    let looked = &margins.looked_up_to;
     if let Some(gain) = margins.gain_margin {
         let text = match (gain.lower.filter(|k| *k > 0.0), gain.upper) {
             _ if undecided("gain_margin") => "not decided".into(),
             (lower, upper) => between(lower, upper, " times as large"),
         };
-        row("gain_margin", text)?;
+        row("gain_margin", text + &up_to(looked.gain_margin, " times"))?;
     }
-    for (parameter, margin) in [
-        (Parameter::Tau, margins.tau_margin),
-        (Parameter::MuPrime, margins.mu_prime_margin),
-        (Parameter::V0, margins.v0_margin),
+    for (parameter, margin, last) in [
+        (Parameter::Tau, margins.tau_margin, looked.tau_margin),
+        (Parameter::MuPrime, margins.mu_prime_margin, None),
+        (Parameter::V0, margins.v0_margin, looked.v0_margin),
     ] {
         let Some(margin) = margin else { continue };
         let name = format!("{}_margin", parameter.name());
@@ -90,11 +91,7 @@ pub(super) fn print(
             true => "not decided".into(),
             false => along(&margin, setting.get(parameter), &unit),
         };
-        let text = match (parameter, margin.to) {
-            (Parameter::V0, None) => text + "; looked at up to 1024 times v0",
-            _ => text,
-        };
-        row(&name, text)?;
+        row(&name, text + &up_to(last, &unit))?;
     }
     print_loop(&mut row, margins, units)?;
     if let Some(found) = &margins.stability_box {
@@ -110,6 +107,7 @@ fn print_loop(
     units: &Units,
 ) -> std::io::Result<()> {
     let time = unit_behind(&units.time());
+    let last = margins.looked_up_to.latency_margin;
     for (name, value, unit, endless) in [
         (
             "phase_margin",
@@ -127,11 +125,21 @@ fn print_loop(
         let text = match value {
             _ if margins.undecided.contains(&name) => "not decided".into(),
             Some(value) => format!("{}{unit}", rounded(value, 8)),
+            None if name == "latency_margin" && last.is_some() => {
+                format!("no latency matters{}", up_to(last, unit))
+            }
             None => endless.to_owned(),
         };
         row(name, text)?;
     }
     Ok(())
+}
+
+/// Up to where an end was looked for that was not found.
+fn up_to(last: Option<f64>, unit: &str) -> String {
+    last.map_or_else(String::new, |last| {
+        format!("; looked at up to {}{unit}", rounded(last, 8))
+    })
 }
 
 fn between(lower: Option<f64>, upper: Option<f64>, unit: &str) -> String {

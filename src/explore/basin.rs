@@ -80,7 +80,8 @@ pub struct BasinShare {
     /// to switch on in.
     pub basin_share: Option<f64>,
     /// The standard error of it and of `basin_share_upper`, from the spread between scramblings:
-    /// one start of all at least. 0 where sliding is linearly unstable.
+    /// 3.1 starts of all at least where fewer than five differ from the others. 0 where sliding is
+    /// linearly unstable.
     pub basin_share_error: Option<f64>,
     /// The share if all that are undecided came to slide.
     pub basin_share_upper: Option<f64>,

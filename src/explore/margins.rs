@@ -29,8 +29,8 @@ pub struct Margins {
     /// The slopes μ_K′ between which it stays, at fixed μ_K; null where the setting has it not, and
     /// where there is a friction law.
     pub mu_prime_margin: Option<Margin>,
-    /// The sliding velocities between which it stays, looked at up to 1024 times v0; null where the
-    /// setting has it not, and where there is no friction law.
+    /// The sliding velocities between which it stays; null where the setting has it not, and where
+    /// there is no friction law.
     pub v0_margin: Option<Margin>,
     /// The largest relative box of gain, delay and μ_K′ or v0 that is proved to have it; 0 where
     /// the setting has it not.
@@ -39,6 +39,23 @@ pub struct Margins {
     pub stability_box: Option<StabilityBox>,
     /// The margins above that could not be decided.
     pub undecided: Vec<&'static str>,
+    /// Up to where margins were looked for that have no upper end here.
+    pub looked_up_to: LookedUpTo,
+}
+
+/// The last values that were looked at, where nothing is lost up to them and what lies beyond is
+/// not known.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
+#[cfg_attr(feature = "serve", derive(utoipa::ToSchema))]
+pub struct LookedUpTo {
+    /// The factor of both gains; null where the upper end is known, or known not to be.
+    pub gain_margin: Option<f64>,
+    /// The further latency; null where it is known whether there is one that matters.
+    pub latency_margin: Option<f64>,
+    /// The delay; null where the upper end is known, or known not to be.
+    pub tau_margin: Option<f64>,
+    /// The sliding velocity; null where the upper end is known, and without a friction law.
+    pub v0_margin: Option<f64>,
 }
 
 /// Both ends of a range.
@@ -99,6 +116,7 @@ impl Margins {
             stability_radius: 0.0,
             stability_box: None,
             undecided: Vec::new(),
+            looked_up_to: LookedUpTo::default(),
         };
         if margins.decays {
             margins.fill(&around, setting);
@@ -132,6 +150,15 @@ impl Margins {
             self.note("mu_prime_margin", &ends);
             self.mu_prime_margin = Some(Margin::of(at, limits, f64::NEG_INFINITY));
         }
+        // Of infinite ends; NaN is told as undecided.
+        let last = |end: f64, last: f64| finite(last).filter(|_| end == f64::INFINITY);
+        let reach = around.reach();
+        self.looked_up_to = LookedUpTo {
+            gain_margin: last(gain.upper, reach.gain),
+            latency_margin: last(of_loop.latency, reach.latency),
+            tau_margin: last(delay.upper, reach.delay),
+            v0_margin: around.highest_v0().and_then(|v0| last(limits.upper, v0)),
+        };
         let radius = around.radius();
         self.stability_radius = radius.proved;
         self.stability_box = Some(StabilityBox::of(&radius, third));

@@ -206,6 +206,12 @@ impl Claim {
         self.commands.push(command.to_owned());
         self
     }
+
+    /// The same with a command, if there is one.
+    pub(super) fn repeat_some(mut self, command: Option<String>) -> Self {
+        self.commands.extend(command);
+        self
+    }
 }
 
 #[cfg(test)]

@@ -1,5 +1,7 @@
 //! Where controls end: the slope beyond which velocity control fails, the weakest gains of load
 //! control, and short delays.
+//!
+//! Longer than most files: four claims, each with its evidence, what is said of it and its verdict.
 
 use super::LetterError;
 use super::claim::{Claim, Value, Verdict};
@@ -53,6 +55,28 @@ impl VelocityLimit {
         )
     }
 
+    /// What the maps say of it.
+    fn maps(&self) -> String {
+        let (with, without) = self.bracket();
+        let agree = match self.stable_beyond() {
+            0 => format!("Maps have stable cells at {with} and none at {without}."),
+            some => format!("But {some} maps beyond have stable cells."),
+        };
+        let past = self.cells.iter();
+        let past = past.filter(|(b, cells)| *b < LETTER.0 && *cells > 0);
+        let mut past: Vec<_> = past.copied().collect();
+        past.sort_by(|one, other| other.0.total_cmp(&one.0));
+        let past: Vec<_> = past.iter().map(|(b, n)| format!("{n} at {b}")).collect();
+        match past.is_empty() {
+            true => format!("{agree} None is stable beyond the letter's {}.", LETTER.0),
+            false => format!(
+                "{agree} Beyond the letter's {} the magnified lobe has stable cells: {}.",
+                LETTER.0,
+                past.join(", "),
+            ),
+        }
+    }
+
     fn verdict(&self) -> Verdict {
         let (with, without) = self.bracket();
         let bracketed = without < self.end && self.end < with;
@@ -66,12 +90,13 @@ impl VelocityLimit {
     }
 
     fn claim(&self) -> Claim {
-        let (with, without) = self.bracket();
         let because = format!(
-            "It does disappear, at {:.12} √(κM): the crossing curves touch there (α_v = {:.6}, τ = \
-             {:.6}). Maps have stable cells at {with} and none at {without}. At the letter's −0.68 \
-             the lobe has become too small to be seen.",
-            self.end, self.place.0, self.place.1,
+            "The crossing curves touch at {:.12} √(κM) (α_v = {:.6}, τ = {:.6}), and no lobe is \
+             left beyond. {}",
+            self.end,
+            self.place.0,
+            self.place.1,
+            self.maps(),
         );
         let at = (
             "paragraph of Fig. 2",
@@ -147,11 +172,19 @@ impl LoadGains {
         row.negative.abs().min(row.positive)
     }
 
+    /// At how many steps of the slope a gain grows.
+    fn steps_up(&self, size: fn(&LoadGain) -> f64) -> usize {
+        let pairs = self.rows.windows(2);
+        pairs.filter(|pair| size(&pair[1]) > size(&pair[0])).count()
+    }
+
+    fn steps(&self) -> usize {
+        self.rows.len().saturating_sub(1)
+    }
+
     fn grows(&self) -> Verdict {
-        let grows = |size: fn(&LoadGain) -> f64| {
-            let pairs = self.rows.windows(2);
-            pairs.clone().count() > 0 && pairs.clone().all(|pair| size(&pair[1]) > size(&pair[0]))
-        };
+        let grows =
+            |size: fn(&LoadGain) -> f64| self.steps() > 0 && self.steps_up(size) == self.steps();
         Verdict::of_parts(
             grows(Self::weakest) && grows(|row| row.negative.abs()),
             grows(|row| row.negative.abs()),
@@ -182,10 +215,21 @@ impl LoadGains {
             .by([count])
             .from(&["fig2b"]);
         let until = LobeControl::PositiveLoad.lobe_end(0).b;
-        let because = format!(
-            "The smallest |α_N| grows at every step of the slope. What the letter does not say: \
-             down to μ′ = {until:.9} it belongs to a positive gain, in lobes of their own."
+        let mut because = format!(
+            "The smallest |α_N| grows at {} of {} steps of the slope.",
+            self.steps_up(Self::weakest),
+            self.steps(),
         );
+        let positive = self.rows.iter();
+        let positive = positive.filter(|row| row.positive < row.negative.abs());
+        let (belongs, seen) = positive.fold((0, 0.0_f64), |(n, to), row| (n + 1, to.min(row.b)));
+        if belongs > 0 {
+            because += &format!(
+                " What the letter does not say: at {belongs} of {} slopes, down to {seen:.6}, it \
+                 belongs to a positive gain, in lobes of their own.",
+                self.rows.len(),
+            );
+        }
         let at = (
             "paragraph of Eq. (8)",
             "Only the minimal value of |α_N| increases with increasing |μ′_K|",
@@ -316,12 +360,24 @@ impl ShortDelays {
     }
 
     fn claims(&self) -> [Claim; 2] {
-        let because = format!(
-            "At every slope there is a shortest delay below which no gain makes sliding stable: \
-             {:.4} |μ′_K|N0/κ or longer. From μ′_K = {} on no delay is stable at all.",
+        let (some, none): (Vec<_>, Vec<_>) = self
+            .velocity
+            .iter()
+            .partition(|(_, tau, _)| tau.is_finite());
+        let mut because = format!(
+            "At {} of {} slopes some gain makes sliding stable, at delays of {:.4} |μ′_K|N0/κ or \
+             longer.",
+            some.len(),
+            self.velocity.len(),
             self.least().0,
-            LobeControl::Velocity.lobe_end(0).b,
         );
+        if !none.is_empty() {
+            let none: Vec<_> = none
+                .iter()
+                .map(|row: &(f64, f64, f64)| row.0.to_string())
+                .collect();
+            because += &format!(" No gain does at any delay at μ′_K = {}.", none.join(", "));
+        }
         let at = (
             "paragraph of Eq. (8)",
             "pure velocity control … is not able to stabilize unstable continuous sliding states",
@@ -413,6 +469,68 @@ mod tests {
             Verdict::Contradicted
         );
         assert_eq!(of(-0.8, &[(-0.79, 7), (-0.81, 0)]), Verdict::Contradicted);
+    }
+
+    /// What is said beside a verdict is what was found.
+    #[test]
+    fn texts_follow_from_the_numbers() {
+        let limit = |cells: &[(f64, usize)]| VelocityLimit {
+            end: -0.7,
+            place: (-0.3, 4.3),
+            cells: cells.to_vec(),
+        };
+        let told = limit(&[(-0.69, 12), (-0.71, 0)]).claim().because;
+        assert!(
+            told.contains("stable cells at -0.69 and none at -0.71"),
+            "{told}"
+        );
+        assert!(told.contains("stable cells: 12 at -0.69."), "{told}");
+        let told = limit(&[(-0.67, 12), (-0.69, 0)]).claim().because;
+        assert!(
+            told.contains("None is stable beyond the letter's -0.68"),
+            "{told}"
+        );
+        let told = limit(&[(-0.69, 12), (-0.71, 3)]).claim().because;
+        assert!(
+            told.contains("But 1 maps beyond have stable cells"),
+            "{told}"
+        );
+        let row = |b: f64, negative: f64, positive: f64| LoadGain {
+            b,
+            negative,
+            stable: true,
+            positive,
+        };
+        let gains = |rows: &[LoadGain]| {
+            LoadGains {
+                rows: rows.to_vec(),
+            }
+            .claims()[1]
+                .because
+                .clone()
+        };
+        let endless = f64::INFINITY;
+        let told = gains(&[
+            row(-0.1, -0.2, 0.1),
+            row(-0.2, -0.3, endless),
+            row(-0.3, -0.25, endless),
+        ]);
+        assert!(told.contains("grows at 1 of 2 steps"), "{told}");
+        assert!(
+            told.contains("at 1 of 3 slopes, down to -0.100000"),
+            "{told}"
+        );
+        let told = gains(&[row(-0.1, -0.2, endless), row(-0.2, -0.3, endless)]);
+        assert!(!told.contains("positive"), "{told}");
+        let short = |velocity: &[(f64, f64, f64)]| {
+            let (velocity, load) = (velocity.to_vec(), Vec::new());
+            ShortDelays { velocity, load }.claims()[0].because.clone()
+        };
+        let told = short(&[(-0.1, 0.5, 0.0), (-1.0, endless, 0.0)]);
+        assert!(told.contains("At 1 of 2 slopes"), "{told}");
+        assert!(told.contains("delays of 5.0000"), "{told}");
+        assert!(told.contains("at any delay at μ′_K = -1."), "{told}");
+        assert!(!short(&[(-0.1, 0.5, 0.0)]).contains("No gain"));
     }
 
     #[test]

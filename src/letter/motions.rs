@@ -2,7 +2,7 @@
 
 use super::LetterError;
 use super::claim::{Claim, Value, Verdict};
-use super::workshop::{Source, Workshop, column, planes, source};
+use super::workshop::{Source, Workshop, column, source};
 use crate::linear::rightmost::Rightmost;
 use crate::linear::{Crossings, MarginalTolerance};
 use crate::slip::outcome::Outcome;
@@ -16,6 +16,10 @@ const AT_FIG3B: Source = source!(
     "velocity_at_fig3b",
     quick: [("points = 111", "points = 23"), ("points = 149", "points = 31")]
 );
+const LOBE_AT_FIG3B: Source = source!(
+    "velocity_at_fig3b_lobe",
+    quick: [("points = 61", "points = 31"), ("points = 57", "points = 29")]
+);
 const BASIN_A: Source = source!(
     "basin_fig3a",
     quick: [("points = 76", "points = 26"), ("points = 81", "points = 27")]
@@ -26,7 +30,14 @@ const BASIN_B: Source = source!(
 );
 
 /// What the claims here are computed from.
-pub(super) const SOURCES: [&Source; 5] = [&FIG3A, &FIG3B, &AT_FIG3B, &BASIN_A, &BASIN_B];
+pub(super) const SOURCES: [&Source; 6] = [
+    &FIG3A,
+    &FIG3B,
+    &AT_FIG3B,
+    &LOBE_AT_FIG3B,
+    &BASIN_A,
+    &BASIN_B,
+];
 
 /// A panel of Fig. 3.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -149,11 +160,26 @@ impl Outcomes {
     fn of(map: &MapFile) -> Result<Self, LetterError> {
         let mut found = Self::default();
         for number in column(map, Field::Outcome)? {
-            if let Some(count) = found.0.get_mut(number as usize) {
-                *count += usize::from(number.is_finite());
-            }
+            found.count(number);
         }
         Ok(found)
+    }
+
+    /// Those of the cells in which sliding is stable.
+    fn where_stable(map: &MapFile) -> Result<Self, LetterError> {
+        let unstable = column(map, Field::NUnstable)?;
+        let outcomes = column(map, Field::Outcome)?;
+        let mut found = Self::default();
+        for (number, _) in outcomes.into_iter().zip(unstable).filter(|of| of.1 == 0.0) {
+            found.count(number);
+        }
+        Ok(found)
+    }
+
+    fn count(&mut self, number: f64) {
+        if let Some(count) = self.0.get_mut(number as usize) {
+            *count += usize::from(number.is_finite());
+        }
     }
 
     fn number(&self, outcome: Outcome) -> usize {
@@ -174,49 +200,77 @@ impl Outcomes {
 /// Velocity control at the velocity of Fig. 3(b).
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct NotDestroyed {
+    /// Over all gains and delays.
     outcomes: Outcomes,
-    /// Cells in which sliding is stable.
-    stable: usize,
+    /// Of cells in which sliding is stable, most of them in a lobe that is looked at by itself.
+    /// Only there can a motion that is not exceptional come to slide.
+    stable: Outcomes,
 }
+
+/// So many cells in which sliding is stable are asked for, of each hundred of them at most so many
+/// undecided.
+const STABLE_CELLS: (usize, usize) = (50, 1);
 
 impl NotDestroyed {
     fn verdict(&self) -> Verdict {
-        let (slid, of) = (
-            self.outcomes.number(Outcome::Sliding),
-            self.outcomes.cells(),
-        );
-        let stick_slip = 2 * self.outcomes.number(Outcome::StickSlip) > of;
+        let (least, undecided) = STABLE_CELLS;
+        let of = [self.outcomes, self.stable];
+        let slid: usize = of.map(|of| of.number(Outcome::Sliding)).iter().sum();
+        let stick_slip = of
+            .iter()
+            .all(|of| 2 * of.number(Outcome::StickSlip) > of.cells());
+        let decided =
+            100 * self.stable.number(Outcome::Undecided) <= undecided * self.stable.cells();
+        let looked_at = self.stable.cells() >= least && decided;
+        // What slides where sliding is unstable, or in few cells, needs exceptional settings.
+        let some = self.stable.number(Outcome::Sliding);
         Verdict::of_parts(
-            of > 0 && slid == 0 && stick_slip,
-            100 * slid < of && stick_slip,
+            looked_at && slid == 0 && stick_slip,
+            looked_at && 100 * slid < self.outcomes.cells() && 2 * some < least && stick_slip,
         )
     }
 
     fn claim(&self) -> Claim {
         let slid = self.outcomes.number(Outcome::Sliding);
+        let stable_slid = self.stable.number(Outcome::Sliding);
         let because = format!(
             "Wherever velocity control is switched on at this velocity, {slid} of {} motions come \
-             to slide ({}); sliding is stable in {} of these cells.",
+             to slide ({}). Of {} motions at settings where sliding is stable, {stable_slid} come \
+             to slide ({}).",
             self.outcomes.cells(),
             self.outcomes.told(),
-            self.stable,
+            self.stable.cells(),
+            self.stable.told(),
         );
         let at = (
             "paragraph below Eq. (8)",
             "stick-slip motion can not be destroyed by pure velocity control",
         );
         let how = "Motions from uncontrolled stick-slip, control switched on at three phases of \
-            it, over gains and delays; undecided ones are irregular stick-slip, and large positive \
-            gains diverge.";
-        let count = Value::of("sliding", "cells that come to slide", slid as f64);
-        let stable = Value::of(
-            "stable",
-            "cells in which sliding is stable",
-            self.stable as f64,
-        );
+            it, over gains and delays, and once more over the small lobe of them in which sliding \
+            is stable. Undecided ones are irregular stick-slip where sliding is unstable, so that \
+            they cannot come to rest in it; large positive gains diverge.";
+        let values = [
+            ("sliding", "motions that come to slide", slid),
+            (
+                "stable",
+                "motions where sliding is stable",
+                self.stable.cells(),
+            ),
+            (
+                "stable, sliding",
+                "those of them that come to slide",
+                stable_slid,
+            ),
+            (
+                "stable, undecided",
+                "those of them that are undecided",
+                self.stable.number(Outcome::Undecided),
+            ),
+        ];
         Claim::new("velocity_at_fig3b", at, self.verdict(), because, how)
-            .by([count, stable])
-            .from(&["velocity_at_fig3b"])
+            .by(values.map(|(name, meaning, n)| Value::of(name, meaning, n as f64)))
+            .from(&["velocity_at_fig3b", "velocity_at_fig3b_lobe"])
     }
 }
 
@@ -284,12 +338,14 @@ pub(super) fn claims(shop: &mut Workshop) -> Result<Vec<Claim>, LetterError> {
         velocity: Outcomes::of(&shop.map(&BASIN_A)?)?,
         load: Outcomes::of(&shop.map(&BASIN_B)?)?,
     };
-    let map = shop.map(&AT_FIG3B)?;
-    let stable = planes(&map, Field::NUnstable)?;
-    let stable = stable.iter().flat_map(|(_, plane)| &plane.cells);
+    let (map, lobe) = (shop.map(&AT_FIG3B)?, shop.map(&LOBE_AT_FIG3B)?);
+    let mut stable = Outcomes::where_stable(&lobe)?;
+    for (all, of) in stable.0.iter_mut().zip(Outcomes::where_stable(&map)?.0) {
+        *all += of;
+    }
     let not_destroyed = NotDestroyed {
         outcomes: Outcomes::of(&map)?,
-        stable: stable.filter(|n| **n == 0.0).count(),
+        stable,
     };
     Ok(vec![
         panels[0].claim("fig3a", "Fig. 3(a)"),
@@ -351,18 +407,22 @@ mod tests {
 
     #[test]
     fn no_motion_may_come_to_slide_under_velocity_control() {
-        let of = |sliding, stick_slip| {
-            let outcomes = outcomes(sliding, stick_slip);
-            NotDestroyed {
-                outcomes,
-                stable: 3,
-            }
-            .verdict()
+        let of = |all: (usize, usize), stable: (usize, usize)| NotDestroyed {
+            outcomes: outcomes(all.0, all.1),
+            stable: outcomes(stable.0, stable.1),
         };
-        assert_eq!(of(0, 1000), Verdict::Confirmed);
-        assert_eq!(of(3, 1000), Verdict::Refined);
-        assert_eq!(of(50, 1000), Verdict::Contradicted);
-        assert_eq!(of(0, 0), Verdict::Contradicted);
+        let verdict = |all, stable| of(all, stable).verdict();
+        assert_eq!(verdict((0, 1000), (0, 200)), Verdict::Confirmed);
+        assert_eq!(verdict((3, 1000), (0, 200)), Verdict::Refined);
+        assert_eq!(verdict((0, 1000), (3, 200)), Verdict::Refined);
+        assert_eq!(verdict((50, 1000), (0, 200)), Verdict::Contradicted);
+        assert_eq!(verdict((0, 1000), (60, 140)), Verdict::Contradicted);
+        // Nothing is confirmed where sliding is stable in hardly any cell, or much is undecided.
+        assert_eq!(verdict((0, 1000), (0, 1)), Verdict::Contradicted);
+        assert_eq!(verdict((0, 0), (0, 0)), Verdict::Contradicted);
+        let mut open = of((0, 1000), (0, 200));
+        open.stable.0[Outcome::Undecided as usize] = 3;
+        assert_eq!(open.verdict(), Verdict::Contradicted);
     }
 
     #[test]

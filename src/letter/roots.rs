@@ -19,8 +19,8 @@ use crate::sweep::{Parameter, Setting};
 /// Settings with unstable roots, by a sequence that fills the box evenly (Halton).
 const SETTINGS: [u32; 2] = [20_000, 2_000];
 
-/// The place number `i` of the Halton sequence with so many settings: b, a_v, a_n, τ.
-fn place(i: u32) -> (Groups, f64) {
+/// Setting number `i`, a point of the Halton sequence: b, a_v, a_n, τ.
+fn place(i: u32) -> Place {
     let share = |base: u32| {
         let (mut left, mut unit, mut share) = (i + 1, 1.0, 0.0);
         while left > 0 {
@@ -54,6 +54,21 @@ struct UnstableRoots {
     /// Crossings of those settings, and the largest |D(iω)| at one over the size of its terms.
     crossings: u32,
     residual: f64,
+    /// The settings of these three.
+    most_at: Option<Place>,
+    nearest_at: Option<Place>,
+    residual_at: Option<Place>,
+}
+
+/// Groups and delay of a setting.
+type Place = (Groups, f64);
+
+/// The command that tells the characteristic roots of a setting.
+fn command(at: Option<Place>, roots: u64) -> Option<String> {
+    let (Groups { b, a_v, a_n }, tau) = at?;
+    Some(format!(
+        "slipmap point --mu-prime={b} --alpha-v={a_v} --alpha-n={a_n} --tau {tau} --roots {roots}"
+    ))
 }
 
 impl UnstableRoots {
@@ -71,16 +86,24 @@ impl UnstableRoots {
             let listed: u64 = roots.iter().map(Root::count).sum();
             let counted = UnstableCount::new(groups).at(tau);
             found.agree += u32::from(listed == count && counted == Some(count));
-            found.most = found.most.max(count);
+            if count > found.most {
+                (found.most, found.most_at) = (count, Some((groups, tau)));
+            }
             let bound = unstable_root_bound(groups);
             let largest = roots.iter().map(|root| root.lambda.norm() / bound);
-            found.nearest = largest.fold(found.nearest, f64::max);
+            let nearest = largest.fold(0.0, f64::max);
+            if nearest > found.nearest {
+                (found.nearest, found.nearest_at) = (nearest, Some((groups, tau)));
+            }
             for crossing in crossings.iter() {
                 let lambda = Complex64::new(0.0, crossing.omega);
-                let off = characteristic(groups, crossing.delay(crossing.first_branch), lambda);
-                let size = unstable_root_bound(groups).powi(2);
+                let delay = crossing.delay(crossing.first_branch);
+                let off = characteristic(groups, delay, lambda);
+                let residual = off.norm() / unstable_root_bound(groups).powi(2);
                 found.crossings += 1;
-                found.residual = found.residual.max(off.norm() / size);
+                if residual >= found.residual {
+                    (found.residual, found.residual_at) = (residual, Some((groups, delay)));
+                }
             }
         }
         found
@@ -117,8 +140,9 @@ impl UnstableRoots {
             f64::from(self.agree),
         );
         let most = Value::of("most", "the most unstable roots", self.most as f64);
-        let finite =
-            Claim::new("finite", (at, quotation), self.finite(), because, how).by([agree, most]);
+        let finite = Claim::new("finite", (at, quotation), self.finite(), because, how)
+            .by([agree, most])
+            .repeat_some(command(self.most_at, self.most));
         let because = format!(
             "No unstable root lies outside |λ|² ≤ (|b| + 2|a_v|)|λ| + 1 + 2|b a_v + a_n|; the \
              nearest one comes to {:.4} of it.",
@@ -129,7 +153,8 @@ impl UnstableRoots {
         let quotation = "one can give upper limits of the real part and the imaginary part";
         let nearest = "largest |λ| of an unstable root over its bound";
         let bounds = Claim::new("root_bounds", (at, quotation), self.bounded(), because, how)
-            .by([Value::of("nearest", nearest, self.nearest).within(1e-9)]);
+            .by([Value::of("nearest", nearest, self.nearest).within(1e-9)])
+            .repeat_some(command(self.nearest_at, 1));
         let because = format!(
             "At {} crossings by Eqs. (4) and (5), D(iω) is 0 up to {:.1e} of its terms.",
             self.crossings, self.residual,
@@ -142,7 +167,8 @@ impl UnstableRoots {
         );
         let residual = "largest |D(iω)| over the size of its terms";
         let crossings = Claim::new("crossings", at, self.on_the_axis(), because, how)
-            .by([Value::of("residual", residual, self.residual)]);
+            .by([Value::of("residual", residual, self.residual)])
+            .repeat_some(command(self.residual_at, 1));
         [finite, bounds, crossings]
     }
 }

@@ -16,10 +16,12 @@ use std::ops::{Add, Mul, Sub};
 
 use num_complex::Complex64;
 
-use crate::model::elementary::{exp, expm1, sincos};
+use crate::model::elementary::{arg, exp, expm1, ln, sincos};
 
 /// The rounding of one operation below, of its largest term: a generous count.
 const ROUNDING: f64 = 16.0 * f64::EPSILON;
+/// Numbers that differ by more than this part of their centre are too wide to divide by.
+const NARROW: f64 = 0.75;
 
 /// A number (1) of `V` variables.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -111,6 +113,35 @@ impl<const V: usize> Affine<V> {
             part: self.part.map(|g| centre * g),
             rest: (1.0 + ROUNDING) * growth * (self.rest + curved.max(0.0) + rounding),
         }
+    }
+
+    /// 1 over this number; none where it may come near 0.
+    pub(super) fn reciprocal(self) -> Option<Self> {
+        let inverse = 1.0 / self.centre;
+        let change = (self.spread() + self.rest) * size(inverse);
+        // 1/(1 + u) − 1 + u is u²/(1 + u).
+        let curved = change * change / (1.0 - change);
+        let near = size(inverse);
+        (change < NARROW).then(|| Self {
+            centre: inverse,
+            part: self.part.map(|g| -(g * inverse) * inverse),
+            rest: (1.0 + ROUNDING) * near * (near * self.rest + curved + ROUNDING),
+        })
+    }
+
+    /// A logarithm of this number, continuous over all of it; none where it may come near 0.
+    pub(super) fn logarithm(self) -> Option<Self> {
+        let inverse = 1.0 / self.centre;
+        let change = (self.spread() + self.rest) * size(inverse);
+        // |ln(1 + u) − u| is u²/(2(1 − |u|)) at most.
+        let curved = 0.5 * change * change / (1.0 - change);
+        let centre = Complex64::new(0.5 * ln(self.centre.norm_sqr()), arg(self.centre));
+        (change < NARROW).then(|| Self {
+            centre,
+            part: self.part.map(|g| g * inverse),
+            rest: (1.0 + ROUNDING) * (size(inverse) * self.rest + curved)
+                + ROUNDING * (1.0 + centre.l1_norm()),
+        })
     }
 
     /// Whether it can be 0.
@@ -218,7 +249,15 @@ mod tests {
                 (a.exp(), x.exponential()),
                 ((3.0 * a).exp(), x.scaled(3.0).exponential()),
                 (Complex64::i() * a, x.turned()),
-            ] {
+            ]
+            .into_iter()
+            .chain(x.reciprocal().map(|found| (1.0 / a, found)))
+            .chain(x.logarithm().map(|found| {
+                // Of the logarithms, the one on the way from the centre.
+                let from = found.centre.im;
+                let turns = ((from - a.ln().im) / (2.0 * std::f64::consts::PI)).round();
+                (a.ln() + Complex64::i() * (2.0 * std::f64::consts::PI * turns), found)
+            })) {
                 let off = (exact - at(&enclosure, e)).norm();
                 prop_assert!(off <= enclosure.rest, "{off} {}", enclosure.rest);
             }

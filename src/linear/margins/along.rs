@@ -4,7 +4,7 @@
 use super::affine::Affine;
 use super::enclosure::{Enclosed, Point, SlidingLaw, root_bound};
 use super::nearest::{Family, Nearest, nearest};
-use super::radius::is_stable;
+use super::surroundings::is_stable;
 use super::{Limits, Setting};
 use crate::linear::Crossings;
 use crate::model::Groups;
@@ -13,7 +13,7 @@ use crate::model::elementary::exp;
 /// Decay rates above this are not told from infinity.
 const LARGEST_EXPONENT: f64 = 300.0;
 /// How many times as large a sliding velocity is looked at.
-const MOST_VELOCITIES: f64 = 1024.0;
+pub const MOST_VELOCITIES: f64 = 1024.0;
 
 /// The delays at which stability is lost, 0 below where none is.
 #[must_use]
@@ -33,7 +33,7 @@ pub fn delay(setting: &Setting) -> Limits {
         };
     }
     let family = Along::delay(setting);
-    let longest = (LARGEST_EXPONENT / decay).max(2.0 * tau);
+    let longest = longest_delay(setting);
     Limits {
         lower: found_or(nearest(&family, tau, 0.0), 0.0),
         upper: outwards(&family, tau, tau.max(1.0), longest),
@@ -71,6 +71,16 @@ pub fn velocity(setting: &Setting, law: &SlidingLaw<'_>, v0: f64) -> Limits {
     }
 }
 
+/// The longest delay that is looked at where a decay rate is required.
+pub(super) fn longest_delay(setting: &Setting) -> f64 {
+    longest_latency(setting).max(2.0 * setting.tau)
+}
+
+/// The longest latency that is looked at there.
+pub(super) fn longest_latency(setting: &Setting) -> f64 {
+    LARGEST_EXPONENT / setting.decay
+}
+
 fn found_or(nearest: Nearest, none: f64) -> f64 {
     match nearest {
         Nearest::At(value) => value,
@@ -99,7 +109,7 @@ pub(super) fn latency_with_decay(setting: &Setting) -> f64 {
         setting: *setting,
         what: Varied::Latency,
     };
-    outwards(&family, 0.0, 1.0, LARGEST_EXPONENT / setting.decay)
+    outwards(&family, 0.0, 1.0, longest_latency(setting))
 }
 
 /// Settings that differ in one parameter.
@@ -140,7 +150,11 @@ impl Family for Along<'_> {
         match &self.what {
             Varied::Delay => point.tau = Affine::between(parameter, 1),
             Varied::Latency => point.latency = Some(Affine::between(parameter, 1)),
-            Varied::Velocity(law) => [point.b, point.a_n] = law.enclosed(parameter, 1),
+            Varied::Velocity(law) => {
+                if let Some(both) = law.enclosed(parameter, 1, None) {
+                    [point.b, point.a_n] = both;
+                }
+            }
         }
         point.enclosed()
     }
@@ -156,9 +170,8 @@ impl Family for Along<'_> {
                 root_bound(b, a_v, a_n, control)
             }
             Varied::Velocity(law) => {
-                let [b, a_n] = law.enclosed::<1>(parameter, 0);
-                let reach = |z: &Affine<1>| z.centre.l1_norm() + z.spread() + z.rest;
-                root_bound(reach(&b), a_v, reach(&a_n), delayed(tau))
+                let (b, a_n) = law.largest(parameter);
+                root_bound(b, a_v, a_n, delayed(tau))
             }
         };
         bound * (1.0 + 1e-12)

@@ -82,6 +82,15 @@ pub(super) fn root_bound(b: f64, a_v: f64, a_n: f64, control: f64) -> f64 {
     0.5 * (linear + (linear * linear + 4.0 * constant).sqrt())
 }
 
+/// The slope μ_K′ of a law as a variable of its own.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Slope {
+    /// Its number.
+    pub variable: usize,
+    /// Only slopes between these are asked for.
+    pub between: (f64, f64),
+}
+
 /// How b and a_n depend on the sliding velocity.
 #[derive(Debug, Clone, Copy)]
 pub struct SlidingLaw<'a> {
@@ -94,6 +103,14 @@ pub struct SlidingLaw<'a> {
 }
 
 impl SlidingLaw<'_> {
+    /// The largest |b| and |a_n| over velocities in `between`.
+    pub(super) fn largest(&self, between: (f64, f64)) -> (f64, f64) {
+        let all = self.enclosed::<1>(between, 0, None);
+        let reach = |z: Affine<1>| z.centre.l1_norm() + z.spread() + z.rest;
+        let [b, a_n] = all.map_or([f64::INFINITY; 2], |all| all.map(reach));
+        (b, a_n)
+    }
+
     /// The groups at the sliding velocity `v0` > 0.
     #[must_use]
     pub fn groups(&self, v0: f64) -> Groups {
@@ -104,12 +121,15 @@ impl SlidingLaw<'_> {
         self.oscillator.groups(sliding, self.control)
     }
 
-    /// b and a_n over velocities in `between`, the variable number `variable`.
+    /// b and a_n over velocities in `between`, the variable number `variable`, as far as the slope
+    /// μ_K′ lies within that of `jump`; none where it nowhere does. Where the slope jumps in
+    /// between, it is the variable of `jump`.
     pub(super) fn enclosed<const V: usize>(
         &self,
         between: (f64, f64),
         variable: usize,
-    ) -> [Affine<V>; 2] {
+        jump: Option<Slope>,
+    ) -> Option<[Affine<V>; 2]> {
         let middle = 0.5 * (between.0 + between.1);
         let half = 0.5 * (between.1 - between.0);
         let at = self.groups(middle);
@@ -120,7 +140,12 @@ impl SlidingLaw<'_> {
         };
         let within = |unit: f64, (low, high): (f64, f64)| {
             let mut number = Affine::constant((0.5 * unit * (low + high)).into());
-            number.rest = 0.5 * unit.abs() * (high - low) * (1.0 + 1e-12);
+            let half = 0.5 * unit.abs() * (high - low) * (1.0 + 1e-12);
+            match jump {
+                // Real, which the rest is not known to be.
+                Some(jump) => number.part[jump.variable] = half.into(),
+                None => number.rest = half,
+            }
             number
         };
         let along = |value: f64, unit: f64, (low, high): (f64, f64)| {
@@ -133,13 +158,19 @@ impl SlidingLaw<'_> {
             number
         };
         let slopes = self.law.slopes_between(between.0, between.1);
+        let allowed = jump.map_or(slopes, |jump| {
+            (slopes.0.max(jump.between.0), slopes.1.min(jump.between.1))
+        });
+        if allowed.0 > allowed.1 {
+            return None;
+        }
         let bends = self.law.curvatures_between(between.0, between.1);
         let slope = unit(0.0, 1.0).b;
         let b = match bends.0.is_finite() {
             true => along(at.b, slope, bends),
             // The slope jumps: all that is known is its range.
-            false => within(slope, slopes),
+            false => within(slope, allowed),
         };
-        [b, along(at.a_n, unit(1.0, 0.0).a_n, slopes)]
+        Some([b, along(at.a_n, unit(1.0, 0.0).a_n, slopes)])
     }
 }

@@ -25,24 +25,30 @@
 
 mod affine;
 mod along;
+mod crossing_delays;
 mod enclosure;
 mod equations;
 mod nearest;
+mod nearest_change;
+mod not_stable;
 mod radius;
+mod surroundings;
 mod trig_polynomial;
 
 use std::f64::consts::TAU;
 
 use self::along::latency_with_decay;
 use self::equations::Line;
-use self::radius::{Surroundings, Third, is_stable};
+use self::nearest_change::{Search, Side};
+use self::surroundings::{Surroundings, Third, is_stable, stability};
 use self::trig_polynomial::{Intervals, TooMany};
 use crate::model::Groups;
 use crate::model::elementary::arg;
 
-pub use self::along::{delay, velocity};
+pub use self::along::{MOST_VELOCITIES, delay, velocity};
 pub use self::enclosure::SlidingLaw;
-pub use self::radius::{Changes, Radius};
+pub use self::radius::Radius;
+pub use self::surroundings::Changes;
 
 /// Where stability is lost on both sides of a setting.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -89,17 +95,40 @@ pub struct Margins {
     changes: Vec<f64>,
 }
 
-/// One side of a setting.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Side {
-    Below,
-    Above,
-}
-
 /// How many times as large gains are looked at, where no bound on them is known.
 const MOST_GAINS: f64 = 1e12;
 
+/// Up to where limits are looked for that are told as infinite; infinite where none lies beyond.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Reach {
+    /// Of the factor of both gains.
+    pub gain: f64,
+    /// Of the delay.
+    pub delay: f64,
+    /// Of a further latency.
+    pub latency: f64,
+}
+
 impl Setting {
+    /// Up to where upper limits are looked for.
+    #[must_use]
+    pub fn reach(&self) -> Reach {
+        let endless = f64::INFINITY;
+        let searched = |search: bool, to: f64| if search { to } else { endless };
+        let bounded = self.idle() || highest_with_gain(self).is_finite();
+        Reach {
+            gain: searched(!bounded, MOST_GAINS),
+            delay: searched(
+                self.decay > 0.0 && !self.groups.uncontrolled(),
+                along::longest_delay(self),
+            ),
+            latency: searched(
+                self.decay > 0.0 && !self.idle(),
+                along::longest_latency(self),
+            ),
+        }
+    }
+
     /// Whether all roots are left of the line, beyond doubt.
     #[must_use]
     pub fn stable(&self) -> bool {
@@ -114,6 +143,11 @@ impl Setting {
     /// No control acts, whatever its gains and its phase are.
     fn idle(&self) -> bool {
         self.groups.uncontrolled() || self.tau == 0.0
+    }
+
+    /// Whether all roots are left of the line; none where one is on it within rounding.
+    fn stability(&self) -> Option<bool> {
+        stability(self.groups, self.tau, self.decay)
     }
 
     fn with_gains(&self, factor: f64) -> Self {
@@ -173,10 +207,15 @@ impl Margins {
             if setting.decay > 0.0 {
                 keep(0.0);
             }
-            let stable = |factor: f64| setting.with_gains(factor).stable();
-            let below = || nearest_change(&self.changes, 1.0, Side::Below, 0.0, stable);
-            let lower = *lower.get_or_insert_with(|| below().unwrap_or(0.0));
-            let above = nearest_change(&self.changes, 1.0, Side::Above, most, stable);
+            let search = Search {
+                changes: &self.changes,
+                from: 1.0,
+                stable: |factor: f64| setting.with_gains(factor).stability(),
+                sure: setting.decay == 0.0,
+            };
+            let below = || search.nearest(Side::Below, 0.0).unwrap_or(0.0);
+            let lower = *lower.get_or_insert_with(below);
+            let above = search.nearest(Side::Above, most);
             // No crossing has a frequency beyond `highest`.
             let last = end >= highest || most >= MOST_GAINS;
             if above.is_some() || last {
@@ -206,12 +245,16 @@ impl Margins {
         if setting.decay > 0.0 {
             keep(0.0);
         }
-        let stable = |b: f64| setting.with_slope(b).stable();
-        let from = setting.groups.b;
-        let nearest = |side, last| nearest_change(&self.changes, from, side, last, stable);
+        let search = Search {
+            changes: &self.changes,
+            from: setting.groups.b,
+            stable: |b: f64| setting.with_slope(b).stability(),
+            sure: setting.decay == 0.0,
+        };
+        let nearest = |side, last: f64| search.nearest(side, last).unwrap_or(last);
         Limits {
-            lower: nearest(Side::Below, f64::NEG_INFINITY).unwrap_or(f64::NEG_INFINITY),
-            upper: nearest(Side::Above, f64::INFINITY).unwrap_or(f64::INFINITY),
+            lower: nearest(Side::Below, f64::NEG_INFINITY),
+            upper: nearest(Side::Above, f64::INFINITY),
         }
     }
 
@@ -282,35 +325,5 @@ fn highest_with_gain(setting: &Setting) -> f64 {
         0.0 if a_n > 0.0 => (c / a_n).max(0.0).sqrt(),
         0.0 if a_n == 0.0 && c <= 0.0 => 0.0,
         _ => f64::INFINITY,
-    }
-}
-
-/// The nearest of `changes` on one side of `from` beyond which a setting is not stable. All changes
-/// up to `last` are among them.
-fn nearest_change(
-    changes: &[f64],
-    from: f64,
-    side: Side,
-    last: f64,
-    stable: impl Fn(f64) -> bool,
-) -> Option<f64> {
-    let sign = if side == Side::Above { 1.0 } else { -1.0 };
-    let mut at = from;
-    loop {
-        let farther = |than: f64| {
-            let ahead = changes.iter().copied().filter(|c| sign * (c - than) > 0.0);
-            ahead.min_by(|a, b| (sign * a).total_cmp(&(sign * b)))
-        };
-        let next = farther(at)?;
-        let end = farther(next).unwrap_or(last);
-        let beyond = if end.is_finite() {
-            0.5 * (next + end)
-        } else {
-            next + sign * (1.0 + next.abs())
-        };
-        if !stable(beyond) {
-            return Some(next);
-        }
-        at = next;
     }
 }

@@ -24,6 +24,9 @@ const LENGTH: usize = 5;
 /// Intervals that are looked at before a search is given up: some thousand zeros.
 const MOST_INTERVALS: usize = 1 << 17;
 
+/// Steps of Newton's method among values that are 0 within their bound on rounding.
+const STEPS_WITHIN_ROUNDING: u32 = 3;
+
 /// A polynomial in ω.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub(super) struct Polynomial(pub [f64; LENGTH]);
@@ -161,13 +164,16 @@ impl Jet {
 
     /// The zero between `a` and `b`, at which the signs of f differ; f is monotone between.
     fn polish(&self, (mut a, mut b): (f64, f64), rising: bool) -> f64 {
-        let mut omega = 0.5 * (a + b);
+        let (mut omega, mut within_rounding) = (0.5 * (a + b), 0);
         for _ in 0..200 {
             let [(f, error), (first, _)] = self.at(omega);
+            // The bound on the error is generous: some steps more come nearer to the zero.
             if f.abs() <= error {
-                break;
-            }
-            if (f > 0.0) == rising {
+                within_rounding += 1;
+                if within_rounding > STEPS_WITHIN_ROUNDING {
+                    break;
+                }
+            } else if (f > 0.0) == rising {
                 b = omega;
             } else {
                 a = omega;
@@ -181,6 +187,22 @@ impl Jet {
             omega = next;
         }
         omega
+    }
+}
+
+impl Jet {
+    /// The zero next to `omega`, where f is 0 within rounding, at most `r` away.
+    fn beside(&self, omega: f64, r: f64) -> f64 {
+        let mut at = omega;
+        for _ in 0..STEPS_WITHIN_ROUNDING {
+            let [(f, _), (first, _)] = self.at(at);
+            let next = at - f / first;
+            if next.is_nan() || (next - omega).abs() > r {
+                break;
+            }
+            at = next;
+        }
+        at
     }
 }
 
@@ -217,8 +239,8 @@ impl Intervals {
                 match (jet.sign(a), jet.sign(b)) {
                     (Some(low), Some(high)) if low == high => {}
                     (Some(_), Some(high)) => found(jet.polish((a, b), high)),
-                    (None, _) => found(a),
-                    (_, None) => found(b),
+                    (None, _) => found(jet.beside(a, r)),
+                    (_, None) => found(jet.beside(b, r)),
                 }
                 continue;
             }

@@ -26,6 +26,20 @@ use crate::sweep::input::source::BasinCell;
 /// [`SCRAMBLINGS`] values.
 pub const STUDENT_95: f64 = 2.131_449_545_559_323;
 
+/// What no start lies in has at most this many starts' part of the region, with 95 % confidence.
+///
+/// The starts of a scrambling that lie in a part p of the region number np in the mean, with a
+/// variance of at most 2np: twice that of independent ones (A. Owen, Annals of Statistics 25, 1541,
+/// 1997, for nets in two dimensions). Cantelli's inequality says how often it is none:
+///
+/// ```text
+/// P(none of n) ≤ 2/(2 + np),    P(none of 16 n) ≤ (2/(2 + np))¹⁶ = 5 %  at  16 np = 6.59
+/// ```
+pub const UNSEEN_95: f64 = 6.59;
+/// With fewer starts than this that differ from the others, their spread tells too little; bounds
+/// of independent starts (Clopper and Pearson) lie within [`UNSEEN_95`] of what is counted then.
+const FEW: f64 = 5.0;
+
 /// Where starts lie, in units of the setting.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Region {
@@ -256,8 +270,8 @@ impl Follower<'_> {
 pub struct Share {
     /// Between 0 and 1.
     pub share: f64,
-    /// Its standard error, from the spread between scramblings: one start of all at least, since
-    /// what no start lies in is not seen.
+    /// Its standard error, from the spread between scramblings. Where (nearly) all starts agree,
+    /// [`STUDENT_95`] of it are at least [`UNSEEN_95`] starts: what none lies in is not seen.
     pub error: f64,
 }
 
@@ -296,9 +310,14 @@ impl Tally {
         };
         let squares: f64 = self.0.iter().map(squared).sum();
         let error = (squares / (scramblings * (scramblings - 1.0))).sqrt() / each;
+        let all = f64::from(all);
+        let least = match sum.min(all - sum) < FEW {
+            true => UNSEEN_95 / STUDENT_95,
+            false => 1.0,
+        };
         Share {
-            share: sum / f64::from(all),
-            error: error.max(1.0 / f64::from(all)),
+            share: sum / all,
+            error: error.max(least / all),
         }
     }
 }
@@ -357,14 +376,62 @@ mod tests {
     }
 
     #[test]
-    fn the_error_is_one_start_at_least() {
+    fn where_all_agree_the_error_is_three_starts() {
         let mut tally = Tally::default();
         for place in of_box(64).places() {
             tally.count(place, Outcome::Sliding);
         }
         let found = tally.share(&[Outcome::Sliding]);
-        assert_eq!((found.share, found.error), (1.0, 1.0 / 64.0));
+        assert_eq!(found.share, 1.0);
+        assert!((STUDENT_95 * found.error * 64.0 - UNSEEN_95).abs() < 1e-12);
         assert!(Tally::default().share(&[Outcome::Sliding]).share.is_nan());
+        let unseen = (1.0 + UNSEEN_95 / 32.0).powi(-16);
+        assert!((unseen - 0.05).abs() < 1e-4, "{unseen}");
+    }
+
+    /// Parts of the box of several shapes, so small that often no start lies in them, and as often
+    /// as not a few: 95 % of the intervals hold their size.
+    #[test]
+    fn small_parts_lie_within_their_intervals() {
+        let starts = 1024;
+        let shapes: [fn(f64, f64, f64) -> bool; 4] = [
+            // A square in the middle of a corner of the net, a strip, a slope, a ring.
+            |x, y, p| (x - 0.31).abs() < 0.5 * p.sqrt() && (y - 0.64).abs() < 0.5 * p.sqrt(),
+            |x, _, p| (x - 0.5).abs() < 0.5 * p,
+            |x, y, p| (x - y + 0.1).abs() < 0.5 * p / 0.9,
+            |x, y, p| {
+                let r = (x - 0.5).hypot(y - 0.5);
+                (r - 0.3).abs() < 0.5 * p / (0.6 * std::f64::consts::PI)
+            },
+        ];
+        let (mut missed, mut all) = (0, 0);
+        for first in 0..60 {
+            let asked = Asked {
+                first: first * SCRAMBLINGS,
+                ..of_box(starts)
+            };
+            let places: Vec<_> = asked
+                .places()
+                .map(|place| (place, asked.start(place)))
+                .collect();
+            for (inside, expected) in shapes
+                .iter()
+                .flat_map(|inside| [1.0, 2.0, 3.5, 6.0].map(|of| (inside, of)))
+            {
+                let part = expected / f64::from(starts);
+                let mut tally = Tally::default();
+                for (place, [x, a]) in &places {
+                    let within = inside(0.25 * (x + 1.0), 0.5 * (a - 2.0), part);
+                    let ends = [Outcome::StickSlip, Outcome::Sliding];
+                    tally.count(*place, ends[usize::from(within)]);
+                }
+                let found = tally.share(&[Outcome::Sliding]);
+                missed += u32::from((found.share - part).abs() > STUDENT_95 * found.error);
+                all += 1;
+            }
+        }
+        assert_eq!(all, 960);
+        assert!(missed <= 48, "{missed}");
     }
 
     #[test]

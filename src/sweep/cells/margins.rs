@@ -1,6 +1,8 @@
 //! Margins of a setting in the units in which it is given.
 
-use crate::linear::margins::{self, Limits, LoopMargins, Margins, Radius, SlidingLaw};
+use crate::linear::margins::{
+    self, Limits, LoopMargins, MOST_VELOCITIES, Margins, Radius, Reach, SlidingLaw,
+};
 use crate::model::{Control, FrictionLaw, ModelError, Oscillator};
 use crate::sweep::input::parameter::Parameter;
 use crate::sweep::input::setting::Setting;
@@ -71,6 +73,23 @@ impl Around {
         let damping = self.oscillator.mass() / self.oscillator.time_unit();
         let slope = damping / self.oscillator.normal_load();
         (Parameter::MuPrime, scaled(search.slope(&self.of), slope))
+    }
+
+    /// Up to where upper limits are looked for that are told as infinite.
+    #[must_use]
+    pub fn reach(&self) -> Reach {
+        let (reach, unit) = (self.of.reach(), self.oscillator.time_unit());
+        Reach {
+            gain: reach.gain,
+            delay: reach.delay * unit,
+            latency: reach.latency * unit,
+        }
+    }
+
+    /// Up to which v0 limits are looked for; none where there is no friction law.
+    #[must_use]
+    pub fn highest_v0(&self) -> Option<f64> {
+        self.law.as_ref().map(|(_, v0)| v0 * MOST_VELOCITIES)
     }
 
     /// The stability radius.

@@ -414,7 +414,8 @@ catalogue! {
             long_name: "factor of both gains, above 1, at which sliding is no longer stable",
             short_name: "upper gain margin",
             comment: Some(
-                "infinity where every larger gain is stable; no value where sliding is not",
+                "infinity where every larger gain is stable, up to 1e12 times as large where no \
+                 bound is known; no value where sliding is not, or the end is not known",
             ),
             spread: Spread::LongTail,
             ..margin(OfMargins::GainUpper)
@@ -524,7 +525,8 @@ catalogue! {
             source: Source::Basin(|cell| cell.error),
             comment: Some(
                 "from the spread between independent scramblings of the sequence of starts, at \
-                 least one start in all; 0 where sliding is linearly unstable",
+                 least 3.1 starts in all where fewer than five differ from the others; 0 where \
+                 sliding is linearly unstable",
             ),
             ..ROW
         };
