@@ -131,7 +131,10 @@ fn shares_of_the_letters_figure_3() {
     for over in ["state", "phase"] {
         let (share, error) = found(&FIG3A, over);
         let unseen = STUDENT_95 * error;
-        assert!(share == 1.0 && (unseen - UNSEEN_95 * one).abs() < 1e-12, "{error}");
+        assert!(
+            share == 1.0 && (unseen - UNSEEN_95 * one).abs() < 1e-12,
+            "{error}"
+        );
     }
     // One start or two may change sides where a boundary is computed a little differently.
     let near = |(share, error): (f64, f64), told: (f64, f64)| {

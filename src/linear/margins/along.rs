@@ -4,7 +4,7 @@
 use super::affine::Affine;
 use super::enclosure::{Enclosed, Point, SlidingLaw, root_bound};
 use super::nearest::{Family, Nearest, nearest};
-use super::radius::is_stable;
+use super::surroundings::is_stable;
 use super::{Limits, Setting};
 use crate::linear::Crossings;
 use crate::model::Groups;

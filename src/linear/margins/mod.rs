@@ -30,7 +30,9 @@ mod enclosure;
 mod equations;
 mod nearest;
 mod nearest_change;
+mod not_stable;
 mod radius;
+mod surroundings;
 mod trig_polynomial;
 
 use std::f64::consts::TAU;
@@ -38,14 +40,15 @@ use std::f64::consts::TAU;
 use self::along::latency_with_decay;
 use self::equations::Line;
 use self::nearest_change::{Search, Side};
-use self::radius::{Surroundings, Third, is_stable, stability};
+use self::surroundings::{Surroundings, Third, is_stable, stability};
 use self::trig_polynomial::{Intervals, TooMany};
 use crate::model::Groups;
 use crate::model::elementary::arg;
 
 pub use self::along::{MOST_VELOCITIES, delay, velocity};
 pub use self::enclosure::SlidingLaw;
-pub use self::radius::{Changes, Radius};
+pub use self::radius::Radius;
+pub use self::surroundings::Changes;
 
 /// Where stability is lost on both sides of a setting.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -112,7 +112,14 @@ impl<S: Fn(f64) -> Option<bool>> Search<'_, S> {
         if sign * (bad - beyond) > 0.0 {
             bad = beyond;
         }
-        while sign * (bad - good) > 0.25 * step {
+        let bad = self.bisected(good, bad, 0.25 * step);
+        if holds(bad) { bad } else { f64::NAN }
+    }
+
+    /// The end of what is known to be stable, to `width`, between a value that is and one that is
+    /// not.
+    fn bisected(&self, mut good: f64, mut bad: f64, width: f64) -> f64 {
+        while (bad - good).abs() > width {
             let middle = 0.5 * (good + bad);
             if middle == good || middle == bad {
                 break;
@@ -122,7 +129,7 @@ impl<S: Fn(f64) -> Option<bool>> Search<'_, S> {
                 _ => bad = middle,
             }
         }
-        if holds(bad) { bad } else { f64::NAN }
+        bad
     }
 }
 

@@ -15,32 +15,15 @@
 use std::cmp::Ordering;
 use std::collections::BinaryHeap;
 
-use num_complex::Complex64;
-
-use super::affine::Affine;
 use super::crossing_delays::Delays;
-use super::enclosure::{Point, SlidingLaw, Slope, root_bound};
-use super::equations::Line;
-use crate::linear::certificate::roots_right_of;
-use crate::linear::{Crossings, MarginalTolerance};
-use crate::model::Groups;
-use crate::model::elementary::{exp, power};
+use super::surroundings::{ALL, Changes, DELAY, JUMP, Sides, Surroundings, largest};
+use crate::model::elementary::exp;
 
 /// Times that D is enclosed before the best proof so far has to do: a part of a second, and the
 /// same proof on every machine.
 const MOST_WORK: u32 = 1 << 19;
 /// The proved radius is at least this part of the distance of a setting that is not stable.
 const TIGHT: f64 = 0.995;
-/// Steps of Newton's method: at a touch each halves the distance.
-const MOST_STEPS: u32 = 48;
-/// So many of these may lead away from a zero.
-const MOST_ASTRAY: u32 = 3;
-/// Steps along a direction when settings that are not stable are looked for.
-const STEPS: u32 = 48;
-
-/// The relative changes of gain, delay and third parameter: 0 where one stays as it is.
-pub type Changes = [f64; 3];
-
 /// A radius, proved, and what is not stable just beyond it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Radius {
@@ -56,37 +39,10 @@ pub struct Radius {
     pub tight: bool,
 }
 
-/// What the third parameter is.
-#[derive(Debug, Clone, Copy)]
-pub(super) enum Third<'a> {
-    Slope,
-    /// The sliding velocity, and its law.
-    Velocity(f64, SlidingLaw<'a>),
-}
-
-/// A setting and the settings around it.
-pub(super) struct Surroundings<'a> {
-    pub line: Line,
-    pub third: Third<'a>,
-}
-
-/// Number of the delay among ω, gain, delay and third parameter. Boxes have all delays.
-const DELAY: usize = 2;
-/// Number of the slope of a law, which is a variable of its own where it jumps within a box.
-const JUMP: usize = 4;
-/// So many variables there are.
-const ALL: usize = 5;
-/// A box of ω, δ₁, δ₂, δ₃ and μ_K′.
-type Sides = [(f64, f64); ALL];
-/// Finding the crossings of a setting takes as long as enclosing D so many times.
-const WORK_OF_CROSSINGS: u32 = 4;
 /// A side of a box matters by its own width up to so many times what D's zeros move along it.
 const MATTERS: f64 = 8.0;
 /// Jumps of the slope lie within this part of their distance.
 const CONFINED: f64 = 1e-3;
-/// Any μ_K′.
-const ANY_SLOPE: (f64, f64) = (-1e300, 1e300);
-
 #[derive(Debug, Clone, Copy)]
 struct Part {
     /// The least max |δ_i| at which D may vanish.
@@ -124,47 +80,7 @@ impl Ord for Part {
     }
 }
 
-/// Without ω.
-fn changes([_, gain, delay, third]: [f64; 4]) -> Changes {
-    [gain, delay, third]
-}
-
-fn largest(changes: Changes) -> f64 {
-    changes.iter().fold(0.0, |most, d| most.max(d.abs()))
-}
-
 impl Surroundings<'_> {
-    /// The groups and the delay of a changed setting.
-    fn changed(&self, [gain, delay, third]: Changes) -> (Groups, f64) {
-        let Line { groups, tau, .. } = self.line;
-        let Groups { b, a_n, .. } = match self.third {
-            Third::Slope => Groups {
-                b: groups.b * (1.0 + third),
-                ..groups
-            },
-            Third::Velocity(..) if third == 0.0 => groups,
-            Third::Velocity(v0, law) => law.groups(v0 * (1.0 + third)),
-        };
-        let k = 1.0 + gain;
-        let changed = Groups::new(b, k * groups.a_v, k * a_n);
-        (changed, tau * (1.0 + delay))
-    }
-
-    /// Whether a changed setting is stable beyond doubt.
-    fn stable(&self, changes: Changes) -> bool {
-        let (groups, tau) = self.changed(changes);
-        is_stable(groups, tau, self.line.decay)
-    }
-
-    fn fixed(&self) -> [bool; 3] {
-        let Groups { b, .. } = self.line.groups;
-        let third = match self.third {
-            Third::Slope => b == 0.0,
-            Third::Velocity(v0, _) => v0 == 0.0,
-        };
-        [self.line.groups.uncontrolled(), self.line.tau == 0.0, third]
-    }
-
     /// The stability radius of a setting that is stable, at most `limit`.
     pub(super) fn radius(&self, limit: f64) -> Radius {
         let fixed = self.fixed();
@@ -192,7 +108,9 @@ impl Surroundings<'_> {
             if work > MOST_WORK || (unstable.is_some() && proved >= TIGHT * bound) {
                 break;
             }
-            let found = self.not_stable_near(&part, bound, &mut work);
+            let middle = |(from, to): (f64, f64)| 0.5 * (from + to);
+            let here = [middle(part.sides[1]), 0.0, middle(part.sides[3])];
+            let found = self.not_stable_near(here, part.candidate, bound, &mut work);
             if let Some(found) = found.filter(|found| largest(*found) < bound) {
                 bound = largest(found);
                 unstable = Some(found);
@@ -206,6 +124,7 @@ impl Surroundings<'_> {
                 parts.extend(self.part(sides, part.distance));
             }
         }
+        let proved = f64::min(proved, bound);
         Radius {
             proved,
             unstable,
@@ -266,207 +185,10 @@ impl Surroundings<'_> {
             candidate,
         })
     }
-
-    /// A setting near the middle of a box that is not stable, where one may be nearer than `bound`.
-    fn not_stable_near(&self, part: &Part, bound: f64, work: &mut u32) -> Option<Changes> {
-        let middle = |(from, to): (f64, f64)| 0.5 * (from + to);
-        let here = [middle(part.sides[1]), 0.0, middle(part.sides[3])];
-        if largest(here) >= bound {
-            return None;
-        }
-        let lost = (self.line.decay == 0.0).then(|| {
-            *work += WORK_OF_CROSSINGS;
-            self.delay_lost(here)
-        });
-        let nearer = |found: &Changes| largest(*found) < bound;
-        let on_line = lost.flatten().filter(nearer).or_else(|| {
-            // Where roots only touch the line, no count tells.
-            let near = part.candidate.filter(|at| nearer(&changes(*at)));
-            self.newton(near?, work)
-        })?;
-        // Just beyond it, where that is not stable; where roots only touch the line, there.
-        let beyond = on_line.map(|d| d * (1.0 + 1e-9));
-        Some(if self.stable(beyond) { on_line } else { beyond })
-    }
-
-    /// These changes of gain and third parameter with the least change of the delay at which
-    /// sliding is not stable.
-    fn delay_lost(&self, [gain, _, third]: Changes) -> Option<Changes> {
-        let (groups, tau) = self.changed([gain, 0.0, third]);
-        let change = match Crossings::of(groups).stable_interval_at(tau) {
-            None => 0.0,
-            Some(_) if tau == 0.0 => return None,
-            Some(found) => {
-                let [below, above] = [found.from, found.to].map(|end| end / tau - 1.0);
-                let nearest = if -below < above && found.from > 0.0 {
-                    below
-                } else {
-                    above
-                };
-                nearest
-            }
-        };
-        let found = [gain, change, third];
-        match change {
-            0.0 => Some(self.shortened(found)),
-            _ => change.is_finite().then_some(found),
-        }
-    }
-
-    /// The changes nearest to a place at which D vanishes: Newton's method by the shortest steps,
-    /// which come nearer also where roots only touch the line.
-    fn newton(&self, mut at: [f64; 4], work: &mut u32) -> Option<Changes> {
-        let fixed = self.fixed();
-        let (mut last, mut astray) = (f64::INFINITY, 0);
-        for _ in 0..MOST_STEPS {
-            *work += 1;
-            // Over a narrow box the parts are the derivatives.
-            let widths: [f64; 4] = std::array::from_fn(|i| match i {
-                0 => 1e-7 * (1.0 + at[0]),
-                i if fixed[i - 1] => 0.0,
-                _ => 1e-7,
-            });
-            let around = |i: usize| (at[i] - widths[i], at[i] + widths[i]);
-            let [omega, gain, delay, third] = [0, 1, 2, 3].map(around);
-            let narrow = self.point([omega, gain, delay, third, ANY_SLOPE])?;
-            let over = narrow.enclosed().value;
-            let (value, omega) = (over.centre, at[0]);
-            let size = value.norm_sqr();
-            if size < 1e-26 * power(1.0 + omega * omega, 2) {
-                return Some(changes(at));
-            }
-            astray += u32::from(size >= last);
-            last = size;
-            if astray > MOST_ASTRAY {
-                return None;
-            }
-            let by: [Complex64; 4] = std::array::from_fn(|i| match widths[i] {
-                0.0 => Affine::<ALL>::ZERO,
-                width => over.part[i] / width,
-            });
-            // J Jᵀ y = −D, and the step is Jᵀ y; at a touch J has lost a rank.
-            let sum = |f: &dyn Fn(Complex64) -> f64| by.iter().map(|z| f(*z)).sum::<f64>();
-            let (rr, ii) = (sum(&|z| z.re * z.re), sum(&|z| z.im * z.im));
-            let ri = sum(&|z| z.re * z.im);
-            let least = 1e-14 * (rr + ii);
-            let determinant = (rr + least) * (ii + least) - ri * ri;
-            let y_re = (ri * value.im - (ii + least) * value.re) / determinant;
-            let y_im = (ri * value.re - (rr + least) * value.im) / determinant;
-            for (a, z) in at.iter_mut().zip(by) {
-                *a += z.re * y_re + z.im * y_im;
-            }
-            if !(at[0] >= 0.0 && changes(at).iter().all(|d| d.abs() < 1.0)) {
-                return None;
-            }
-        }
-        None
-    }
-
-    /// What D depends on, over a box; none where that is empty.
-    fn point(&self, [omega, gain, delay, third, slope]: Sides) -> Option<Point<ALL>> {
-        let Line { groups, tau, decay } = self.line;
-        let from_one = |(a, b): (f64, f64)| (1.0 + a, 1.0 + b);
-        let factor = Affine::between(from_one(gain), 1);
-        let (b, a_n) = match self.third {
-            Third::Slope => (
-                Affine::between(from_one(third), 3).scaled(groups.b),
-                Affine::constant(groups.a_n.into()),
-            ),
-            Third::Velocity(v0, law) => {
-                let (low, high) = from_one(third);
-                let slope = Slope {
-                    variable: JUMP,
-                    between: slope,
-                };
-                let [b, a_n] = law.enclosed((v0 * low, v0 * high), 3, Some(slope))?;
-                (b, a_n)
-            }
-        };
-        Some(Point {
-            lambda: Point::on_line(decay, omega),
-            factor,
-            tau: Affine::between(from_one(delay), 2).scaled(tau),
-            b,
-            a_n,
-            a_v: groups.a_v,
-            latency: None,
-            law: matches!(self.third, Third::Velocity(..)).then_some(3),
-        })
-    }
-
-    /// The slopes of the law while all changes are at most `most`.
-    fn slopes(&self, most: f64) -> (f64, f64) {
-        let Third::Velocity(v0, law) = self.third else {
-            return (0.0, 0.0);
-        };
-        let (low, high) = law.law.slopes_between(v0 * (1.0 - most), v0 * (1.0 + most));
-        (low.max(ANY_SLOPE.0), high.min(ANY_SLOPE.1))
-    }
-
-    /// No root is on the line beyond this ω while all changes are at most `most`.
-    fn highest(&self, most: f64) -> f64 {
-        let Line { groups, tau, decay } = self.line;
-        let (b, a_n) = match self.third {
-            Third::Slope => (groups.b * (1.0 + most), groups.a_n),
-            Third::Velocity(v0, law) => law.largest((v0 * (1.0 - most), v0 * (1.0 + most))),
-        };
-        let control = (1.0 + most) * (1.0 + exp(decay * tau * (1.0 + most)));
-        root_bound(b, groups.a_v, a_n, control) * (1.0 + 1e-12)
-    }
-
-    /// Of the settings in some directions, the nearest found that is not stable, up to `limit`.
-    fn nearest_along_directions(&self, fixed: [bool; 3], limit: f64) -> Option<Changes> {
-        let mut nearest: Option<Changes> = None;
-        for number in 0..27 {
-            let direction = [number / 9, number / 3 % 3, number % 3].map(|i| f64::from(i) - 1.0);
-            let moves_fixed = (0..3).any(|i| fixed[i] && direction[i] != 0.0);
-            if moves_fixed || number == 13 {
-                continue;
-            }
-            let most = nearest.map_or(limit, largest);
-            let along = |s: f64| direction.map(|d| s * d);
-            let steps = (1..=STEPS).map(|i| most * f64::from(i) / f64::from(STEPS));
-            if let Some(s) = steps.into_iter().find(|s| !self.stable(along(*s))) {
-                let found = self.shortened(along(s));
-                if nearest.is_none_or(|n| largest(found) < largest(n)) {
-                    nearest = Some(found);
-                }
-            }
-        }
-        nearest
-    }
-
-    /// A setting that is not stable, on the way from the centre to another.
-    fn shortened(&self, unstable: Changes) -> Changes {
-        let (mut stable, mut not) = (0.0, 1.0);
-        for _ in 0..40 {
-            let middle = 0.5 * (stable + not);
-            if self.stable(unstable.map(|d| middle * d)) {
-                stable = middle;
-            } else {
-                not = middle;
-            }
-        }
-        unstable.map(|d| not * d)
-    }
 }
 
 /// The least max |δ_i| on a box.
 fn least(sides: &Sides) -> f64 {
     let least = |(a, b): &(f64, f64)| a.max(-b).max(0.0);
     sides[1..JUMP].iter().map(least).fold(0.0, f64::max)
-}
-
-/// Whether a setting is stable beyond doubt, all its roots left of Re λ = −`decay`.
-pub(super) fn is_stable(groups: Groups, tau: f64, decay: f64) -> bool {
-    stability(groups, tau, decay) == Some(true)
-}
-
-/// Whether all roots are left of Re λ = −`decay`; none where one is on that line within rounding.
-pub(super) fn stability(groups: Groups, tau: f64, decay: f64) -> Option<bool> {
-    if decay == 0.0 {
-        let count = Crossings::of(groups).count(tau, MarginalTolerance::default());
-        return (!count.marginal).then_some(count.n_unstable == 0);
-    }
-    roots_right_of(groups, tau, -decay).map(|roots| roots == 0)
 }

@@ -1,0 +1,145 @@
+//! The settings around a setting: what D depends on there, and which of them are stable.
+
+use super::affine::Affine;
+use super::enclosure::{Point, SlidingLaw, Slope, root_bound};
+use super::equations::Line;
+use crate::linear::certificate::roots_right_of;
+use crate::linear::{Crossings, MarginalTolerance};
+use crate::model::Groups;
+use crate::model::elementary::exp;
+
+/// The relative changes of gain, delay and third parameter: 0 where one stays as it is.
+pub type Changes = [f64; 3];
+
+/// What the third parameter is.
+#[derive(Debug, Clone, Copy)]
+pub(super) enum Third<'a> {
+    Slope,
+    /// The sliding velocity, and its law.
+    Velocity(f64, SlidingLaw<'a>),
+}
+
+/// A setting and the settings around it.
+pub(super) struct Surroundings<'a> {
+    pub line: Line,
+    pub third: Third<'a>,
+}
+
+/// Number of the delay among ω, gain, delay and third parameter. Boxes have all delays.
+pub(super) const DELAY: usize = 2;
+/// Number of the slope of a law, which is a variable of its own where it jumps within a box.
+pub(super) const JUMP: usize = 4;
+/// So many variables there are.
+pub(super) const ALL: usize = 5;
+/// A box of ω, δ₁, δ₂, δ₃ and μ_K′.
+pub(super) type Sides = [(f64, f64); ALL];
+/// Any μ_K′.
+pub(super) const ANY_SLOPE: (f64, f64) = (-1e300, 1e300);
+
+/// Without ω.
+pub(super) fn changes([_, gain, delay, third]: [f64; 4]) -> Changes {
+    [gain, delay, third]
+}
+
+pub(super) fn largest(changes: Changes) -> f64 {
+    changes.iter().fold(0.0, |most, d| most.max(d.abs()))
+}
+
+impl Surroundings<'_> {
+    /// The groups and the delay of a changed setting.
+    pub(super) fn changed(&self, [gain, delay, third]: Changes) -> (Groups, f64) {
+        let Line { groups, tau, .. } = self.line;
+        let Groups { b, a_n, .. } = match self.third {
+            Third::Slope => Groups {
+                b: groups.b * (1.0 + third),
+                ..groups
+            },
+            Third::Velocity(..) if third == 0.0 => groups,
+            Third::Velocity(v0, law) => law.groups(v0 * (1.0 + third)),
+        };
+        let k = 1.0 + gain;
+        let changed = Groups::new(b, k * groups.a_v, k * a_n);
+        (changed, tau * (1.0 + delay))
+    }
+
+    /// Whether a changed setting is stable beyond doubt.
+    pub(super) fn stable(&self, changes: Changes) -> bool {
+        let (groups, tau) = self.changed(changes);
+        is_stable(groups, tau, self.line.decay)
+    }
+
+    pub(super) fn fixed(&self) -> [bool; 3] {
+        let Groups { b, .. } = self.line.groups;
+        let third = match self.third {
+            Third::Slope => b == 0.0,
+            Third::Velocity(v0, _) => v0 == 0.0,
+        };
+        [self.line.groups.uncontrolled(), self.line.tau == 0.0, third]
+    }
+
+    /// What D depends on, over a box; none where that is empty.
+    pub(super) fn point(&self, [omega, gain, delay, third, slope]: Sides) -> Option<Point<ALL>> {
+        let Line { groups, tau, decay } = self.line;
+        let from_one = |(a, b): (f64, f64)| (1.0 + a, 1.0 + b);
+        let factor = Affine::between(from_one(gain), 1);
+        let (b, a_n) = match self.third {
+            Third::Slope => (
+                Affine::between(from_one(third), 3).scaled(groups.b),
+                Affine::constant(groups.a_n.into()),
+            ),
+            Third::Velocity(v0, law) => {
+                let (low, high) = from_one(third);
+                let slope = Slope {
+                    variable: JUMP,
+                    between: slope,
+                };
+                let [b, a_n] = law.enclosed((v0 * low, v0 * high), 3, Some(slope))?;
+                (b, a_n)
+            }
+        };
+        Some(Point {
+            lambda: Point::on_line(decay, omega),
+            factor,
+            tau: Affine::between(from_one(delay), 2).scaled(tau),
+            b,
+            a_n,
+            a_v: groups.a_v,
+            latency: None,
+            law: matches!(self.third, Third::Velocity(..)).then_some(3),
+        })
+    }
+
+    /// The slopes of the law while all changes are at most `most`.
+    pub(super) fn slopes(&self, most: f64) -> (f64, f64) {
+        let Third::Velocity(v0, law) = self.third else {
+            return (0.0, 0.0);
+        };
+        let (low, high) = law.law.slopes_between(v0 * (1.0 - most), v0 * (1.0 + most));
+        (low.max(ANY_SLOPE.0), high.min(ANY_SLOPE.1))
+    }
+
+    /// No root is on the line beyond this ω while all changes are at most `most`.
+    pub(super) fn highest(&self, most: f64) -> f64 {
+        let Line { groups, tau, decay } = self.line;
+        let (b, a_n) = match self.third {
+            Third::Slope => (groups.b * (1.0 + most), groups.a_n),
+            Third::Velocity(v0, law) => law.largest((v0 * (1.0 - most), v0 * (1.0 + most))),
+        };
+        let control = (1.0 + most) * (1.0 + exp(decay * tau * (1.0 + most)));
+        root_bound(b, groups.a_v, a_n, control) * (1.0 + 1e-12)
+    }
+}
+
+/// Whether a setting is stable beyond doubt, all its roots left of Re λ = −`decay`.
+pub(super) fn is_stable(groups: Groups, tau: f64, decay: f64) -> bool {
+    stability(groups, tau, decay) == Some(true)
+}
+
+/// Whether all roots are left of Re λ = −`decay`; none where one is on that line within rounding.
+pub(super) fn stability(groups: Groups, tau: f64, decay: f64) -> Option<bool> {
+    if decay == 0.0 {
+        let count = Crossings::of(groups).count(tau, MarginalTolerance::default());
+        return (!count.marginal).then_some(count.n_unstable == 0);
+    }
+    roots_right_of(groups, tau, -decay).map(|roots| roots == 0)
+}
