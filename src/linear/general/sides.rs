@@ -18,7 +18,8 @@ type Point = (f64, f64);
 /// What a count right of the line comes to on the left and on the right of a curve.
 type Sides = (RightOf, RightOf);
 
-/// The pieces of the curves of `level`, each cut where p turns back and where what holds beside it changes.
+/// The pieces of the curves of `level`, each cut where p turns back and where what holds beside it
+/// changes.
 pub(super) fn pieces(
     plane: &SystemPlane,
     sigma: f64,
