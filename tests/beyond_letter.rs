@@ -2,7 +2,6 @@
 //! parameters, against independently computed tables; and nothing changes where there is none of it.
 
 #[path = "common/general_rows.rs"]
-#[allow(dead_code)]
 mod general_rows;
 
 use std::sync::Arc;
@@ -123,23 +122,24 @@ fn points_of_the_tables() {
             let stable = row.or_zero("n_unstable") == 0.0;
             assert_eq!(found["stable"], stable, "{}", row.place);
             same_intervals(&row, "stable_delays", &found, time);
-            if row.number("latency").is_some() {
-                same_intervals(&row, "stable_latencies", &found, time);
-                let margin = row.text("latency_margin");
-                let same = match margin {
-                    "inf" => found["latency_margin"].is_null(),
-                    margin => near(
-                        &found["latency_margin"],
-                        margin.parse::<f64>().unwrap() * time,
-                        1e-11,
-                    ),
-                };
-                assert!(same || found["decays"] == false, "{}\n{found}", row.place);
-            }
+            same_latencies(&row, &found, time);
             checked += 1;
         }
     }
     assert!(checked > 350, "{checked}");
+}
+
+fn same_latencies(row: &Row, found: &Value, time: f64) {
+    if row.number("latency").is_none() {
+        return;
+    }
+    same_intervals(row, "stable_latencies", found, time);
+    let told = &found["latency_margin"];
+    let same = match row.text("latency_margin") {
+        "inf" => told.is_null(),
+        margin => near(told, margin.parse::<f64>().unwrap() * time, 1e-11),
+    };
+    assert!(same || found["decays"] == false, "{}\n{found}", row.place);
 }
 
 fn same_intervals(row: &Row, name: &str, found: &Value, time: f64) {

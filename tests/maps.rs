@@ -9,6 +9,7 @@ use std::path::Path;
 use slipmap::linear::Crossings;
 use slipmap::linear::certificate::roots_right_of;
 use slipmap::linear::curves::StableSide;
+use slipmap::linear::general::{RightOf, RootCounter};
 use slipmap::linear::status::MARGINAL;
 use slipmap::store::MapFile;
 use slipmap::sweep::cells::best::{best_of_plane, best_plane};
@@ -509,38 +510,58 @@ fn boundaries_can_be_asked_for_in_other_planes() {
     }
 }
 
+/// A small step in the plane to a side.
+fn towards(side: StableSide) -> Option<(f64, f64)> {
+    match side {
+        StableSide::Neither => None,
+        StableSide::Shorter => Some((0.0, -1e-5)),
+        StableSide::Longer => Some((0.0, 1e-5)),
+        StableSide::Below => Some((-1e-5, 0.0)),
+        StableSide::Above => Some((1e-5, 0.0)),
+    }
+}
+
+/// All roots lie left of −`sigma`.
+fn decays(setting: &slipmap::sweep::Setting, sigma: f64) -> bool {
+    let (model, unit) = setting.linear().unwrap();
+    let tau = setting.get(Parameter::Tau) / unit;
+    RootCounter::new(&model.system()).right_of(tau, -sigma * unit) == RightOf::Roots(0)
+}
+
+/// Sweeps with boundaries, and the parameters of their planes.
+const PLANES: [(&str, &str); 6] = [
+    (
+        "[axes]\nalpha_v = { from = -1.5, to = 0.2, points = 20 }\ntau = { from = 0.1, to = 9, points = 20 }\n[fixed]\nmu_prime = -0.5\nmemory = 0.4\n",
+        "alpha_v tau",
+    ),
+    (
+        "[axes]\nlatency = { from = 0, to = 2, points = 20 }\ntau = { from = 0.1, to = 9, points = 20 }\n[fixed]\nmu_prime = -0.2\nalpha_v = -0.4\n",
+        "latency tau",
+    ),
+    (
+        "[axes]\nmemory = { from = -0.8, to = 0.8, points = 20 }\nalpha_v = { from = -1.5, to = 0.2, points = 20 }\n[fixed]\nmu_prime = -0.5\ntau = 5\n",
+        "memory alpha_v",
+    ),
+    (
+        "boundaries = true\n[axes]\nalpha_n = { from = -4, to = 1, points = 20 }\nalpha_v = { from = -1.5, to = 0.5, points = 20 }\n[fixed]\nmu_prime = -0.2\ntau = 1.5\n",
+        "alpha_n alpha_v",
+    ),
+    (
+        "system = \"turning\"\ndegree_of_stability = [0.01]\n[axes]\nwidth = { from = 0, to = 0.5, points = 20 }\ntau = { from = 1, to = 20, points = 20 }\n",
+        "width tau",
+    ),
+    (
+        "system = \"pd\"\n[axes]\nk_p = { from = -1, to = 3, points = 20 }\nk_d = { from = -1, to = 3, points = 20 }\n[fixed]\nstiffness = -0.5\ntau = 0.4\n",
+        "k_p k_d",
+    ),
+];
+
 /// Planes of other systems and of other parameters: right beside a boundary one side is stable, the
 /// other is not.
 #[test]
 fn boundaries_of_any_plane() {
     let folder = tempfile::tempdir().unwrap();
-    let cases = [
-        (
-            "[axes]\nalpha_v = { from = -1.5, to = 0.2, points = 20 }\ntau = { from = 0.1, to = 9, points = 20 }\n[fixed]\nmu_prime = -0.5\nmemory = 0.4\n",
-            "alpha_v tau",
-        ),
-        (
-            "[axes]\nlatency = { from = 0, to = 2, points = 20 }\ntau = { from = 0.1, to = 9, points = 20 }\n[fixed]\nmu_prime = -0.2\nalpha_v = -0.4\n",
-            "latency tau",
-        ),
-        (
-            "[axes]\nmemory = { from = -0.8, to = 0.8, points = 20 }\nalpha_v = { from = -1.5, to = 0.2, points = 20 }\n[fixed]\nmu_prime = -0.5\ntau = 5\n",
-            "memory alpha_v",
-        ),
-        (
-            "boundaries = true\n[axes]\nalpha_n = { from = -4, to = 1, points = 20 }\nalpha_v = { from = -1.5, to = 0.5, points = 20 }\n[fixed]\nmu_prime = -0.2\ntau = 1.5\n",
-            "alpha_n alpha_v",
-        ),
-        (
-            "system = \"turning\"\ndegree_of_stability = [0.01]\n[axes]\nwidth = { from = 0, to = 0.5, points = 20 }\ntau = { from = 1, to = 20, points = 20 }\n",
-            "width tau",
-        ),
-        (
-            "system = \"pd\"\n[axes]\nk_p = { from = -1, to = 3, points = 20 }\nk_d = { from = -1, to = 3, points = 20 }\n[fixed]\nstiffness = -0.5\ntau = 0.4\n",
-            "k_p k_d",
-        ),
-    ];
-    for (number, (text, plane)) in cases.into_iter().enumerate() {
+    for (number, (text, plane)) in PLANES.into_iter().enumerate() {
         let path = folder.path().join(format!("{number}.h5"));
         let plan = plan(text);
         write(&plan, 1, &path);
@@ -555,20 +576,13 @@ fn boundaries_of_any_plane() {
             let mut setting = plan.spec.fixed.clone();
             setting.vary(&p.parameter, at_p);
             setting.vary(&q.parameter, at_q);
-            let (model, unit) = setting.linear().unwrap();
-            let counter = slipmap::linear::general::RootCounter::new(&model.system());
-            let count = counter.right_of(setting.get(Parameter::Tau) / unit, -sigma * unit);
-            count == slipmap::linear::general::RightOf::Roots(0)
+            decays(&setting, sigma)
         };
         let (mut checked, mut degrees) = (0, 0);
         for curve in map.curves_where(|_| true).unwrap() {
             let vertices = &curve.piece.vertices;
-            let side = match curve.piece.stable_side {
-                StableSide::Neither => continue,
-                StableSide::Shorter => (0.0, -1e-5),
-                StableSide::Longer => (0.0, 1e-5),
-                StableSide::Below => (-1e-5, 0.0),
-                StableSide::Above => (1e-5, 0.0),
+            let Some(side) = towards(curve.piece.stable_side) else {
+                continue;
             };
             degrees += u32::from(curve.degree_of_stability > 0.0);
             // In the middle of a piece no other one is near.

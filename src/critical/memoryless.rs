@@ -1,6 +1,8 @@
 //! The return map without memory: under pure load control a stick that outlasts the delay and the
-//! latency erases all memory, unless the feedback itself has one. Every slip starts from a = μ_S (1 + α_n v0 τ), which has grown evenly, so the orbit
-//! at v0 is one slip and its stick ([`super`], Eq. 5).
+//! latency erases all memory, unless the feedback itself has one.
+//!
+//! Every slip starts from a = μ_S (1 + α_n v0 τ), which has grown evenly, so the orbit at v0 is one
+//! slip and its stick ([`super`], Eq. 5).
 
 use super::after_event::after_graze;
 use super::continuation::{Branch, Orbit, Point, Releases, continue_to_checked_event};

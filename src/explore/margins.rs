@@ -22,8 +22,8 @@ pub struct Margins {
     /// The least angle, rad, of either sign by which the loop may turn; null where it is infinite:
     /// the loop is nowhere as large as 1. 0 where the setting has not the decay rate.
     pub phase_margin: Option<f64>,
-    /// The largest latency of the feedback, counted from none; null where it is infinite. 0 where the
-    /// setting without latency has not the decay rate.
+    /// The largest latency of the feedback, counted from none; null where it is infinite. 0 where
+    /// the setting without latency has not the decay rate.
     pub latency_margin: Option<f64>,
     /// The delays between which it stays; null where the setting has it not.
     pub tau_margin: Option<Margin>,

@@ -22,8 +22,9 @@ pub struct Point {
     pub alpha_n: f64,
     /// τ.
     pub tau: f64,
-    /// Stiffness over the critical one of rate-and-state friction, below which steady sliding without
-    /// control is unstable; null where it is stable at every stiffness, and under other laws.
+    /// Stiffness over the critical one of rate-and-state friction, below which steady sliding
+    /// without control is unstable; null where it is stable at every stiffness, and under other
+    /// laws.
     pub stiffness_ratio: Option<f64>,
     /// Its stability, with its roots.
     #[serde(flatten)]

@@ -63,8 +63,9 @@ pub struct Stability {
     pub spectrum: Spectrum,
     /// Re λ of the line right of which roots were to be counted; null where none was asked for.
     pub line: Option<f64>,
-    /// The number of roots right of that line; null where none was asked for, where a root lies within
-    /// rounding of it, and where there are infinitely many: it is less than `essential_abscissa`.
+    /// The number of roots right of that line; null where none was asked for, where a root lies
+    /// within rounding of it, and where there are infinitely many: it is less than
+    /// `essential_abscissa`.
     pub n_right_of_line: Option<u64>,
 }
 
@@ -73,13 +74,13 @@ pub struct Stability {
 #[cfg_attr(feature = "serve", derive(utoipa::ToSchema))]
 pub struct Latencies {
     /// All intervals of latencies in which sliding is stable at the point's delay, by shortest
-    /// latency; the end of the last one is null where it has none. Null where latency has no meaning
-    /// in the system.
+    /// latency; the end of the last one is null where it has none. Null where latency has no
+    /// meaning in the system.
     pub stable_latencies: Option<Vec<[Option<f64>; 2]>>,
     /// Some are left out.
     pub stable_latencies_truncated: bool,
-    /// The latency margin: ∞ where nothing is lost, NaN where it is not known; none where latency has
-    /// no meaning.
+    /// The latency margin: ∞ where nothing is lost, NaN where it is not known; none where latency
+    /// has no meaning.
     #[serde(skip)]
     pub margin: Option<f64>,
 }

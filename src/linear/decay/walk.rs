@@ -169,8 +169,8 @@ impl<P: Plane> DecayPlane<'_, P> {
             && dot(from.tangent, origin.tangent) > 0.5
     }
 
-    /// The boundary of the decaying region, or the curve as a whole, runs through `place`, a step on
-    /// from a place where it does.
+    /// The boundary of the decaying region, or the curve as a whole, runs through `place`, a step
+    /// on from a place where it does.
     fn bounds(&self, place: &Place) -> bool {
         let of_family = match place.family {
             Family::Pair if self.whole => place.v.omega > SLOWEST * self.scales(place.v)[2],

@@ -54,8 +54,8 @@ pub fn trace_whole(
     Ok(tracer.curves)
 }
 
-/// The point with a pair on the line Re λ = −`sigma` that Newton's method reaches from `start`, with
-/// p kept as it is on a `column`, else q.
+/// The point with a pair on the line Re λ = −`sigma` that Newton's method reaches from `start`,
+/// with p kept as it is on a `column`, else q.
 pub fn on_line(plane: &impl Plane, sigma: f64, start: Vertex, column: bool) -> Option<Vertex> {
     let row = if column {
         [1.0, 0.0, 0.0]
@@ -169,8 +169,8 @@ impl<P: Plane> Tracer<'_, P> {
         self.plane.correct(v, Family::Pair, [1.0, 0.0, 0.0])
     }
 
-    /// Where along the curve from `v` to `w` the number of other roots right of the line stops to be
-    /// `others`.
+    /// Where along the curve from `v` to `w` the number of other roots right of the line stops to
+    /// be `others`.
     fn change_between(&self, mut v: Vertex, mut w: Vertex, others: Option<u64>) -> Vertex {
         for _ in 0..HALVINGS {
             let Some(at) = self.on_curve(middle(v, w)) else {

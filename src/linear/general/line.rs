@@ -14,10 +14,11 @@
 
 use std::f64::consts::{PI, TAU};
 
-use super::parts::{Angle, Decay};
+use super::parts::Angle;
 use super::reason::Reason;
 use super::right_of::{RootCounter, Turning};
-use super::switches::{Switch, Switches};
+use super::routh::zeros_on_the_right;
+use super::switches::{NearZero, Switch, Switches, each_switch};
 use super::system::{Class, System};
 use super::zeros::Zeros;
 use crate::linear::count::MarginalTolerance;
@@ -145,8 +146,9 @@ impl DelayLine {
     }
 
     fn find_crossings(&mut self, system: &System) {
-        let mut switches = Switches::default();
-        if let Some(feedback) = system.late() {
+        let on_axis = system.on_axis();
+        let near = if let Some(feedback) = system.late() {
+            let mut switches = Switches::default();
             if !feedback.late_switches(&mut switches) {
                 // Too many to be listed: nothing is said but what holds without delay.
                 self.find_without_delay(system);
@@ -154,27 +156,34 @@ impl DelayLine {
                 self.always_marginal = true;
                 return;
             }
+            for switch in &switches.list {
+                let phase = feedback.late_phase(switch.omega, switch.error);
+                self.add_crossing(system, switch, phase);
+            }
+            switches.near_zero()
         } else {
-            let mut modulus = system.modulus(0.0, Decay::NONE);
+            let mut modulus = on_axis.modulus();
             if system.class() == Class::NeutralLimit {
                 modulus = modulus.without_open_leading();
             }
-            if !switches.find(&modulus) {
+            let near = each_switch(&modulus, |switch| {
+                let phase = on_axis.phase(switch.omega, switch.error);
+                self.add_crossing(system, &switch, phase);
+            });
+            let Some(near) = near else {
                 self.uncounted = true;
                 self.reason = Some(Reason::DegreeUnknown);
                 return;
-            }
-        }
-        let origin = !system.on_real_axis(0.0, Decay::NONE).decided();
+            };
+            near
+        };
+        let origin = !on_axis.on_real_axis().decided();
         if origin {
             self.rests_at_origin();
         } else {
-            self.opens_below(switches.open_below);
+            self.opens_below(near.open_below);
         }
-        for switch in &switches.list {
-            self.add_crossing(system, switch);
-        }
-        self.find_start(system, &switches, origin);
+        self.find_start(system, near, origin);
     }
 
     /// Below the frequency `omega` |P(0)| = |Q(0)| within rounding, without a root at 0: a pair may
@@ -185,16 +194,12 @@ impl DelayLine {
         }
     }
 
-    fn add_crossing(&mut self, system: &System, switch: &Switch) {
-        if switch.sign == 0 && common_zero(system, switch.omega) {
+    fn add_crossing(&mut self, system: &System, switch: &Switch, phase: Option<Angle>) {
+        if switch.sign == 0 && system.has_common_zero(switch.omega) {
             self.always_marginal = true;
             self.reason = self.reason.or(Some(Reason::RootOnAxis));
             return;
         }
-        let phase = match system.late() {
-            Some(feedback) => feedback.late_phase(switch.omega, switch.error),
-            None => system.phase(0.0, switch.omega, switch.error),
-        };
         self.add(switch, phase);
     }
 
@@ -221,10 +226,10 @@ impl DelayLine {
     }
 
     /// n(0⁺), with what P + Q on the axis or at the origin makes of it.
-    fn find_start(&mut self, system: &System, switches: &Switches, origin: bool) {
+    fn find_start(&mut self, system: &System, near: NearZero, origin: bool) {
         let mut sum = system.without_delay();
         if origin {
-            self.find_passage(system, switches);
+            self.find_passage(system, near);
             sum = sum.divided_by_variable();
         }
         let decided = self.count_right(&sum);
@@ -244,7 +249,7 @@ impl DelayLine {
     }
 
     /// A real root passes 0 at τ* = (p₁ + q₁)/q₀; to the right where F(0⁺) > 0.
-    fn find_passage(&mut self, system: &System, switches: &Switches) {
+    fn find_passage(&mut self, system: &System, near: NearZero) {
         let slope = crate::linear::rounded::Rounded::sum([
             system.p.coefficient(1).value,
             system.q.coefficient(1).value,
@@ -253,7 +258,7 @@ impl DelayLine {
         let q0 = system.q.coefficient(0);
         let tau = slope.value / q0.value;
         let error = (slope.error + tau.abs() * q0.error) / q0.value.abs();
-        if let (Some(positive), true) = (switches.at_zero, tau.is_finite()) {
+        if let (Some(positive), true) = (near.sign, tau.is_finite()) {
             self.passage = Some(Passage {
                 tau,
                 error: error + f64::EPSILON * tau.abs(),
@@ -267,6 +272,10 @@ impl DelayLine {
     fn count_right(&mut self, sum: &super::Polynomial) -> bool {
         if !sum.degree_known() {
             return false;
+        }
+        if let Some(right) = zeros_on_the_right(sum) {
+            self.without_delay = right as u64;
+            return true;
         }
         for set in Zeros::of(sum).sets() {
             let (from, to) = set.real_parts();
@@ -333,7 +342,7 @@ impl DelayLine {
         let far = if system.late().is_some() {
             1.0
         } else {
-            let modulus = system.modulus(0.0, Decay::NONE);
+            let modulus = system.on_axis().modulus();
             modulus.without_open_leading().leading().value
         };
         if higher % 2 == 0 { far } else { -far }
@@ -362,30 +371,6 @@ impl DelayLine {
             Some(n) => self.at_zero_delay = n,
             None => self.always_marginal = true,
         }
-    }
-}
-
-/// P and Q have a zero near iω in common, both within their errors on the axis.
-fn common_zero(system: &System, omega: f64) -> bool {
-    let on_axis = |polynomial: &super::Polynomial| {
-        let zeros = Zeros::of(polynomial);
-        let near = zeros.discs().iter().copied().filter(|disc| {
-            disc.centre.im > 0.0
-                && disc.centre.re.abs() <= disc.radius
-                && (disc.centre.im - omega).abs() <= 1e-6 * omega
-        });
-        near.min_by(|a, b| {
-            let apart = |d: &super::zeros::Disc| (d.centre.im - omega).abs();
-            apart(a).total_cmp(&apart(b))
-        })
-    };
-    let [p, q] = match system.late() {
-        Some(feedback) => feedback.polynomials(),
-        None => [&system.p, &system.q],
-    };
-    match (on_axis(p), on_axis(&q.without_open_leading())) {
-        (Some(p), Some(q)) => (p.centre.im - q.centre.im).abs() <= p.radius + q.radius,
-        _ => false,
     }
 }
 

@@ -4,7 +4,7 @@ use num_complex::Complex64;
 
 use super::polynomial::{At, Polynomial};
 use crate::linear::rounded::Rounded;
-use crate::model::elementary::{atan2, exp, expm1, sincos};
+use crate::model::elementary::{arg, atan2, exp, expm1, sincos};
 
 /// The feedback form D = B(1 − R E) − A e^(−λδ)(1 − E): without latency P = B − A and Q = A − R B.
 #[derive(Debug, Clone, Copy)]
@@ -119,6 +119,16 @@ impl Angle {
         Some(Self {
             value,
             error: 4.0 * aside + 4.0 * f64::EPSILON * value.abs(),
+        })
+    }
+
+    /// Of −P Q* from the values of P and Q.
+    pub(super) fn of_pair(p: At, q: At) -> Option<Self> {
+        let relative = |at: At| at.error / (at.value.norm_sqr().sqrt() - at.error).max(0.0);
+        let error = 2.0 * (relative(p) + relative(q)) + 4.0 * f64::EPSILON;
+        (error < 1.0).then(|| Self {
+            value: arg(-(p.value * q.value.conj())),
+            error,
         })
     }
 }

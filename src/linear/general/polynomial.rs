@@ -343,45 +343,4 @@ impl Polynomial {
         }
         slope
     }
-
-    /// Re s^… of the product with the conjugate of `other` on the imaginary axis: a polynomial in
-    /// x = ω² with Re[self(iω) other(iω)*] as its value.
-    #[must_use]
-    pub(super) fn real_product(&self, other: &Self) -> Self {
-        let degree = usize::midpoint(self.degree, other.degree);
-        Self::of(degree, |k| {
-            let from = (2 * k).saturating_sub(other.degree);
-            let terms = (from..=(2 * k).min(self.degree)).map(|i| {
-                // i^i (−i)^(2k − i) = i^(2i − 2k): real.
-                let mut own = self.coefficient(i);
-                if (i + k) % 2 == 1 {
-                    own.value = -own.value;
-                }
-                (own, other.coefficient(2 * k - i))
-            });
-            sum_of_products(terms)
-        })
-    }
-
-    /// As [`Polynomial::real_product`], the imaginary part: a polynomial in x = ω² with
-    /// Im[self(iω) other(iω)*]/ω as its value.
-    #[must_use]
-    pub(super) fn imaginary_product(&self, other: &Self) -> Self {
-        let Some(degree) = (self.degree + other.degree).checked_sub(1) else {
-            return Self::ZERO;
-        };
-        Self::of(degree / 2, |k| {
-            let order = 2 * k + 1;
-            let from = order.saturating_sub(other.degree);
-            let terms = (from..=order.min(self.degree)).map(|i| {
-                // i^i (−i)^(2k + 1 − i) = i · i^(2i − 2k − 2).
-                let mut own = self.coefficient(i);
-                if (i + k) % 2 == 0 {
-                    own.value = -own.value;
-                }
-                (own, other.coefficient(order - i))
-            });
-            sum_of_products(terms)
-        })
-    }
 }

@@ -22,7 +22,8 @@ use num_complex::Complex64;
 use super::latency::Form;
 use super::parts::{Angle, Decay};
 use super::polynomial::{MOST_DEGREE, Polynomial};
-use super::switches::Switches;
+use super::shifted::Shifted;
+use super::switches::{Switch, Switches, each_switch};
 use super::system::{Class, System};
 use super::zeros::Zeros;
 use crate::model::elementary::atan2;
@@ -99,17 +100,60 @@ impl Factors {
 
     /// The argument at σ + iω, continuous in ω ≥ 0.
     pub(super) fn argument(&self, line: f64, omega: f64) -> f64 {
-        let turns: f64 = self
-            .zeros()
-            .iter()
+        let mut turned = Turned::NOT;
+        self.turn(line, omega, 1.0, &mut turned);
+        PI * self.half_turns_at_zero(line) as f64 + turned.angle()
+    }
+
+    /// Turns by what the argument at σ + iω is beyond that at σ, times `sign` = ±1.
+    #[inline]
+    fn turn(&self, line: f64, omega: f64, sign: f64, turned: &mut Turned) {
+        for r in self.zeros() {
             // A zero on the line itself counts as left of it.
-            .map(|r| {
-                let aside = line - r.re;
-                let angle = atan2(omega - r.im, aside.abs());
-                if aside < 0.0 { -angle } else { angle }
-            })
-            .sum();
-        PI * self.half_turns_at_zero(line) as f64 + turns
+            let aside = line - r.re;
+            let along = if aside < 0.0 { -sign } else { sign };
+            turned.by(aside.abs(), along * (omega - r.im));
+        }
+    }
+}
+
+/// A sum of angles as a direction and whole turns.
+#[derive(Debug, Clone, Copy)]
+struct Turned {
+    re: f64,
+    im: f64,
+    turns: f64,
+}
+
+impl Turned {
+    const NOT: Self = Self {
+        re: 1.0,
+        im: 0.0,
+        turns: 0.0,
+    };
+
+    /// Adds the angle of `re` + i `im`, which is no more than a right one: `re` ≥ 0.
+    #[inline(always)]
+    fn by(&mut self, re: f64, im: f64) {
+        if re == 0.0 && im == 0.0 {
+            return;
+        }
+        let next = (self.re * re - self.im * im, self.re * im + self.im * re);
+        if im > 0.0 && self.im >= 0.0 && next.1 < 0.0 {
+            self.turns += 1.0;
+        } else if im < 0.0 && self.im < 0.0 && next.1 >= 0.0 {
+            self.turns -= 1.0;
+        }
+        (self.re, self.im) = next;
+        let size = self.re.abs() + self.im.abs();
+        if !(1e-100..1e100).contains(&size) {
+            self.re /= size;
+            self.im /= size;
+        }
+    }
+
+    fn angle(&self) -> f64 {
+        atan2(self.im, self.re) + TAU * self.turns
     }
 }
 
@@ -160,10 +204,9 @@ impl Turning {
     }
 }
 
-/// What (7) comes to on a line.
-#[derive(Debug, Clone)]
-enum Found {
-    Turning(Turning),
+/// Why (7) gives no number on a line.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum NoNumber {
     Infinite,
     Undecided,
 }
@@ -194,10 +237,18 @@ impl RootCounter {
         if let Some(feedback) = self.system.late() {
             return self.late(feedback, tau, line);
         }
-        match self.on_line(tau, line) {
-            Found::Turning(turning) => turning.at(tau).map_or(RightOf::Undecided, RightOf::Roots),
-            Found::Infinite => RightOf::Infinite,
-            Found::Undecided => RightOf::Undecided,
+        let mut sum = 0.0;
+        let without_turns = self.on_line(tau, line, |turn| {
+            turn.turns(tau).is_some_and(|turns| {
+                sum += turn.sign * turns;
+                true
+            })
+        });
+        match without_turns {
+            Ok(without_turns) => u64::try_from(without_turns + 2 * sum as i64)
+                .map_or(RightOf::Undecided, RightOf::Roots),
+            Err(NoNumber::Infinite) => RightOf::Infinite,
+            Err(NoNumber::Undecided) => RightOf::Undecided,
         }
     }
 
@@ -208,10 +259,15 @@ impl RootCounter {
         if self.system.late().is_some() {
             return self.late_unstable(Form::Delay, 0.0);
         }
-        match self.on_line(0.0, 0.0) {
-            Found::Turning(turning) => Some(turning),
-            Found::Infinite | Found::Undecided => None,
-        }
+        let mut turns = Vec::with_capacity(self.system.p.degree());
+        let without_turns = self.on_line(0.0, 0.0, |turn| {
+            turns.push(turn);
+            true
+        });
+        Some(Turning {
+            without_turns: without_turns.ok()?,
+            turns,
+        })
     }
 
     /// The system itself.
@@ -232,8 +288,8 @@ impl RootCounter {
         if let Some(feedback) = self.system.late() {
             feedback.switches_on(tau, line, &mut switches);
         } else if let Some(decay) = Decay::new(line, tau) {
-            let modulus = self.system.modulus(line, decay).without_open_leading();
-            switches.find(&modulus);
+            let modulus = self.system.on_line(line, decay).modulus();
+            switches.find(&modulus.without_open_leading());
         }
         switches.list.iter().map(|s| (s.omega, s.sign)).collect()
     }
@@ -264,70 +320,74 @@ impl RootCounter {
         RightOf::Roots(right)
     }
 
-    fn on_line(&self, tau: f64, line: f64) -> Found {
-        if matches!(self.system.class(), Class::DegreeUnknown | Class::Refused) {
-            return Found::Undecided;
+    /// n_P + ν₀ of (7), and each of its turns to `each`, which says whether the next one matters.
+    fn on_line(
+        &self,
+        tau: f64,
+        line: f64,
+        mut each: impl FnMut(Turn) -> bool,
+    ) -> Result<i64, NoNumber> {
+        let open = NoNumber::Undecided;
+        let system = &self.system;
+        match system.class() {
+            Class::DegreeUnknown | Class::Refused => return Err(open),
+            Class::Infinite => return Err(NoNumber::Infinite),
+            _ => {}
         }
-        if self.system.class() == Class::Infinite {
-            return Found::Infinite;
+        let on_line = system.on_line(line, Decay::new(line, tau).ok_or(open)?);
+        if !on_line.on_real_axis().decided() {
+            return Err(open);
         }
-        let Some(decay) = Decay::new(line, tau) else {
-            return Found::Undecided;
-        };
-        if !self.system.on_real_axis(line, decay).decided() {
-            return Found::Undecided;
-        }
-        let mut modulus = self.system.modulus(line, decay);
-        if self.system.class() == Class::NeutralLimit && line == 0.0 {
+        let mut modulus = on_line.modulus();
+        if system.class() == Class::NeutralLimit && line == 0.0 {
             modulus = modulus.without_open_leading();
         }
-        let mut switches = Switches::default();
-        if !switches.find(&modulus) {
-            return Found::Undecided;
+        if !modulus.leading().decided() {
+            return Err(open);
         }
         if modulus.leading().value < 0.0 {
-            return Found::Infinite;
+            return Err(NoNumber::Infinite);
         }
-        self.turning(line, &modulus, &switches)
-    }
-
-    fn turning(&self, line: f64, modulus: &Polynomial, switches: &Switches) -> Found {
+        let mut going_on = true;
+        let found = each_switch(&modulus, |switch| {
+            going_on = going_on && self.turn(&on_line, line, &switch).is_some_and(&mut each);
+        });
+        if !going_on || found.is_none() {
+            return Err(open);
+        }
         let constant = modulus.coefficient(0);
         let mut without_turns = self.p.right_of(line) as i64;
         // Where that is open though D(σ) is not, |p| = |q| without a root: then ν₀ = 0.
         if constant.decided() && constant.value < 0.0 {
             without_turns += self.q.half_turns_at_zero(line) - self.p.half_turns_at_zero(line);
         }
-        let mut turns = Vec::with_capacity(switches.list.len());
-        for switch in &switches.list {
-            let Some(phase) = self.phase(line, switch.omega, switch.error) else {
-                return Found::Undecided;
-            };
-            turns.push(Turn {
-                omega: switch.omega,
-                omega_error: switch.error,
-                sign: f64::from(switch.sign),
-                phase: phase.value,
-                phase_error: phase.error,
-            });
-        }
-        Found::Turning(Turning {
-            without_turns,
-            turns,
+        Ok(without_turns)
+    }
+
+    fn turn(&self, on_line: &Shifted, line: f64, switch: &Switch) -> Option<Turn> {
+        let Angle { value, error } = on_line.phase(switch.omega, switch.error)?;
+        // The argument of −P Q* is half a turn from that of P Q*.
+        let fraction = value + PI;
+        let phase = fraction + TAU * self.whole_turns(line, switch.omega, value)?;
+        Some(Turn {
+            omega: switch.omega,
+            omega_error: switch.error,
+            sign: f64::from(switch.sign),
+            phase,
+            phase_error: error + 4.0 * f64::EPSILON * phase.abs(),
         })
     }
 
-    /// φ − ψ at `omega`: whole turns from the zeros, the fraction from P and Q.
-    fn phase(&self, line: f64, omega: f64, error: f64) -> Option<Angle> {
-        let Angle { value, error } = self.system.phase(line, omega, error)?;
-        let rough = self.p.argument(line, omega) - self.q.argument(line, omega);
-        // The argument of −P Q* is half a turn from that of P Q*.
-        let fraction = value + PI;
-        let turns = ((rough - fraction) / TAU).round();
-        let phase = fraction + TAU * turns;
-        ((phase - rough).abs() < SAME_TURN).then_some(Angle {
-            value: phase,
-            error: error + 4.0 * f64::EPSILON * phase.abs(),
-        })
+    /// The whole turns by which φ − ψ at `omega` is ahead of `angle` + π, the argument of −P Q*
+    /// being `angle`; none where the zeros of P and Q tell too little.
+    fn whole_turns(&self, line: f64, omega: f64, angle: f64) -> Option<f64> {
+        let mut turned = Turned::NOT;
+        self.p.turn(line, omega, 1.0, &mut turned);
+        self.q.turn(line, omega, -1.0, &mut turned);
+        let half_turns = self.p.half_turns_at_zero(line) - self.q.half_turns_at_zero(line);
+        let rough = PI * half_turns as f64 + turned.angle();
+        let ahead = rough - (angle + PI);
+        let turns = (ahead / TAU).round();
+        ((ahead - TAU * turns).abs() < SAME_TURN).then_some(turns)
     }
 }

@@ -98,8 +98,8 @@ impl Cutter<'_, '_> {
         }
     }
 
-    /// Where on two segments, one behind the other, what holds beside them stops to be `before`, and
-    /// whether that is on the second one.
+    /// Where on two segments, one behind the other, what holds beside them stops to be `before`,
+    /// and whether that is on the second one.
     fn change(&self, [from, middle, to]: [Point; 3], before: Sides) -> (Point, bool) {
         // From the middle of the first, 0, to the middle of the second, 1.
         let at = |s: f64| match s < 0.5 {

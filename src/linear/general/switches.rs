@@ -3,7 +3,8 @@
 //! Each is given with what is not known of it. Zeros that rounding does not tell apart come as one,
 //! which counts by the change of sign of F across all of them.
 
-use super::polynomial::Polynomial;
+use super::isolate::{Enclosed, PositiveZeros};
+use super::polynomial::{MOST_DEGREE, Polynomial};
 use super::zeros::{Set, Zeros};
 use crate::model::elementary::pow;
 
@@ -31,65 +32,114 @@ pub(super) struct Switches {
     pub open_below: f64,
 }
 
+/// What is known of F near 0.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct NearZero {
+    /// The sign of F right of 0; none where zeros near 0 leave it open.
+    pub sign: Option<bool>,
+    /// Below this frequency there may be further zeros.
+    pub open_below: f64,
+}
+
 impl Switches {
     /// Of the polynomial `f` in x = ω². F(0) is taken for 0 exactly where it may be 0.
     ///
     /// Returns false, and leaves nothing known, where the highest coefficient may be 0.
     pub(super) fn find(&mut self, f: &Polynomial) -> bool {
-        self.list.clear();
-        self.open_below = 0.0;
-        self.at_zero = None;
-        if !f.leading().decided() {
-            return false;
-        }
-        let mut rest = *f;
-        if !f.coefficient(0).decided() && f.degree() > 0 {
-            // A zero at 0 itself, or so near that nothing tells it from there.
-            self.open_below = near_zero(f);
-            rest = f.divided_by_variable();
-        }
-        let zeros = Zeros::of(&rest);
-        self.add_sets(&rest, &zeros);
-        true
+        let Self { list, .. } = self;
+        list.clear();
+        let found = each_switch(f, |switch| list.push(switch));
+        self.open_below = found.map_or(0.0, |near| near.open_below);
+        self.at_zero = found.and_then(|near| near.sign);
+        found.is_some()
     }
 
-    fn add_sets(&mut self, f: &Polynomial, zeros: &Zeros) {
-        let mut sets: [Option<(f64, f64, Set)>; super::polynomial::MOST_DEGREE] =
-            [None; super::polynomial::MOST_DEGREE];
-        let mut count = 0;
-        for set in zeros.sets() {
-            if let Some((from, to)) = set.on_real_axis().filter(|(_, to)| *to > 0.0) {
-                sets[count] = Some((from, to, set));
-                count += 1;
-            }
+    /// What is known of F near 0.
+    pub(super) fn near_zero(&self) -> NearZero {
+        NearZero {
+            sign: self.at_zero,
+            open_below: self.open_below,
         }
-        sets[..count].sort_by(|a, b| {
-            let middle = |s: &Option<(f64, f64, Set)>| s.map_or(0.0, |(from, to, _)| from + to);
-            middle(b).total_cmp(&middle(a))
-        });
-        let mut positive = f.leading().value > 0.0;
-        let constant = f.coefficient(0);
-        for (from, to, set) in sets[..count].iter().flatten() {
-            let odd = set.count() % 2 == 1;
-            if *from <= 0.0 {
-                // It covers 0: only the signs tell how many zeros lie right of it.
-                self.open_below = self.open_below.max(to.sqrt());
-                if !constant.decided() {
-                    return;
-                }
-                let before = constant.value > 0.0;
-                self.list.push(switch((0.0, *to), None, (before, positive)));
-                positive = before;
-                continue;
-            }
-            let before = positive ^ odd;
-            let lone = (set.count() == 1).then(|| set.middle().re);
-            self.list
-                .push(switch((*from, *to), lone, (before, positive)));
-            positive = before;
-        }
-        self.at_zero = Some(positive);
     }
+}
+
+/// Visits the switches of the polynomial `f` in x = ω², by falling frequency. F(0) is taken for 0
+/// exactly where it may be 0. None, with no switch visited, where the highest coefficient may be 0.
+#[inline]
+pub(super) fn each_switch(f: &Polynomial, mut visit: impl FnMut(Switch)) -> Option<NearZero> {
+    if !f.leading().decided() {
+        return None;
+    }
+    if f.coefficient(0).decided() || f.degree() == 0 {
+        return Some(switches_of(f, 0.0, &mut visit));
+    }
+    // A zero at 0 itself, or so near that nothing tells it from there.
+    Some(switches_of(
+        &f.divided_by_variable(),
+        near_zero(f),
+        &mut visit,
+    ))
+}
+
+#[inline]
+fn switches_of(f: &Polynomial, open_below: f64, visit: &mut impl FnMut(Switch)) -> NearZero {
+    let Some(zeros) = PositiveZeros::of(f) else {
+        return by_discs(f, open_below, visit);
+    };
+    let mut positive = f.leading().value > 0.0;
+    for Enclosed { centre, radius } in zeros.all() {
+        let range = (centre - radius, centre + radius);
+        visit(switch(range, Some(*centre), (!positive, positive)));
+        positive = !positive;
+    }
+    NearZero {
+        sign: Some(positive),
+        open_below,
+    }
+}
+
+/// From all zeros of `f`, those that are not apart as one.
+#[cold]
+fn by_discs(f: &Polynomial, open_below: f64, visit: &mut impl FnMut(Switch)) -> NearZero {
+    let zeros = Zeros::of(f);
+    let mut sets: [Option<(f64, f64, Set)>; MOST_DEGREE] = [None; MOST_DEGREE];
+    let mut count = 0;
+    for set in zeros.sets() {
+        if let Some((from, to)) = set.on_real_axis().filter(|(_, to)| *to > 0.0) {
+            sets[count] = Some((from, to, set));
+            count += 1;
+        }
+    }
+    sets[..count].sort_by(|a, b| {
+        let middle = |s: &Option<(f64, f64, Set)>| s.map_or(0.0, |(from, to, _)| from + to);
+        middle(b).total_cmp(&middle(a))
+    });
+    let mut positive = f.leading().value > 0.0;
+    let constant = f.coefficient(0);
+    let mut near = NearZero {
+        sign: None,
+        open_below,
+    };
+    for (from, to, set) in sets[..count].iter().flatten() {
+        let odd = set.count() % 2 == 1;
+        if *from <= 0.0 {
+            // It covers 0: only the signs tell how many zeros lie right of it.
+            near.open_below = near.open_below.max(to.sqrt());
+            if !constant.decided() {
+                return near;
+            }
+            let before = constant.value > 0.0;
+            visit(switch((0.0, *to), None, (before, positive)));
+            positive = before;
+            continue;
+        }
+        let before = positive ^ odd;
+        let lone = (set.count() == 1).then(|| set.middle().re);
+        visit(switch((*from, *to), lone, (before, positive)));
+        positive = before;
+    }
+    near.sign = Some(positive);
+    near
 }
 
 /// The switch within `from` < x < `to`, at `centre` if that is known, where F changes from one sign

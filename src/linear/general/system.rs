@@ -2,12 +2,14 @@
 
 use num_complex::Complex64;
 
-use super::parts::{Angle, Decay, Feedback, late, remembered};
-use super::polynomial::{At, DegreeTooLarge, Polynomial};
+use super::parts::{Decay, Feedback, late};
+use super::polynomial::{DegreeTooLarge, Polynomial};
 use super::reason::Reason;
+use super::shifted::Shifted;
+use super::zeros::{Disc, Zeros};
 use crate::linear::characteristic::{Jet, one_minus_exp};
 use crate::linear::rounded::Rounded;
-use crate::model::elementary::{arg, exp, ln, pow};
+use crate::model::elementary::{exp, ln, pow};
 
 /// D(λ) = P(λ) + Q(λ) e^(−λτ) with every parameter but the delay given.
 #[derive(Debug, Clone, Copy)]
@@ -124,7 +126,7 @@ impl System {
         if m < n {
             return Class::Retarded;
         }
-        let modulus = self.modulus(0.0, Decay::NONE);
+        let modulus = self.on_axis().modulus();
         if modulus.vanishes() {
             return Class::Refused;
         }
@@ -201,108 +203,21 @@ impl System {
         }
     }
 
-    /// D on the real axis at σ = `line`, of which sign and rounding matter.
-    pub(super) fn on_real_axis(&self, line: f64, decay: Decay) -> Rounded {
-        let at = |p: &Polynomial| p.shifted(line).coefficient(0);
-        if let Some(Feedback {
-            open, gain, memory, ..
-        }) = &self.feedback
-        {
-            // B(1 − Rκ) − A(1 − κ).
-            return at(open)
-                .times(remembered(*memory, decay))
-                .minus(at(gain).times(decay.lost));
-        }
-        let echo = at(&self.q).times(decay.kappa);
-        Rounded::sum([at(&self.p).value, echo.value]).plus_error(at(&self.p).error + echo.error)
-    }
-
-    /// p(0) − q(0) on the real axis at σ = `line`: F_σ(0) is D(σ) times this.
-    fn mirror(&self, line: f64, decay: Decay) -> Rounded {
-        let at = |p: &Polynomial| p.shifted(line).coefficient(0);
-        let minus = |a: Rounded, b: Rounded| a.minus(b);
+    /// P and Q on the line Re λ = `line`.
+    #[inline]
+    pub(super) fn on_line(&self, line: f64, decay: Decay) -> Shifted {
         match &self.feedback {
-            // B(1 + Rκ) − A(1 + κ).
             Some(Feedback {
                 open, gain, memory, ..
-            }) => {
-                let whole = |by: f64| {
-                    Rounded::sum([1.0, by * decay.kappa.value])
-                        .plus_error(by.abs() * decay.kappa.error)
-                };
-                minus(at(open).times(whole(*memory)), at(gain).times(whole(1.0)))
-            }
-            None => minus(at(&self.p), at(&self.q).times(decay.kappa)),
+            }) => Shifted::of_feedback([open, gain], *memory, line, decay),
+            None => Shifted::direct([&self.p, &self.q], line, decay),
         }
     }
 
-    /// F_σ of equations (6) and (8): |P|² − κ²|Q|² on the line σ = `line`, a polynomial in x = ω².
-    /// On the imaginary axis it may be one divided by a positive constant.
-    pub(super) fn modulus(&self, line: f64, decay: Decay) -> Polynomial {
-        let modulus = self.modulus_by_squares(line, decay);
-        let sum = match &self.feedback {
-            Some(Feedback { open, .. }) if line == 0.0 => open.coefficient(0),
-            _ => self.on_real_axis(line, decay),
-        };
-        // The product keeps its sign where a root is near σ, the difference of squares does not.
-        modulus.with_constant(sum.times(self.mirror(line, decay)))
-    }
-
-    fn modulus_by_squares(&self, line: f64, decay: Decay) -> Polynomial {
-        let square = decay.kappa.times(decay.kappa);
-        if let Some(Feedback {
-            open, gain, memory, ..
-        }) = &self.feedback
-        {
-            let (open, gain) = (open.shifted(line), gain.shifted(line));
-            let both = gain.real_product(&open);
-            let own = open.real_product(&open);
-            if line == 0.0 {
-                let factor = Rounded {
-                    value: 1.0 + memory,
-                    error: if *memory == 0.0 { 0.0 } else { f64::EPSILON },
-                };
-                return own.scaled(factor).plus(&both, -2.0);
-            }
-            // 1 − κ² = (1 − κ)(1 + κ).
-            let lost = decay
-                .lost
-                .times(Rounded::sum([1.0, decay.kappa.value]).plus_error(decay.kappa.error));
-            let remembered_square = remembered(*memory, decay).times(
-                Rounded::sum([1.0, memory * decay.kappa.value])
-                    .plus_error(memory.abs() * decay.kappa.error),
-            );
-            let middle = Rounded::sum([lost.value, square.value * (1.0 - memory)])
-                .plus_error(lost.error + square.error * (1.0 - memory));
-            return own
-                .scaled(remembered_square)
-                .plus(&both.scaled(middle), -2.0)
-                .plus(&gain.real_product(&gain).scaled(lost), 1.0);
-        }
-        let (p, q) = (self.p.shifted(line), self.q.shifted(line));
-        p.real_product(&p)
-            .plus(&q.real_product(&q).scaled(square), -1.0)
-    }
-
-    /// The argument α of −P Q* at σ + iω and a bound on its error, `omega` being known to within
-    /// `error`: none where nothing is known of it.
-    ///
-    /// D vanishes there where |P| = κ|Q| and α + ωτ is a multiple of 2π.
-    pub(super) fn phase(&self, line: f64, omega: f64, error: f64) -> Option<Angle> {
-        if let Some(feedback) = &self.feedback {
-            let b = feedback.open.shifted(line).on_axis(omega, error);
-            let a = feedback.gain.shifted(line).on_axis(omega, error);
-            return Angle::of_feedback(b, a, feedback.memory);
-        }
-        let p = self.p.shifted(line).on_axis(omega, error);
-        let q = self.q.shifted(line).on_axis(omega, error);
-        let product = -(p.value * q.value.conj());
-        let relative = |at: At| at.error / (at.value.norm_sqr().sqrt() - at.error).max(0.0);
-        let error = 2.0 * (relative(p) + relative(q)) + 4.0 * f64::EPSILON;
-        (error < 1.0).then(|| Angle {
-            value: arg(product),
-            error,
-        })
+    /// P and Q on the imaginary axis.
+    #[inline]
+    pub(super) fn on_axis(&self) -> Shifted {
+        self.on_line(0.0, Decay::NONE)
     }
 
     /// A radius within which every root with Re λ ≥ `line` lies; infinite where κρ ≥ 1.
@@ -385,6 +300,30 @@ impl System {
                     + part(open, 1.0 - memory + memory.abs() * by)
             }
             None => part(&self.p, 1.0) + part(&self.q, delayed + turned),
+        }
+    }
+
+    /// P and Q have a zero near iω in common, both within their errors on the axis.
+    pub(super) fn has_common_zero(&self, omega: f64) -> bool {
+        let on_axis = |polynomial: &Polynomial| {
+            let zeros = Zeros::of(polynomial);
+            let near = zeros.discs().iter().copied().filter(|disc| {
+                disc.centre.im > 0.0
+                    && disc.centre.re.abs() <= disc.radius
+                    && (disc.centre.im - omega).abs() <= 1e-6 * omega
+            });
+            near.min_by(|a, b| {
+                let apart = |d: &Disc| (d.centre.im - omega).abs();
+                apart(a).total_cmp(&apart(b))
+            })
+        };
+        let [p, q] = match self.late() {
+            Some(feedback) => feedback.polynomials(),
+            None => [&self.p, &self.q],
+        };
+        match (on_axis(p), on_axis(&q.without_open_leading())) {
+            (Some(p), Some(q)) => (p.centre.im - q.centre.im).abs() <= p.radius + q.radius,
+            _ => false,
         }
     }
 }

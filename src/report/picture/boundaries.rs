@@ -306,13 +306,8 @@ fn legend(map: &MapFile, view: &View, families: &[Family], degrees: &Degrees) ->
         [family] => family.colour,
         _ => INK,
     };
-    entries.extend(kinds::entries(
-        families
-            .iter()
-            .flat_map(|family| family.bounding.iter().copied()),
-        colour,
-        WIDTH,
-    ));
+    let bounding = families.iter().flat_map(|family| family.bounding.iter());
+    entries.extend(kinds::entries(&bounding.copied(), colour, WIDTH));
     entries.extend(degrees.entries(colour));
     Legend { heading, entries }
 }

@@ -55,7 +55,7 @@ pub(super) fn draw(
         .collect::<Result<_, _>>()?;
     let degrees = Degrees::of(map, curves);
     let symbols = symbols::of_view(map, view, y)?;
-    let kinds = kinds::entries(bounding(curves), INK, BOUNDARY_WIDTH);
+    let kinds = kinds::entries(&bounding(curves), INK, BOUNDARY_WIDTH);
     let entries = [kinds, degrees.entries(INK), symbols::entries(&symbols)].concat();
     let key = Key::new((field, &unit), &planes, !curves.is_empty(), options)?.with(entries);
     let column = match options.no_legend {

@@ -16,7 +16,7 @@ pub(super) fn dash(kind: CurveKind) -> Option<(f64, f64)> {
 
 /// Entries of a legend for the kinds that are there.
 pub(super) fn entries<'a>(
-    pieces: impl Iterator<Item = &'a CurvePiece> + Clone,
+    pieces: &(impl Iterator<Item = &'a CurvePiece> + Clone),
     colour: Rgb,
     width: f64,
 ) -> Vec<(Swatch, Rich)> {

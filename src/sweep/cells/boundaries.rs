@@ -73,12 +73,11 @@ pub fn trace_plane(plan: &Plan, index: &[usize]) -> Result<BoundaryPlane, ModelE
     };
     let degrees = &plan.spec.degrees_of_stability;
     let letter = traced_by_closed_form(&plan.spec, q);
-    let curves = match axes[p].parameter.known().filter(|_| letter) {
-        Some(p) => trace_window(&setting, p, &window, degrees)?,
-        None => {
-            let of = [&axes[p].parameter, &axes[q].parameter];
-            any_plane::trace_window(&setting, of, &window, degrees)?
-        }
+    let curves = if let Some(p) = axes[p].parameter.known().filter(|_| letter) {
+        trace_window(&setting, p, &window, degrees)?
+    } else {
+        let of = [&axes[p].parameter, &axes[q].parameter];
+        any_plane::trace_window(&setting, of, &window, degrees)?
     };
     Ok(BoundaryPlane {
         index: index.to_vec(),

@@ -26,9 +26,9 @@ pub struct Axis {
     pub values: Vec<f64>,
 }
 
-/// The axes of the planes in which curves can be traced, (p, q). With a delay that varies it is q, and
-/// p the last gain axis, else the last other axis on which linear stability depends. Without one they
-/// are the last two such axes. None where there are no two of them with two values or more.
+/// The axes of the planes in which curves can be traced, (p, q): a delay that varies is q, p the
+/// last gain axis, else the last other axis on which linear stability depends. Without one they are
+/// the last two such axes. None where there are no two of them with two values or more.
 #[must_use]
 pub fn plane_of_curves(axes: &[Axis]) -> Option<(usize, usize)> {
     let matters = |axis: &Axis| {
@@ -41,17 +41,13 @@ pub fn plane_of_curves(axes: &[Axis]) -> Option<(usize, usize)> {
     let place = |wanted: &dyn Fn(&Axis) -> bool| {
         axes.iter().rposition(|axis| matters(axis) && wanted(axis))
     };
-    match place(&is_delay) {
-        Some(tau) => {
-            let p = place(&is_gain).or_else(|| place(&|axis| !is_delay(axis)))?;
-            Some((p, tau))
-        }
-        None => {
-            let q = place(&|_| true)?;
-            let p = axes[..q].iter().rposition(matters)?;
-            Some((p, q))
-        }
+    if let Some(tau) = place(&is_delay) {
+        let p = place(&is_gain).or_else(|| place(&|axis| !is_delay(axis)))?;
+        return Some((p, tau));
     }
+    let q = place(&|_| true)?;
+    let p = axes[..q].iter().rposition(matters)?;
+    Some((p, q))
 }
 
 /// Values that make no axis, in words.

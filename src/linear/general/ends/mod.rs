@@ -4,17 +4,17 @@
 //! D = B (1 − R E) − g L e^(−λδ) (1 − E),   B = λ² + bλ + 1,   L = b + λ or 1                 (1)
 //! ```
 //!
-//! A lobe shrinks to a point in one of two ways: a pair of roots on the axis is double there, D = D′
-//! = 0 at iω, a cusp of the crossing curve; or two curves touch from opposite sides, D = 0 at iω₁ and
-//! at iω₂. Where these conditions leave freedom (the touch, or a latency that is free), b is the
-//! smallest under them: the gradient of b is a combination of theirs,
+//! A lobe shrinks to a point in one of two ways: a pair of roots on the axis is double there, D =
+//! D′ = 0 at iω, a cusp of the crossing curve; or two curves touch from opposite sides, D = 0 at
+//! iω₁ and at iω₂. Where these conditions leave freedom (the touch, or a latency that is free), b
+//! is the smallest under them: the gradient of b is a combination of theirs,
 //!
 //! ```text
 //! C(y) = 0,   Σ_k μ_k ∂C_k/∂y = ∂b/∂y,   y = (b, g, τ[, δ], ω…)                               (2)
 //! ```
 //!
-//! which Newton's method solves for y and μ. It starts from the lobe's end without memory and latency
-//! and follows it along both.
+//! which Newton's method solves for y and μ. It starts from the lobe's end without memory and
+//! latency and follows it along both.
 
 mod small;
 

@@ -47,8 +47,8 @@ impl Draft {
         if plane_of_curves(&self.axes).is_none() {
             return refuse(
                 "there is no plane for its curves",
-                "two axes of linear stability are needed, such as a gain and tau, with two values or more \
-                each",
+                "two axes of linear stability are needed, such as a gain and tau, each with two \
+                 values or more",
             );
         }
         Ok(())
