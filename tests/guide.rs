@@ -61,7 +61,9 @@ fn maps_hold_what_the_reference_says() {
     }
     let curves = file.group("boundaries").unwrap();
     for name in curves.member_names().unwrap() {
-        let general = name.replace("alpha_v", "PARAMETER");
+        let general = name
+            .replace("alpha_v", "PARAMETER")
+            .replace("tau", "SECOND");
         let outer = name.ends_with("mu_prime");
         let dimension = ["curve", "vertex", "corner"].contains(&&*name);
         assert!(outer || dimension || told(&general), "boundaries/{name}");

@@ -95,25 +95,13 @@ fn motions_by_chance() {
 /// The same with memory, latency or both in the feedback.
 #[test]
 fn motions_with_memory_and_latency() {
-    let total = given("SLIPMAP_CASES").map_or(100, |n| n as usize);
+    let total = given("SLIPMAP_CASES").map_or(24, |n| n as usize);
     let tally = ask("motions with memory and latency", total, |number| {
         let mut chance = Chance::of(seed() ^ 0x5eed, number);
         against::motion(&random::remembering(&mut chance))
     });
     holds(&tally, 0.03, 0.0);
     assert!(tally.compared > 8 * tally.asked, "{tally:?}");
-}
-
-/// What becomes of stick-slip when such a control is switched on at one of its phases.
-#[test]
-fn phases_with_memory_and_latency() {
-    let total = given("SLIPMAP_CASES").map_or(20, |n| n as usize / 5);
-    let tally = ask("phases with memory and latency", total, |number| {
-        let mut chance = Chance::of(seed() ^ 0xface, number);
-        let (setting, phase) = random::remembering_phase(&mut chance);
-        against::fate(&setting, phase)
-    });
-    holds(&tally, 0.1, 0.1);
 }
 
 /// A motion under control from t = 0.

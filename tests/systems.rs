@@ -702,7 +702,6 @@ fn mistakes_of_sweeps_are_shown_in_place() {
         LOBES.to_owned() + "[friction]\nlaw = \"coulomb\"\n",
         "best = true\n".to_owned() + LOBES,
         "protocol = \"limit\"\n".to_owned() + LOBES,
-        "boundaries = true\n".to_owned() + LOBES,
         fields("vc"),
         fields("outcome"),
         fields("gain_margin_upper"),

@@ -39,7 +39,7 @@ pub struct Margins {
     /// That box; null where the setting has not the decay rate.
     pub stability_box: Option<StabilityBox>,
     /// The margins above that could not be decided, or are not known of such a system: they are
-    /// null for that.
+    /// null for that, or the end of them that is null.
     pub undecided: Vec<&'static str>,
     /// Up to where margins were looked for that have no upper end here.
     pub looked_up_to: LookedUpTo,
@@ -50,11 +50,12 @@ pub struct Margins {
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
 #[cfg_attr(feature = "serve", derive(utoipa::ToSchema))]
 pub struct LookedUpTo {
-    /// The factor of both gains; null where the upper end is known, or known not to be.
+    /// The factor of both gains; null where the upper end is known, known not to be, or not
+    /// decided.
     pub gain_margin: Option<f64>,
     /// The further latency; null where it is known whether there is one that matters.
     pub latency_margin: Option<f64>,
-    /// The delay; null where the upper end is known, or known not to be.
+    /// The delay; null where the upper end is known, known not to be, or not decided.
     pub tau_margin: Option<f64>,
     /// The sliding velocity; null where the upper end is known, and without a friction law.
     pub v0_margin: Option<f64>,
@@ -95,7 +96,8 @@ pub struct StabilityBox {
     /// The box is within one per cent of the largest.
     pub tight: bool,
     /// Relative changes, in the order of gain, delay and third parameter, at which stability, or
-    /// the decay rate, is lost just beyond the box; null where no change up to 1 does that.
+    /// the decay rate, is lost just beyond the box, or a root touches the line within rounding;
+    /// null where no change up to 1 does that.
     pub lost_at: Option<[f64; 3]>,
 }
 

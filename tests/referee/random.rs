@@ -142,14 +142,6 @@ fn echo(chance: &mut Chance, setting: &mut Setting) {
     setting.latency = if late { latency } else { 0.0 };
 }
 
-/// A block in uncontrolled stick-slip, and the phase at which control with memory, latency or both
-/// is switched on.
-pub(crate) fn remembering_phase(chance: &mut Chance) -> (Setting, f64) {
-    let (mut setting, at) = phase(chance);
-    echo(chance, &mut setting);
-    (setting, at)
-}
-
 /// A law whose speeds are given over a unit of velocity.
 fn friction_in(mut friction: Friction, velocity: f64) -> Friction {
     match &mut friction.law {

@@ -115,10 +115,10 @@ pub(super) fn map_file(page: &mut String) {
     heading(page, 2, &format!("The group `{}`", schema::BOUNDARIES));
     paragraph(
         page,
-        "Exact curves in every plane of a parameter (PARAMETER below) and the delay, as \
-         contiguous ragged arrays of CF: curve after curve, vertex after vertex. The axes outside \
-         of the plane stand in it once for every curve, and with `corner_` before the name once \
-         for every corner.",
+        "Exact curves in every plane of two parameters (PARAMETER and SECOND below, which is \
+         `tau` in planes with the delay), as contiguous ragged arrays of CF: curve after curve, \
+         vertex after vertex. The axes outside of the plane stand in it once for every curve, and \
+         with `corner_` before the name once for every corner.",
     );
     let rows = CurveRows::described().unwrap_or_default().into_iter();
     let rows = rows.map(|(per, name, meaning)| [code(&name), per.to_owned(), meaning]);

@@ -18,7 +18,7 @@ use super::stable_area::stable_throughout;
 use super::symbols;
 use super::text::axis_title;
 use super::view::View;
-use crate::linear::curves::{CurvePiece, StableSide};
+use crate::linear::curves::{CurvePiece, StableSide, Vertex};
 use crate::report::known::Known;
 use crate::store::MapFile;
 use crate::store::map_file::MapCurve;
@@ -71,13 +71,14 @@ pub(super) fn draw(
     for (((panel, plane), index), symbols) in parts.zip(&symbols) {
         let outer = view.outer_values(map, index);
         let here: Vec<&MapCurve> = curves.iter().filter(|c| c.outer == outer).collect();
-        let plane = match changes_at_boundary(field) {
+        let turned = view.is_turned(map);
+        let plane = match changes_at_boundary(field) && !turned {
             true => cut(map, (view.x, y), index, panel, plane, &here, u)?,
             false => plane,
         };
         draw_cells(panel, &plane, &key, scene);
         for curve in here {
-            draw_curve(panel, curve, &degrees, scene);
+            draw_curve(panel, (curve, turned), &degrees, scene);
         }
         symbols::draw(panel, symbols, scene);
     }
@@ -137,10 +138,19 @@ fn cut(
     Ok(fitted(panel, known, &sides, u))
 }
 
-fn draw_curve(panel: &Panel, curve: &MapCurve, degrees: &Degrees, scene: &mut Scene) {
+/// Draws a curve; `turned` with its second parameter from left to right.
+fn draw_curve(
+    panel: &Panel,
+    (curve, turned): (&MapCurve, bool),
+    degrees: &Degrees,
+    scene: &mut Scene,
+) {
     if curve.piece.stable_side != StableSide::Neither {
-        let vertices = curve.piece.vertices.iter();
-        let points: Vec<_> = vertices.map(|v| panel.at(v.p, v.q)).collect();
+        let at = |v: &Vertex| match turned {
+            true => panel.at(v.q, v.p),
+            false => panel.at(v.p, v.q),
+        };
+        let points: Vec<_> = curve.piece.vertices.iter().map(at).collect();
         if curve.degree_of_stability > 0.0 {
             degrees.draw(curve.degree_of_stability, &points, INK, scene);
         } else if let Some(dash) = kinds::dash(curve.piece.kind) {

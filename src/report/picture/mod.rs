@@ -190,10 +190,12 @@ fn compose(map: &MapFile, options: &PictureOptions, most: usize) -> Result<Scene
         false => Vec::new(),
     };
     let fits = view.along.is_some() && view.of <= MOST_PANELS && view.outer_axes(map) == 1;
-    let by_default = fits && choice.leaves_curves(map) && !curves.is_empty();
+    let by_default =
+        fits && !view.is_turned(map) && choice.leaves_curves(map) && !curves.is_empty();
     match options.kind {
-        Some(PictureKind::Boundaries) if !in_plane => {
+        Some(PictureKind::Boundaries) if !in_plane || view.is_turned(map) => {
             return Err(no_curves(match map.boundary_plane() {
+                _ if view.is_turned(map) => "over a speed they are drawn over the cells alone",
                 None => "its sweep traced none",
                 Some(_) => "they lie in another plane, of whose axes one is held",
             }));

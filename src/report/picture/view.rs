@@ -41,7 +41,12 @@ impl View {
         let (x, y) = match (map.boundary_plane(), free.as_slice()) {
             (_, []) => return Err(PictureError::NothingToDraw),
             (_, &[x]) => (x, None),
-            (Some((p, tau)), free) if free.contains(&p) && free.contains(&tau) => (p, Some(tau)),
+            (Some((p, q)), free) if free.contains(&p) && free.contains(&q) => {
+                match speed::is_shown(map, &map.axes()[q]) {
+                    true => (q, Some(p)),
+                    false => (p, Some(q)),
+                }
+            }
             (_, &[.., a, b]) if speed::is_shown(map, &map.axes()[a]) => (a, Some(b)),
             (_, &[.., a, b]) if speed::is_shown(map, &map.axes()[b]) => (b, Some(a)),
             (_, &[.., a, b]) if map.axes()[a].parameter == Parameter::Tau => (b, Some(a)),
@@ -88,8 +93,16 @@ impl View {
 
     /// True if this is the plane of the map's crossing curves.
     pub(super) fn is_boundary_plane(&self, map: &MapFile) -> bool {
+        let upright = self
+            .y
+            .is_some_and(|y| map.boundary_plane() == Some((self.x, y)));
+        upright || self.is_turned(map)
+    }
+
+    /// True if this is the plane of the curves with their second parameter from left to right.
+    pub(super) fn is_turned(&self, map: &MapFile) -> bool {
         self.y
-            .is_some_and(|y| map.boundary_plane() == Some((self.x, y)))
+            .is_some_and(|y| map.boundary_plane() == Some((y, self.x)))
     }
 
     /// Number of axes outside the plane along which the map varies.

@@ -430,7 +430,8 @@ mod tests {
             }
         }
         assert_eq!(all, 960);
-        assert!(missed <= 48, "{missed}");
+        // Of so rare parts fewer are missed than the 5 % that are promised.
+        assert!(missed <= 24, "{missed}");
     }
 
     #[test]
