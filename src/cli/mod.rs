@@ -1,4 +1,57 @@
 //! The command line: one file per subcommand, each thin.
+//!
+//! - `asks`: what commands ask of a point, and so which flags they can use
+//! - `axis_facts`: what is told of an axis, of a sweep and of a map alike
+//! - `basin`: `basin`: which starts, what is told of them
+//! - `best`: `slipmap best`
+//! - `best_answer`: what `slipmap best` prints with `--json`
+//! - `best_text`: what `slipmap best` prints for people
+//! - `case_facts`: what is told of a case, before it is simulated and of its trace
+//! - `cell`: a cell of a map in the place of flags and case files
+//! - `colours`: `--color`, for help, messages and previews
+//! - `completions`: `slipmap completions`
+//! - `export`: which table is exported, and what of it
+//! - `failure`: how a command fails
+//! - `info`: `slipmap info`
+//! - `info_trace`: `slipmap info` of a trace
+//! - `json`: what commands print with `--json`
+//! - `kind`: what kind of file of slipmap's a name leads to, for commands that take another
+//! - `limit_args`: the flags of a point of the limit of a short delay
+//! - `man`: `slipmap man`
+//! - `margins`: `slipmap margins`
+//! - `merge`: `slipmap merge`
+//! - `motion_text`: what became of a motion, in words and numbers for people
+//! - `open`: opens a map for a command that reads it
+//! - `open_files`: as many open files as the system allows: a merge holds one of every shard
+//! - `output`: what all commands that write a file share
+//! - `parameter_values`: the values that flags give to parameters
+//! - `parameters`: the flags that give a point of parameter space, the same words as in sweep files
+//! - `plan`: `slipmap plan`
+//! - `plan_case`: `slipmap plan` of a case file
+//! - `plot`: `slipmap plot`
+//! - `point`: `slipmap point`
+//! - `point_args`: a point at which sliding is asked for
+//! - `point_system`: `slipmap point --system`
+//! - `read_map`: `slipmap read-map`
+//! - `recommended`: what `slipmap best` recommends
+//! - `reference`: `slipmap reference`
+//! - `reproduce`: `slipmap reproduce`: which files it may write, what it tells
+//! - `run`: `slipmap run`
+//! - `say`: telling the user things
+//! - `schema`: `slipmap schema`
+//! - `serve`: `slipmap serve`
+//! - `setting`: a setting from a file in the place of flags, and files of settings
+//! - `show`: a complete map drawn beside it and on the terminal, after `run` and `merge`
+//! - `signals`: signals that stop a command in order, also while it reads or draws
+//! - `simulate`: `slipmap simulate`
+//! - `status`: `slipmap status`
+//! - `sweep_file`: reading sweep files, case files and tables of friction, with errors that point
+//!   into them
+//! - `system_args`: a system from a file, or one that is part of the program, in the place of the
+//!   letter's
+//! - `text_output`: text on standard output, or in a file that is whole or not there
+//! - `vc`: `slipmap vc`
+//! - `verify`: `slipmap verify`
 
 mod asks;
 mod axis_facts;

@@ -16,6 +16,10 @@
 //!   is no answer
 //!
 //! Numbers that there are not are `null` in JSON, infinities among them.
+//!
+//! - `answer`: every request by its name, its answer as bytes: what the server and the page without
+//!   one share
+//! - `wasm`: the same as a WebAssembly module without imports
 
 pub mod along_delay;
 pub mod answer;

@@ -14,6 +14,11 @@
 //!
 //! Each of these has structures of evidence, filled by a run. A claim is a pure function of one of
 //! them: the same numbers, the same verdict.
+//!
+//! - `claim`: a claim, the values that it is judged by, its verdict
+//! - `page`: the page; the only file that imports maud
+//! - `workshop`: the maps and traces behind claims: sweeps of `sweeps/` computed into files, drawn
+//!   and read
 
 mod claim;
 mod limits;

@@ -17,6 +17,21 @@
 //! - [`lobes`]: where the stable regions of pure control end
 //! - [`best`]: the settings of fastest decay, for every stable region
 //! - [`margins`]: how far a setting is from the boundary of stability, in every direction
+//! - `branches`: starting values for roots from the branches of the logarithm
+//! - `certificate`: the number of roots right of any vertical line: argument principle in closed
+//!   form
+//! - `collocation`: roots as eigenvalues; the only file that imports faer
+//! - `controlled`: the controlled oscillator as such an equation
+//! - `equation`: what finding and following roots needs of a characteristic equation
+//! - `general`: any linear system with one delay
+//! - `newton`: polishing of a root (Halley's method) and its error
+//! - `rightmost`: the rightmost roots at one point, with the certificate that a map's cell has
+//! - `roots`: bisection
+//! - `rounded`: numbers with a bound on their rounding error
+//! - `sensitivity`: derivatives of a root with respect to the groups and the delay
+//! - `spectrum`: all roots right of a line, none missed
+//! - `stretch`: the curves between two breakpoints of the parameter
+//! - `track`: the rightmost roots along a line of delays, cell by cell, with their certificate
 
 pub mod best;
 mod branches;

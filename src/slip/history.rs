@@ -1,4 +1,6 @@
 //! The elongation over the last delay, as the polynomials of the steps that made it.
+//!
+//! - `extrapolated`: a past told from two others
 
 mod extrapolated;
 

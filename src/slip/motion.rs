@@ -19,6 +19,13 @@
 //! to the order of the method at no cost, and events are zeros of polynomials. A step ends where
 //! the delayed polynomial ends, if the next one is another by more than the tolerance: kinks are
 //! stepped on, one delay after the other, until they are too smooth to be felt.
+//!
+//! - `advance`: one step after the other: how long, and what ends it
+//! - `collocated`: steps by collocation: how long they are, the rates there
+//! - `events`: zeros of a step's polynomials, told apart from rounding
+//! - `parameters`: what a motion is given: parameters, integrator, accuracy
+//! - `stick`: a stuck block whose elongation grows evenly
+//! - `taylor`: steps by Taylor's method
 
 mod advance;
 mod collocated;

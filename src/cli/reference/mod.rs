@@ -1,5 +1,9 @@
 //! `slipmap reference`: the pages of the guide that list what the program knows, made of the tables
 //! that it uses itself. Hidden: `tests/guide.rs` holds the pages to it.
+//!
+//! - `command_line`: the command line, from what `--help` is made of
+//! - `map_file`: what stands in map and trace files
+//! - `markdown`: pieces of a page in Markdown
 
 mod command_line;
 mod map_file;

@@ -22,6 +22,13 @@
 //! columns (1/256 of the window in p), or if every column passes it in one step of its delays.
 //! Smaller windows show smaller parts. A boundary that leaves the delay free (no control at all) is
 //! no curve over p and left out.
+//!
+//! - `corner`: where two of its curves meet, double real roots among them
+//! - `letter`: the letter's characteristic function over such a plane
+//! - `plane`: D on the line Re λ = −σ over the plane, Newton's method, tangents
+//! - `seeds`: changes of "all roots decay" along columns and edges of the window
+//! - `walk`: following the boundary by predictor and corrector
+//! - `whole`: whole curves on which a pair lies on the line, cut where another root comes to it
 
 mod corner;
 mod letter;

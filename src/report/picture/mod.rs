@@ -17,6 +17,20 @@
 //! - `speed`: delays that are periods, by their speed
 //! - `degrees`: dashed curves of degrees of stability; `symbols`: places with a meaning
 //! - `colour`, `gradient`, `text`, `font`: how things look
+//! - `boundaries`: the boundaries of stability in one plane, a colour for each value of the axis
+//!   outside it
+//! - `error`: why a picture could not be drawn
+//! - `heat`: heat maps of a field
+//! - `kinds`: boundaries that are no pair of roots on the axis
+//! - `line`: fields along the one axis that is left: one at several values of another axis, or
+//!   several together
+//! - `pdf`: from SVG to PDF; the only file that imports svg2pdf
+//! - `rectangles`: cells as few rectangles
+//! - `render`: from a scene to the bytes of a PNG or SVG file
+//! - `scene`: what is on a picture, in pixels from its upper left corner, apart from how it is
+//!   rendered
+//! - `told_apart`: tests: colours under three kinds of colour blindness
+//! - `view`: what of a map is shown
 
 mod areas;
 mod boundaries;

@@ -3,6 +3,11 @@
 //! Numbers have the fewest digits that read back as the same bits. Infinities are `inf` and `-inf`,
 //! a missing value is empty, kinds are words. Comments, where they are asked for, are lines that
 //! begin with `#`, before the names.
+//!
+//! - `cells`: the cells of a map as rows
+//! - `curves`: the crossing curves of a map as rows, one for each vertex
+//! - `motion`: a motion as rows
+//! - `starts`: starts of motions and what became of them, as rows
 
 mod cells;
 mod curves;

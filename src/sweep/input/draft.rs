@@ -1,4 +1,8 @@
 //! Reads a sweep file.
+//!
+//! - `beyond`: what a sweep with memory, latency or lags cannot have
+//! - `checks`: whether what it says fits together
+//! - `of_system`: whether a sweep of a system fits together
 
 mod beyond;
 mod checks;

@@ -1,4 +1,9 @@
 //! The plan of a sweep: its cells, cut into tiles.
+//!
+//! - `memory`: how much memory a run takes at most, and how many threads that leaves
+//! - `pieces`: what a sweep is made of, shards of it, and what is still to be computed
+//! - `tile`: rectangular blocks of cells
+//! - `tile_size`: how large tiles are, where lines may be cut
 
 pub mod memory;
 pub mod pieces;

@@ -15,6 +15,8 @@
 //!
 //! which Newton's method solves for y and μ. It starts from the lobe's end without memory and
 //! latency and follows it along both.
+//!
+//! - `small`: a few equations in a few unknowns
 
 mod small;
 
