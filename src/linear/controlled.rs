@@ -12,6 +12,8 @@ use crate::model::Groups;
 impl Equation for Groups {
     type Unstable = UnstableCount;
 
+    const KEEPS_MARGINS: bool = false;
+
     fn pair(self) -> impl Pair {
         LetterPair::new(self)
     }

@@ -17,6 +17,10 @@ pub trait Equation: Copy {
     /// The number of roots right of the imaginary axis at any delay.
     type Unstable;
 
+    /// Counts right of a line cost much more than evaluations: a certificate begins with the margin
+    /// of the cell before.
+    const KEEPS_MARGINS: bool;
+
     /// P and Q.
     fn pair(self) -> impl Pair;
 

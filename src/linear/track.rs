@@ -30,6 +30,8 @@ const COMPANIONS: usize = 2;
 const MOST_TRACKS: usize = MOST_ROOTS + COMPANIONS;
 /// Evaluations of D after which a root is lost.
 const MOST_EVALUATIONS: u32 = 4;
+/// Cells after which a narrower margin than that of the cell before is tried.
+const CELLS_WITH_A_MARGIN: u8 = 6;
 /// How far the margin may be widened where a root is nearly multiple.
 const WIDEST_MARGIN: f64 = 0.03;
 /// What a step may leave of the error, relative.
@@ -82,6 +84,32 @@ const NO_ROOT: Root = Root {
     error: 0.0,
 };
 
+/// With which margin a certificate is tried first.
+#[derive(Debug, Clone, Copy)]
+struct KeptMargin {
+    margin: f64,
+    /// So many cells more begin with it.
+    cells: u8,
+}
+
+impl KeptMargin {
+    const NONE: Self = Self {
+        margin: MARGIN,
+        cells: 0,
+    };
+
+    /// After a cell that came to `margin`, widened or not.
+    fn learn(&mut self, margin: f64, widened: bool) {
+        if widened {
+            (self.margin, self.cells) = (margin, CELLS_WITH_A_MARGIN);
+        } else if self.cells > 0 {
+            self.cells -= 1;
+        } else {
+            self.margin = (0.125 * margin).max(MARGIN);
+        }
+    }
+}
+
 /// Follows the rightmost roots along lines, keeping its memory from one line to the next.
 #[derive(Debug, Clone)]
 pub struct RootTracker {
@@ -94,6 +122,8 @@ pub struct RootTracker {
     /// How many of `roots` are reported, and how many should be.
     reported: usize,
     expected: usize,
+    /// For each of `roots`, where certificates cost much.
+    margins: [KeptMargin; MOST_ROOTS],
     /// Fewer roots were found than there are.
     short: bool,
     /// The delay at which `tracks` stand, and the step that led there.
@@ -113,6 +143,7 @@ impl RootTracker {
             tracks: [NO_TRACK; MOST_TRACKS],
             followed: 0,
             roots: [NO_ROOT; MOST_ROOTS],
+            margins: [KeptMargin::NONE; MOST_ROOTS],
             reported: 0,
             expected: 0,
             short: false,
@@ -147,6 +178,9 @@ impl RootTracker {
             // Without control every delay is as none: e^(−λτ) must not overflow where nothing
             // depends on it.
             let tau = if controlled { delay / time_unit } else { 0.0 };
+            if i == 0 || (first + i).is_multiple_of(BLOCK) {
+                self.margins = [KeptMargin::NONE; MOST_ROOTS];
+            }
             // Where control begins to act there are more roots than before.
             let fresh =
                 i == 0 || (first + i).is_multiple_of(BLOCK) || self.tau == 0.0 || self.short;
@@ -295,7 +329,7 @@ impl RootTracker {
     /// Shows that right of each reported root there are no others than those reported. Returns the
     /// margin.
     #[inline]
-    fn certify(&self, equation: impl Equation, tau: f64) -> Result<f64, Doubt> {
+    fn certify<E: Equation>(&mut self, equation: E, tau: f64) -> Result<f64, Doubt> {
         let roots = &self.roots[..self.reported];
         if roots.is_empty() {
             return Err(Doubt::Undecided);
@@ -306,12 +340,18 @@ impl RootTracker {
         if roots[0].lambda.re <= essential {
             return Err(Doubt::Missed);
         }
-        for root in roots {
+        for (root, kept) in roots.iter().zip(&mut self.margins) {
             if root.lambda.re <= essential {
                 return Err(Doubt::Undecided);
             }
             let unit = root.lambda.re.abs().max(1.0);
-            let mut margin = MARGIN.max(16.0 * root.error / unit);
+            let least = if E::KEEPS_MARGINS {
+                kept.margin
+            } else {
+                MARGIN
+            };
+            let first = least.max(16.0 * root.error / unit);
+            let mut margin = first;
             let line = loop {
                 let line = root.lambda.re + margin * unit;
                 match equation.right_of(tau, line) {
@@ -324,6 +364,9 @@ impl RootTracker {
             if known.map(Root::count).sum::<u64>() != line.1 {
                 return Err(Doubt::Missed);
             }
+            if E::KEEPS_MARGINS {
+                kept.learn(margin, margin > first);
+            }
             widest = widest.max(margin);
         }
         Ok(widest)
@@ -334,7 +377,7 @@ impl RootTracker {
     /// it in `status`.
     #[inline]
     fn judge(
-        &self,
+        &mut self,
         equation: impl Equation,
         tau: f64,
         unstable: Option<u64>,

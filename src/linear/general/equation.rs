@@ -26,6 +26,8 @@ impl Pair for &System {
 impl Equation for &RootCounter {
     type Unstable = Option<Turning>;
 
+    const KEEPS_MARGINS: bool = true;
+
     fn pair(self) -> impl Pair {
         self.system()
     }

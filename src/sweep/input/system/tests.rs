@@ -95,8 +95,8 @@ const MISFITS: &[(&str, Option<&str>, &str)] = &[
         "expected a number",
     ),
     (
-        "[parameters]\na = { defualt = 1 }",
-        Some("defualt"),
+        "[parameters]\na = { usual = 1 }",
+        Some("usual"),
         "unknown key",
     ),
     (
