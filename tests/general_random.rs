@@ -6,11 +6,25 @@
 mod chance;
 
 use chance::{Chance, asked};
-use slipmap::linear::MarginalTolerance;
-use slipmap::linear::general::{DelayLine, Reason, RightOf, RootCounter, Spectrum, System};
+use slipmap::linear::general::{
+    DelayLine, Polynomial, Reason, RightOf, RootCounter, Spectrum, System,
+};
+use slipmap::linear::{Crossings, MarginalTolerance};
+use slipmap::model::Groups;
 
 fn cases(usual: usize) -> usize {
     asked("SLIPMAP_CASES", usual as u64) as usize
+}
+
+/// The letter's control in dimensionless groups, written as a general system.
+fn of_letter(Groups { b, a_v, a_n }: Groups) -> System {
+    let polynomial = |c: &[f64]| Polynomial::new(c).unwrap();
+    System::feedback(
+        polynomial(&[1.0, b, 1.0]),
+        polynomial(&[b * a_v + a_n, a_v]),
+        0.0,
+        0.0,
+    )
 }
 
 /// A polynomial of a degree from random zeros, all left of `rightmost` or not, times `leading`.
@@ -199,4 +213,57 @@ fn counts_do_not_depend_on_how_a_system_is_written() {
             }
         }
     }
+}
+
+/// The letter as a general system: the same counts, and marginal cells that are the same or lie
+/// where one of both ways knows the crossing delay less well.
+#[test]
+fn the_letter_by_both_ways() {
+    let mut chance = Chance(20_261_124);
+    let (mut line, tolerance) = (DelayLine::default(), MarginalTolerance::default());
+    let total = cases(20_000);
+    let (mut marginal, mut of_letter_alone, mut of_other_alone) = (0, 0, 0);
+    for number in 0..total {
+        let b = chance.between(-1.5, 0.7);
+        let gains = [
+            [chance.between(-2.0, 1.0), 0.0],
+            [0.0, chance.between(-8.0, 3.0)],
+            [chance.between(-2.0, 1.0), chance.between(-8.0, 3.0)],
+        ];
+        let [a_v, a_n] = gains[number % 3];
+        let groups = Groups::new(b, a_v, a_n);
+        let crossings = Crossings::of(groups);
+        let tau = chance.log(1e-3, 100.0);
+        // Every tenth delay lies on a crossing, to the last digits.
+        let tau = match crossings.iter().next().filter(|_| number % 10 == 0) {
+            Some(first) => {
+                first.delay(first.first_branch) * (1.0 + 1e-15 * chance.below(40) as f64)
+            }
+            None => tau,
+        };
+        line.find(&of_letter(groups));
+        let (one, other) = (crossings.count(tau, tolerance), line.count(tau, tolerance));
+        let place = format!("{groups:?} {tau}: {one:?} {other:?}");
+        assert_eq!(line.reason, None, "{place}");
+        if one.marginal || other.marginal {
+            let near = |at: f64| (at - tau).abs() <= 1e-11 * tau.max(1.0);
+            let mut delays = crossings.iter().flat_map(|c| {
+                let nearest = ((tau - c.delay(0)) / c.period()).round().max(0.0);
+                [nearest, nearest + 1.0].map(|k| c.delay(k as u64))
+            });
+            assert!(delays.any(near), "{place}");
+            marginal += 1;
+            of_letter_alone += u32::from(!other.marginal);
+            of_other_alone += usize::from(!one.marginal);
+        } else {
+            assert_eq!(one.n_unstable, other.n_unstable, "{place}");
+        }
+    }
+    println!(
+        "{total} cells, {marginal} marginal: {of_letter_alone} by the closed form alone, \
+         {of_other_alone} by the other way alone"
+    );
+    // What the closed form of the quadratic knows is known better.
+    assert_eq!(of_letter_alone, 0);
+    assert!(of_other_alone * 10 <= total, "{of_other_alone}");
 }
