@@ -64,7 +64,15 @@ impl FieldSummary {
 
     /// Of so many kinds.
     fn of_kinds(cells: &[u8], kinds: usize) -> Self {
-        let of = |kind: usize| count(cells, |cell| usize::from(cell) == kind);
+        // Many are of one kind in a whole tile.
+        let same = cells.iter().all(|cell| *cell == cells[0]);
+        let of = |kind: usize| match (same, cells.first()) {
+            (true, first) => {
+                let all = first.is_some_and(|first| usize::from(*first) == kind);
+                u64::from(all) * cells.len() as u64
+            }
+            _ => count(cells, |cell| usize::from(cell) == kind),
+        };
         let kinds: Vec<u64> = (0..kinds).map(of).collect();
         Self {
             finite: kinds.iter().sum(),

@@ -69,12 +69,9 @@ impl GeneralColumns {
             self.fill_roots(line, roots, buffers);
         }
         self.fill_linear(line, buffers);
-        for (i, (&n, &status)) in self.counts.iter().zip(&self.status).enumerate() {
-            let place = line.places.of(i);
-            buffers.status[place] = status;
-            if let Some(out) = &mut buffers.n_unstable {
-                out[place] = n;
-            }
+        line.places.copy(&self.status, &mut buffers.status);
+        if let Some(out) = &mut buffers.n_unstable {
+            line.places.copy(&self.counts, out);
         }
     }
 
@@ -226,7 +223,17 @@ impl GeneralColumns {
     fn fill_linear(&self, line: &GeneralLine, buffers: &mut TileBuffers) {
         let wanted = |field: Field| matches!(field.source(), Source::Linear(_));
         let kinds = buffers.kinds.iter().any(|c| wanted(c.field));
-        if !kinds && !buffers.columns.iter().any(|c| wanted(c.field)) {
+        let numbers = buffers.columns.iter().any(|c| wanted(c.field));
+        if !kinds && !numbers {
+            return;
+        }
+        // The reason is the same all along most lines, and maps have it unasked.
+        if !numbers && !self.no_rightmost.contains(&true) {
+            let reason = self.crossings.reason.map_or(0, Reason::number);
+            let len = line.delays.values().len();
+            for column in buffers.kinds.iter_mut().filter(|c| wanted(c.field)) {
+                line.places.fill(reason, len, &mut column.cells);
+            }
             return;
         }
         for (i, &tau) in line.delays.values().iter().enumerate() {
