@@ -129,6 +129,27 @@ fn points_of_the_tables() {
     assert!(checked > 350, "{checked}");
 }
 
+/// The latency margin counts from no latency at all, also where the setting's own is too long.
+#[test]
+fn the_latency_margin_does_not_depend_on_the_latency() {
+    let at = |latency: f64| {
+        let mut setting = Setting::new(None);
+        for (parameter, value) in [
+            (Parameter::MuPrime, -0.3),
+            (Parameter::AlphaV, -0.33),
+            (Parameter::Tau, 4.15),
+            (Parameter::Latency, latency),
+        ] {
+            setting.set(parameter, value);
+        }
+        point(&setting, None)["latency_margin"].as_f64().unwrap()
+    };
+    assert!((at(0.0) - 0.175_588_644_23).abs() < 1e-10);
+    for latency in [0.1, 0.2, 3.0] {
+        assert!((at(latency) - at(0.0)).abs() < 1e-11, "{latency}");
+    }
+}
+
 fn same_latencies(row: &Row, found: &Value, time: f64) {
     if row.number("latency").is_none() {
         return;

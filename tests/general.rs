@@ -4,7 +4,7 @@
 mod general_rows;
 
 use general_rows::{degenerate, without_latency};
-use slipmap::linear::general::{DelayLine, RightOf, RootCounter};
+use slipmap::linear::general::{DelayLine, Reason, RightOf, RootCounter, System};
 use slipmap::linear::rightmost::Rightmost;
 use slipmap::linear::stable_delays::StableInterval;
 use slipmap::linear::{Direction, MarginalTolerance};
@@ -72,6 +72,27 @@ fn degenerate_cases_have_their_count_and_their_reason() {
                 );
             }
         }
+    }
+}
+
+/// Where F has a double zero at 0 and D, at τ*, a triple one, a pair comes to the origin with the
+/// real root: no count is told. A little beside that the count is that of the other way.
+#[test]
+fn a_triple_root_at_the_origin_is_not_counted() {
+    let system = |off: f64| {
+        let p = [1.0, -2.0, 2.0 + off, 3.0, -1.0];
+        System::of_coefficients(&p, &[-1.0]).unwrap()
+    };
+    let exact = DelayLine::of(&system(0.0));
+    assert!(exact.uncounted && exact.reason == Some(Reason::RootAtOrigin));
+    let three = System::of_coefficients(&[3.0, -1.0, 1.0 / 6.0, 2.0, 1.0], &[-3.0]).unwrap();
+    assert!(DelayLine::of(&three).uncounted);
+    for off in [-1e-3, 1e-3] {
+        let (system, tau) = (system(off), 3.0);
+        let line = DelayLine::of(&system);
+        assert!(!line.uncounted, "{off}");
+        let right = RootCounter::new(&system).right_of(tau, 1e-6);
+        assert_eq!(right.finite(), Some(line.n_unstable(tau)), "{off}");
     }
 }
 

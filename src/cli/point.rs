@@ -336,9 +336,12 @@ fn print_delays(
 ) -> std::io::Result<()> {
     let time = unit_behind(&units.time());
     for crossing in &stability.crossings {
+        let direction = match crossing.direction {
+            "touch" => "none: a touch".to_owned(),
+            side => format!("to the {side}"),
+        };
         let text = format!(
-            "to the {} at omega = {}{}, tau = {}{time} + k {}{time}",
-            crossing.direction,
+            "{direction} at omega = {}{}, tau = {}{time} + k {}{time}",
             crossing.omega,
             unit_behind(&units.angular_frequency()),
             crossing.first_delay,

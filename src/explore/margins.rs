@@ -126,6 +126,10 @@ impl Margins {
             decays: stability.stable,
             ..Self::lost(0.0)
         };
+        // That counts from no latency at all, whatever holds at the setting's own.
+        let latency = stability.latencies.margin.unwrap_or(f64::NAN);
+        margins.latency_margin = finite(latency);
+        margins.note("latency_margin", &[latency]);
         if !margins.decays {
             return margins;
         }
@@ -144,9 +148,6 @@ impl Margins {
             margins.undecided.push("tau_margin");
         }
         margins.phase_margin = None;
-        let latency = stability.latencies.margin.unwrap_or(f64::NAN);
-        margins.latency_margin = finite(latency);
-        margins.note("latency_margin", &[latency]);
         margins.stability_radius = None;
         margins.undecided.extend([
             "gain_margin",

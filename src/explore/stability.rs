@@ -191,7 +191,8 @@ impl Stability {
             n_unstable: count.map(|count| count.n_unstable),
             // At ρ = 1 nothing decays at a rate of its own.
             stable: stable_here && found.reason != Some(Reason::NeutralLimit),
-            marginal: count.is_some_and(|count| count.marginal),
+            marginal: count.is_some_and(|count| count.marginal)
+                || found.reason == Some(Reason::RootAtOrigin),
             reason: found.reason.map(Reason::name),
             stable_delays: ends(&stable),
             stable_delays_truncated: intervals.next().is_some() || intervals.gave_up(),

@@ -258,10 +258,16 @@ impl DelayLine {
         let q0 = system.q.coefficient(0);
         let tau = slope.value / q0.value;
         let error = (slope.error + tau.abs() * q0.error) / q0.value.abs();
+        let error = error + f64::EPSILON * tau.abs();
+        if tau > error && !system.on_axis().modulus().coefficient(1).decided() {
+            // F has a double zero at 0, and D a triple one at τ*: a pair comes and goes there, too.
+            self.uncounted = true;
+            return;
+        }
         if let (Some(positive), true) = (near.sign, tau.is_finite()) {
             self.passage = Some(Passage {
                 tau,
-                error: error + f64::EPSILON * tau.abs(),
+                error,
                 change: if positive { 1 } else { -1 },
             });
         }
