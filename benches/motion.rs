@@ -41,6 +41,8 @@ fn problems() -> [Problem; 3] {
         alpha_v,
         alpha_n,
         tau,
+        memory: 0.0,
+        latency: 0.0,
         v0,
         switch_on,
     };

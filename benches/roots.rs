@@ -8,7 +8,7 @@
 
 use std::time::Instant;
 
-use slipmap::linear::collocation::eigenvalues;
+use slipmap::linear::equation::Equation;
 use slipmap::linear::newton::polish;
 use slipmap::linear::row::Delays;
 use slipmap::linear::status::CERTIFIED;
@@ -90,7 +90,7 @@ fn collocate(map: &Map) -> Vec<f64> {
     let mut abscissas = Vec::with_capacity(POINTS * POINTS / (THINNED * THINNED));
     for &groups in map.lines.iter().step_by(THINNED) {
         for &tau in map.delays.iter().step_by(THINNED) {
-            let starts = eigenvalues(groups, tau, NODES).unwrap_or_default();
+            let starts = groups.eigenvalues(tau, NODES).unwrap_or_default();
             let roots = starts
                 .iter()
                 .take(POLISHED)

@@ -15,6 +15,8 @@ CARGO_NEEDED=1.89
 # With this one the tests passed; others may lint otherwise.
 RUST_TESTED=1.95.0
 CARGO_DENY=0.18.9
+MDBOOK=0.5.4
+CARGO_DEB=3.8.0
 CMAKE_NEEDED=3.26
 WASM=wasm32-unknown-unknown
 
@@ -107,6 +109,17 @@ need_cargo() {
     version=$(cd "$SLIPMAP_ROOT" && version_of cargo)
     at_least "$version" "$CARGO_NEEDED" ||
         die "cargo is version ${version:-unknown}, $CARGO_NEEDED or newer is needed. With Rust from https://rustup.rs: rustup update"
+}
+
+# cargo_tool PROGRAM VERSION FLAG…: a program of the crate of that name, built once into target/tools; false where it cannot be.
+cargo_tool() {
+    local program=$1 version=$2
+    shift 2
+    have "$program" && return
+    case ":$PATH:" in *":$SLIPMAP_ROOT/target/tools/bin:"*) ;; *) export PATH="$SLIPMAP_ROOT/target/tools/bin:$PATH" ;; esac
+    have "$program" && return
+    say "building $program into target/tools"
+    cargo install --quiet --locked --root "$SLIPMAP_ROOT/target/tools" "$@" "$program@$version" >&2
 }
 
 # Rust's standard library for WebAssembly, from where Rust comes from; false where it cannot be had.

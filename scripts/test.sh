@@ -118,14 +118,25 @@ install_slurm() {
     have_slurm || warnings+=("tests/slurm/run.sh is not run: Slurm or munge is missing and cannot be installed")
 }
 
-# cargo-deny, built once into target/tools.
 install_cargo_deny() {
-    have cargo-deny && return
-    export PATH="$SLIPMAP_ROOT/target/tools/bin:$PATH"
-    have cargo-deny && return
-    say "building cargo-deny into target/tools"
-    cargo install --quiet --locked --root "$SLIPMAP_ROOT/target/tools" "cargo-deny@$CARGO_DENY" >&2 ||
+    cargo_tool cargo-deny "$CARGO_DENY" ||
         warnings+=("licences and sources of dependencies are not checked, cargo-deny cannot be built")
+}
+
+# What the guide is made and checked with.
+install_guide_tools() {
+    cargo_tool mdbook "$MDBOOK" --no-default-features --features search || warnings+=("the guide is not built, mdbook cannot be built")
+    install_packages guide-venv requirements-guide.txt ||
+        warnings+=("spelling is not checked, the package of scripts/requirements-guide.txt cannot be installed")
+}
+
+# The guide as a book in target/guide, and its spelling.
+check_guide() {
+    local typos=target/guide-venv/bin/typos
+    [ ! -x "$typos" ] || step "$typos"
+    have mdbook || return 0
+    step mdbook build doc
+    [ -s target/guide/guide/equations.html ] || die "the guide has no equation index"
 }
 
 # Advisories need the network, which may not be there; all else is in the manifests.
@@ -157,6 +168,7 @@ fi
 check_static_page
 install_slurm
 install_cargo_deny
+install_guide_tools
 rust_is_tested=$(version_of rustc)
 [ "$rust_is_tested" = "$RUST_TESTED" ] ||
     say "the Rust here is ${rust_is_tested:-unknown}; what is committed passed with $RUST_TESTED"
@@ -178,6 +190,7 @@ fi
 step scripts/features.sh
 RUSTDOCFLAGS="-D warnings" step cargo doc --locked --no-deps "${features[@]}"
 check_licences
+check_guide
 step cargo test --release --locked "${features[@]}" -- ${left_out[@]+"${left_out[@]}"}
 if [ -n "$browser" ]; then
     make_static_page

@@ -5,7 +5,10 @@
 //! α_N) can turn this into continuous sliding. slipmap says for which gains and delays: exactly,
 //! from the closed form of the crossing curves, over whole grids of parameters.
 //!
-//! Source of the model: F.-J. Elmer, *Controlling friction* (1997), "the letter".
+//! Source of the model: F.-J. Elmer, *Controlling friction*, Institut für Physik, Universität
+//! Basel, November 1997, "the letter". The [equation index](equations) leads from each of its
+//! equations, figures and claims to the function that computes it and the test that holds it. The
+//! guide in `doc` explains the rest.
 //!
 //! | module | what it holds | feature |
 //! |---|---|---|
@@ -48,6 +51,9 @@
 
 #[cfg_attr(not(test), warn(clippy::disallowed_methods))]
 pub mod critical;
+#[cfg(doc)]
+#[doc = include_str!("../doc/guide/equations.md")]
+pub mod equations {}
 #[cfg(feature = "explore")]
 #[cfg_attr(not(test), warn(clippy::disallowed_methods))]
 pub mod explore;

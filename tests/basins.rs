@@ -63,6 +63,8 @@ fn survival_at_the_stop_phase_is_reentrant() {
             alpha_v: -0.33,
             alpha_n: 0.0,
             tau: 4.15,
+            memory: 0.0,
+            latency: 0.0,
             v0,
             switch_on: 0.0,
         };

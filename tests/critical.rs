@@ -29,6 +29,8 @@ fn problem(law: FrictionLaw, alpha_v: f64, alpha_n: f64, tau: f64) -> Problem {
         alpha_v,
         alpha_n,
         tau,
+        memory: 0.0,
+        latency: 0.0,
         stop: Stop::default(),
         options: Options::default(),
     }

@@ -267,15 +267,14 @@ fn curves_are_those_of_the_map() {
         spread(of_vertex("degree_of_stability"))
     );
     let number = |name: &str| -> Vec<i8> { group.dataset(name).unwrap().read_raw().unwrap() };
-    for (name, words) in [
-        ("direction", ["to_the_left", "touch", "to_the_right"]),
-        (
-            "stable_side",
-            ["shorter_delays", "neither", "longer_delays"],
-        ),
+    let sides = ["shorter_delays", "neither", "longer_delays"];
+    for (name, first, words) in [
+        ("direction", -1, ["to_the_left", "touch", "to_the_right"]),
+        ("stable_side", -1, sides),
+        ("kind", 0, ["pair", "real_root", "leading_coefficient"]),
     ] {
         let kinds = number(name);
-        let word = |i: usize| words[(kinds[i] + 1) as usize];
+        let word = |i: usize| words[(kinds[i] - first) as usize];
         let expected: Vec<&str> = curves()
             .flat_map(|(i, &n)| vec![word(i); n as usize])
             .collect();

@@ -23,7 +23,8 @@ const ONE_IN: usize = 5;
 /// The files of a folder that may not be there.
 fn files(folder: &Path) -> Vec<PathBuf> {
     let entries = fs::read_dir(folder).into_iter().flatten();
-    let mut files: Vec<PathBuf> = entries.map(|entry| entry.unwrap().path()).collect();
+    let paths = entries.map(|entry| entry.unwrap().path());
+    let mut files: Vec<PathBuf> = paths.filter(|path| path.is_file()).collect();
     files.sort();
     files
 }
@@ -66,6 +67,16 @@ fn kept_sweeps() {
     replay("sweep");
     for path in files(Path::new("sweeps")) {
         targets::ALL[0].1(&fs::read(path).unwrap());
+    }
+    // Systems are tables of sweeps.
+    for path in files(Path::new("sweeps/systems")) {
+        let system = fs::read_to_string(path)
+            .unwrap()
+            .replace("[param", "[system.param");
+        let sweep = format!("axes.tau = [0, 1]\n[system]\n{system}");
+        let read: SweepSpec = sweep.parse().unwrap();
+        assert!(read.fixed.system().is_some());
+        targets::ALL[0].1(sweep.as_bytes());
     }
 }
 

@@ -43,6 +43,7 @@ fn named_by_the_manifest(folder: &Path) {
             &[
                 "critical",
                 "critical_options",
+                "general",
                 "margins",
                 "motion",
                 "roots",

@@ -191,6 +191,8 @@ fn letters(alpha_v: f64, alpha_n: f64, tau: f64) -> Problem {
         alpha_v,
         alpha_n,
         tau,
+        memory: 0.0,
+        latency: 0.0,
         stop: Stop::default(),
         options: Options::default(),
     }
@@ -230,6 +232,8 @@ fn coulomb(gamma: f64, tau: f64) -> Problem {
         alpha_v: 0.0,
         alpha_n: -2.0 * gamma / (0.5 * tau),
         tau,
+        memory: 0.0,
+        latency: 0.0,
         stop: Stop::default(),
         options: Options::default(),
     }

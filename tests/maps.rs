@@ -9,6 +9,7 @@ use std::path::Path;
 use slipmap::linear::Crossings;
 use slipmap::linear::certificate::roots_right_of;
 use slipmap::linear::curves::StableSide;
+use slipmap::linear::general::{RightOf, RootCounter};
 use slipmap::linear::status::MARGINAL;
 use slipmap::store::MapFile;
 use slipmap::sweep::cells::best::{best_of_plane, best_plane};
@@ -178,7 +179,7 @@ fn curves_in_the_map_separate_its_stable_cells() {
             let stable = |tau: f64| {
                 Crossings::of(slipmap::model::Groups::new(mu_prime, 0.0, v.p)).n_unstable(tau) == 0
             };
-            let (before, after) = (stable(v.tau - 1e-9), stable(v.tau + 1e-9));
+            let (before, after) = (stable(v.q - 1e-9), stable(v.q + 1e-9));
             // At the ends of a piece another curve passes through the same point.
             if before != after {
                 assert_eq!(before, curve.piece.stable_side == StableSide::Shorter);
@@ -221,15 +222,17 @@ fn degrees_of_stability_bound_what_they_say() {
             let side = match curve.piece.stable_side {
                 StableSide::Shorter => -1e-4,
                 StableSide::Longer => 1e-4,
-                StableSide::Neither => unreachable!("only what bounds is traced"),
+                StableSide::Neither | StableSide::Below | StableSide::Above => {
+                    unreachable!("only what bounds is traced")
+                }
             };
             // Next to a corner or a fold the decaying region is narrower than the step.
             let ends = [vertices[0], vertices[vertices.len() - 1]];
-            if v.tau < 1e-3 || ends.iter().any(|w| (v.tau - w.tau).hypot(v.p - w.p) < 0.05) {
+            if v.q < 1e-3 || ends.iter().any(|w| (v.q - w.q).hypot(v.p - w.p) < 0.05) {
                 continue;
             }
-            assert_eq!(count(v.tau + side), Some(0), "{v:?}");
-            assert_eq!(count(v.tau - side), Some(2), "{v:?}");
+            assert_eq!(count(v.q + side), Some(0), "{v:?}");
+            assert_eq!(count(v.q - side), Some(2), "{v:?}");
             checked[number] += 1;
         }
     }
@@ -495,7 +498,8 @@ fn boundaries_can_be_asked_for_in_other_planes() {
     for (number, (text, plane)) in [
         ("[axes]\nmu_prime = { from = -1, to = 0.5, points = 50 }\ntau = { from = 0, to = 9, points = 50 }\n[fixed]\nalpha_n = -1\n", Some((0, 1))),
         ("[axes]\ntau = { from = 0, to = 9, points = 50 }\nv0 = { from = 0.1, to = 2, points = 50 }\n[fixed]\nalpha_n = -1\n[friction]\nlaw = \"weakening\"\nmu0 = 0.5\nv_s = 0.5\n", Some((1, 0))),
-        ("boundaries = true\n[axes]\nmu_prime = [-1, 1]\nalpha_n = [-1, 0]\n[fixed]\ntau = 1\n", None),
+        ("boundaries = true\n[axes]\nmu_prime = [-1, 1]\nalpha_n = [-1, 0]\n[fixed]\ntau = 1\n", Some((0, 1))),
+        ("[axes]\nmu_prime = [-1, 1]\nalpha_n = [-1, 0]\n[fixed]\ntau = 1\n", None),
         ("boundaries = false\n[axes]\nalpha_n = [-1, 0]\ntau = [0, 1]\n[fixed]\nmu_prime = 1\n", None),
     ].into_iter().enumerate() {
         let path = folder.path().join(format!("{number}.h5"));
@@ -503,6 +507,101 @@ fn boundaries_can_be_asked_for_in_other_planes() {
         let map = MapFile::open(&path).unwrap();
         assert_eq!(map.boundary_plane(), plane, "{text}");
         assert_eq!(map.curves_where(|_| true).unwrap().is_empty(), plane.is_none());
+    }
+}
+
+/// A small step in the plane to a side.
+fn towards(side: StableSide) -> Option<(f64, f64)> {
+    match side {
+        StableSide::Neither => None,
+        StableSide::Shorter => Some((0.0, -1e-5)),
+        StableSide::Longer => Some((0.0, 1e-5)),
+        StableSide::Below => Some((-1e-5, 0.0)),
+        StableSide::Above => Some((1e-5, 0.0)),
+    }
+}
+
+/// All roots lie left of −`sigma`.
+fn decays(setting: &slipmap::sweep::Setting, sigma: f64) -> bool {
+    let (model, unit) = setting.linear().unwrap();
+    let tau = setting.get(Parameter::Tau) / unit;
+    RootCounter::new(&model.system()).right_of(tau, -sigma * unit) == RightOf::Roots(0)
+}
+
+/// Sweeps with boundaries, and the parameters of their planes.
+const PLANES: [(&str, &str); 6] = [
+    (
+        "[axes]\nalpha_v = { from = -1.5, to = 0.2, points = 20 }\ntau = { from = 0.1, to = 9, points = 20 }\n[fixed]\nmu_prime = -0.5\nmemory = 0.4\n",
+        "alpha_v tau",
+    ),
+    (
+        "[axes]\nlatency = { from = 0, to = 2, points = 20 }\ntau = { from = 0.1, to = 9, points = 20 }\n[fixed]\nmu_prime = -0.2\nalpha_v = -0.4\n",
+        "latency tau",
+    ),
+    (
+        "[axes]\nmemory = { from = -0.8, to = 0.8, points = 20 }\nalpha_v = { from = -1.5, to = 0.2, points = 20 }\n[fixed]\nmu_prime = -0.5\ntau = 5\n",
+        "memory alpha_v",
+    ),
+    (
+        "boundaries = true\n[axes]\nalpha_n = { from = -4, to = 1, points = 20 }\nalpha_v = { from = -1.5, to = 0.5, points = 20 }\n[fixed]\nmu_prime = -0.2\ntau = 1.5\n",
+        "alpha_n alpha_v",
+    ),
+    (
+        "system = \"turning\"\ndegree_of_stability = [0.01]\n[axes]\nwidth = { from = 0, to = 0.5, points = 20 }\ntau = { from = 1, to = 20, points = 20 }\n",
+        "width tau",
+    ),
+    (
+        "system = \"pd\"\n[axes]\nk_p = { from = -1, to = 3, points = 20 }\nk_d = { from = -1, to = 3, points = 20 }\n[fixed]\nstiffness = -0.5\ntau = 0.4\n",
+        "k_p k_d",
+    ),
+];
+
+/// Planes of other systems and of other parameters: right beside a boundary one side is stable, the
+/// other is not.
+#[test]
+fn boundaries_of_any_plane() {
+    let folder = tempfile::tempdir().unwrap();
+    for (number, (text, plane)) in PLANES.into_iter().enumerate() {
+        let path = folder.path().join(format!("{number}.h5"));
+        let plan = plan(text);
+        write(&plan, 1, &path);
+        let map = MapFile::open(&path).unwrap();
+        let (p, q) = map.boundary_plane().unwrap_or_else(|| panic!("{text}"));
+        let [p, q] = [p, q].map(|axis| &plan.spec.axes[axis]);
+        assert_eq!(
+            format!("{} {}", p.parameter.name(), q.parameter.name()),
+            plane
+        );
+        let stable = |at_p: f64, at_q: f64, sigma: f64| {
+            let mut setting = plan.spec.fixed.clone();
+            setting.vary(&p.parameter, at_p);
+            setting.vary(&q.parameter, at_q);
+            decays(&setting, sigma)
+        };
+        let (mut checked, mut degrees) = (0, 0);
+        for curve in map.curves_where(|_| true).unwrap() {
+            let vertices = &curve.piece.vertices;
+            let Some(side) = towards(curve.piece.stable_side) else {
+                continue;
+            };
+            degrees += u32::from(curve.degree_of_stability > 0.0);
+            // In the middle of a piece no other one is near.
+            let v = vertices[vertices.len() / 2];
+            let beside = |sign: f64| {
+                let (p, q) = (v.p + sign * side.0, v.q + sign * side.1);
+                stable(p, q, curve.degree_of_stability)
+            };
+            if vertices.len() > 2 {
+                assert!(
+                    beside(1.0) && !beside(-1.0),
+                    "{text}: {v:?} {:?}",
+                    curve.piece.kind
+                );
+                checked += 1;
+            }
+        }
+        assert!(checked > 0, "{text}");
+        assert_eq!(degrees > 0, text.contains("degree"), "{text}");
     }
 }
 

@@ -426,6 +426,39 @@ fn a_friction_law_leads_from_one_velocity_to_another() {
     }
 }
 
+/// Where pairs touch the line again and again on the way to other sliding velocities, the search for
+/// a limit ends: settings that took minutes.
+#[test]
+fn limits_along_the_velocity_end_soon() {
+    let oscillator = Oscillator::new(1.0, 1.0, 1.0).unwrap();
+    let coulomb = FrictionLaw::coulomb(0.175_332_016_989_479_12, 1.0).unwrap();
+    let stribeck = |mu0, v_s| FrictionLaw::stribeck(mu0, v_s, 1.0).unwrap();
+    let cases = [
+        (coulomb, (-728.5, -0.000_354), 1896.01, 0.1826),
+        (stribeck(0.1257, 0.1314), (-2013.9, 0.0), 1262.97, 33.24),
+        (stribeck(0.002_373, 1.0146e-5), (0.0, -45.577), 2.159, 3e6),
+    ];
+    for (law, (alpha_v, alpha_n), tau, v0) in &cases {
+        let sliding = SlidingLaw {
+            law,
+            oscillator: &oscillator,
+            control: Control {
+                alpha_v: *alpha_v,
+                alpha_n: *alpha_n,
+            },
+        };
+        let setting = Setting {
+            groups: sliding.groups(*v0),
+            tau: *tau,
+            decay: 0.0,
+        };
+        let start = Instant::now();
+        let found = margins::velocity(&setting, &sliding, *v0);
+        assert!(start.elapsed() < Duration::from_secs(6), "{law:?}");
+        assert!(found.lower.is_nan() || found.lower <= *v0, "{found:?}");
+    }
+}
+
 /// Long and short delays, sliding velocities at which the slope hardly matters or jumps nearby: a
 /// part of a second each, and what is proved holds, tight or not.
 #[test]

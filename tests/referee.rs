@@ -92,6 +92,18 @@ fn motions_by_chance() {
     assert!(tally.compared > 10 * tally.asked, "{tally:?}");
 }
 
+/// The same with memory, latency or both in the feedback.
+#[test]
+fn motions_with_memory_and_latency() {
+    let total = given("SLIPMAP_CASES").map_or(24, |n| n as usize);
+    let tally = ask("motions with memory and latency", total, |number| {
+        let mut chance = Chance::of(seed() ^ 0x5eed, number);
+        against::motion(&random::remembering(&mut chance))
+    });
+    holds(&tally, 0.03, 0.0);
+    assert!(tally.compared > 8 * tally.asked, "{tally:?}");
+}
+
 /// A motion under control from t = 0.
 fn start(law: Law, mu_s: f64, gains: (f64, f64), tau: f64, v0: f64, (u, a): (f64, f64)) -> Start {
     Start {
@@ -103,6 +115,8 @@ fn start(law: Law, mu_s: f64, gains: (f64, f64), tau: f64, v0: f64, (u, a): (f64
             alpha_v: gains.0,
             alpha_n: gains.1,
             tau,
+            memory: 0.0,
+            latency: 0.0,
             v0,
             switch_on: 0.0,
         },
@@ -229,6 +243,8 @@ fn starts_of_basins() {
             alpha_v,
             alpha_n,
             tau,
+            memory: 0.0,
+            latency: 0.0,
             v0,
             switch_on: 0.0,
         };

@@ -208,8 +208,23 @@ fn commands_of_settings_repeat_their_numbers() {
     };
     let most = value("finite", "most").0;
     assert_eq!(answer("finite")["n_unstable"].as_f64(), Some(most));
+    // The largest unstable root that is listed, over the bound for all delays.
     let largest = answer("root_bounds");
-    assert!(largest["n_unstable"].as_u64().unwrap() > 0, "{largest}");
+    let of = |name: &str| largest[name].as_f64().unwrap();
+    let (b, a_v, a_n) = (of("mu_prime"), of("alpha_v"), of("alpha_n"));
+    let linear = b.abs() + 2.0 * a_v.abs();
+    let constant = 1.0 + 2.0 * (b * a_v + a_n).abs();
+    let bound = 0.5 * (linear + (linear * linear + 4.0 * constant).sqrt());
+    let roots = largest["roots"].as_array().unwrap().iter();
+    let roots = roots.map(|root| [0, 1].map(|i| root[i].as_f64().unwrap()));
+    let sizes = roots
+        .filter(|root| root[0] > 0.0)
+        .map(|[re, im]| re.hypot(im));
+    let nearest = sizes.fold(0.0, f64::max) / bound;
+    assert!(
+        (nearest - value("root_bounds", "nearest").0).abs() < 1e-9,
+        "{largest}"
+    );
     let crossing = answer("crossings");
     assert_eq!(crossing["marginal"], true, "{crossing}");
     let tau = crossing["tau"].as_f64().unwrap();

@@ -137,7 +137,14 @@ fn laws_and_tables_are_told() {
             .collect::<Vec<_>>()
     };
     assert!(names("parameters").contains(&"alpha_v".to_owned()));
-    assert_eq!(names("laws"), ["coulomb", "weakening", "stribeck", "table"]);
+    let laws = [
+        "coulomb",
+        "weakening",
+        "stribeck",
+        "rate-and-state",
+        "table",
+    ];
+    assert_eq!(names("laws"), laws);
     assert!(names("fields").contains(&"n_unstable".to_owned()));
 }
 

@@ -307,8 +307,8 @@ fn windows_show_the_closed_form() {
         for (head, curve) in heads.iter().zip(&curves) {
             let vertices = curve.piece.vertices.iter();
             let expected = vertices.flat_map(|v| match x {
-                "tau" => [v.tau, v.p],
-                _ => [v.p, v.tau],
+                "tau" => [v.q, v.p],
+                _ => [v.p, v.q],
             });
             assert!(told.numbers(head).into_iter().eq(expected));
         }

@@ -68,6 +68,8 @@ fn every_fate_of_the_reference_is_met() {
                 alpha_n: number(alpha_n),
             },
             tau: number(tau),
+            memory: 0.0,
+            latency: 0.0,
             v0: number(v0),
             switch_on: number(phase),
             start: Start::AfterRelease,
@@ -133,6 +135,8 @@ fn problem(law: FrictionLaw, (alpha_v, alpha_n): (f64, f64), tau: f64) -> Proble
         alpha_v,
         alpha_n,
         tau,
+        memory: 0.0,
+        latency: 0.0,
         stop: Stop::default(),
         options: Options::default(),
     }

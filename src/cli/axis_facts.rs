@@ -1,14 +1,14 @@
-//! What is told of an axis, of a sweep and of a map alike.
+//! The facts of an axis, printed alike for a sweep and for a map.
 
 use serde::Serialize;
 use slipmap::report::numbers::grouped;
-use slipmap::sweep::Parameter;
+use slipmap::sweep::input::quantity::Quantity;
 use utoipa::ToSchema;
 
 /// An axis by its parameter: its number of values, the first and the last.
 #[derive(Serialize, ToSchema)]
 pub(super) struct AxisFacts {
-    pub name: &'static str,
+    pub name: String,
     points: u64,
     first: f64,
     last: f64,
@@ -16,9 +16,9 @@ pub(super) struct AxisFacts {
 
 impl AxisFacts {
     /// Of an axis with these values, at least one.
-    pub(super) fn of(parameter: Parameter, values: &[f64]) -> Self {
+    pub(super) fn of(parameter: &Quantity, values: &[f64]) -> Self {
         Self {
-            name: parameter.name(),
+            name: parameter.name().to_owned(),
             points: values.len() as u64,
             first: values[0],
             last: values[values.len() - 1],
@@ -27,7 +27,7 @@ impl AxisFacts {
 
     /// "tau   400 points, 0 to 12 s", the unit with a space before it or empty.
     pub(super) fn text(&self, unit: &str) -> String {
-        let (name, points) = (self.name, grouped(self.points));
+        let (name, points) = (&self.name, grouped(self.points));
         let (first, last) = (self.first, self.last);
         format!("{name:<12} {points:>10} points, {first} to {last}{unit}")
     }

@@ -73,7 +73,7 @@ pub(super) struct Args {
     /// Threads to compute on [default: as many as the machine offers]
     #[arg(long, value_name = "N", value_parser = parse_threads)]
     threads: Option<usize>,
-    /// One JSON object on standard output; what there is not is null
+    /// One JSON object on standard output; null where there is no value
     #[arg(long)]
     json: bool,
 }
@@ -137,7 +137,7 @@ pub(super) fn main(args: &Args) -> Result<(), Failure> {
 impl Args {
     /// What is asked, from a map, a file or flags.
     fn read(&self) -> Result<Question, Failure> {
-        let by_flags = self.parameters.any_given();
+        let by_flags = self.parameters.any_but(&[]);
         let mut basin = Basin {
             starts: STARTS,
             ..Basin::default()
@@ -236,7 +236,7 @@ impl Args {
     }
 }
 
-/// The ends that flags give a range, else those by default.
+/// The ends of a range: those that flags give, else the defaults.
 fn range(
     of: Parameter,
     ends: &[(&str, Option<f64>)],

@@ -10,11 +10,12 @@ use slipmap::sweep::cells::best::{Ranges, best_settings, default_ranges, robust_
 use slipmap::sweep::input::search::Protocol;
 use slipmap::sweep::{Parameter, Setting};
 
+use super::asks::AtAnyDelay;
 use super::best_answer::BestAnswer;
 use super::best_text;
 use super::failure::Failure;
 use super::json::{self, AnswerSchema, Inputs};
-use super::parameters::{AtAnyDelay, ParameterArgs};
+use super::parameters::ParameterArgs;
 use super::recommended::{Control, Recommended};
 use super::say;
 use super::setting;

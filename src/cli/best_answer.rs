@@ -44,7 +44,7 @@ struct RobustOut {
     worst_abscissa: f64,
     /// The relaxation time there.
     worst_relaxation_time: f64,
-    /// The relative changes of gain, delay and μ′ at which it is taken.
+    /// The relative changes of gain, delay and μ′ at which the decay is slowest.
     worst_at: [f64; 3],
     /// Whether it is proved that none within the spread is larger.
     certified: bool,

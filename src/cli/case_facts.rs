@@ -1,4 +1,5 @@
-//! What is told of the case of one motion: before it is simulated, and of its trace.
+//! The facts of the case of one motion: `plan` prints them before it is simulated, `info` of its
+//! trace.
 
 use serde::Serialize;
 use slipmap::model::Control;

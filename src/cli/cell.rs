@@ -11,6 +11,7 @@ use slipmap::sweep::input::axis::{Axis, nearest};
 use slipmap::sweep::input::basin::Basin;
 use slipmap::sweep::input::nearest::did_you_mean;
 use slipmap::sweep::input::point_file::{PointOf, PointSpec};
+use slipmap::sweep::input::quantity::Quantity;
 use slipmap::sweep::input::simulation::Simulation;
 use slipmap::sweep::{Parameter, Plan, Setting};
 
@@ -49,7 +50,7 @@ pub(super) fn parse_at(text: &str) -> Result<At, String> {
 
 impl At {
     /// The number of its axis among `axes`, those of a map.
-    pub(super) fn axis(&self, axes: &[Parameter]) -> Result<usize, Failure> {
+    pub(super) fn axis(&self, axes: &[&Quantity]) -> Result<usize, Failure> {
         let names = || axes.iter().map(|axis| axis.name());
         let place = names().position(|name| name == self.name);
         place.ok_or_else(|| {
@@ -75,26 +76,43 @@ impl CellArgs {
         self.at.iter().map(|at| format!(" --at {at}")).collect()
     }
 
-    /// What can be asked at the cell, and its setting; none where no map is given. Says which cell
-    /// it is.
+    /// The setting of the cell, where the map is one of a system from a file.
+    pub(super) fn of_system(&self) -> Result<Option<Setting>, Failure> {
+        let Some(path) = &self.map else {
+            return Ok(None);
+        };
+        let plan = plan_of(path)?;
+        match plan.spec.fixed.system() {
+            Some(_) => Ok(Some(plan.setting(&self.index(&plan)?))),
+            None => Ok(None),
+        }
+    }
+
+    /// What can be asked at the cell, and its setting; none where no map is given.
     fn texts(&self) -> Result<Option<(CellTexts, Setting)>, Failure> {
         let Some(path) = &self.map else {
             return Ok(None);
         };
         let plan = plan_of(path)?;
-        self.check_axes(&plan)?;
+        let index = self.index(&plan)?;
+        let setting = plan.setting(&index);
+        Ok(Some((CellTexts::of(&plan, &index), setting)))
+    }
+
+    /// Where the cell is along every axis. Says which cell it is.
+    fn index(&self, plan: &Plan) -> Result<Vec<usize>, Failure> {
+        self.check_axes(plan)?;
         let mut index = Vec::new();
         let mut there = Vec::new();
         for axis in &plan.spec.axes {
             let place = self.place(axis)?;
-            let unit = unit_behind(&plan.spec.units.of_parameter(axis.parameter));
+            let unit = unit_behind(&axis.parameter.unit(&plan.spec.units));
             let (name, value) = (axis.parameter.name(), axis.values[place]);
             there.push(format!("{name} = {value}{unit}"));
             index.push(place);
         }
         say::note(format_args!("the cell at {}", there.join(", ")));
-        let setting = plan.setting(&index);
-        Ok(Some((CellTexts::of(&plan, &index), setting)))
+        Ok(index)
     }
 
     /// The point of sliding at the cell, or its critical velocity.
@@ -133,7 +151,7 @@ impl CellArgs {
 
     /// Values are given on axes alone.
     fn check_axes(&self, plan: &Plan) -> Result<(), Failure> {
-        let axes: Vec<_> = plan.spec.axes.iter().map(|axis| axis.parameter).collect();
+        let axes: Vec<_> = plan.spec.axes.iter().map(|axis| &axis.parameter).collect();
         self.at.iter().try_for_each(|at| at.axis(&axes).map(drop))
     }
 
@@ -153,12 +171,12 @@ impl CellArgs {
             }
             _ => return Err(Failure::bad_input(format!("--at {name} is given twice"))),
         };
-        place_on(axis.parameter, &axis.values, value)
+        place_on(&axis.parameter, &axis.values, value)
     }
 }
 
 /// The place on an axis of the value nearest to `value`, which the axis reaches.
-pub(super) fn place_on(of: Parameter, values: &[f64], value: f64) -> Result<usize, Failure> {
+pub(super) fn place_on(of: &Quantity, values: &[f64], value: f64) -> Result<usize, Failure> {
     nearest(values, value).map_err(|[low, high]| {
         let message = format!("--at {}={value} is outside the axis", of.name());
         let help = format!("it goes from {low} to {high}");
@@ -166,7 +184,7 @@ pub(super) fn place_on(of: Parameter, values: &[f64], value: f64) -> Result<usiz
     })
 }
 
-/// Nothing else says what is asked where a cell or a file does.
+/// Refuses other flags of the setting where a cell of a map or a file gives it.
 pub(super) fn alone(flag: &str, given: bool) -> Result<(), Failure> {
     match given {
         false => Ok(()),
@@ -174,6 +192,7 @@ pub(super) fn alone(flag: &str, given: bool) -> Result<(), Failure> {
             format!("{flag} is given with other flags of the point"),
             match flag {
                 "--map" => "the map says everything but the cell, which --at says",
+                "--system" => "--set and --tau say everything of it",
                 _ => "the file says everything",
             },
         )),
@@ -202,6 +221,12 @@ impl Needed {
 
 /// A cell lacks what a command needs.
 fn without(setting: &Setting, needed: &[Needed]) -> Failure {
+    if setting.system().is_some() {
+        return Failure::bad_input_with_help(
+            "this map is one of a system from a file, which has counts, roots and delays alone",
+            "slipmap point --map takes its cells",
+        );
+    }
     let lacking = needed.iter().filter_map(|needed| needed.lacking(setting));
     match lacking.collect::<Vec<_>>()[..] {
         // A cell of the limit of a short delay has all of its own.
@@ -239,7 +264,8 @@ mod tests {
         for (text, value) in [("mu_prime=-0.3", -0.3), ("mu-prime = 1e-2", 0.01)] {
             let at = parse_at(text).unwrap();
             assert_eq!((at.name.as_str(), at.value), ("mu_prime", value));
-            let axes = [Parameter::Tau, Parameter::MuPrime];
+            let axes = [Parameter::Tau, Parameter::MuPrime].map(Quantity::from);
+            let axes = axes.each_ref();
             assert!(matches!(at.axis(&axes), Ok(1)));
             assert!(at.axis(&axes[..1]).is_err());
         }

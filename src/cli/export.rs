@@ -9,8 +9,8 @@ use slipmap::report::numbers::grouped;
 use slipmap::report::table::{TableError, write_cells, write_curves, write_events, write_samples};
 use slipmap::store::trace_file::{QUANTITIES, Quantity};
 use slipmap::store::{MapFile, TraceFile, trace_reader};
+use slipmap::sweep::Field;
 use slipmap::sweep::input::nearest::did_you_mean;
-use slipmap::sweep::{Field, Parameter};
 
 use super::cell::{At, parse_at, place_on};
 use super::failure::Failure;
@@ -168,9 +168,9 @@ fn refuse_fields(args: &Args, table: TableName) -> Result<(), Failure> {
     Err(Failure::bad_input(message))
 }
 
-/// For every axis the place at which it is held.
+/// For every axis, the index at which it is held; none where it is free.
 fn held(map: &MapFile, args: &Args) -> Result<Vec<Option<usize>>, Failure> {
-    let axes: Vec<Parameter> = map.axes().iter().map(|axis| axis.parameter).collect();
+    let axes: Vec<_> = map.axes().iter().map(|axis| &axis.parameter).collect();
     let mut held = vec![None; axes.len()];
     for at in &args.at {
         let axis = at.axis(&axes)?;

@@ -100,11 +100,11 @@ struct Facts {
     /// Parameters that are no axes, by name.
     #[serde(serialize_with = "as_object")]
     #[schema(value_type = BTreeMap<String, f64>)]
-    fixed: Vec<(&'static str, f64)>,
+    fixed: Vec<(String, f64)>,
     /// Units of axes, fixed parameters and fields, by name; `1` where there is none.
     #[serde(serialize_with = "as_object")]
     #[schema(value_type = BTreeMap<String, String>)]
-    units: Vec<(&'static str, String)>,
+    units: Vec<(String, String)>,
     cells: u64,
     cells_missing: u64,
     fields: Vec<FieldFacts>,
@@ -152,17 +152,20 @@ struct BestFacts {
 
 impl Facts {
     fn of(map: &MapFile) -> Result<Self, Failure> {
-        let axis = |axis: &MapAxis| AxisFacts::of(axis.parameter, &axis.values);
+        let axis = |axis: &MapAxis| AxisFacts::of(&axis.parameter, &axis.values);
         let flags = FLAGS.iter().map(|(_, name)| *name);
         let flagged = flags.zip(map.status_counts()?.flagged);
         let scalars = map.scalars().into_iter();
         let mut told = origin(|name| map.root_text(name));
         told.extend(said_of_starts(map));
+        told.extend(map.system().map(|system| ("system", system.in_one_line())));
         Ok(Self {
             kind: "map",
             origin: told,
             axes: map.axes().iter().map(axis).collect(),
-            fixed: scalars.map(|(p, value)| (p.name(), value)).collect(),
+            fixed: scalars
+                .map(|(p, value)| (p.name().to_owned(), value))
+                .collect(),
             cells: map.cells(),
             cells_missing: map.cells_missing(),
             units: units(map),
@@ -175,7 +178,7 @@ impl Facts {
 
     fn tell_parameters(&self, rows: &mut Rows) -> Result<(), Failure> {
         for axis in &self.axes {
-            rows.row("axis", axis.text(&self.unit(axis.name)))?;
+            rows.row("axis", axis.text(&self.unit(&axis.name)))?;
         }
         for (name, value) in &self.fixed {
             let unit = self.unit(name);
@@ -186,7 +189,7 @@ impl Facts {
 
     /// The unit of a name, after a space; nothing where it has none.
     fn unit(&self, name: &str) -> String {
-        let of = self.units.iter().find(|(of, _)| *of == name);
+        let of = self.units.iter().find(|(of, _)| of == name);
         of.map_or_else(String::new, |(_, unit)| unit_behind(unit))
     }
 
@@ -288,21 +291,21 @@ fn said_of_starts(map: &MapFile) -> Option<(&'static str, String)> {
 }
 
 /// Units of parameters are those of the sweep.
-fn units(map: &MapFile) -> Vec<(&'static str, String)> {
+fn units(map: &MapFile) -> Vec<(String, String)> {
     let of_sweep = map.units();
-    let axes = map.axes().iter().map(|axis| axis.parameter);
+    let axes = map.axes().iter().map(|axis| axis.parameter.clone());
     let scalars = map.scalars().into_iter().map(|(parameter, _)| parameter);
     let parameters = axes.chain(scalars);
-    let of_parameters = parameters.map(|p| (p.name(), of_sweep.of_parameter(p)));
+    let of_parameters = parameters.map(|p| (p.name().to_owned(), p.unit(&of_sweep)));
     let fields = map
         .fields()
         .iter()
-        .map(|&field| (field.name(), map.field_unit(field)));
+        .map(|&field| (field.name().to_owned(), map.field_unit(field)));
     let mut units: Vec<_> = of_parameters.chain(fields).collect();
     // That of the best settings, too.
     let time = Field::RelaxationTime.name();
-    if map.best_plane().is_some() && units.iter().all(|(name, _)| *name != time) {
-        units.push((time, of_sweep.time()));
+    if map.best_plane().is_some() && units.iter().all(|(name, _)| name != time) {
+        units.push((time.to_owned(), of_sweep.time()));
     }
     units
 }

@@ -18,7 +18,7 @@ use super::json::{self, Inputs, as_object};
 use super::motion_text;
 use super::say::Rows;
 
-/// In what form it is told.
+/// As JSON, or as text for people.
 #[derive(Debug, Clone, Copy)]
 pub(super) enum Told {
     /// Rows for people.

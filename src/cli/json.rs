@@ -81,13 +81,13 @@ pub(super) fn print(inputs: &Inputs, value: &impl Serialize) -> Result<(), Failu
 
 /// Pairs of a name and a value as an object, in their order; names of several words are joined.
 pub(super) fn as_object<S: Serializer, T: Serialize>(
-    pairs: &[(&'static str, T)],
+    pairs: &[(impl AsRef<str>, T)],
     to: S,
 ) -> Result<S::Ok, S::Error> {
     to.collect_map(
         pairs
             .iter()
-            .map(|(name, value)| (name.replace(' ', "_"), value)),
+            .map(|(name, value)| (name.as_ref().replace(' ', "_"), value)),
     )
 }
 

@@ -22,7 +22,7 @@ pub(super) enum Kind {
 }
 
 impl Kind {
-    /// The kind of the file at `path`; none where it is none of slipmap's.
+    /// The kind of the file at `path`; none where it is not a file of slipmap.
     pub(super) fn of(path: &Path) -> Option<Self> {
         // A pipe would be waited for.
         path.metadata()

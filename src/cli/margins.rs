@@ -74,7 +74,7 @@ pub(super) fn print(
     let looked = &margins.looked_up_to;
     if let Some(gain) = margins.gain_margin {
         let text = match (gain.lower.filter(|k| *k > 0.0), gain.upper) {
-            _ if undecided("gain_margin") => "not decided".into(),
+            ends if undecided("gain_margin") => known(ends, " times as large"),
             (lower, upper) => between(lower, upper, " times as large"),
         };
         row("gain_margin", text + &up_to(looked.gain_margin, " times"))?;
@@ -88,16 +88,31 @@ pub(super) fn print(
         let name = format!("{}_margin", parameter.name());
         let unit = unit_behind(&units.of_parameter(parameter));
         let text = match undecided(&name) {
-            true => "not decided".into(),
+            true => known((margin.from, margin.to), &unit),
             false => along(&margin, setting.get(parameter), &unit),
         };
         row(&name, text + &up_to(last, &unit))?;
     }
     print_loop(&mut row, margins, units)?;
-    if let Some(found) = &margins.stability_box {
-        row("stability_radius", radius(margins.stability_radius, found))?;
+    if let (Some(found), Some(proved)) = (&margins.stability_box, margins.stability_radius) {
+        row("stability_radius", radius(proved, found))?;
     }
     tell_dimensionless(out, units)
+}
+
+/// The end that is known of a margin whose other end is not decided.
+fn known(ends: (Option<f64>, Option<f64>), unit: &str) -> String {
+    match ends {
+        (Some(lower), None) => format!(
+            "from {}{unit} on; the upper end is not decided",
+            rounded(lower, 9)
+        ),
+        (None, Some(upper)) => format!(
+            "up to {}{unit}; the lower end is not decided",
+            rounded(upper, 9)
+        ),
+        _ => "not decided".into(),
+    }
 }
 
 /// The phase margin and the latency margin.

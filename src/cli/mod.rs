@@ -1,5 +1,59 @@
 //! The command line: one file per subcommand, each thin.
+//!
+//! - `asks`: what commands ask of a point, and so which flags they can use
+//! - `axis_facts`: what is told of an axis, of a sweep and of a map alike
+//! - `basin`: `basin`: which starts, what is told of them
+//! - `best`: `slipmap best`
+//! - `best_answer`: what `slipmap best` prints with `--json`
+//! - `best_text`: what `slipmap best` prints for people
+//! - `case_facts`: what is told of a case, before it is simulated and of its trace
+//! - `cell`: a cell of a map in the place of flags and case files
+//! - `colours`: `--color`, for help, messages and previews
+//! - `completions`: `slipmap completions`
+//! - `export`: which table is exported, and what of it
+//! - `failure`: how a command fails
+//! - `info`: `slipmap info`
+//! - `info_trace`: `slipmap info` of a trace
+//! - `json`: what commands print with `--json`
+//! - `kind`: what kind of file of slipmap's a name leads to, for commands that take another
+//! - `limit_args`: the flags of a point of the limit of a short delay
+//! - `man`: `slipmap man`
+//! - `margins`: `slipmap margins`
+//! - `merge`: `slipmap merge`
+//! - `motion_text`: what became of a motion, in words and numbers for people
+//! - `open`: opens a map for a command that reads it
+//! - `open_files`: as many open files as the system allows: a merge holds one of every shard
+//! - `output`: what all commands that write a file share
+//! - `parameter_values`: the values that flags give to parameters
+//! - `parameters`: the flags that give a point of parameter space, the same words as in sweep files
+//! - `plan`: `slipmap plan`
+//! - `plan_case`: `slipmap plan` of a case file
+//! - `plot`: `slipmap plot`
+//! - `point`: `slipmap point`
+//! - `point_args`: a point at which sliding is asked for
+//! - `point_system`: `slipmap point --system`
+//! - `read_map`: `slipmap read-map`
+//! - `recommended`: what `slipmap best` recommends
+//! - `reference`: `slipmap reference`
+//! - `reproduce`: `slipmap reproduce`: which files it may write, what it tells
+//! - `run`: `slipmap run`
+//! - `say`: telling the user things
+//! - `schema`: `slipmap schema`
+//! - `serve`: `slipmap serve`
+//! - `setting`: a setting from a file in the place of flags, and files of settings
+//! - `show`: a complete map drawn beside it and on the terminal, after `run` and `merge`
+//! - `signals`: signals that stop a command in order, also while it reads or draws
+//! - `simulate`: `slipmap simulate`
+//! - `status`: `slipmap status`
+//! - `sweep_file`: reading sweep files, case files and tables of friction, with errors that point
+//!   into them
+//! - `system_args`: a system from a file, or one that is part of the program, in the place of the
+//!   letter's
+//! - `text_output`: text on standard output, or in a file that is whole or not there
+//! - `vc`: `slipmap vc`
+//! - `verify`: `slipmap verify`
 
+mod asks;
 mod axis_facts;
 mod basin;
 mod best;
@@ -8,26 +62,32 @@ mod best_text;
 mod case_facts;
 mod cell;
 mod colours;
+mod completions;
 mod export;
 mod failure;
 mod info;
 mod info_trace;
 mod json;
 mod kind;
+mod limit_args;
+mod man;
 mod margins;
 mod merge;
 mod motion_text;
 mod open;
 mod open_files;
 mod output;
+mod parameter_values;
 mod parameters;
 mod plan;
 mod plan_case;
 mod plot;
 mod point;
 mod point_args;
+mod point_system;
 mod read_map;
 mod recommended;
+mod reference;
 mod reproduce;
 mod run;
 mod say;
@@ -39,6 +99,7 @@ mod signals;
 mod simulate;
 mod status;
 mod sweep_file;
+mod system_args;
 mod text_output;
 mod vc;
 mod verify;
@@ -109,10 +170,17 @@ enum Command {
     Reproduce(reproduce::Args),
     /// Print the JSON Schema of what another command prints with --json
     Schema(schema::Args),
+    /// Print the completions of a shell
+    Completions(completions::Args),
+    /// Print the manual page of a command, or write those of all
+    Man(man::Args),
+    /// Print a page of the guide's reference
+    #[command(hide = true)]
+    Reference(reference::Args),
 }
 
-/// Help, or what is wrong with the arguments, of which some may be names that hold control
-/// characters.
+/// Prints help, or what is wrong with the arguments. Names among these may hold control
+/// characters, which are shown and not sent to the terminal.
 fn say_usage(error: &clap::Error) -> ExitCode {
     let odd = |arg: std::ffi::OsString| {
         let arg = arg.to_string_lossy().into_owned();
@@ -159,6 +227,9 @@ pub(crate) fn main() -> ExitCode {
         Command::Info(args) => info::main(&args),
         Command::Reproduce(args) => reproduce::main(&args),
         Command::Schema(args) => schema::main(&args),
+        Command::Completions(args) => completions::main(&args),
+        Command::Man(args) => man::main(&args),
+        Command::Reference(args) => reference::main(&args),
     };
     match result {
         Ok(()) => ExitCode::SUCCESS,

@@ -1,4 +1,4 @@
-//! Opens a map for a command that looks at it: the map itself, or what is computed of it so far.
+//! Opens a map for a command that reads it: the complete map, or the part that is computed so far.
 
 use std::path::{Path, PathBuf};
 use std::sync::atomic::AtomicBool;

@@ -1,4 +1,4 @@
-//! How many files this process may have open at once.
+//! The limit of open files of this process.
 
 /// Raises the limit that a user gives to programs to the one that the system gives to users: a
 /// merge holds one file of every shard. Where the system refuses, the limit stays, and opening one

@@ -18,8 +18,8 @@ use super::text_output::STANDARD_OUTPUT;
 /// Endings of the names of maps and traces: HDF5, and netCDF, whose readers read the same file.
 const ENDINGS: [&str; 3] = ["h5", "hdf5", "nc"];
 
-/// The name that `flag` gives a map or a trace, its `kind`, promises what is written: HDF5. A name
-/// without an ending promises nothing, and would be nobody's to recognise.
+/// Refuses a name, given by `flag` to a map or a trace (its `kind`), whose ending is not one of
+/// HDF5. A name without an ending is refused too: no program would know what it is.
 pub(super) fn check_name(flag: &str, path: &Path, kind: &str) -> Result<(), Failure> {
     let shown = format!("{flag}{}", path.display());
     let is_folder = path.as_os_str().as_encoded_bytes().ends_with(b"/");
@@ -74,7 +74,8 @@ pub(super) fn output_path(
     Ok(path)
 }
 
-/// The name that `flag` gives a picture is one, and not that of `other`, a map or a trace.
+/// Refuses a name, given by `flag` to a picture, that is not one of a picture, or is the name of
+/// `other`, a map or a trace.
 pub(super) fn check_picture(flag: &str, name: &Path, other: Option<&Path>) -> Result<(), Failure> {
     let shown = name.display();
     if !picture::is_name(name) {

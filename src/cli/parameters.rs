@@ -7,56 +7,17 @@ use clap::builder::{PossibleValue, PossibleValuesParser};
 use clap::{Arg, ArgMatches, Args, Command, FromArgMatches};
 use slipmap::model::{ModelError, Shown};
 use slipmap::sweep::Parameter;
-use slipmap::sweep::input::law_kind::{Formula, LawKind};
+use slipmap::sweep::input::law_kind::{Formula, LawKind, NO_MOTIONS};
 use slipmap::sweep::input::parameter::Group;
 use slipmap::sweep::input::setting::Setting;
 use slipmap::sweep::input::units::Units;
 
+use super::asks::{Asks, OfSliding};
 use super::failure::Failure;
 use super::output::warn_of_idle_delay;
+use super::parameter_values::Values;
 use super::say;
 use super::sweep_file::read_table;
-
-/// The values that flags give to parameters, each by the flag of its row.
-#[derive(Debug, Clone)]
-struct Values(Box<[Option<f64>; Parameter::ALL.len()]>);
-
-impl Values {
-    /// The flags of the parameters that are `wanted`.
-    fn flags(wanted: impl Fn(Group) -> bool) -> impl Iterator<Item = Arg> {
-        let wanted = Parameter::ALL
-            .into_iter()
-            .filter(move |p| wanted(p.group()));
-        wanted.filter_map(|parameter| {
-            let flag = parameter.flag()?;
-            let arg = Arg::new(parameter.name())
-                .long(parameter.long_flag()?)
-                .value_name(flag.value)
-                .help(flag.help)
-                .value_parser(parse_number)
-                .allow_hyphen_values(true);
-            Some(arg)
-        })
-    }
-
-    fn of(matches: &ArgMatches, wanted: impl Fn(Group) -> bool) -> Self {
-        Self(Box::new(Parameter::ALL.map(|parameter| {
-            let asked = wanted(parameter.group()) && parameter.flag().is_some();
-            let value = || matches.get_one::<f64>(parameter.name()).copied();
-            asked.then(value).flatten()
-        })))
-    }
-
-    fn get(&self, parameter: Parameter) -> Option<f64> {
-        self.0[parameter as usize]
-    }
-}
-
-/// A number of a flag; its range is that of its parameter.
-fn parse_number(text: &str) -> Result<f64, String> {
-    let number = text.trim().parse().ok();
-    number.ok_or_else(|| "expected a number, such as -0.3 or 1e-2".to_owned())
-}
 
 /// The flags of a friction law besides its parameters, and of units.
 #[derive(Debug, Args)]
@@ -82,39 +43,10 @@ fn law_names() -> PossibleValuesParser {
     PossibleValuesParser::new(formulas.chain([table]))
 }
 
-/// What a command asks of a point, and so which flags it can use.
-pub(super) trait Asks {
-    /// Whether it needs a whole friction law.
-    const LAW: bool;
-    /// Whether it looks for the delay.
-    const SEARCHES_DELAY: bool;
-}
-
-/// Sliding, by a friction law or by the slope alone.
-#[derive(Debug)]
-pub(super) struct OfSliding;
-
-impl Asks for OfSliding {
-    const LAW: bool = false;
-    const SEARCHES_DELAY: bool = false;
-}
-
-/// The same, at a delay that is looked for.
-#[derive(Debug)]
-pub(super) struct AtAnyDelay;
-
-impl Asks for AtAnyDelay {
-    const LAW: bool = false;
-    const SEARCHES_DELAY: bool = true;
-}
-
-/// Stick and slip, which a friction law says.
-#[derive(Debug)]
-pub(super) struct OfStickSlip;
-
-impl Asks for OfStickSlip {
-    const LAW: bool = true;
-    const SEARCHES_DELAY: bool = false;
+/// Why a law with a state is refused where motions are followed.
+fn no_motions() -> Failure {
+    let law = Formula::RateAndState.name();
+    Failure::bad_input_with_help(format!("--friction {law} has no motions here"), NO_MOTIONS)
 }
 
 /// A point of parameter space.
@@ -178,47 +110,6 @@ impl<A: Asks> FromArgMatches for ParameterArgs<A> {
     }
 }
 
-/// A point of the limit of a short delay.
-#[derive(Debug)]
-pub(super) struct LimitArgs(Values);
-
-impl LimitArgs {
-    const fn of_limit(group: Group) -> bool {
-        matches!(group, Group::Limit)
-    }
-
-    /// The value given to a parameter.
-    pub(super) fn get(&self, parameter: Parameter) -> Option<f64> {
-        self.0.get(parameter)
-    }
-
-    /// The first parameter that is given.
-    pub(super) fn any_given(&self) -> Option<Parameter> {
-        Parameter::ALL.into_iter().find(|p| self.get(*p).is_some())
-    }
-}
-
-impl Args for LimitArgs {
-    fn augment_args(command: Command) -> Command {
-        command.args(Values::flags(Self::of_limit))
-    }
-
-    fn augment_args_for_update(command: Command) -> Command {
-        Self::augment_args(command)
-    }
-}
-
-impl FromArgMatches for LimitArgs {
-    fn from_arg_matches(matches: &ArgMatches) -> Result<Self, clap::Error> {
-        Ok(Self(Values::of(matches, Self::of_limit)))
-    }
-
-    fn update_from_arg_matches(&mut self, matches: &ArgMatches) -> Result<(), clap::Error> {
-        *self = Self::from_arg_matches(matches)?;
-        Ok(())
-    }
-}
-
 /// The flag that gives a parameter; the name of one that has none.
 pub(super) fn flag(parameter: Parameter) -> String {
     match parameter.long_flag() {
@@ -228,7 +119,7 @@ pub(super) fn flag(parameter: Parameter) -> String {
 }
 
 impl<A: Asks> ParameterArgs<A> {
-    fn given(&self, parameter: Parameter) -> Option<f64> {
+    pub(super) fn given(&self, parameter: Parameter) -> Option<f64> {
         self.values.get(parameter)
     }
 
@@ -264,6 +155,12 @@ impl<A: Asks> ParameterArgs<A> {
         Ok(setting)
     }
 
+    /// Whether the friction law has a state.
+    fn has_state(&self) -> bool {
+        let law = self.law.friction.as_deref().and_then(Formula::from_name);
+        law == Some(Formula::RateAndState)
+    }
+
     /// The delay, where both gains are 0.
     fn unneeded_delay(&self) -> Option<(Parameter, f64)> {
         match [Parameter::AlphaV, Parameter::AlphaN].map(|p| self.given(p)) {
@@ -272,7 +169,8 @@ impl<A: Asks> ParameterArgs<A> {
         }
     }
 
-    /// A friction law is given where it is needed, and nothing in its place.
+    /// Refuses a missing friction law where one is needed, and flags that have no meaning beside
+    /// one.
     fn check_law(&self) -> Result<(), Failure> {
         let help = "for example: --friction weakening --mu0 0.5 --v-s 0.5";
         let mut of_slope = Parameter::ALL.into_iter();
@@ -283,6 +181,7 @@ impl<A: Asks> ParameterArgs<A> {
                 format!("{} does not say enough: {why}", flag(parameter)),
                 help,
             )),
+            None if A::LAW && self.has_state() => Err(no_motions()),
             None if A::LAW && self.law.friction.is_none() => Err(Failure::bad_input_with_help(
                 format!("--friction is not given: {why}"),
                 help,
@@ -307,6 +206,7 @@ impl<A: Asks> ParameterArgs<A> {
     /// The setting of motions: a friction law and v0, and a delay only where control acts.
     pub(super) fn setting_of_motions(&self) -> Result<Setting, Failure> {
         match self.law.friction {
+            Some(_) if self.has_state() => Err(no_motions()),
             Some(_) => self.setting(),
             None => Err(Failure::bad_input_with_help(
                 "--friction is not given: motions stick and slip by a friction law",
@@ -320,11 +220,16 @@ impl<A: Asks> ParameterArgs<A> {
         self.law.units.clone().unwrap_or_default()
     }
 
-    /// Whether any parameter is given.
-    pub(super) fn any_given(&self) -> bool {
-        let law = &self.law;
-        let flags = law.friction.is_some() || law.table.is_some() || law.units.is_some();
-        flags || Parameter::ALL.into_iter().any(|p| self.given(p).is_some())
+    /// Whether any parameter is given but one of these.
+    pub(super) fn any_but(&self, these: &[Parameter]) -> bool {
+        let given = |p: Parameter| !these.contains(&p) && self.given(p).is_some();
+        let LawArgs {
+            friction,
+            table,
+            units,
+        } = &self.law;
+        let flags = friction.is_some() || table.is_some() || units.is_some();
+        flags || Parameter::ALL.into_iter().any(given)
     }
 
     /// The setting of the flags but for the parameters `searched`, refused with `help`.

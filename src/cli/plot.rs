@@ -9,7 +9,8 @@ use slipmap::report::picture::{
     self, ColourMap, Picture, PictureError, PictureKind, PictureOptions,
 };
 use slipmap::store::{MapFile, TraceFile, trace_reader};
-use slipmap::sweep::{Field, Parameter};
+use slipmap::sweep::Field;
+use slipmap::sweep::input::quantity::Quantity;
 
 use super::cell::{At, parse_at};
 use super::failure::Failure;
@@ -152,15 +153,15 @@ pub(super) fn main(args: &Args) -> Result<(), Failure> {
     say::result(path.display())
 }
 
-/// The options with what is asked for of this map.
+/// The options of the picture, from the flags and this map.
 fn shown_of(
     map: &MapFile,
     args: &Args,
     options: PictureOptions,
 ) -> Result<PictureOptions, Failure> {
-    let axes: Vec<Parameter> = map.axes().iter().map(|axis| axis.parameter).collect();
+    let axes: Vec<&Quantity> = map.axes().iter().map(|axis| &axis.parameter).collect();
     let at = args.at.iter();
-    let at = at.map(|at| at.axis(&axes).map(|axis| (axes[axis], at.value)));
+    let at = at.map(|at| at.axis(&axes).map(|axis| (axes[axis].clone(), at.value)));
     let field = args.field.as_deref().map(|name| held_field(map, name));
     Ok(PictureOptions {
         field: field.transpose()?,
@@ -193,7 +194,7 @@ fn refuse_of_maps(args: &Args) -> Result<(), Failure> {
     }
 }
 
-/// What tells the picture asked for from the one that a run draws, in words for its name.
+/// How the picture that is asked for differs from that of a run: the words that its name gets.
 fn shown(args: &Args) -> Vec<String> {
     let kind = args.kind.and_then(|kind| kind.to_possible_value());
     let name = |name: &String| Field::from_name(name).map_or(name.clone(), |f| f.name().into());
@@ -252,7 +253,7 @@ fn failure(error: PictureError, args: &Args) -> Failure {
             let help = format!("its axes: {axes}");
             bad("--at: ", error, help)
         }
-        PictureError::OutsideAxis { parameter, .. } => {
+        PictureError::OutsideAxis { ref parameter, .. } => {
             let help = format!(
                 "slipmap info {} lists the axis {}",
                 args.map.display(),

@@ -4,9 +4,13 @@ use std::io::Write;
 use std::path::{Path, PathBuf};
 
 use slipmap::explore::along_delay::AlongDelay;
-use slipmap::explore::point::{Point, Spectrum};
+use slipmap::explore::point::Point;
+use slipmap::explore::stability::{Spectrum, Stability, Wanted};
+use slipmap::explore::system_point::SystemPoint;
+use slipmap::linear::general::Reason;
 use slipmap::report::numbers::unit_behind;
 use slipmap::report::picture::{self, Picture, PointPicture};
+use slipmap::sweep::input::system::{Evaluation, SystemModel};
 use slipmap::sweep::input::units::Units;
 use slipmap::sweep::{Field, Parameter, Setting, relaxation_time};
 
@@ -14,10 +18,14 @@ use super::failure::Failure;
 use super::json::{self, AnswerSchema, Inputs};
 use super::output::{check_picture, tell_dimensionless};
 use super::point_args::PointArgs;
-use super::say;
+use super::system_args::{OTHERS, SystemArgs};
+use super::{point_system, say};
 
 /// Roots in a picture, pairs counted once: enough to see how they lie.
 const ROOTS_DRAWN: u8 = 14;
+
+/// The farthest line right of which roots are counted.
+const LARGEST_LINE: f64 = 1e12;
 
 /// Stable intervals printed for people; the JSON output has them all, up to a hundred thousand.
 const INTERVALS_SHOWN: usize = 12;
@@ -27,10 +35,15 @@ const INTERVALS_SHOWN: usize = 12;
 pub(super) struct Args {
     #[command(flatten)]
     point: PointArgs,
+    #[command(flatten)]
+    system: SystemArgs,
     /// How many characteristic roots to list, from the right; pairs count once
     #[arg(long, value_name = "K", default_value_t = 4, allow_hyphen_values = true,
           value_parser = parse_roots)]
     roots: u8,
+    /// Count the roots with a real part greater than SIGMA, in 1/time
+    #[arg(long, value_name = "SIGMA", allow_hyphen_values = true, value_parser = parse_line)]
+    line: Option<f64>,
     /// Draw the roots in the complex plane and the stable delays, as .png, .svg or .pdf
     #[arg(long, value_name = "PICTURE")]
     plot: Option<PathBuf>,
@@ -42,6 +55,15 @@ pub(super) struct Args {
 fn parse_roots(text: &str) -> Result<u8, String> {
     let count = text.parse().ok().filter(|count| (1..=64).contains(count));
     count.ok_or_else(|| "expected a whole number from 1 to 64".to_owned())
+}
+
+fn parse_line(text: &str) -> Result<f64, String> {
+    let line = text
+        .trim()
+        .parse()
+        .ok()
+        .filter(|line: &f64| line.abs() <= LARGEST_LINE);
+    line.ok_or_else(|| format!("expected a number of size at most {LARGEST_LINE:e}"))
 }
 
 /// A number with about twelve digits, for a table.
@@ -92,26 +114,57 @@ fn print_spectrum(
     }
 }
 
+impl Args {
+    fn wanted(&self, roots: u8) -> Wanted {
+        Wanted {
+            roots,
+            line: self.line,
+        }
+    }
+}
+
 /// What its JSON looks like.
 pub(super) fn described() -> AnswerSchema {
-    AnswerSchema::of("point").or::<Point>()
+    AnswerSchema::of("point").or::<Point>().or::<SystemPoint>()
 }
 
 pub(super) fn main(args: &Args) -> Result<(), Failure> {
+    if let Some(named) = &args.system.system {
+        args.point.check_alone("--system", &OTHERS)?;
+        return match args.system.read(|p| args.point.given(p))? {
+            Some((model, at)) => of_system(args, (&model, at), ("system", named)),
+            None => Ok(()),
+        };
+    }
+    if let (Some(setting), Some(map)) = (args.point.cell_of_system()?, args.point.map())
+        && let Some(system) = setting.evaluation()
+    {
+        return of_system(args, system, ("map", &map.display().to_string()));
+    }
     if let Some(plot) = &args.plot {
         check_picture("--plot", plot, args.point.map())?;
     }
     let (setting, units) = args.point.read()?;
-    let point = Point::at(&setting, args.roots)?;
-    let spectrum = &point.spectrum;
+    let point = Point::at(&setting, args.wanted(args.roots))?;
+    if point.stability.reason == Some(Reason::Refused.name()) {
+        return Err(Failure::bad_input_with_help(
+            "this system is not answered: |P| = |Q| on all of the imaginary axis",
+            "D(lambda) = P(lambda) + Q(lambda) exp(-lambda tau) crosses it everywhere or nowhere",
+        ));
+    }
+    let spectrum = &point.stability.spectrum;
     if let Some(why) = spectrum.fewer.as_ref().filter(|_| spectrum.incomplete) {
         say::remark(format_args!("warning: {why}"));
     }
     if args.json {
         let inputs = Inputs::of_setting(&setting, &units, |_| true).and("roots", args.roots);
+        let inputs = match args.line {
+            Some(line) => inputs.and("line", line),
+            None => inputs,
+        };
         json::print(&inputs, &point)?;
     } else {
-        print(&mut std::io::stdout().lock(), &point, &units)?;
+        print(&mut std::io::stdout().lock(), (&point, &setting), &units)?;
     }
     let Some(plot) = &args.plot else {
         return Ok(());
@@ -123,11 +176,45 @@ pub(super) fn main(args: &Args) -> Result<(), Failure> {
     }
 }
 
+/// A point of a system from a file; `from` is the flag that gave it, with its value.
+fn of_system(
+    args: &Args,
+    (model, mut at): (&SystemModel, Evaluation),
+    from: (&str, &str),
+) -> Result<(), Failure> {
+    if args.plot.is_some() {
+        return Err(Failure::bad_input_with_help(
+            "--plot has no picture of a point of a system from a file",
+            "a sweep of the system draws its stability; --json has its roots",
+        ));
+    }
+    let point = SystemPoint::at(model, &mut at, args.wanted(args.roots));
+    let point = point.map_err(|why| Failure::bad_input(why.to_string()))?;
+    let spectrum = &point.stability.spectrum;
+    if let Some(why) = spectrum.fewer.as_ref().filter(|_| spectrum.incomplete) {
+        say::remark(format_args!("warning: {why}"));
+    }
+    if args.json {
+        let inputs = point_system::inputs(from, &point, args.roots, args.line);
+        return json::print(&inputs, &point);
+    }
+    Ok(point_system::print(
+        &mut std::io::stdout().lock(),
+        model,
+        &at,
+        &point,
+    )?)
+}
+
 /// Draws the point with the roots of a picture; with those of `listed` where some of the others
 /// are not found.
 fn draw(setting: &Setting, units: &Units, listed: &Point, path: &Path) -> Result<(), Failure> {
-    let more = Point::at(setting, ROOTS_DRAWN)?;
-    let point = if more.spectrum.incomplete {
+    let wanted = Wanted {
+        roots: ROOTS_DRAWN,
+        line: None,
+    };
+    let more = Point::at(setting, wanted)?;
+    let point = if more.stability.spectrum.incomplete {
         listed
     } else {
         &more
@@ -143,56 +230,118 @@ fn draw(setting: &Setting, units: &Units, listed: &Point, path: &Path) -> Result
     saved.map_err(|error| Failure::failed(error.to_string()))
 }
 
-fn print(out: &mut impl Write, point: &Point, units: &Units) -> std::io::Result<()> {
-    let verdict = match (point.stable, point.marginal) {
-        (_, true) => "marginal: within rounding of a stability boundary",
-        (true, false) => "stable",
-        (false, false) => "unstable",
-    };
-    writeln!(out, "continuous sliding is {verdict}")?;
+/// Whether it is stable, in words.
+pub(super) fn verdict(stability: &Stability) -> &'static str {
+    match (stability.stable, stability.marginal, stability.reason) {
+        (_, true, _) => "marginal: within rounding of a stability boundary",
+        (true, false, _) => "stable",
+        (false, false, Some("degree-unknown")) => "not known to be stable or not",
+        (false, false, _) => "unstable",
+    }
+}
+
+fn print(
+    out: &mut impl Write,
+    (point, setting): (&Point, &Setting),
+    units: &Units,
+) -> std::io::Result<()> {
+    let stability = &point.stability;
+    writeln!(out, "continuous sliding is {}", verdict(stability))?;
     let mut row = |name: &str, value: String| writeln!(out, "  {name:<16} {value}");
-    for (parameter, value) in [
+    let given = [
         (Parameter::MuPrime, point.mu_prime),
         (Parameter::MuK, point.mu_k),
         (Parameter::AlphaV, point.alpha_v),
         (Parameter::AlphaN, point.alpha_n),
         (Parameter::Tau, point.tau),
-    ] {
+    ];
+    let beyond = Parameter::BEYOND_LETTER.map(|parameter| (parameter, setting.get(parameter)));
+    let beyond = beyond
+        .into_iter()
+        .filter(|(parameter, _)| setting.uses(*parameter));
+    for (parameter, value) in given.into_iter().chain(beyond) {
         let unit = unit_behind(&units.of_parameter(parameter));
         row(parameter.name(), format!("{value}{unit}"))?;
     }
-    row("n_unstable", point.n_unstable.to_string())?;
+    if let Some(ratio) = point.stiffness_ratio {
+        row(Field::StiffnessRatio.name(), ratio.to_string())?;
+    }
+    print_stability(stability, true, units, &mut row)?;
+    tell_dimensionless(out, units)
+}
+
+/// Everything of it; what other delays would do only where they are known.
+pub(super) fn print_stability(
+    stability: &Stability,
+    line_of_delays: bool,
+    units: &Units,
+    mut row: impl FnMut(&str, String) -> std::io::Result<()>,
+) -> std::io::Result<()> {
+    let or_unknown = |n: Option<u64>| n.map_or("unknown".into(), |n| n.to_string());
+    let n_unstable = match (stability.n_unstable, stability.reason) {
+        (None, Some("infinite")) => "infinite".into(),
+        (n, _) => or_unknown(n),
+    };
+    row("n_unstable", n_unstable)?;
+    if let Some(reason) = stability.reason {
+        row("reason", reason.into())?;
+    }
+    if let Some(line) = stability.line {
+        let line = format!("{} of {line}", or_unknown(stability.n_right_of_line));
+        row(
+            "right of line",
+            format!("{line}{}", unit_behind(&units.rate())),
+        )?;
+    }
     let time = unit_behind(&units.time());
-    let margin = match point.delay_margin {
+    let margin = match stability.delay_margin {
         Some(margin) => format!("{margin}{time}"),
+        None if stability.delay_margin_sign == 0 => "unknown".into(),
         None => "infinite: no delay changes stability".into(),
     };
-    row("delay_margin", margin)?;
-    let spectrum = &point.spectrum;
-    for (field, value) in [
-        (Field::Abscissa, spectrum.abscissa),
-        (Field::Frequency, spectrum.frequency),
-    ] {
-        let unit = unit_behind(&field.unit(units));
-        let text = value.map_or("unknown".into(), |v| format!("{v}{unit}"));
-        row(field.name(), text)?;
+    if line_of_delays {
+        row("delay_margin", margin)?;
     }
-    print_delays(point, units, &mut row)?;
-    print_spectrum(spectrum, units, &mut row)?;
-    tell_dimensionless(out, units)
+    let spectrum = &stability.spectrum;
+    for (name, value, unit) in [
+        (Field::Abscissa.name(), spectrum.abscissa, units.rate()),
+        (
+            Field::Frequency.name(),
+            spectrum.frequency,
+            units.angular_frequency(),
+        ),
+    ] {
+        let unit = unit_behind(&unit);
+        let text = value.map_or("unknown".into(), |v| format!("{v}{unit}"));
+        row(name, text)?;
+    }
+    if let Some(essential) = stability.essential_abscissa {
+        let unit = unit_behind(&units.rate());
+        row(
+            "essential",
+            format!("{essential}{unit}: roots accumulate there"),
+        )?;
+    }
+    if line_of_delays {
+        print_delays(stability, units, &mut row)?;
+    }
+    print_spectrum(spectrum, units, &mut row)
 }
 
 /// The crossings of the point's line, and its stable delays.
 fn print_delays(
-    point: &Point,
+    stability: &Stability,
     units: &Units,
     mut row: impl FnMut(&str, String) -> std::io::Result<()>,
 ) -> std::io::Result<()> {
     let time = unit_behind(&units.time());
-    for crossing in &point.crossings {
+    for crossing in &stability.crossings {
+        let direction = match crossing.direction {
+            "touch" => "none: a touch".to_owned(),
+            side => format!("to the {side}"),
+        };
         let text = format!(
-            "to the {} at omega = {}{}, tau = {}{time} + k {}{time}",
-            crossing.direction,
+            "{direction} at omega = {}{}, tau = {}{time} + k {}{time}",
             crossing.omega,
             unit_behind(&units.angular_frequency()),
             crossing.first_delay,
@@ -200,17 +349,20 @@ fn print_delays(
         );
         row("crossing", text)?;
     }
-    if point.stable_delays.is_empty() {
+    if stability.stable_delays.is_empty() {
         row("stable delays", "none".into())?;
     }
-    for interval in point.stable_delays.iter().take(INTERVALS_SHOWN) {
+    for interval in stability.stable_delays.iter().take(INTERVALS_SHOWN) {
         let end = interval[1].map_or("infinity".into(), |to| format!("{to}{time}"));
         let from = interval[0].unwrap_or(0.0);
         row("stable delays", format!("{from}{time} < tau < {end}"))?;
     }
-    let more = point.stable_delays.len().saturating_sub(INTERVALS_SHOWN);
+    let more = stability
+        .stable_delays
+        .len()
+        .saturating_sub(INTERVALS_SHOWN);
     match more {
-        _ if point.stable_delays_truncated => {
+        _ if stability.stable_delays_truncated => {
             row("", format!("and more than {more} further intervals"))
         }
         0 => Ok(()),

@@ -2,9 +2,9 @@
 
 use std::path::Path;
 
-use slipmap::sweep::Setting;
 use slipmap::sweep::input::point_file::PointOf;
 use slipmap::sweep::input::units::Units;
+use slipmap::sweep::{Parameter, Setting};
 
 use super::cell::{CellArgs, alone};
 use super::failure::Failure;
@@ -27,9 +27,30 @@ impl PointArgs {
         self.cell.map.as_deref()
     }
 
+    /// The setting of the cell of a map, where that is one of a system from a file.
+    pub(super) fn cell_of_system(&self) -> Result<Option<Setting>, Failure> {
+        let setting = self.cell.of_system()?;
+        if setting.is_some() {
+            alone("--map", self.parameters.any_but(&[]))?;
+        }
+        Ok(setting)
+    }
+
+    /// The value of the flag of a parameter.
+    pub(super) fn given(&self, parameter: Parameter) -> Option<f64> {
+        self.parameters.given(parameter)
+    }
+
+    /// Nothing but the flags of these parameters is given beside the flag `with`, which says the
+    /// rest.
+    pub(super) fn check_alone(&self, with: &str, but: &[Parameter]) -> Result<(), Failure> {
+        let others = self.cell.map.is_some() || self.file.is_given();
+        alone(with, others || self.parameters.any_but(but))
+    }
+
     /// The setting, from a map or from flags, and its units.
     pub(super) fn read(&self) -> Result<(Setting, Units), Failure> {
-        let given = self.parameters.any_given();
+        let given = self.parameters.any_but(&[]);
         if let Some(point) = self.file.point(PointOf::Sliding)? {
             alone("--setting", given)?;
             return Ok((point.setting, point.units));

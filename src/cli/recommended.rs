@@ -19,7 +19,7 @@ pub(super) enum Control {
     Load,
 }
 
-/// What was found, and what there is to know of the setting that is recommended.
+/// The best settings, and the margins and v_c of the one that is recommended.
 pub(super) struct Recommended {
     pub(super) control: Control,
     pub(super) ranges: Ranges,

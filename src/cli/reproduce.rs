@@ -19,7 +19,7 @@ use super::signals::Signals;
 
 /// The page where no other is named.
 const PAGE: &str = "letter.html";
-/// Within so many bytes a page says who made it.
+/// The first bytes of a page, among which it says who made it.
 const HEAD: u64 = 1024;
 
 #[derive(Debug, clap::Args)]
@@ -165,7 +165,7 @@ impl<'a> Folder<'a> {
     }
 }
 
-/// The page to write, if any: it has a page's name, and what is there is an earlier one.
+/// The page to write, if any. Its name has to be that of a page; only an earlier page is replaced.
 fn page(args: &Args) -> Result<Option<&Path>, Failure> {
     let path = match &args.output {
         None if args.json => return Ok(None),

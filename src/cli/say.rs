@@ -18,11 +18,16 @@ pub(super) fn result(line: impl Display) -> Result<(), Failure> {
     )?)
 }
 
+/// A whole text of slipmap's own on standard output: a result.
+pub(super) fn text(text: &str) -> Result<(), Failure> {
+    Ok(std::io::stdout().lock().write_all(text.as_bytes())?)
+}
+
 /// Lines of a name and a text on standard output, one below the other.
 pub(super) struct Rows<'o>(StdoutLock<'o>);
 
 impl Rows<'_> {
-    /// Nothing else is written to standard output meanwhile.
+    /// Holds standard output: nothing else is written to it meanwhile.
     pub(super) fn begin() -> Self {
         Self(std::io::stdout().lock())
     }

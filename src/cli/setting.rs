@@ -29,7 +29,7 @@ impl SettingArgs {
         self.setting.is_some()
     }
 
-    /// The point of the file; none where none is given.
+    /// The point in the file; none where no file is given.
     pub(super) fn point(&self, of: PointOf) -> Result<Option<PointSpec>, Failure> {
         let Some(path) = &self.setting else {
             return Ok(None);

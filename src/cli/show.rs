@@ -8,6 +8,7 @@ use slipmap::report::picture::{self, Named, Picture, PictureError, PictureOption
 use slipmap::report::preview::preview;
 use slipmap::store::{MapFile, StoreError};
 use slipmap::sweep::Parameter;
+use slipmap::sweep::input::quantity::Quantity;
 
 use super::colours::Colours;
 use super::failure::Failure;
@@ -16,7 +17,7 @@ use super::{plot, say};
 
 /// Columns of the picture on the terminal: as many as every terminal has.
 const PREVIEW_WIDTH: usize = 78;
-/// Planes whose best settings are told; the map has all.
+/// The most planes whose best settings are printed; the map holds those of all.
 const PLANES_TOLD: usize = 8;
 
 /// Says that a map is complete, and draws it where an earlier command did not come to that, or
@@ -45,22 +46,22 @@ fn tell_best(map: &MapFile) -> Result<(), StoreError> {
     let Ok(units) = map.sweep().map(|sweep| sweep.units) else {
         return Ok(());
     };
-    let with = |parameter: Parameter, value: f64| {
-        let unit = unit_behind(&units.of_parameter(parameter));
+    let with = |parameter: &Quantity, value: f64| {
+        let unit = unit_behind(&parameter.unit(&units));
         format!("{} = {}{unit}", parameter.name(), rounded(value, 8))
     };
     let axes = map.axes();
-    let outer: Vec<Parameter> = (0..axes.len())
+    let outer: Vec<&Quantity> = (0..axes.len())
         .filter(|axis| *axis != gain && *axis != tau)
-        .map(|axis| axes[axis].parameter)
+        .map(|axis| &axes[axis].parameter)
         .collect();
     let all = map.best()?;
     for best in all.iter().take(PLANES_TOLD) {
         let pairs = outer.iter().zip(&best.outer);
-        let plane: Vec<String> = pairs.map(|(p, value)| with(*p, *value)).collect();
+        let plane: Vec<String> = pairs.map(|(p, value)| with(p, *value)).collect();
         let place = [
-            with(axes[gain].parameter, best.gain),
-            with(Parameter::Tau, best.tau),
+            with(&axes[gain].parameter, best.gain),
+            with(&Parameter::Tau.into(), best.tau),
         ];
         let time = unit_behind(&units.time());
         let relaxes = match (best.kind, best.relaxation_time) {

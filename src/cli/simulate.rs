@@ -15,13 +15,14 @@ use slipmap::sweep::input::simulation::DISTURBED;
 use slipmap::sweep::{CaseSpec, Parameter, Trace};
 use utoipa::ToSchema;
 
+use super::asks::OfStickSlip;
 use super::case_facts::CaseFacts;
 use super::cell::{CellArgs, alone};
 use super::failure::Failure;
 use super::json::{self, AnswerSchema, Inputs};
 use super::motion_text;
 use super::output::{check_picture, output_path, provenance, warn_of_idle_delay};
-use super::parameters::{OfStickSlip, ParameterArgs};
+use super::parameters::ParameterArgs;
 use super::plot;
 use super::say;
 use super::signals::Signals;
@@ -49,7 +50,7 @@ pub(super) struct Args {
     /// Replace the trace of another case, or a text
     #[arg(long)]
     fresh: bool,
-    /// One JSON object on standard output; what there is none of is null
+    /// One JSON object on standard output; null where there is no value
     #[arg(long)]
     json: bool,
 }
@@ -150,7 +151,7 @@ impl Args {
 
     /// The case of the flags, as a file would say it: the trace holds that.
     fn case_of_flags(&self) -> Result<String, Failure> {
-        if !self.parameters.any_given() {
+        if !self.parameters.any_but(&[]) {
             return Err(Failure::bad_input_with_help(
                 "no case is given",
                 "slipmap simulate CASE.toml; or flags, such as --friction weakening --mu0 0.5 \
@@ -164,7 +165,7 @@ impl Args {
 
     /// A case or a map stands alone.
     fn check_alone(&self) -> Result<(), Failure> {
-        let flags = self.parameters.any_given();
+        let flags = self.parameters.any_but(&[]);
         match (&self.case, &self.cell.map) {
             (Some(_), _) => alone("CASE.toml", flags),
             (None, Some(_)) => alone("--map", flags),
@@ -172,7 +173,7 @@ impl Args {
         }
     }
 
-    /// Where samples go as text; none where the trace goes to HDF5.
+    /// Where samples are written as text; none where the trace is written as HDF5.
     fn text(&self) -> Result<Option<To<'_>>, Failure> {
         let Some(path) = &self.output else {
             return Ok(None);

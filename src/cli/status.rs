@@ -19,7 +19,7 @@ use super::failure::Failure;
 use super::json::{self, AnswerSchema, Inputs};
 use super::say::Rows;
 
-/// A run tells its rate from so many bytes of its log at most.
+/// The most bytes at the end of a log that are read to tell the rate of a run.
 const MOST_OF_LOG: u64 = 64 << 20;
 
 #[derive(Debug, clap::Args)]
@@ -100,7 +100,7 @@ impl ShardAnswer {
     }
 }
 
-/// What is told of a map.
+/// The progress of a map, as JSON and for people.
 struct Status {
     complete: bool,
     cells: u64,

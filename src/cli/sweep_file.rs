@@ -9,14 +9,15 @@ use slipmap::report::numbers::bytes;
 use slipmap::sweep::input::case_file::{TextKind, is_case_file};
 use slipmap::sweep::input::friction_table::table_of_law;
 use slipmap::sweep::input::point_file::{PointOf, PointSpec};
-use slipmap::sweep::input::table_file::Inlined;
+use slipmap::sweep::input::system::SystemModel;
+use slipmap::sweep::input::table_file::{Inlined, NotInlined};
 use slipmap::sweep::{CaseSpec, Plan, SpecError, SweepSpec};
 
 use super::failure::Failure;
 use super::kind::Kind;
 
-/// A file larger than this is none of these. The text goes into maps and, with up to twice as many
-/// bytes, into manifests.
+/// A larger file is refused as a sweep or case file. The text goes into maps and, with up to twice
+/// as many bytes, into manifests.
 const MOST_BYTES: u64 = 16 << 20;
 
 /// The plan of the sweep file at `path`.
@@ -65,6 +66,13 @@ pub(super) fn read_table(path: &Path, mu_s: f64) -> Result<Table, Failure> {
     table_of_law(&text, mu_s).map_err(|error| Failure::in_file(error, &name, &text))
 }
 
+/// The system of the file at `path`.
+pub(super) fn read_system(path: &Path) -> Result<SystemModel, Failure> {
+    let (name, text) = text_of(path, "system")?;
+    text.parse()
+        .map_err(|error| Failure::in_file(error, &name, &text))
+}
+
 /// What stands for standard input in the place of a file.
 pub(super) const STANDARD_INPUT: &str = "-";
 
@@ -83,12 +91,14 @@ fn read_with_table<T>(
         let path = folder.map_or_else(|| table.into(), |folder| folder.join(table));
         as_text(read_file(&path), "table")
     };
-    let inlined = Inlined::new(&text, beside);
-    let read = inlined.and_then(|inlined| {
-        let read = parse(&inlined.text);
-        read.map_err(|error| inlined.in_original(error))
-    });
-    read.map_err(|error| Failure::in_file(error, &name, &text))
+    let inlined = match Inlined::new(&text, beside) {
+        Ok(inlined) => inlined,
+        Err(NotInlined::Here(error)) => return Err(Failure::in_file(error, &name, &text)),
+        Err(NotInlined::There { name, text, error }) => {
+            return Err(Failure::in_file(error, &name, &text));
+        }
+    };
+    parse(&inlined.text).map_err(|error| Failure::in_file(inlined.in_original(error), &name, &text))
 }
 
 /// The name and the text of a file, or of standard input.

@@ -13,10 +13,12 @@ use slipmap::sweep::input::search::{self, PHASES};
 use slipmap::sweep::input::units::Units;
 use slipmap::sweep::{Field, Parameter, Setting};
 
+use super::asks::OfStickSlip;
 use super::cell::{CellArgs, alone};
 use super::failure::Failure;
 use super::json::{self, AnswerSchema, Inputs};
-use super::parameters::{LimitArgs, OfStickSlip, ParameterArgs, flag};
+use super::limit_args::LimitArgs;
+use super::parameters::{ParameterArgs, flag};
 use super::setting::SettingArgs;
 
 #[derive(Debug, clap::Args)]
@@ -41,7 +43,7 @@ pub(super) struct Args {
     phase: Option<String>,
     #[command(flatten)]
     limit: LimitArgs,
-    /// One JSON object on standard output; what there is not is null
+    /// One JSON object on standard output; null where there is no value
     #[arg(long)]
     json: bool,
 }
@@ -62,7 +64,7 @@ pub(super) fn main(args: &Args) -> Result<(), Failure> {
     args.check()?;
     if let Some(point) = args.cell.point(PointOf::CriticalVelocity)? {
         let by_flags = args.protocol != ProtocolName::Follow || args.phase.is_some();
-        alone("--map", by_flags || args.parameters.any_given())?;
+        alone("--map", by_flags || args.parameters.any_but(&[]))?;
         let found = CriticalVelocity::of(&point.setting, point.protocol, &Stop::default())?;
         let inputs = inputs(&point.setting, &point.units, point.protocol);
         return print_found(args.json.then_some(&inputs), &found, &point.units);
@@ -194,7 +196,7 @@ impl Args {
     /// The setting, from a file or from flags, and its units.
     fn read(&self) -> Result<(Setting, Units), Failure> {
         if let Some(point) = self.file.point(PointOf::CriticalVelocityOfSetting)? {
-            alone("--setting", self.parameters.any_given())?;
+            alone("--setting", self.parameters.any_but(&[]))?;
             return Ok((point.setting, point.units));
         }
         let setting = self.parameters.setting_without_v0()?;
@@ -216,7 +218,7 @@ impl Args {
             if let Some(parameter) = self.limit.any_given() {
                 return refuse(&flag(parameter), "limit");
             }
-        } else if self.parameters.any_given() || self.file.is_given() {
+        } else if self.parameters.any_but(&[]) || self.file.is_given() {
             return Err(Failure::bad_input_with_help(
                 "the limit takes no parameters but --gamma and --mu-ratio",
                 "for example: slipmap vc --protocol limit --gamma 0.25 --mu-ratio 0.5",

@@ -84,7 +84,7 @@ fn verdict(path: &Path, faults: usize, told: Result<(), Failure>) -> Result<(), 
     }
 }
 
-/// A map of which there are only tiles is no map yet.
+/// A map that has tiles but no file is not complete: there is nothing to verify.
 fn refuse_unfinished(path: &Path) -> Result<(), Failure> {
     if path.exists() {
         return Ok(());
@@ -183,7 +183,7 @@ struct MapAnswer {
     /// Cells at which second methods looked.
     cells: u64,
     answers: Vec<MethodAnswer>,
-    /// Tiles that were computed again, and those of which all bytes are equal.
+    /// Tiles that were computed again, and how many of them came out with the same bytes.
     tiles: u64,
     tiles_equal: u64,
     /// Tiles that were to be, and are not in a map that is not complete.

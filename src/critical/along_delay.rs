@@ -1,12 +1,12 @@
 //! Continuation along a line of delays: the search at each starts from its neighbour's orbit.
 //!
-//! Such a continuation may go on along a branch of ends that stick-slip raised from low velocities
-//! does not come to. So the cells at both ends of a segment are looked for from scratch, and what
-//! is continued from the one has to meet the other; else the segment is halved. So it is where
-//! stick-slip raised from low velocities is of other kinds on its way to the one than to the other:
-//! what it passes at both may be its end in between. Where a kind of stick-slip ends, so does a
-//! segment, and where ends change fast more cells are looked for from scratch. A line is cut into
-//! blocks for that, so that the answer in a cell depends on its block alone.
+//! Such a continuation may follow a branch of ends that stick-slip never reaches when v0 is raised
+//! from low velocities. So the cells at both ends of a segment are searched from scratch, and the
+//! continuation from one has to meet the other; else the segment is halved. It is also halved where
+//! stick-slip on its way from low velocities is of other kinds at one end than at the other: what
+//! it passes at both may be its end in between. A segment ends where a kind of stick-slip ends.
+//! Where ends change fast, more cells are searched from scratch. A line is cut into blocks, so that
+//! the answer in a cell depends on its block alone.
 
 use super::delay_step::Neighbour;
 use super::follow::from_scratch;
@@ -187,8 +187,8 @@ impl<'p> Block<'p> {
         )
     }
 
-    /// Continues from `first` on; how far it is known to lead, to `last` if it meets what is known
-    /// there, and whether that cell was found from scratch.
+    /// Continues from `first` on. Gives the last cell that is known then, which is `last` if the
+    /// continuation meets the end known there, and whether that cell was found from scratch.
     fn advance(
         &mut self,
         first: usize,
@@ -232,8 +232,8 @@ impl<'p> Block<'p> {
         (last, true)
     }
 
-    /// Whether the end `there` is at another slip than that of the cell before: the branch has got
-    /// to another one, and which cells end by which has to be looked for from scratch.
+    /// Whether the slip at the end `there` differs from that of the cell before by so much that the
+    /// continuation has changed its branch. Which cells end by which is then found from scratch.
     fn jumps(&self, cell: usize, there: &CriticalVelocity) -> bool {
         let change = |from: f64, to: f64| (to / from - 1.0).abs();
         let expected = change(self.problems[cell - 1].tau, self.problems[cell].tau);

@@ -1,10 +1,10 @@
 //! The critical velocity where searches disagree, or none came to its end, and its bounds.
 //!
-//! Where stick-slip ends by chance it ends at a lower v0 the longer it is held at each. So two slow
-//! searches are added, one of which holds it for longer than the other. Where they agree, their end
-//! is v_c: that of v0 raised slowly. Else they bound it. The lower bound lies below the ends of all
-//! searches, by as much as the slow ones differ. The upper bound goes up from the highest end of
-//! the slow ones, to a v0 at which stick-slip is lost from every phase of its cycle.
+//! Where stick-slip ends by chance, it ends at a lower v0 the longer it is held at each. So two
+//! slow searches are added; the second holds each v0 longer than the first. Where they agree, their
+//! end is v_c, that of v0 raised slowly. Else they bound it. The lower bound lies below the ends of
+//! all searches, by as much as the slow ones differ. The upper bound goes up from the highest end
+//! of the slow ones, to a v0 at which stick-slip is lost from every phase of its cycle.
 
 use super::confirmation::{gliding, told};
 use super::options::{BracketOptions, Options, RampOptions};
@@ -14,11 +14,11 @@ use super::regime::{Followed, Observation, Regime, Simulated};
 use super::search::{Chance, Search};
 use crate::slip::motion::Accuracy;
 
-/// An answer, with its bounds: where it is decided, itself; else those that slow searches give,
-/// beside the `searches` and `others`, the answers that were come to besides.
+/// An answer with its bounds. A decided answer bounds itself; else the bounds come from two slow
+/// searches, from the `searches` made before and from `others`, further answers.
 ///
-/// What chance had a part in, or what takes long to show, is decided where slow steps come to it as
-/// well.
+/// An answer in which chance had a part, or that takes long to show, is decided only where slow
+/// steps lead to it as well.
 pub(super) fn bounded(
     problem: &Problem,
     critical: CriticalVelocity,
@@ -96,7 +96,7 @@ fn by_slow_searches(
     between(problem, critical, &[first, slower], searches, lowest)
 }
 
-/// The bounds that two slow searches give, beside others, the lowest of which came to `lowest`.
+/// The bounds from two slow searches and from the other searches, whose lowest end is `lowest`.
 fn between(
     problem: &Problem,
     critical: CriticalVelocity,
@@ -167,8 +167,8 @@ fn slow_options(options: &Options, held: Held) -> RampOptions {
     }
 }
 
-/// A slow search, from some way below the `lowest` end of others on: below that it would take
-/// long, since sticks do.
+/// A slow search that begins somewhat below the `lowest` end of the others. From lower velocities
+/// it would take long, because sticks are long there.
 fn slow(problem: &Problem, lowest: f64, held: Held) -> Search {
     let until = RampOptions {
         v_max: problem.options.bracket.slow_from * lowest / problem.law.mu_s(),
@@ -188,7 +188,7 @@ fn from_low(problem: &Problem, options: &RampOptions) -> Search {
 
 /// The smallest v0 that was tried, from above the end at `from` on, at which the stick-slip of some
 /// blocks is lost from every phase of its cycle; none up to the end of the range, or where there is
-/// no block. They are left where they come to.
+/// no block. The blocks are left in their last states.
 fn lost_for_good<F: Followed>(
     blocks: &mut [F],
     from: f64,

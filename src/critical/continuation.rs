@@ -249,9 +249,10 @@ pub(super) fn times_jump(
     !same_cycle || !(options.shorter_slip..=options.longer_slip).contains(&slip)
 }
 
-/// Follows `branch` as [`continue_to_event`] does, and once more from nearby with a finer
-/// integration where the event is at a low v0, at which it is not known without; or where it is
-/// another one by it. An event that only the coarse one has is undetermined.
+/// Follows `branch` as [`continue_to_event`] does, and then checks the event by a finer
+/// integration. Where that gives another event, or where v0 is so low that the coarse one is not
+/// exact enough, the branch is followed once more with it. An event that only the coarse
+/// integration has is undetermined.
 pub(super) fn continue_to_checked_event<B: Branch + Clone>(
     branch: &mut B,
     from: Point,

@@ -33,12 +33,12 @@ pub(super) struct Neighbour<'o> {
     near: f64,
     /// Cells in a row that ended by the slopes of one before.
     borrowed: u32,
-    /// How clearly stick-slip was seen to end where that was looked at last, the delay there, and
-    /// the change with the delay's logarithm; NaN where it is not known.
+    /// How clearly stick-slip ended at the last cell whose motion was followed beyond its end, the
+    /// delay there, and the change with the delay's logarithm; NaN where it is not known.
     clear: f64,
     seen_at: f64,
     change: f64,
-    /// Ends since then, and the time in slip at that one.
+    /// The number of ends since then, and the time in slip at that cell.
     unseen: u32,
     slip_seen: f64,
     /// Whether it is known that stick-slip leads there.
@@ -98,7 +98,7 @@ impl<'o> Neighbour<'o> {
         }
     }
 
-    /// This end, with what is known of one that was come to from scratch at this delay.
+    /// This end, with what is known of the same one from a search from scratch.
     pub(super) fn like(mut self, other: &Self) -> Self {
         self.decided = other.decided;
         self.way.clone_from(&other.way);
@@ -106,14 +106,14 @@ impl<'o> Neighbour<'o> {
     }
 
     /// The end of stick-slip of `problem`, which differs by its delay alone from the one before;
-    /// none where the branch before does not lead to it. After that this is of no more use.
+    /// none where the branch before does not lead to it. This must not be used again then.
     pub(super) fn next(&mut self, problem: &Problem) -> Option<Ending> {
         let mut trials = self.options.most_trials;
         self.approach(problem, &mut trials)
     }
 
     /// The end at the delay of `problem`, by way of delays in between where the whole way is too
-    /// far, within so many `trials`.
+    /// far, within the number of `trials` that are left.
     fn approach(&mut self, problem: &Problem, trials: &mut u32) -> Option<Ending> {
         let first = nearest(self.event, self.options)[0];
         loop {
@@ -145,7 +145,7 @@ impl<'o> Neighbour<'o> {
         self.approach(problem, trials)
     }
 
-    /// The end at the delay of `problem`; else what is there in its place.
+    /// The end at the delay of `problem`, or what was found in its place.
     fn attempt(&mut self, problem: &Problem) -> Result<Ending, Sequel> {
         let (tau, options) = (problem.tau, self.options);
         let predicted = self.predicted(tau);
@@ -213,8 +213,8 @@ impl<'o> Neighbour<'o> {
         Err(Undetermined::NotSustained)
     }
 
-    /// What follows an ending, looked at unless that can be told from the ends before. There it was
-    /// `predicted`, and its orbit slips for `slip` in a period.
+    /// What follows an ending: from the ends before if these suffice, else by following the motion
+    /// beyond it. The end was `predicted` there, and its orbit slips for `slip` in a period.
     fn look(&mut self, problem: &Problem, ending: &Ending, predicted: f64, slip: f64) -> Sequel {
         if !ending.event.may_end() {
             return Sequel::Periodic(self.at.orbit.period.cycles().len());

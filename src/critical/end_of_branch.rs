@@ -1,5 +1,5 @@
-//! The end of a branch with history: the event that continuation located is come near to and
-//! checked, and it is seen what follows.
+//! The end of a branch with history: continuation located an event; here the branch is brought
+//! close to it, the event is checked, and the motion beyond it is followed.
 
 use super::after_event::{after_graze, after_stick, sequel};
 use super::continuation::{Branch, Point, Releases};
@@ -11,7 +11,7 @@ use super::transition::{Ending, Located, Sequel, Undetermined, same_slip};
 use super::with_history::WithHistory;
 use crate::slip::motion::Motion;
 
-/// Comes to just below an event that was located from the last point; the branch is left there.
+/// Brings the branch from its last point to just below an event that was located.
 ///
 /// # Errors
 /// When the event is not there.
@@ -111,8 +111,8 @@ pub(super) fn verify(
     }
 }
 
-/// Whether stick-slip comes back to the orbit of a graze at `v0` just below it: one whose period
-/// has doubled goes on, unstable, to a graze of its own.
+/// Whether the orbit just below a graze at `v0` attracts. Where a period has doubled, the orbit of
+/// the single period goes on, unstable, to a graze of its own, which is not the end.
 fn attracts_below_graze<M: ReturnMap>(
     branch: &mut WithHistory<'_, M>,
     v0: f64,
@@ -257,7 +257,7 @@ mod tests {
         }
     }
 
-    /// An event that was located is come near to: the branch is left just below it.
+    /// The branch ends just below an event that was located.
     #[test]
     fn events_are_come_near_to() {
         let options = Options::default();

@@ -108,7 +108,7 @@ struct Kinds<'p> {
     problem: &'p Problem,
     /// The largest step through irregular stick-slip.
     crossing_step: f64,
-    /// Where irregular stick-slip was come to first.
+    /// The state in which irregular stick-slip was first met.
     entry: Option<Box<Motion>>,
     /// The searches by simulation that came to an end.
     searches: Vec<Search>,
@@ -131,7 +131,7 @@ impl<'p> Kinds<'p> {
         critical
     }
 
-    /// The end of stick-slip that a block comes to which may not stick again and again.
+    /// The end of stick-slip from a block that may not be in stick-slip at all.
     fn start(&mut self, mut motion: Motion) -> Result<Found<'p>, NoStart> {
         match sequel(self.problem, &mut motion) {
             Sequel::Ends(_) => Err(NoStart::NotSustained),
@@ -145,7 +145,7 @@ impl<'p> Kinds<'p> {
         }
     }
 
-    /// The end of stick-slip that a motion is in, with so many slips in a period.
+    /// The end of the stick-slip of a motion with `slips` slips in a period.
     fn end_of(&mut self, motion: Motion, slips: usize) -> Found<'p> {
         let step = self.problem.options.continuation.first_step;
         let mut branch = WithHistory::in_stick_slip(self.problem, motion, slips);
@@ -232,7 +232,7 @@ impl<'p> Kinds<'p> {
         (critical, Some(neighbour))
     }
 
-    /// Through irregular stick-slip, to where it repeats again; else to its end.
+    /// Raises v0 through irregular stick-slip, to where it repeats again or to its end.
     fn cross(&mut self, motion: Motion) -> Result<(Motion, usize), CriticalVelocity> {
         if self.entry.is_none() {
             self.pass(0);

@@ -1,6 +1,8 @@
-//! The return map without memory: under pure load control a stick that outlasts the delay erases
-//! all memory. Every slip starts from a = μ_S (1 + α_n v0 τ), which has grown evenly, so the orbit
-//! at v0 is one slip and its stick ([`super`], Eq. 5).
+//! The return map without memory: under pure load control a stick that outlasts the delay and the
+//! latency erases all memory, unless the feedback itself has one.
+//!
+//! Every slip starts from a = μ_S (1 + α_n v0 τ), which has grown evenly, so the orbit at v0 is one
+//! slip and its stick ([`super`], Eq. 5).
 
 use super::after_event::after_graze;
 use super::continuation::{Branch, Orbit, Point, Releases, continue_to_checked_event};
@@ -31,11 +33,12 @@ impl<'p> Memoryless<'p> {
         let cycle = self
             .release_at(v0 * (1.0 - precision))
             .cycle(None, &problem.options.continuation);
-        let cycle = cycle.ok().filter(|cycle| cycle.stick >= problem.tau);
+        let erases = |stick: f64| problem.erasing_stick().is_some_and(|least| stick >= least);
+        let cycle = cycle.ok().filter(|cycle| erases(cycle.stick));
         cycle.map(Period::of)
     }
 
-    /// The end of stick-slip from a point on; none where it is not come to without memory.
+    /// The end of stick-slip from a point on; none where slips without memory do not lead to it.
     fn end(&mut self, mut from: Point) -> Option<Ending> {
         let problem = self.problem;
         let (options, checks) = (&problem.options.continuation, &problem.options.transition);
@@ -103,8 +106,9 @@ impl Branch for Memoryless<'_> {
         let cycle = self
             .release_at(v0)
             .cycle(stop, &problem.options.continuation)?;
-        if cycle.stick < problem.tau {
-            return Err(NoReturn::OutsideDomain);
+        match problem.erasing_stick() {
+            Some(least) if cycle.stick >= least => {}
+            _ => return Err(NoReturn::OutsideDomain),
         }
         Ok(Orbit::of(Period::of(cycle)))
     }
@@ -126,7 +130,7 @@ pub(super) fn end_without_memory(
     v0: f64,
     accuracy: Accuracy,
 ) -> Result<Option<Ending>, NoReturn> {
-    if problem.alpha_v != 0.0 {
+    if problem.erasing_stick().is_none() {
         return Err(NoReturn::OutsideDomain);
     }
     let mut branch = Memoryless::new(problem, accuracy);

@@ -98,6 +98,14 @@
 //! equations* (in Krauskopf, Osinga and Galán-Vioque, Springer 2007). All numbers that tune it
 //! stand in [`options`], with their reasons; the predictor in `step_control`, with a list of all
 //! rules for step sizes.
+//!
+//! - `observers`: what is seen of a motion meanwhile: its last stops, when a slip goes on for good,
+//!   irregular sticking
+//! - `problem`: what is asked, the controlled oscillator, and what is told
+//! - `search`: what a search by simulation came to
+//! - `synthetic`: return maps of one number with closed forms, in the place of the oscillator's,
+//!   for tests
+//! - `work`: the work of a search, counted for tests
 
 mod after_event;
 pub mod along_delay;

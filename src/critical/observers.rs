@@ -94,7 +94,11 @@ impl<'o> Stops<'o> {
         options: &'o RampOptions,
     ) -> Self {
         let p = motion.parameters();
-        let delay = if p.switch_on.is_finite() { p.tau } else { 0.0 };
+        let delay = if p.switch_on.is_finite() {
+            p.remembered()
+        } else {
+            0.0
+        };
         let window = delay + 2.0 * std::f64::consts::TAU;
         Self {
             options,

@@ -1,13 +1,13 @@
-//! What is asked, the controlled oscillator whose critical velocity is looked for, and what is
-//! told.
+//! The question and the answer: the controlled oscillator whose critical velocity is asked for, and
+//! what is found.
 
 use super::options::{Options, RampOptions};
 use super::transition::Transition;
-use crate::linear::rightmost::Rightmost;
-use crate::linear::{Count, Crossings, MarginalTolerance};
+use crate::linear::{Count, MarginalTolerance};
 use crate::model::friction::Kind;
 use crate::model::{FrictionLaw, Groups};
-use crate::slip::motion::{Accuracy, Motion, Parameters};
+use crate::slip::motion::{Accuracy, Motion, Parameters, remembered};
+use crate::slip::sliding::Sliding;
 use crate::slip::stop::Stop;
 
 /// A controlled oscillator whose critical velocity is asked for, in the units of
@@ -24,6 +24,10 @@ pub struct Problem {
     pub alpha_n: f64,
     /// τ √(κ/M).
     pub tau: f64,
+    /// R, the memory of the feedback, −1 < R < 1; left aside without gains.
+    pub memory: f64,
+    /// δ √(κ/M) ≥ 0, the latency of the feedback; left aside without gains.
+    pub latency: f64,
     /// What ends the search: its answer then means nothing.
     pub stop: Stop,
     /// What tunes the search.
@@ -41,6 +45,8 @@ impl Problem {
             alpha_v: self.alpha_v,
             alpha_n: self.alpha_n,
             tau: self.tau,
+            memory: self.memory,
+            latency: self.latency,
             v0,
             switch_on: if controlled { switch_on } else { f64::INFINITY },
         }
@@ -58,9 +64,8 @@ impl Problem {
         motion
     }
 
-    /// What `begin` comes to at the first of the protocol's start velocities at which it comes to
-    /// something. After lift-off only smaller ones are tried: what is asked for is the smallest v0
-    /// of it.
+    /// The result of `begin` at the first of the protocol's start velocities at which it has one.
+    /// After lift-off only smaller ones are tried, since the smallest v0 of lift-off is asked for.
     pub(super) fn at_first_start<T>(
         &self,
         mut begin: impl FnMut(f64) -> Result<T, NoStart>,
@@ -82,9 +87,28 @@ impl Problem {
 
     /// How many times as long velocity control makes a stick that is much longer than a delay.
     ///
-    /// The spring is pulled at ȧ = v0 + α_v (a(t) − a(t − τ)) there, which goes to v0/(1 − α_v τ).
+    /// The spring is pulled at ȧ = v0 + α_v S there, which goes to v0/(1 − α_v τ/(1 − R)).
     pub(super) fn slower(&self) -> f64 {
-        (1.0 - self.alpha_v * self.tau).max(1.0)
+        let share = self.alpha_v * self.tau / (1.0 - self.memory);
+        (1.0 - share).max(1.0)
+    }
+
+    /// How long a stick has to last for it to erase the past; none where none does that: under
+    /// velocity control, and with memory.
+    pub(super) fn erasing_stick(&self) -> Option<f64> {
+        let erased = self.alpha_v == 0.0 && (self.memory == 0.0 || self.alpha_n == 0.0);
+        erased.then_some(match self.alpha_n == 0.0 {
+            true => self.tau,
+            false => self.tau + self.latency,
+        })
+    }
+
+    /// How long the feedback remembers, see [`Parameters::remembered`].
+    pub(super) fn remembered(&self) -> f64 {
+        match self.alpha_v == 0.0 && self.alpha_n == 0.0 {
+            true => self.tau,
+            false => remembered(self.tau, self.memory, self.latency),
+        }
     }
 
     /// How long to wait for a motion's outcome at `v0`, by these options: transients, many delays,
@@ -92,7 +116,7 @@ impl Problem {
     pub(super) fn patience(&self, v0: f64, options: &RampOptions) -> f64 {
         let longest_cycle = 2.0 * self.law.mu_s() * self.slower() / v0 + 10.0;
         let [always, delays, cycles] = options.patience;
-        always + delays * self.tau + cycles * longest_cycle
+        always + delays * self.remembered() + cycles * longest_cycle
     }
 
     /// The largest v0 at which stick-slip is looked for.
@@ -114,20 +138,25 @@ impl Problem {
     /// The number of unstable roots of sliding at `v0`.
     #[must_use]
     pub fn count(&self, v0: f64) -> Count {
-        Crossings::of(self.groups(v0)).count(self.tau, MarginalTolerance::default())
+        self.sliding(v0).count(MarginalTolerance::default())
+    }
+
+    /// Sliding at `v0`.
+    #[must_use]
+    pub fn sliding(&self, v0: f64) -> Sliding {
+        Sliding {
+            groups: self.groups(v0),
+            tau: self.tau,
+            memory: self.memory,
+            latency: self.latency,
+        }
     }
 
     /// The spectral abscissa of sliding at `v0`, if it is stable.
     #[must_use]
     pub fn stable_abscissa(&self, v0: f64) -> Option<f64> {
-        let count = self.count(v0);
-        if !count.stable() {
-            return None;
-        }
-        let rightmost = Rightmost::at(self.groups(v0), self.tau, 1, count);
-        let root = rightmost.roots.first().filter(|_| rightmost.certified);
-        root.map(|root| root.lambda.re)
-            .filter(|abscissa| *abscissa < 0.0)
+        let abscissa = self.sliding(v0).stable_abscissa();
+        abscissa.filter(|abscissa| *abscissa < 0.0)
     }
 
     /// Without control, under Coulomb friction, stick-slip persists at every v0: a slip from a =
@@ -175,8 +204,8 @@ impl Method {
     }
 }
 
-/// The critical velocity of a problem, in the units of [`crate::slip::motion`]; NaN for what there
-/// is not.
+/// The critical velocity of a problem, in the units of [`crate::slip::motion`]; NaN stands for a
+/// number that does not exist.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct CriticalVelocity {
     /// The largest v0 at which stick-slip persists; 0 where it never does.
@@ -297,10 +326,10 @@ impl CriticalVelocity {
 /// The critical velocity with all windows of v0 in which stick-slip survives.
 #[derive(Debug, Clone, PartialEq)]
 pub struct CriticalWindows {
-    /// v_c and what there is at it.
+    /// v_c, and how stick-slip ends there.
     pub critical: CriticalVelocity,
-    /// Where stick-slip survives, up to the largest v0 at which it is looked for: v0 from and to,
-    /// increasing. The last one may end at v_c, where N ≤ 0 occurs, or with the range.
+    /// The windows of v0 in which stick-slip survives, up to the largest v0 that is tried: from and
+    /// to, increasing. The last one may end at v_c, where N ≤ 0 occurs, or with the range.
     pub windows: Vec<[f64; 2]>,
 }
 

@@ -2,8 +2,8 @@
 //! carried from one to the next, by steps that grow and are halved.
 //!
 //! A v0 at which stick-slip was lost is no bound: near its end it attracts from less and less far,
-//! so it may have been the size of the step that lost it. It is come nearer to and tried once more
-//! from close by ([`StepControl`]), until the two v0 are as near as asked for.
+//! so it may have been the size of the step that lost it. The same v0 is tried again from closer by
+//! ([`StepControl`]), until the last v0 that held and the first that did not are close enough.
 
 use super::continuation::times_jump;
 use super::event_functions::{Event, EventFunctions};
@@ -60,7 +60,7 @@ pub(super) fn from(problem: &Problem, motion: Motion, options: &RampOptions) -> 
     }
 }
 
-/// Follows stick-slip from the v0 it has, while v0 is raised, and leaves it where it comes to.
+/// Raises v0 from its present value and follows stick-slip; the block is left in its last state.
 pub(super) fn raise<F: Followed>(
     block: &mut F,
     options: &RampOptions,

@@ -1,4 +1,4 @@
-//! What stick-slip comes to at one v0, seen by simulation.
+//! The regime of stick-slip at one v0, by simulation.
 
 use super::event_functions::{EventFunctions, MOST_SLIPS};
 use super::observers::{Stops, Waiting};
@@ -8,13 +8,13 @@ use crate::slip::motion::{Event, Motion};
 use crate::slip::outcome::{Limits, Outcome, Summary};
 use crate::slip::watch::follow;
 
-/// What stick-slip comes to at one v0.
+/// What becomes of stick-slip at one v0.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Regime {
     /// Stick-slip goes on, periodically.
     Periodic,
-    /// It goes on for as long as was waited, in cycles that did not come to repeat: it may be lost
-    /// by chance yet.
+    /// It went on for as long as was waited, in cycles that do not repeat: it may still be lost by
+    /// chance.
     Irregular,
     /// N ≤ 0.
     LiftOff,
@@ -24,7 +24,7 @@ pub enum Regime {
     Ended,
     /// There is no stick-slip to begin with.
     NoStickSlip,
-    /// Not told within the steps allowed, or too many cycles in a delay.
+    /// Not known within the steps allowed, or too many cycles in a delay.
     Undecided,
 }
 
@@ -221,7 +221,7 @@ fn response_at(problem: &Problem, motion: &mut Motion, v0: f64, how: &Observatio
             _ => None,
         },
         repeated: how.repeated,
-        cycles: how.waiting.cycles(problem.tau, options),
+        cycles: how.waiting.cycles(problem.remembered(), options),
     };
     let slides = problem.count(v0).stable();
     let mut stops = Stops::new(motion, slides, how.waiting, options);

@@ -137,7 +137,7 @@ impl Period {
     }
 }
 
-/// Why there is no image under the return map, or none that is looked for.
+/// Why there is no image under the return map, or none within the range that is searched.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum NoReturn {
     /// The block passed the minimum of ẋ at which it was expected to stop, or did not stop for much
@@ -149,7 +149,7 @@ pub(super) enum NoReturn {
     Undefined,
     /// Periods did not come to rest.
     NotSettled,
-    /// v0 is larger, or the stick shorter, than is looked at.
+    /// v0 is above the range that is searched, or the stick below it.
     OutsideDomain,
 }
 

@@ -46,12 +46,12 @@ impl Prediction {
 ///
 /// A step that failed makes the next one half as long, one that succeeded doubles the largest that
 /// is allowed, up to a limit. A v0 that failed is no bound: it may have been the size of the step.
-/// So it is come nearer to by half of the way, and [`Retry`] says what is tried from much nearer
-/// than the step that failed there.
+/// So the next step goes half of the way to it, and once the distance is much smaller than the step
+/// that failed, [`Retry`] says what is tried.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct StepControl<'o> {
     options: &'o ContinuationOptions,
-    /// What is tried from near a v0 that failed; none where it is not passed any more.
+    /// What is tried near a v0 that failed; none where it is not to be passed any more.
     pub retry: Option<Retry>,
     /// The largest step for now, and at all.
     largest: f64,
@@ -61,7 +61,7 @@ pub(super) struct StepControl<'o> {
     failed: Option<(f64, f64)>,
 }
 
-/// What is tried from near a v0 that failed: from so near, as a share of the step that failed.
+/// What is tried near a v0 that failed, and how near, as a share of the step that failed.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Retry {
     /// A step of that size, beyond it: continuation, which is not asked for a bracket.

@@ -15,8 +15,8 @@ use crate::slip::watch::follow;
 pub enum Phase {
     /// At this time after a release, modulo the uncontrolled period; in units of √(M/κ).
     After(f64),
-    /// At each of so many phases, evenly over the uncontrolled period: stick-slip survives if it
-    /// does for one of them.
+    /// At this number of phases, evenly over the uncontrolled period: stick-slip survives if it
+    /// does at one of them.
     Worst(u32),
 }
 
@@ -63,7 +63,7 @@ pub struct Windows {
     pub top_within: [f64; 2],
     /// The smallest v0 at which N ≤ 0 occurs; none where it does not.
     pub v_liftoff: Option<f64>,
-    /// Whether something was told at every v0, and no edge is that of irregular stick-slip.
+    /// Whether every v0 had an answer, and no edge is one of irregular stick-slip.
     pub decided: bool,
     /// Whether every v0 was tried within the steps allowed.
     pub complete: bool,
@@ -120,8 +120,8 @@ impl<'p> Trials<'p> {
         }
     }
 
-    /// Survives if it does at one phase; else what is told first of: irregular, lift-off,
-    /// undecided, the end.
+    /// The worst regime of all phases: periodic stick-slip at one phase counts, else irregular
+    /// stick-slip, else lift-off, else undecided, else the end.
     fn worst(&mut self, v0: f64, phases: u32) -> Regime {
         let long = self.problem.options.switch_on.longest;
         let (mut worst, period) = self.once(v0, 0.0, long);
@@ -175,7 +175,7 @@ impl<'p> Trials<'p> {
         let slides = limits.stable_abscissa.is_some();
         let mut sticking = Sticking::new(patience, slides, &self.problem.options.switch_on);
         let summary = follow(&mut self.motion, &limits, &mut sticking);
-        let cycles = 1.0 + self.problem.tau / cycle.period();
+        let cycles = 1.0 + self.problem.remembered() / cycle.period();
         self.spent += summary.steps + self.problem.options.switch_on.steps_of_cycle * cycles as u64;
         let regime = match summary.outcome {
             Outcome::Undecided if self.motion.outgrows_its_past() => Regime::Undecided,
@@ -211,7 +211,7 @@ pub fn windows(problem: &Problem, phase: Phase, scan: &Scan, accuracy: Accuracy)
     walk.end()
 }
 
-/// A velocity, and what switching on comes to there.
+/// A velocity, and the regime after switching on there.
 type Tried = (f64, Regime);
 
 /// What is found on the way from one velocity to the next.

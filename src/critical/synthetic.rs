@@ -20,6 +20,8 @@ pub(super) fn problem(law: FrictionLaw, alpha_v: f64, alpha_n: f64, tau: f64) ->
         alpha_v,
         alpha_n,
         tau,
+        memory: 0.0,
+        latency: 0.0,
         stop: StopFlag::default(),
         options: Options::default(),
     }

@@ -66,7 +66,7 @@ pub(super) enum Undetermined {
     /// Periods do not come to rest, however small the step of v0: the orbit loses its stability
     /// without an event.
     NotSettled,
-    /// The branch goes on to velocities that are not looked at, or gains a memory.
+    /// The branch goes on beyond the velocities that are searched, or gains a memory.
     OutsideDomain,
     /// Steps fail, but no event function vanishes there.
     NoEvent,

@@ -23,8 +23,8 @@ pub(super) struct Released<M> {
 }
 
 impl<M: ReturnMap> Released<M> {
-    /// Becomes what is expected at another v0 and delay from the `last` and the one `before`, and
-    /// `share` of what lies between them; false where that cannot be told.
+    /// Becomes the state expected at another v0 and delay: extrapolated from the `last` state and
+    /// the one `before`, by `share` of the distance between them; false where that is not possible.
     fn extrapolate(
         &mut self,
         (last, before): (&mut Self, &mut Self),
@@ -66,7 +66,7 @@ impl<M: ReturnMap> Released<M> {
     }
 }
 
-/// A branch of stick-slip with so many slips in a period.
+/// A branch of stick-slip with a fixed number of slips in a period.
 #[derive(Debug, Clone)]
 pub(super) struct WithHistory<'o, M> {
     options: &'o ContinuationOptions,
@@ -201,7 +201,7 @@ impl<'o, M: ReturnMap> WithHistory<'o, M> {
         &self.first
     }
 
-    /// Begins its period so many slips later; false where it does not come to that.
+    /// Begins its period `by` slips later; false where the block does not get there.
     pub(super) fn rotate(&mut self, by: usize, period: &Period) -> bool {
         let stops = period.stops();
         let options = self.options;

@@ -3,11 +3,12 @@
 
 use std::f64::consts::TAU;
 
-use crate::linear::Crossings;
 use crate::linear::crossing::Crossing;
+use crate::linear::general::DelayLine;
 use crate::linear::stable_delays::StableInterval;
+use crate::linear::{Crossings, Direction};
 use crate::model::ModelError;
-use crate::sweep::{Parameter, Setting};
+use crate::sweep::{LinearModel, Parameter, Setting};
 
 /// Near a tangency there can be millions of stable intervals; the delays go on to the end of this
 /// one.
@@ -39,40 +40,91 @@ impl AlongDelay {
     /// # Errors
     /// When a parameter is outside the model's range.
     pub fn of(setting: &Setting) -> Result<Self, ModelError> {
-        let (groups, time_unit) = setting.groups()?;
-        let crossings = Crossings::of(groups).in_physical_time(time_unit);
+        let (model, time_unit) = setting.linear()?;
+        let tau = setting.get(Parameter::Tau);
+        Ok(match model {
+            LinearModel::Letter(groups) => {
+                Self::of_letter(&Crossings::of(groups).in_physical_time(time_unit), tau)
+            }
+            LinearModel::General(system) => {
+                Self::of_line(&DelayLine::of(&system).in_physical_time(time_unit), tau)
+            }
+        })
+    }
+
+    fn of_letter(crossings: &Crossings, tau: f64) -> Self {
         let first: Vec<StableInterval> = crossings.stable_delays().take(INTERVALS).collect();
-        let until = longest(&crossings, &first, setting.get(Parameter::Tau));
-        let mut intervals = crossings.stable_delays().peekable();
+        let until = longest(crossings.iter(), &first, (tau, crossings.time_unit));
+        let count: u64 = moving(crossings.iter()).map(|c| c.count_below(until)).sum();
+        let changes = moving(crossings.iter()).flat_map(|c| crossing_delays(*c, until));
+        Self {
+            steps: steps((count, changes), until, |tau| crossings.n_unstable(tau)),
+            until,
+            ..Self::stable_before(until, crossings.stable_delays())
+        }
+    }
+
+    /// Of a system beyond the letter's; without steps where there is no count.
+    fn of_line(line: &DelayLine, tau: f64) -> Self {
+        let first: Vec<StableInterval> = line.stable_intervals().take(INTERVALS).collect();
+        let until = longest(line.crossings.iter(), &first, (tau, line.time_unit));
+        let changes = line.changes().map(|change| change.tau);
+        let changes = changes.take_while(|tau| *tau < until);
+        let count = changes.clone().take(MOST_STEPS as usize + 1).count() as u64;
+        let steps = match line.uncounted {
+            true => Vec::new(),
+            false => steps((count, changes), until, |tau| line.n_unstable(tau)),
+        };
+        Self {
+            steps,
+            until,
+            ..Self::stable_before(until, line.stable_intervals())
+        }
+    }
+
+    /// The stable intervals that begin before `until`.
+    fn stable_before(until: f64, intervals: impl Iterator<Item = StableInterval>) -> Self {
+        let mut intervals = intervals.peekable();
         let told = || intervals.next_if(|interval| interval.from < until);
         let stable = std::iter::from_fn(told).take(MOST_STEPS as usize).collect();
-        Ok(Self {
-            steps: steps(&crossings, until),
+        Self {
+            steps: Vec::new(),
             until,
             stable,
             more_stable: intervals.peek().is_some(),
-        })
+        }
     }
 }
 
-/// Until where the line is told.
-fn longest(crossings: &Crossings, stable: &[StableInterval], tau: f64) -> f64 {
-    let first = crossings.iter().map(|c| c.delay(c.first_branch));
+/// The end of the line of the delay `tau`.
+fn longest<'c>(
+    crossings: impl Iterator<Item = &'c Crossing>,
+    stable: &[StableInterval],
+    (tau, time_unit): (f64, f64),
+) -> f64 {
+    let first = crossings.map(|c| c.delay(c.first_branch));
     let ends = stable.iter().flat_map(|s| [s.from, s.to]);
     let finite = first.chain(ends).filter(|delay| delay.is_finite());
     let matters = finite.fold(tau, f64::max);
     match matters {
-        0.0 => TAU * crossings.time_unit,
+        0.0 => TAU * time_unit,
         _ => BEYOND * matters,
     }
 }
 
-/// The number of unstable roots from 0 to `until`.
-fn steps(crossings: &Crossings, until: f64) -> Vec<(f64, f64, u64)> {
-    let moving = || [&crossings.upper, &crossings.lower].into_iter().flatten();
-    let count: u64 = moving().map(|c| c.count_below(until)).sum();
+/// Those that are no touches.
+fn moving<'c>(crossings: impl Iterator<Item = &'c Crossing>) -> impl Iterator<Item = &'c Crossing> {
+    crossings.filter(|c| c.direction != Direction::Touch)
+}
+
+/// The number of unstable roots from 0 to `until`, where it changes so many times, at these delays.
+fn steps(
+    (count, changes): (u64, impl Iterator<Item = f64>),
+    until: f64,
+    n_unstable: impl Fn(f64) -> u64,
+) -> Vec<(f64, f64, u64)> {
     let mut edges: Vec<f64> = if count <= MOST_STEPS {
-        moving().flat_map(|c| crossing_delays(*c, until)).collect()
+        changes.collect()
     } else {
         let place = |i| until * i as f64 / MOST_STEPS as f64;
         (1..MOST_STEPS).map(place).collect()
@@ -82,7 +134,7 @@ fn steps(crossings: &Crossings, until: f64) -> Vec<(f64, f64, u64)> {
     edges.dedup();
     let between = |pair: &[f64]| {
         let (from, to) = (pair[0], pair[1]);
-        (from, to, crossings.n_unstable(from + 0.5 * (to - from)))
+        (from, to, n_unstable(from + 0.5 * (to - from)))
     };
     edges.windows(2).map(between).collect()
 }

@@ -12,6 +12,7 @@ use super::law::LawCurve;
 use super::motion::{self, Followed};
 use super::point::Point;
 use super::problem::Problem;
+use super::stability::Wanted;
 use super::vc::CriticalVelocity;
 use super::{chart_bytes, motion_bytes};
 use crate::slip::stop::Stop;
@@ -166,11 +167,17 @@ impl Asked {
                 let took = begun.map(|begun| begun.elapsed().as_secs_f64() * 1e3);
                 Ok(chart_bytes::encoded(&chart, took)?)
             }
-            Self::Point(PointSpec { setting, .. }) => json(&WithCommand {
-                answer: Point::at(setting, ROOTS)?,
-                command: command_line("point", setting, |p| setting.uses(p))
-                    .map(|command| format!("{command} --roots={ROOTS}")),
-            }),
+            Self::Point(PointSpec { setting, .. }) => {
+                let wanted = Wanted {
+                    roots: ROOTS,
+                    line: None,
+                };
+                json(&WithCommand {
+                    answer: Point::at(setting, wanted)?,
+                    command: command_line("point", setting, |p| setting.uses(p))
+                        .map(|command| format!("{command} --roots={ROOTS}")),
+                })
+            }
             Self::CriticalVelocity(point) => {
                 let stop = Stop::when(stop);
                 let answer = CriticalVelocity::of(&point.setting, point.protocol, &stop)?;
@@ -213,7 +220,7 @@ mod tests {
 
     const LAW: &str = "[friction]\nlaw = \"weakening\"\nmu0 = 0.5\nv_s = 0.5\n";
 
-    /// What takes long is not answered once nobody waits.
+    /// A long computation ends once its caller has gone.
     #[test]
     fn a_stop_is_heeded() {
         let vc = format!("[fixed]\nalpha_v = -0.33\ntau = 4.15\n{LAW}");

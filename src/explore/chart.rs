@@ -1,4 +1,4 @@
-//! What a chart shows: the cells and curves of a sweep, computed into memory at once.
+//! Charts: the cells and curves of a sweep, computed into memory.
 
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
@@ -94,7 +94,7 @@ impl ChartCurve {
             degree_of_stability,
             direction: piece.direction.sign(),
             stable_side: piece.stable_side.sign(),
-            vertices: piece.vertices.iter().map(|v| [v.p, v.tau]).collect(),
+            vertices: piece.vertices.iter().map(|v| [v.p, v.q]).collect(),
         }
     }
 }

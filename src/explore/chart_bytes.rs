@@ -23,9 +23,9 @@ pub struct ChartHead {
 #[derive(Debug, Serialize)]
 #[cfg_attr(feature = "serve", derive(utoipa::ToSchema))]
 struct AxisHead {
-    name: &'static str,
-    long_name: &'static str,
-    symbol: &'static str,
+    name: String,
+    long_name: String,
+    symbol: String,
     unit: String,
     values: Array,
 }
@@ -81,10 +81,10 @@ pub fn encoded(chart: &Chart, milliseconds: Option<f64>) -> Result<Vec<u8>, serd
     let head = ChartHead {
         axes: (plan.spec.axes.iter())
             .map(|axis| AxisHead {
-                name: axis.parameter.name(),
-                long_name: axis.parameter.long_name(),
-                symbol: axis.parameter.symbol(),
-                unit: units.of_parameter(axis.parameter),
+                name: axis.parameter.name().into(),
+                long_name: axis.parameter.long_name().into(),
+                symbol: axis.parameter.symbol().into(),
+                unit: axis.parameter.unit(units),
                 values: arrays.push(axis.values.iter().copied()),
             })
             .collect(),

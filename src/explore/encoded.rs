@@ -72,7 +72,7 @@ impl Arrays {
         }
     }
 
-    /// Adds numbers of which many equal their neighbours; as they are where that is shorter.
+    /// Adds numbers as runs of equal ones, or as they are where that is shorter.
     pub fn push_runs<T: Element>(&mut self, numbers: &[T]) -> Array {
         let mut runs: Vec<(T, u32)> = Vec::new();
         // A run takes its number and four bytes.

@@ -58,6 +58,8 @@ pub struct KnownLaw {
     pub parameters: Vec<&'static str>,
     /// How many of them have to be given.
     pub needed: usize,
+    /// Whether motions are followed under it.
+    pub motions: bool,
 }
 
 /// A field of a map.
@@ -92,6 +94,7 @@ impl Known {
             formula: None,
             parameters: Vec::new(),
             needed: 0,
+            motions: true,
         };
         Self {
             version: env!("CARGO_PKG_VERSION"),
@@ -127,6 +130,7 @@ impl KnownLaw {
             formula: Some(formula.formula()),
             parameters: law.parameters().iter().map(|p| p.name()).collect(),
             needed: law.needed(),
+            motions: !law.has_state(),
         }
     }
 }

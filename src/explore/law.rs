@@ -22,7 +22,7 @@ pub struct LawCurve {
     pub law: &'static str,
     /// Its formula; none for a table.
     pub formula: Option<&'static str>,
-    /// Speeds, evenly spaced; those of 201.
+    /// 201 speeds, evenly spaced.
     pub v: Vec<f64>,
     /// μ_K there, at speed 0 its limit.
     pub mu_k: Vec<f64>,
@@ -57,11 +57,7 @@ impl LawCurve {
     /// When it has none, or the law is ill-posed.
     pub fn of(spec: &PointSpec) -> Result<Self, ModelError> {
         let setting = &spec.setting;
-        let none = ModelError {
-            parameter: "friction",
-            value: f64::NAN,
-            allowed: "a friction law",
-        };
+        let none = ModelError::of_law("a law of the velocity alone");
         let (kind, law) = (setting.law(), setting.friction_law()?);
         let (Some(kind), Some(law)) = (kind, law) else {
             return Err(none);

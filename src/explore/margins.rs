@@ -3,6 +3,7 @@
 use serde::Serialize;
 
 use super::finite;
+use super::stability::Stability;
 use crate::linear::margins::{Limits, Margins as Search, Radius};
 use crate::model::ModelError;
 use crate::sweep::cells::margins::Around;
@@ -21,8 +22,8 @@ pub struct Margins {
     /// The least angle, rad, of either sign by which the loop may turn; null where it is infinite:
     /// the loop is nowhere as large as 1. 0 where the setting has not the decay rate.
     pub phase_margin: Option<f64>,
-    /// The largest further latency of the feedback; null where it is infinite. 0 where the setting
-    /// has not the decay rate.
+    /// The largest latency of the feedback, counted from none; null where it is infinite. 0 where
+    /// the setting without latency has not the decay rate.
     pub latency_margin: Option<f64>,
     /// The delays between which it stays; null where the setting has it not.
     pub tau_margin: Option<Margin>,
@@ -33,11 +34,12 @@ pub struct Margins {
     /// there is no friction law.
     pub v0_margin: Option<Margin>,
     /// The largest relative box of gain, delay and μ_K′ or v0 that is proved to have it; 0 where
-    /// the setting has it not.
-    pub stability_radius: f64,
+    /// the setting has it not, null where that is not known.
+    pub stability_radius: Option<f64>,
     /// That box; null where the setting has not the decay rate.
     pub stability_box: Option<StabilityBox>,
-    /// The margins above that could not be decided.
+    /// The margins above that could not be decided, or are not known of such a system: they are
+    /// null for that, or the end of them that is null.
     pub undecided: Vec<&'static str>,
     /// Up to where margins were looked for that have no upper end here.
     pub looked_up_to: LookedUpTo,
@@ -48,11 +50,12 @@ pub struct Margins {
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
 #[cfg_attr(feature = "serve", derive(utoipa::ToSchema))]
 pub struct LookedUpTo {
-    /// The factor of both gains; null where the upper end is known, or known not to be.
+    /// The factor of both gains; null where the upper end is known, known not to be, or not
+    /// decided.
     pub gain_margin: Option<f64>,
     /// The further latency; null where it is known whether there is one that matters.
     pub latency_margin: Option<f64>,
-    /// The delay; null where the upper end is known, or known not to be.
+    /// The delay; null where the upper end is known, known not to be, or not decided.
     pub tau_margin: Option<f64>,
     /// The sliding velocity; null where the upper end is known, and without a friction law.
     pub v0_margin: Option<f64>,
@@ -93,7 +96,8 @@ pub struct StabilityBox {
     /// The box is within one per cent of the largest.
     pub tight: bool,
     /// Relative changes, in the order of gain, delay and third parameter, at which stability, or
-    /// the decay rate, is lost just beyond the box; null where no change up to 1 does that.
+    /// the decay rate, is lost just beyond the box, or a root touches the line within rounding;
+    /// null where no change up to 1 does that.
     pub lost_at: Option<[f64; 3]>,
 }
 
@@ -105,23 +109,72 @@ impl Margins {
     pub fn at(setting: &Setting, decay: f64) -> Result<Self, ModelError> {
         let around = Around::of(setting, decay)?;
         let mut margins = Self {
-            required_decay: decay,
             decays: around.stable(),
+            ..Self::lost(decay)
+        };
+        if margins.decays {
+            margins.fill(&around, setting);
+        }
+        Ok(margins)
+    }
+
+    /// Of a system beyond the letter's, as far as its stability over the delay tells: at the delay
+    /// `tau`.
+    #[must_use]
+    pub fn of_stability(stability: &Stability, tau: f64) -> Self {
+        let mut margins = Self {
+            decays: stability.stable,
+            ..Self::lost(0.0)
+        };
+        // That counts from no latency at all, whatever holds at the setting's own.
+        let latency = stability.latencies.margin.unwrap_or(f64::NAN);
+        margins.latency_margin = finite(latency);
+        margins.note("latency_margin", &[latency]);
+        if !margins.decays {
+            return margins;
+        }
+        let inside = |&&[from, to]: &&[Option<f64>; 2]| {
+            from.unwrap_or(0.0) <= tau && to.is_none_or(|to| tau < to)
+        };
+        let interval = stability.stable_delays.iter().find(inside);
+        margins.tau_margin = interval.map(|[from, to]| {
+            let limits = Limits {
+                lower: from.unwrap_or(0.0),
+                upper: to.unwrap_or(f64::INFINITY),
+            };
+            Margin::of(tau, limits, 0.0)
+        });
+        if interval.is_none() {
+            margins.undecided.push("tau_margin");
+        }
+        margins.phase_margin = None;
+        margins.stability_radius = None;
+        margins.undecided.extend([
+            "gain_margin",
+            "phase_margin",
+            "mu_prime_margin",
+            "v0_margin",
+            "stability_radius",
+        ]);
+        margins
+    }
+
+    /// Where the setting has not the decay rate, nothing is left of any margin.
+    fn lost(required_decay: f64) -> Self {
+        Self {
+            required_decay,
+            decays: false,
             gain_margin: None,
             phase_margin: Some(0.0),
             latency_margin: Some(0.0),
             tau_margin: None,
             mu_prime_margin: None,
             v0_margin: None,
-            stability_radius: 0.0,
+            stability_radius: Some(0.0),
             stability_box: None,
             undecided: Vec::new(),
             looked_up_to: LookedUpTo::default(),
-        };
-        if margins.decays {
-            margins.fill(&around, setting);
         }
-        Ok(margins)
     }
 
     fn fill(&mut self, around: &Around, setting: &Setting) {
@@ -160,7 +213,7 @@ impl Margins {
             v0_margin: around.highest_v0().and_then(|v0| last(limits.upper, v0)),
         };
         let radius = around.radius();
-        self.stability_radius = radius.proved;
+        self.stability_radius = Some(radius.proved);
         self.stability_box = Some(StabilityBox::of(&radius, third));
     }
 

@@ -3,7 +3,9 @@
 //!
 //! - [`chart`]: cells and curves of a sweep, computed into memory within limits; [`chart_bytes`]:
 //!   the same as bytes, laid out as in [`encoded`]
-//! - [`point`]: linear stability at a point, with its roots; [`along_delay`]: over its delays
+//! - [`point`]: linear stability at a point, with its roots: [`stability`] of its linear model;
+//!   [`along_delay`]: over its delays
+//! - [`system_point`]: the same of a system from a file
 //! - [`margins`]: how far a point is from the boundary of stability
 //! - [`vc`]: the critical velocity at a point
 //! - [`basin`]: the share of starts from which control ends in sliding
@@ -14,6 +16,10 @@
 //!   is no answer
 //!
 //! Numbers that there are not are `null` in JSON, infinities among them.
+//!
+//! - `answer`: every request by its name, its answer as bytes: what the server and the page without
+//!   one share
+//! - `wasm`: the same as a WebAssembly module without imports
 
 pub mod along_delay;
 pub mod answer;
@@ -28,6 +34,8 @@ pub mod motion;
 pub mod motion_bytes;
 pub mod point;
 pub mod problem;
+pub mod stability;
+pub mod system_point;
 pub mod vc;
 #[cfg(all(feature = "wasm", target_family = "wasm"))]
 pub mod wasm;

@@ -28,7 +28,7 @@ impl Default for Limits {
 }
 
 impl Limits {
-    /// Bytes of samples and events at most, and of what is made of them.
+    /// The most bytes that samples and events take, and the answer made of them.
     #[must_use]
     pub const fn bytes(&self) -> u64 {
         (4 * self.samples * size_of::<Sample>()) as u64

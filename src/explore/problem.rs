@@ -1,4 +1,4 @@
-//! What is told of a request that cannot be answered: problem details (RFC 9457).
+//! The answer to a request that cannot be answered: problem details (RFC 9457).
 
 use serde::Serialize;
 

@@ -23,7 +23,7 @@ thread_local! {
     static ANSWERED: RefCell<(u32, Vec<u8>)> = const { RefCell::new((0, Vec::new())) };
 }
 
-/// Room for a request of so many bytes.
+/// Makes room for a request of `length` bytes and gives its address.
 #[unsafe(no_mangle)]
 pub extern "C" fn allocate(length: usize) -> *mut u8 {
     ASKED.with_borrow_mut(|asked| {
@@ -55,7 +55,7 @@ pub extern "C" fn length() -> usize {
     ANSWERED.with_borrow(|answered| answered.1.len())
 }
 
-/// Its status: 200, or that of a problem.
+/// The status of the answer: 200, or that of a problem.
 #[unsafe(no_mangle)]
 pub extern "C" fn status() -> u32 {
     ANSWERED.with_borrow(|answered| answered.0)

@@ -29,7 +29,7 @@ impl Verdict {
         }
     }
 
-    /// Of a statement of which all holds, or at least what it comes to.
+    /// Of a statement with several parts: `all` of them hold, or at least `most`.
     #[must_use]
     pub fn of_parts(all: bool, most: bool) -> Self {
         match (all, most) {
@@ -39,7 +39,7 @@ impl Verdict {
         }
     }
 
-    /// Of a number that the letter rounds to a multiple of `unit`, against the one that is found.
+    /// Of a number that the letter rounds to a multiple of `unit`, compared with the number found.
     #[must_use]
     pub fn of_number(letter: f64, unit: f64, found: f64, error: f64) -> Self {
         let off = (found - letter).abs();
@@ -129,7 +129,7 @@ impl Value {
     }
 }
 
-/// A number with so many digits, in the shortest of both notations.
+/// A number with `digits` digits, in the shorter of both notations.
 fn significant(value: f64, digits: usize) -> String {
     let scientific = format!("{value:.*e}", digits.saturating_sub(1));
     let size = value.abs().log10().floor();

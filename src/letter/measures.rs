@@ -146,7 +146,7 @@ fn margins_at_fig3() -> [Measure; 4] {
     })
 }
 
-/// Gains and delays, each way, at which margins are looked for.
+/// The number of gains, and of delays, at which margins are computed.
 const PLACES: u32 = 48;
 
 /// The largest phase and latency margin of any gain and delay of the box, at a slope.

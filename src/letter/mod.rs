@@ -14,6 +14,11 @@
 //!
 //! Each of these has structures of evidence, filled by a run. A claim is a pure function of one of
 //! them: the same numbers, the same verdict.
+//!
+//! - `claim`: a claim, the values that it is judged by, its verdict
+//! - `page`: the page; the only file that imports maud
+//! - `workshop`: the maps and traces behind claims: sweeps of `sweeps/` computed into files, drawn
+//!   and read
 
 mod claim;
 mod limits;
@@ -63,7 +68,7 @@ pub enum LetterError {
         /// What is wrong.
         error: SpecError,
     },
-    /// A file is there that this program did not make, or made from something else.
+    /// A file with this name is there that this run did not make.
     #[error("{} is already there, and not of this run", path.display())]
     Foreign {
         /// The file.

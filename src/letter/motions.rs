@@ -248,8 +248,8 @@ impl NotDestroyed {
         );
         let how = "Motions from uncontrolled stick-slip, control switched on at three phases of \
             it, over gains and delays, and once more over the small lobe of them in which sliding \
-            is stable. Undecided ones are irregular stick-slip where sliding is unstable, so that \
-            they cannot come to rest in it; large positive gains diverge.";
+            is stable. Where sliding is unstable no motion that is not exceptional can come to \
+            rest in it, undecided ones neither.";
         let values = [
             ("sliding", "motions that come to slide", slid),
             (

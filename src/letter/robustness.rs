@@ -18,7 +18,7 @@ const SMOOTH: Source = source!(
     "velocity_smooth",
     quick: [("points = 13", "points = 7"), ("points = 17", "points = 9")]
 );
-/// Of the three slopes at rest that of the letter's law.
+/// Of the three slopes at rest only that of the letter's law.
 const VELOCITY: Source = source!(
     "robust_velocity",
     always: [("[-0.5, -1.0, -2.0]", "[-1.0]")],
@@ -44,6 +44,8 @@ fn letters(alpha_v: f64, alpha_n: f64, tau: f64, stop: &Stop) -> Result<Problem,
         alpha_v,
         alpha_n,
         tau,
+        memory: 0.0,
+        latency: 0.0,
         stop: stop.clone(),
         options: Options::default(),
     })

@@ -154,7 +154,7 @@ impl UnstableRoots {
         let nearest = "largest |λ| of an unstable root over its bound";
         let bounds = Claim::new("root_bounds", (at, quotation), self.bounded(), because, how)
             .by([Value::of("nearest", nearest, self.nearest).within(1e-9)])
-            .repeat_some(command(self.nearest_at, 1));
+            .repeat_some(command(self.nearest_at, 8));
         let because = format!(
             "At {} crossings by Eqs. (4) and (5), D(iω) is 0 up to {:.1e} of its terms.",
             self.crossings, self.residual,
@@ -168,7 +168,7 @@ impl UnstableRoots {
         let residual = "largest |D(iω)| over the size of its terms";
         let crossings = Claim::new("crossings", at, self.on_the_axis(), because, how)
             .by([Value::of("residual", residual, self.residual)])
-            .repeat_some(command(self.residual_at, 1));
+            .repeat_some(command(self.residual_at, 8));
         [finite, bounds, crossings]
     }
 }

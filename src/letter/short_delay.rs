@@ -19,7 +19,7 @@ pub(super) const SOURCES: [&Source; 1] = [&FIG4];
 const RATIO: f64 = 0.5;
 /// Delays for the approach to the limit, in units of √(M/κ).
 const DELAYS: [f64; 3] = [0.02, 0.01, 0.005];
-/// γ at which it is looked at.
+/// The values of γ that are tried.
 const GAMMAS: [f64; 6] = [0.05, 0.15, 0.3, 0.55, 0.7, 0.85];
 
 /// The oscillator of Fig. 4 at a delay, with M = κ = N0 = μ_S = 1: there ṽ = 1/2.
@@ -30,6 +30,8 @@ fn coulomb(gamma: f64, tau: f64, stop: &Stop) -> Result<Problem, LetterError> {
         alpha_v: 0.0,
         alpha_n: -2.0 * gamma / (RATIO * tau),
         tau,
+        memory: 0.0,
+        latency: 0.0,
         stop: stop.clone(),
         options: Options::default(),
     })
@@ -124,7 +126,7 @@ fn worst(one: f64, other: f64) -> f64 {
 #[derive(Debug, Clone, PartialEq)]
 struct Approximation {
     errors: Vec<(f64, f64)>,
-    /// The stretch of γ of the map in which it is good to 10 %, if any.
+    /// The range of γ, on the map, in which the approximation is good to 10 %; none if nowhere.
     good: Option<(f64, f64)>,
 }
 

@@ -182,7 +182,7 @@ impl Areas {
     }
 }
 
-/// Fig. 2 and what is said of its areas.
+/// The claims of Fig. 2 and those on its areas.
 pub(super) fn claims(shop: &mut Workshop) -> Result<Vec<Claim>, LetterError> {
     let velocity = Panel::of(&shop.map(&FIG2A)?, Control::Velocity)?;
     let load = Panel::of(&shop.map(&FIG2B)?, Control::Load)?;

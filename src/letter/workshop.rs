@@ -18,12 +18,13 @@ use crate::store::{MapFile, Output, TraceFile, trace_file};
 use crate::sweep::cells::samples::Most;
 use crate::sweep::cells::trace::MOST_SAMPLES;
 use crate::sweep::events::Attended;
-use crate::sweep::{CaseSpec, Field, Parameter, Plan, SweepSpec, Trace};
+use crate::sweep::input::quantity::Quantity;
+use crate::sweep::{CaseSpec, Field, Plan, SweepSpec, Trace};
 
 /// A sweep or a case behind claims.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Source {
-    /// Its name: that of its file below `sweeps`.
+    /// The name of its file in `sweeps`.
     pub name: &'static str,
     /// The text of that file.
     pub text: &'static str,
@@ -44,7 +45,7 @@ impl Source {
     }
 }
 
-/// The source `sweeps/NAME.toml`, with what is replaced in it.
+/// The source `sweeps/NAME.toml`, with replacements in its text.
 macro_rules! source {
     ($name:literal) => {
         source!($name, always: [], quick: [])
@@ -99,7 +100,7 @@ pub struct Workshop<'a> {
     pub attended: Attended<'a>,
     /// Is told of each step.
     pub tell: &'a dyn Fn(&str),
-    /// What was made so far.
+    /// The maps and traces that were made so far, by name.
     pub(super) made: BTreeMap<&'static str, Figure>,
 }
 
@@ -267,7 +268,7 @@ fn replaceable(path: &Path, plan: &Plan) -> Result<(), LetterError> {
 }
 
 /// The values of the axes before a plane.
-type Place = Vec<(Parameter, f64)>;
+type Place = Vec<(Quantity, f64)>;
 
 /// The planes of a field over the last two axes of a map, with the values of the axes before them.
 pub(super) fn planes(map: &MapFile, field: Field) -> Result<Vec<(Place, Plane)>, LetterError> {
@@ -283,7 +284,7 @@ pub(super) fn planes(map: &MapFile, field: Field) -> Result<Vec<(Place, Plane)>,
             left /= axis.values.len();
         }
         let values = index.iter().zip(outer);
-        let values = values.map(|(&i, axis)| (axis.parameter, axis.values[i]));
+        let values = values.map(|(&i, axis)| (axis.parameter.clone(), axis.values[i]));
         found.push((
             values.collect(),
             map.plane(field, &index, plane, usize::MAX)?,

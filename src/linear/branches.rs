@@ -10,7 +10,7 @@ use std::f64::consts::{PI, TAU};
 
 use num_complex::Complex64;
 
-use super::characteristic::root_bound;
+use super::equation::{Equation, Pair};
 use super::newton::divide;
 use super::roots::narrowed;
 use crate::model::Groups;
@@ -27,16 +27,16 @@ const ALWAYS_FOLLOWED: usize = 4;
 /// Parts into which the real axis is cut to find real roots.
 const REAL_PARTS: u32 = 12;
 
-/// P and Q of the module with their derivatives, by the coefficients.
-struct Pair {
+/// P and Q of the controlled oscillator, by their coefficients.
+pub(super) struct LetterPair {
     p0: f64,
     p1: f64,
     q0: f64,
     q1: f64,
 }
 
-impl Pair {
-    fn new(groups: Groups) -> Self {
+impl LetterPair {
+    pub(super) fn new(groups: Groups) -> Self {
         let Groups { b, a_v, a_n } = groups;
         let q0 = a_n + a_v * b;
         Self {
@@ -47,13 +47,24 @@ impl Pair {
         }
     }
 
-    /// P, P′, Q at λ.
-    fn at(&self, lambda: Complex64) -> (Complex64, Complex64, Complex64) {
-        (
+    /// The zeros of P, and those of B.
+    pub(super) fn zeros(&self, b: f64) -> impl Iterator<Item = Complex64> {
+        let pairs = [(self.p1, self.p0), (b, 1.0)];
+        pairs
+            .into_iter()
+            .flat_map(|(linear, constant)| quadratic_zeros(linear, constant))
+    }
+}
+
+impl Pair for LetterPair {
+    #[inline]
+    fn at(&self, lambda: Complex64) -> [Complex64; 4] {
+        [
             lambda * (lambda + self.p1) + self.p0,
             2.0 * lambda + self.p1,
             self.q0 + self.q1 * lambda,
-        )
+            Complex64::from(self.q1),
+        ]
     }
 }
 
@@ -61,24 +72,30 @@ impl Pair {
 /// holds.
 ///
 /// `tau` > 0 in units of √(M/κ). Control must act.
-pub(super) fn starting_values(groups: Groups, tau: f64, line: f64, starts: &mut Vec<Complex64>) {
+pub(super) fn starting_values(
+    equation: impl Equation,
+    tau: f64,
+    line: f64,
+    starts: &mut Vec<Complex64>,
+) {
     starts.clear();
-    let pair = Pair::new(groups);
-    let radius = root_bound(groups, tau, line);
-    let branches = (radius * tau / PI).ceil() + 2.0;
+    let pair = equation.pair();
+    let radius = equation.root_bound(tau, line);
+    let span = equation.memory_span(tau);
+    let branches = (radius * span / PI).ceil() + 2.0;
     let kappa = exp(-line * tau);
-    let place = |j: usize| PI * j as f64 / tau;
+    let place = |j: usize| PI * j as f64 / span;
     // A root right of the line lies where feedback is the larger part on the line, as far as one
     // can tell from there.
     let inside = |j: usize| {
-        let (p, _, q) = pair.at(Complex64::new(line, place(j)));
+        let [p, _, q, _] = pair.at(Complex64::new(line, place(j)));
         p.norm_sqr() <= kappa * kappa * q.norm_sqr()
     };
     let (mut before, mut here) = (true, true);
     for j in 0..(branches as usize).min(MOST_BRANCHES) {
         let after = j < ALWAYS_FOLLOWED || inside(j + 1);
         if (before || here || after)
-            && let Some(start) = follow_branch(&pair, tau, place(j))
+            && let Some(start) = follow_branch(&pair, (tau, span), place(j))
         {
             starts.push(start);
         }
@@ -88,24 +105,22 @@ pub(super) fn starting_values(groups: Groups, tau: f64, line: f64, starts: &mut 
         (before, here) = (here, after);
     }
     // Weak feedback leaves the zeros of P, short delays those of B where they are.
-    for (linear, constant) in [(pair.p1, pair.p0), (groups.b, 1.0)] {
-        starts.extend(quadratic_zeros(linear, constant));
-    }
+    equation.zeros(starts);
     real_starts(&pair, tau, line, radius, starts);
 }
 
 /// Newton's method on λτ = log(−Q/P) + 2πik from the branch that `omega` belongs to.
-fn follow_branch(pair: &Pair, tau: f64, omega: f64) -> Option<Complex64> {
+fn follow_branch(pair: &impl Pair, (tau, span): (f64, f64), omega: f64) -> Option<Complex64> {
     let on_axis = Complex64::new(0.0, omega);
-    let (p, _, q) = pair.at(on_axis);
-    let mut lambda = Complex64::new(0.5 * ln(q.norm_sqr() / p.norm_sqr()) / tau, omega);
+    let [p, _, q, _] = pair.at(on_axis);
+    let mut lambda = Complex64::new(0.5 * ln(q.norm_sqr() / p.norm_sqr()) / span, omega);
     for _ in 0..STEPS {
-        let (p, slope, q) = pair.at(lambda);
+        let [p, slope, q, q_slope] = pair.at(lambda);
         let log = -divide(p, q);
         let log = Complex64::new(0.5 * ln(log.norm_sqr()), arg(log));
         let mut mismatch = lambda * tau + log;
         mismatch.im -= TAU * (mismatch.im / TAU).round();
-        let derivative = tau + divide(slope, p) - divide(Complex64::from(pair.q1), q);
+        let derivative = tau + divide(slope, p) - divide(q_slope, q);
         lambda -= divide(mismatch, derivative);
     }
     (lambda.re.is_finite() && lambda.im.is_finite())
@@ -137,7 +152,7 @@ pub(super) fn quadratic_zeros(linear: f64, constant: f64) -> impl Iterator<Item 
 /// Strong gains with a short delay put them where neither the branches nor the parts of the real
 /// axis lead.
 pub(super) fn slow_starts(groups: Groups, tau: f64) -> impl Iterator<Item = Complex64> {
-    let Pair { q0, q1, .. } = Pair::new(groups);
+    let LetterPair { q0, q1, .. } = LetterPair::new(groups);
     let (leading, linear) = (1.0 - q1 * tau + 0.5 * q0 * tau * tau, groups.b - q0 * tau);
     // The zeros of its mirror image are 1/λ: the leading coefficient may vanish.
     quadratic_zeros(linear, leading)
@@ -150,9 +165,9 @@ pub(super) fn slow_starts(groups: Groups, tau: f64) -> impl Iterator<Item = Comp
 const HALVINGS: u32 = 8;
 
 /// A start in each part of the real axis right of `line` in which D changes its sign.
-fn real_starts(pair: &Pair, tau: f64, line: f64, radius: f64, starts: &mut Vec<Complex64>) {
+fn real_starts(pair: &impl Pair, tau: f64, line: f64, radius: f64, starts: &mut Vec<Complex64>) {
     let value = |s: f64| {
-        let (p, _, q) = pair.at(Complex64::from(s));
+        let [p, _, q, _] = pair.at(Complex64::from(s));
         p.re + q.re * exp(-s * tau)
     };
     let place = |i: u32| line + (radius + 1e-9 - line) * f64::from(i) / f64::from(REAL_PARTS);

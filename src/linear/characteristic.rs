@@ -69,7 +69,7 @@ impl Jet {
 
 /// 1 − e^z with full relative accuracy near z = 0.
 #[inline]
-fn one_minus_exp(z: Complex64) -> Complex64 {
+pub(crate) fn one_minus_exp(z: Complex64) -> Complex64 {
     let (sin, cos) = sincos(0.5 * z.im);
     let growth = expm1(z.re);
     // 1 − cos z.im, and from it e^x cos y − 1 = expm1(x) cos y − (1 − cos y).

@@ -1,15 +1,16 @@
 //! Characteristic roots as eigenvalues: pseudospectral collocation of the infinitesimal generator.
 //!
-//! After Breda, Maset and Vermiglio (2005). With P = λ² + p₁λ + p₀ and Q = q₁λ + q₀ only u = q₀x +
-//! q₁ẋ is fed back, so the history of this one scalar is collocated, on N + 1 Chebyshev points θ_j
-//! of [−τ, 0]:
+//! After Breda, Maset and Vermiglio (2005). With P = Σ p_i λⁱ and Q = Σ q_i λⁱ only u = Σ q_i x⁽ⁱ⁾
+//! is fed back, so the history of this one scalar is collocated, on N + 1 Chebyshev points θ_j of
+//! [−τ, 0]. For the controlled oscillator
 //!
 //! ```text
 //! d/dt (x, ẋ, u(θ₁), …, u(θ_N)) = (ẋ, −p₀x − p₁ẋ − u(θ_N), Σ_m D_jm u(θ_m))
 //! ```
 //!
-//! a matrix of N + 2 rows instead of the 2N + 2 of the general method. The only file that uses
-//! faer: without its feature `std`, with which it picks code by the processor.
+//! a matrix of N + 2 rows instead of the 2N + 2 of the general method; N + n rows for degree n. In
+//! a neutral equation u(0) holds x⁽ⁿ⁾ as well, which the equation itself gives. The only file that
+//! uses faer: without its feature `std`, with which it picks code by the processor.
 
 use std::f64::consts::PI;
 
@@ -19,7 +20,6 @@ use faer::linalg::evd::{ComputeEigenvectors, evd_real, evd_scratch};
 use faer::{Mat, Par, Spec};
 use num_complex::Complex64;
 
-use crate::model::Groups;
 use crate::model::elementary::{cbrt, cos};
 
 /// Most nodes N: beyond this an eigenvalue problem takes a good part of a second.
@@ -42,12 +42,40 @@ pub fn nodes_for(tau: f64, radius: f64) -> Option<usize> {
 /// Approximate roots with Im λ ≥ 0 from `nodes` nodes, by falling real part; those far left mean
 /// nothing.
 ///
-/// Newton's method has to polish them. `tau` > 0 in units of √(M/κ). None if the eigenvalue
-/// iteration fails.
+/// `p` and `q` are the coefficients of P and Q, the constants first; the last of P is not 0, and Q
+/// has no higher degree. Newton's method has to polish the roots. `tau` > 0 in units of √(M/κ).
+/// None if the eigenvalue iteration fails.
 #[must_use]
-pub fn eigenvalues(groups: Groups, tau: f64, nodes: usize) -> Option<Vec<Complex64>> {
-    let size = nodes + 2;
-    let matrix = generator(groups, tau, nodes);
+pub fn eigenvalues(p: &[f64], q: &[f64], tau: f64, nodes: usize) -> Option<Vec<Complex64>> {
+    eigenvalues_of(&generator(p, q, tau, nodes))
+}
+
+/// Feedback that comes late, B(1 − R E) = A e^(−λδ)(1 − E), by the coefficients of B and A.
+#[derive(Debug, Clone, Copy)]
+pub struct Late<'c> {
+    /// B; its last coefficient is not 0.
+    pub open: &'c [f64],
+    /// A, of lower degree.
+    pub gain: &'c [f64],
+    /// R.
+    pub memory: f64,
+    /// τ > 0.
+    pub tau: f64,
+    /// δ ≥ 0.
+    pub latency: f64,
+}
+
+/// As [`eigenvalues`], with latency.
+///
+/// With z = (1 − R E) x only s = A x is fed back: B z = s(t − δ) − s(t − δ − τ), and s = A z +
+/// R s(t − τ). Its history over τ + δ is collocated, with barycentric values inside.
+#[must_use]
+pub fn late_eigenvalues(of: &Late<'_>, nodes: usize) -> Option<Vec<Complex64>> {
+    eigenvalues_of(&late_generator(of, nodes))
+}
+
+fn eigenvalues_of(matrix: &Mat<f64>) -> Option<Vec<Complex64>> {
+    let size = matrix.nrows();
     let mut re = Diag::<f64>::zeros(size);
     let mut im = Diag::<f64>::zeros(size);
     let scratch = evd_scratch::<f64>(
@@ -78,26 +106,98 @@ pub fn eigenvalues(groups: Groups, tau: f64, nodes: usize) -> Option<Vec<Complex
 }
 
 /// The matrix of the module.
-fn generator(groups: Groups, tau: f64, nodes: usize) -> Mat<f64> {
-    let Groups { b, a_v, a_n } = groups;
-    let (q0, q1) = (a_n + a_v * b, a_v);
-    let mut matrix = Mat::<f64>::zeros(nodes + 2, nodes + 2);
-    matrix[(0, 1)] = 1.0;
-    matrix[(1, 0)] = q0 - 1.0;
-    matrix[(1, 1)] = a_v - b;
-    matrix[(1, nodes + 1)] -= 1.0;
+fn generator(p: &[f64], q: &[f64], tau: f64, nodes: usize) -> Mat<f64> {
+    let n = p.len() - 1;
+    let size = nodes + n;
+    let per_leading = 1.0 / p[n];
+    // What of u(0) is x⁽ⁿ⁾.
+    let neutral = q.get(n).copied().unwrap_or(0.0) * per_leading;
+    let mut matrix = Mat::<f64>::zeros(size, size);
+    for i in 1..n {
+        matrix[(i - 1, i)] = 1.0;
+    }
+    for i in 0..n {
+        matrix[(n - 1, i)] = -p[i] * per_leading;
+    }
+    matrix[(n - 1, size - 1)] -= per_leading;
     for row in 1..=nodes {
         for column in 0..=nodes {
             let entry = differentiation(nodes, row, column) * 2.0 / tau;
-            if column == 0 {
-                matrix[(row + 1, 0)] += entry * q0;
-                matrix[(row + 1, 1)] += entry * q1;
-            } else {
-                matrix[(row + 1, column + 1)] += entry;
+            if column > 0 {
+                matrix[(row + n - 1, column + n - 1)] += entry;
+                continue;
+            }
+            for i in 0..n {
+                let own = q.get(i).copied().unwrap_or(0.0);
+                matrix[(row + n - 1, i)] += entry * (own - neutral * p[i]);
+            }
+            if neutral != 0.0 {
+                matrix[(row + n - 1, size - 1)] -= entry * neutral;
             }
         }
     }
     matrix
+}
+
+/// The matrix of [`late_eigenvalues`].
+fn late_generator(of: &Late<'_>, nodes: usize) -> Mat<f64> {
+    let n = of.open.len() - 1;
+    let span = of.tau + of.latency;
+    let per_leading = 1.0 / of.open[n];
+    let late = interpolation(nodes, of.latency / span);
+    let delayed = interpolation(nodes, of.tau / span);
+    // s(0) as a row over z, ż, … and s at the other nodes: it stands in its own interpolation.
+    let per_own = 1.0 / (1.0 - of.memory * delayed[0]);
+    let mut now = vec![0.0; nodes + n];
+    for (entry, a) in now.iter_mut().zip(of.gain) {
+        *entry = a * per_own;
+    }
+    for (entry, weight) in now[n..].iter_mut().zip(&delayed[1..]) {
+        *entry = of.memory * weight * per_own;
+    }
+    let mut matrix = Mat::<f64>::zeros(nodes + n, nodes + n);
+    for i in 1..n {
+        matrix[(i - 1, i)] = 1.0;
+    }
+    for i in 0..nodes + n {
+        let own = if i < n { -of.open[i] } else { late[i - n + 1] };
+        matrix[(n - 1, i)] = (own + late[0] * now[i]) * per_leading;
+    }
+    matrix[(n - 1, nodes + n - 1)] -= per_leading;
+    for row in 1..=nodes {
+        let entry = |column| differentiation(nodes, row, column) * 2.0 / span;
+        for column in 1..=nodes {
+            matrix[(row + n - 1, column + n - 1)] = entry(column);
+        }
+        let first = entry(0);
+        for (i, now) in now.iter().enumerate() {
+            matrix[(row + n - 1, i)] += first * now;
+        }
+    }
+    matrix
+}
+
+/// Weights of the values at the Chebyshev points, from 0 back to the longest delay, in the value at
+/// the `part` of that delay.
+fn interpolation(nodes: usize, part: f64) -> Vec<f64> {
+    let at = 1.0 - 2.0 * part;
+    let point = |j: usize| cos(PI * j as f64 / nodes as f64);
+    if let Some(hit) = (0..=nodes).find(|&j| point(j) == at) {
+        let own = |j| if j == hit { 1.0 } else { 0.0 };
+        return (0..=nodes).map(own).collect();
+    }
+    let mut weights: Vec<f64> = (0..=nodes)
+        .map(|j| {
+            let end = if j == 0 || j == nodes { 0.5 } else { 1.0 };
+            let sign = if j.is_multiple_of(2) { end } else { -end };
+            sign / (at - point(j))
+        })
+        .collect();
+    let sum: f64 = weights.iter().sum();
+    for weight in &mut weights {
+        *weight /= sum;
+    }
+    weights
 }
 
 /// Entry of the differentiation matrix on the Chebyshev points cos(πj/N) (Trefethen, Spectral
@@ -122,13 +222,17 @@ fn differentiation(nodes: usize, row: usize, column: usize) -> f64 {
 mod tests {
     use super::*;
     use crate::linear::newton::polish;
-    use crate::model::known_cases;
+    use crate::model::{Groups, known_cases};
+
+    fn of_groups(groups: Groups, tau: f64, nodes: usize) -> Option<Vec<Complex64>> {
+        crate::linear::equation::Equation::eigenvalues(groups, tau, nodes)
+    }
 
     #[test]
     fn eigenvalues_converge_spectrally_to_roots() {
         let case = known_cases::letter_fig3()[0];
         let error = |nodes| {
-            let rightmost = eigenvalues(case.groups, case.tau, nodes).expect("converges")[0];
+            let rightmost = of_groups(case.groups, case.tau, nodes).expect("converges")[0];
             let root = polish(case.groups, case.tau, rightmost).expect("near a root");
             (root.lambda - rightmost).norm()
         };

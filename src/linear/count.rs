@@ -67,15 +67,8 @@ impl Crossings {
     pub fn marginal(&self, tau: f64, tolerance: MarginalTolerance) -> bool {
         self.marginal_everywhere_or_at_zero(tau, tolerance)
             || self.iter().any(|crossing| {
-                if crossing.period() <= self.marginal_distance(crossing, tau, tolerance) {
-                    return true;
-                }
-                let near = |delay: f64| {
-                    (tau - delay).abs() <= self.marginal_distance(crossing, delay, tolerance)
-                };
-                let next = crossing.branch_at(tau);
-                near(crossing.delay(next))
-                    || (next > crossing.first_branch && near(crossing.delay(next - 1)))
+                let allowed = |delay: f64| self.marginal_distance(crossing, delay, tolerance);
+                crossing.marginal_at(tau, allowed)
             })
     }
 

@@ -81,6 +81,54 @@ pub struct Crossing {
 }
 
 impl Crossing {
+    /// A crossing at ω = `omega` ± `omega_error` with the phase θ = `theta` ± `theta_error`.
+    pub(super) fn with_errors(
+        omega: f64,
+        omega_error: f64,
+        theta: f64,
+        theta_error: f64,
+        direction: Direction,
+    ) -> Self {
+        let per_omega = 1.0 / omega;
+        // A frequency of which nothing is known spoils every delay.
+        let frequency_error = if omega_error < 0.5 * omega {
+            omega_error * per_omega / (1.0 - omega_error * per_omega) + 4.0 * UNIT_ROUNDOFF
+        } else {
+            f64::INFINITY
+        };
+        Self {
+            omega,
+            theta,
+            first_branch: 0,
+            direction,
+            first_delay: theta * per_omega,
+            period: TAU * per_omega,
+            phase_error: (theta_error + 4.0 * UNIT_ROUNDOFF * theta) * per_omega,
+            frequency_error,
+        }
+    }
+
+    /// θ may be 0 or 2π: a pair starts on the axis at τ = 0.
+    pub(super) fn starts_at_zero(&self) -> bool {
+        let apart = self.first_delay.min((self.period - self.first_delay).abs());
+        apart <= self.phase_error + self.frequency_error * self.period
+    }
+
+    /// `tau` lies within `part` of a period of a delay of this crossing.
+    pub(super) fn near(&self, tau: f64, part: f64) -> bool {
+        self.marginal_at(tau, |delay| self.delay_error(delay).max(part * self.period))
+    }
+
+    /// `tau` is no farther from one of the delays than is allowed there.
+    pub(super) fn marginal_at(&self, tau: f64, allowed: impl Fn(f64) -> f64) -> bool {
+        if self.period <= allowed(tau) {
+            return true;
+        }
+        let near = |delay: f64| (tau - delay).abs() <= allowed(delay);
+        let next = self.branch_at(tau);
+        near(self.delay(next)) || (next > self.first_branch && near(self.delay(next - 1)))
+    }
+
     /// The delay τ_k of branch `k`; 2π/ω from branch to branch.
     #[inline]
     #[must_use]
@@ -105,7 +153,8 @@ impl Crossing {
         self.phase_error + self.frequency_error * tau
     }
 
-    fn scaled(self, time_unit: f64) -> Self {
+    /// With delays in a unit of time of which `time_unit` makes one of these.
+    pub(super) fn scaled(self, time_unit: f64) -> Self {
         Self {
             omega: self.omega / time_unit,
             first_delay: self.first_delay * time_unit,

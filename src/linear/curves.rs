@@ -24,12 +24,36 @@ pub(super) const MOST_CORNERS: u64 = 5000;
 /// A point of a crossing curve, exact to rounding.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Vertex {
-    /// The plane's parameter.
+    /// The plane's first parameter.
     pub p: f64,
-    /// Delay.
-    pub tau: f64,
-    /// Crossing frequency.
+    /// Its second one: the delay, in planes with it.
+    pub q: f64,
+    /// Crossing frequency; 0 for real roots, NaN where the leading coefficient vanishes.
     pub omega: f64,
+}
+
+/// What lies on the line along a piece.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum CurveKind {
+    /// A complex pair of roots.
+    #[default]
+    Pair,
+    /// A real root: at the origin, where the line is the imaginary axis.
+    RealRoot,
+    /// |p_n| = κ|q_n|, κ = e^(στ): the line is that at which roots accumulate, or a root comes from
+    /// infinity.
+    LeadingCoefficient,
+}
+
+impl CurveKind {
+    /// All of them.
+    pub const ALL: [Self; 3] = [Self::Pair, Self::RealRoot, Self::LeadingCoefficient];
+
+    /// Its place in [`CurveKind::ALL`].
+    #[must_use]
+    pub const fn number(self) -> i8 {
+        self as i8
+    }
 }
 
 /// On which side of a piece sliding is stable.
@@ -37,20 +61,38 @@ pub struct Vertex {
 pub enum StableSide {
     /// Roots are unstable on both sides: the piece bounds nothing.
     Neither,
-    /// At shorter delays.
+    /// At shorter delays: smaller q.
     Shorter,
-    /// At longer delays.
+    /// At longer delays: larger q.
     Longer,
+    /// At smaller p, where p is the same all along the piece.
+    Below,
+    /// At larger p, where p is the same all along the piece.
+    Above,
 }
 
 impl StableSide {
-    /// −1 at shorter delays, 0 on neither side, 1 at longer ones.
+    /// −1 at shorter delays, 0 on neither side, 1 at longer ones; ∓2 at smaller and larger p.
     #[must_use]
     pub const fn sign(self) -> i8 {
         match self {
+            Self::Below => -2,
             Self::Shorter => -1,
             Self::Neither => 0,
             Self::Longer => 1,
+            Self::Above => 2,
+        }
+    }
+
+    /// The side of that [`StableSide::sign`]; neither for other numbers.
+    #[must_use]
+    pub const fn of_sign(sign: i8) -> Self {
+        match sign {
+            -2 => Self::Below,
+            -1 => Self::Shorter,
+            1 => Self::Longer,
+            2 => Self::Above,
+            _ => Self::Neither,
         }
     }
 }
@@ -58,9 +100,12 @@ impl StableSide {
 /// A piece of a crossing curve between its corners, its folds and the edges of the window.
 #[derive(Debug, Clone, PartialEq)]
 pub struct CurvePiece {
+    /// What lies on the line along it.
+    pub kind: CurveKind,
     /// Branch number k of the letter's Eq. (5).
     pub branch: u64,
-    /// What the pair does there as the delay grows.
+    /// What the root does there as the delay, or q, grows; p, where that is the same all along the
+    /// piece. A touch where that is not known.
     pub direction: Direction,
     /// Where the stable region lies.
     pub stable_side: StableSide,
@@ -68,14 +113,14 @@ pub struct CurvePiece {
     pub vertices: Vec<Vertex>,
 }
 
-/// A point where two curves cross: two pairs lie on the axis at once, on one of ω₊ and on one of
-/// ω₋.
+/// A point where two curves cross: two pairs lie on the axis at once; in the letter's planes on one
+/// of ω₊ and on one of ω₋.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Corner {
-    /// The plane's parameter.
+    /// The plane's first parameter.
     pub p: f64,
-    /// Delay.
-    pub tau: f64,
+    /// Its second one: the delay, in planes with it.
+    pub q: f64,
     /// Larger frequency, with its branch; on the imaginary axis that of the pair that crosses to
     /// the right.
     pub upper: (f64, u64),
@@ -108,13 +153,13 @@ pub struct TooManyCurves {
     pub corners: u64,
 }
 
-/// A window of the (p, τ) plane.
+/// A window of a plane (p, q), q being the delay τ in planes with it.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Window {
-    /// Range of the parameter.
+    /// Range of the first parameter.
     pub p: RangeInclusive<f64>,
-    /// Range of delays, finite.
-    pub tau: RangeInclusive<f64>,
+    /// Range of the second one, finite.
+    pub q: RangeInclusive<f64>,
 }
 
 impl Window {
@@ -122,8 +167,8 @@ impl Window {
         (self.p.end() - self.p.start()).max(f64::MIN_POSITIVE)
     }
 
-    pub(super) fn tau_width(&self) -> f64 {
-        (self.tau.end() - self.tau.start()).max(f64::MIN_POSITIVE)
+    pub(super) fn q_width(&self) -> f64 {
+        (self.q.end() - self.q.start()).max(f64::MIN_POSITIVE)
     }
 }
 
@@ -218,11 +263,11 @@ mod tests {
             assert!(piece.vertices.len() >= 2);
             for v in &piece.vertices {
                 let residual =
-                    characteristic(groups_at(v.p), v.tau, Complex64::new(0.0, v.omega)).norm();
+                    characteristic(groups_at(v.p), v.q, Complex64::new(0.0, v.omega)).norm();
                 assert!(residual < 1e-6, "{v:?}: {residual}");
                 assert!(window.p.contains(&v.p));
                 assert!(
-                    *window.tau.start() - 1e-9 <= v.tau && v.tau <= window.tau.end() + 1e-9,
+                    *window.q.start() - 1e-9 <= v.q && v.q <= window.q.end() + 1e-9,
                     "{:?} {:?} {v:?} {}",
                     groups_at(v.p),
                     piece.direction,
@@ -240,12 +285,12 @@ mod tests {
         for v in &piece.vertices[1..piece.vertices.len() - 1] {
             let line = at(v.p);
             let (before, after) = (
-                line.n_unstable(v.tau - 1e-8) as i64,
-                line.n_unstable(v.tau + 1e-8) as i64,
+                line.n_unstable(v.q - 1e-8) as i64,
+                line.n_unstable(v.q + 1e-8) as i64,
             );
             let alone = line
                 .iter()
-                .map(|c| (c.branch_at(v.tau - 1e-7)..c.branch_at(v.tau + 1e-7)).count())
+                .map(|c| (c.branch_at(v.q - 1e-7)..c.branch_at(v.q + 1e-7)).count())
                 .sum::<usize>()
                 == 1;
             if !alone {
@@ -274,13 +319,13 @@ mod tests {
             for other in [0.0, 0.3, -0.4] {
                 let window = Window {
                     p: -1.6..=0.4,
-                    tau: 0.0..=12.0,
+                    q: 0.0..=12.0,
                 };
                 let (groups_at, breakpoints) = velocity_plane(b, other);
                 check(&groups_at, &breakpoints, &window);
                 let window = Window {
                     p: -8.0..=1.0,
-                    tau: 0.0..=12.0,
+                    q: 0.0..=12.0,
                 };
                 let (groups_at, breakpoints) = load_plane(b, other);
                 check(&groups_at, &breakpoints, &window);
@@ -293,14 +338,14 @@ mod tests {
         let (groups_at, breakpoints) = velocity_plane(-0.2, 0.0);
         let window = Window {
             p: -1.6..=0.4,
-            tau: 0.0..=12.0,
+            q: 0.0..=12.0,
         };
         let curves = check(&groups_at, &breakpoints, &window);
         assert!(curves.corners.iter().any(|c| c.bounds_stable));
         for corner in &curves.corners {
             for (omega, _) in [corner.upper, corner.lower] {
                 let residual =
-                    characteristic(groups_at(corner.p), corner.tau, Complex64::new(0.0, omega));
+                    characteristic(groups_at(corner.p), corner.q, Complex64::new(0.0, omega));
                 assert!(residual.norm() < 1e-12, "{corner:?}");
             }
         }
@@ -313,7 +358,7 @@ mod tests {
         for b in [-0.6, -0.3, -0.1, -0.02] {
             let window = Window {
                 p: -3.0..=1.0,
-                tau: 0.0..=20.0,
+                q: 0.0..=20.0,
             };
             let (groups_at, breakpoints) = load_plane(b, 0.0);
             let curves = check(&groups_at, &breakpoints, &window);
@@ -332,8 +377,8 @@ mod tests {
                             continue;
                         }
                         let hit = segments.iter().any(|(v, w)| {
-                            let (dp, dt) = ((w.p - v.p) / 4.0, (w.tau - v.tau) / 20.0);
-                            let (ep, et) = ((a_n - v.p) / 4.0, (tau - v.tau) / 20.0);
+                            let (dp, dt) = ((w.p - v.p) / 4.0, (w.q - v.q) / 20.0);
+                            let (ep, et) = ((a_n - v.p) / 4.0, (tau - v.q) / 20.0);
                             let along = ((ep * dp + et * dt) / (dp * dp + dt * dt)).clamp(0.0, 1.0);
                             (ep - along * dp).hypot(et - along * dt) < 2.0 * FLATNESS
                         });
@@ -351,7 +396,7 @@ mod tests {
         let groups_at = |b: f64| Groups::new(b, 0.0, -0.38);
         let window = Window {
             p: -1.47..=0.53,
-            tau: 0.0..=20.0,
+            q: 0.0..=20.0,
         };
         let breakpoints = scan_breakpoints(groups_at, &window.p, 4096);
         let curves = check(&groups_at, &breakpoints, &window);
@@ -370,7 +415,7 @@ mod tests {
         for tau in [4.0, 4.2, 2.0, 9.5] {
             let window = Window {
                 p: -1.6..=0.4,
-                tau: tau..=tau + 1e-4,
+                q: tau..=tau + 1e-4,
             };
             let curves = check(&groups_at, &breakpoints, &window);
             for i in 0..2000 {
@@ -410,7 +455,7 @@ mod tests {
         let (groups_at, breakpoints) = load_plane(-0.4, 0.0);
         let window = Window {
             p: -3.0..=1.0,
-            tau: 0.0..=1e7,
+            q: 0.0..=1e7,
         };
         let at = |p: f64| Crossings::of(groups_at(p));
         assert!(trace(at, &breakpoints, &window).unwrap_err().arcs > MOST_ARCS);

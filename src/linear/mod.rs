@@ -13,23 +13,43 @@
 //! - [`gains`]: the crossing curve with one gain given and the other solved for
 //! - [`curves`]: crossing curves in a plane of a parameter and the delay, cut at their corners
 //! - [`decay`]: curves of a given degree of stability in such a plane: where max Re λ = −σ
+//! - [`plane`]: a characteristic function over a plane, as what follows curves takes it
 //! - [`lobes`]: where the stable regions of pure control end
 //! - [`best`]: the settings of fastest decay, for every stable region
 //! - [`margins`]: how far a setting is from the boundary of stability, in every direction
+//! - `branches`: starting values for roots from the branches of the logarithm
+//! - `certificate`: the number of roots right of any vertical line: argument principle in closed
+//!   form
+//! - `collocation`: roots as eigenvalues; the only file that imports faer
+//! - `controlled`: the controlled oscillator as such an equation
+//! - `equation`: what finding and following roots needs of a characteristic equation
+//! - `general`: any linear system with one delay
+//! - `newton`: polishing of a root (Halley's method) and its error
+//! - `rightmost`: the rightmost roots at one point, with the certificate that a map's cell has
+//! - `roots`: bisection
+//! - `rounded`: numbers with a bound on their rounding error
+//! - `sensitivity`: derivatives of a root with respect to the groups and the delay
+//! - `spectrum`: all roots right of a line, none missed
+//! - `stretch`: the curves between two breakpoints of the parameter
+//! - `track`: the rightmost roots along a line of delays, cell by cell, with their certificate
 
 pub mod best;
 mod branches;
 pub mod certificate;
 pub mod characteristic;
 pub mod collocation;
+mod controlled;
 pub mod count;
 pub mod crossing;
 pub mod curves;
 pub mod decay;
+pub mod equation;
 pub mod gains;
+pub mod general;
 pub mod lobes;
 pub mod margins;
 pub mod newton;
+pub mod plane;
 pub mod rightmost;
 pub(crate) mod roots;
 mod rounded;

@@ -3,7 +3,7 @@
 use num_complex::Complex64;
 
 use super::characteristic::Jet;
-use crate::model::Groups;
+use super::equation::Equation;
 use crate::model::elementary::{norm, sqrt};
 
 /// Steps after which a start is given up.
@@ -72,10 +72,10 @@ pub(super) fn divide(p: Complex64, q: Complex64) -> Complex64 {
 /// A start on the real axis stays on it. A root within its error of the real axis is taken for a
 /// real one.
 #[must_use]
-pub fn polish(groups: Groups, tau: f64, start: Complex64) -> Option<Root> {
-    let root = iterate(groups, tau, start)?;
+pub fn polish(equation: impl Equation, tau: f64, start: Complex64) -> Option<Root> {
+    let root = iterate(equation, tau, start)?;
     if root.lambda.im != 0.0 && root.lambda.im.abs() <= 4.0 * root.error {
-        let real = iterate(groups, tau, Complex64::new(root.lambda.re, 0.0));
+        let real = iterate(equation, tau, Complex64::new(root.lambda.re, 0.0));
         return Some(
             real.filter(|r| norm(r.lambda - root.lambda) <= 16.0 * root.error)
                 .unwrap_or(root),
@@ -84,12 +84,12 @@ pub fn polish(groups: Groups, tau: f64, start: Complex64) -> Option<Root> {
     Some(root)
 }
 
-fn iterate(groups: Groups, tau: f64, start: Complex64) -> Option<Root> {
+fn iterate(equation: impl Equation, tau: f64, start: Complex64) -> Option<Root> {
     let mut lambda = start;
     let mut last_step = f64::INFINITY;
     for _ in 0..MOST_STEPS {
-        let jet = Jet::at(groups, tau, lambda);
-        let rounding = jet.rounding(groups, tau, lambda);
+        let jet = equation.jet(tau, lambda);
+        let rounding = equation.rounding(&jet, tau, lambda);
         let step = step_of(&jet);
         let size = norm(step);
         let settled = norm(jet.value) <= rounding || size <= f64::EPSILON * norm(lambda);
@@ -119,7 +119,7 @@ fn finished(lambda: Complex64, jet: &Jet, rounding: f64) -> Root {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::model::known_cases;
+    use crate::model::{Groups, known_cases};
 
     #[test]
     fn known_roots_are_reached_from_afar() {

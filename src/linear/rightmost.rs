@@ -1,11 +1,11 @@
 //! The rightmost roots at one point, with the certificate that a map's cell there has.
 
 use super::count::Count;
+use super::equation::Equation;
 use super::newton::Root;
 use super::spectrum::{Incomplete, RootFinder};
 use super::status::{CERTIFIED, DISAGREE, MARGINAL, MOST_COUNTED, NOT_CONVERGED};
 use super::track::RootTracker;
-use crate::model::Groups;
 
 /// The rightmost roots of a point. Dimensionless.
 #[derive(Debug, Clone)]
@@ -26,20 +26,20 @@ impl Rightmost {
     /// The `wanted` rightmost roots, at least one, at the delay `tau` ≥ 0; `count` is what the
     /// closed form says there.
     #[must_use]
-    pub fn at(groups: Groups, tau: f64, wanted: usize, count: Count) -> Self {
+    pub fn at(equation: impl Equation, tau: f64, wanted: usize, count: Count) -> Self {
         let counted = count.n_unstable.min(u64::from(MOST_COUNTED));
         let mut status = if count.marginal { MARGINAL } else { 0 };
         let (mut first, mut margin) = (None, f64::NAN);
         let mut tracker = RootTracker::new(1);
         let (counts, flags) = ([counted as u16], std::slice::from_mut(&mut status));
-        tracker.follow(groups, (&[tau], 1.0), 0, &counts, flags, |_, cell| {
+        tracker.follow(equation, (&[tau], 1.0), 0, &counts, flags, |_, cell| {
             first = cell.roots.first().copied();
             margin = cell.margin;
         });
         let wanted = wanted.max(1);
         let mut finder = RootFinder::default();
         // A pair is two roots.
-        let found = finder.rightmost(groups, tau, 2 * wanted as u64, f64::NEG_INFINITY);
+        let found = finder.rightmost(equation, tau, 2 * wanted as u64, f64::NEG_INFINITY);
         let (roots, missing) = match found {
             Ok(roots) => (roots[..roots.len().min(wanted)].to_vec(), None),
             Err(error) => (first.into_iter().collect(), Some(error)),
@@ -65,6 +65,7 @@ impl Rightmost {
 mod tests {
     use super::*;
     use crate::linear::{Crossings, MarginalTolerance};
+    use crate::model::Groups;
     use crate::model::known_cases;
 
     fn at(groups: Groups, tau: f64, wanted: usize) -> Rightmost {

@@ -5,7 +5,7 @@
 
 use std::cell::Cell;
 
-use super::count::MarginalTolerance;
+use super::count::{Count, MarginalTolerance};
 use super::crossing::{Crossing, Crossings};
 use super::stable_delays::MarginWalk;
 use super::status::{MARGINAL, MOST_COUNTED, SATURATED};
@@ -32,6 +32,13 @@ impl Delays {
             fenced,
             per_step: reciprocal_step(values),
         }
+    }
+
+    /// Becomes the one delay `tau`, in the memory that it has.
+    pub fn set_one(&mut self, tau: f64) {
+        self.fenced.clear();
+        self.fenced.extend([f64::NEG_INFINITY, tau, f64::INFINITY]);
+        self.per_step = 0.0;
     }
 
     /// The delays themselves.
@@ -77,8 +84,40 @@ fn reciprocal_step(values: &[f64]) -> f64 {
     if even { 1.0 / step } else { 0.0 }
 }
 
+/// A line of delays, as far as a row of cells needs it.
+pub(super) trait Line {
+    /// The count at one delay.
+    fn count(&self, tau: f64, tolerance: MarginalTolerance) -> Count;
+
+    /// The distance from `delay`, one of those of `crossing`, up to which others are marginal.
+    fn marginal_distance(
+        &self,
+        crossing: &Crossing,
+        delay: f64,
+        tolerance: MarginalTolerance,
+    ) -> f64;
+}
+
+impl Line for Crossings {
+    #[inline(always)]
+    fn count(&self, tau: f64, tolerance: MarginalTolerance) -> Count {
+        Crossings::count(self, tau, tolerance)
+    }
+
+    #[inline(always)]
+    fn marginal_distance(
+        &self,
+        crossing: &Crossing,
+        delay: f64,
+        tolerance: MarginalTolerance,
+    ) -> f64 {
+        Crossings::marginal_distance(self, crossing, delay, tolerance)
+    }
+}
+
 /// One family of crossings on its way along a row.
-struct Cursor<'c> {
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Cursor<'c> {
     crossing: Option<&'c Crossing>,
     /// Branch of the next crossing.
     branch: u64,
@@ -88,23 +127,71 @@ struct Cursor<'c> {
     index: usize,
 }
 
+impl Cursor<'_> {
+    /// On no crossing.
+    pub(super) const IDLE: Self = Self {
+        crossing: None,
+        branch: 0,
+        passed: 0,
+        index: usize::MAX,
+    };
+
+    /// By how much a crossing changes the count.
+    #[inline(always)]
+    fn change(&self) -> i64 {
+        2 * self.crossing.map_or(0, |c| i64::from(c.direction.sign()))
+    }
+}
+
 /// The parts of a row that do not change along it.
-struct Row<'a> {
-    crossings: &'a Crossings,
+pub(super) struct Row<'a, L> {
+    line: &'a L,
     delays: &'a Delays,
     tolerance: MarginalTolerance,
     /// Some cell's status was changed.
     flagged: Cell<bool>,
 }
 
-impl Row<'_> {
+impl<'a, L: Line> Row<'a, L> {
+    #[inline(always)]
+    pub(super) fn new(line: &'a L, delays: &'a Delays, tolerance: MarginalTolerance) -> Self {
+        Self {
+            line,
+            delays,
+            tolerance,
+            flagged: Cell::new(false),
+        }
+    }
+
+    /// What is marginal.
+    pub(super) fn tolerance(&self) -> MarginalTolerance {
+        self.tolerance
+    }
+
+    /// Some cell's status was changed.
+    #[inline(always)]
+    pub(super) fn flagged(&self) -> bool {
+        self.flagged.get()
+    }
+
+    /// Crossings of the frequency `fastest` are denser than cells.
+    #[inline(always)]
+    pub(super) fn is_dense(&self, fastest: f64) -> bool {
+        let values = self.delays.values();
+        let length = values[values.len() - 1] - values[0];
+        fastest * length > 4.0 * values.len() as f64
+    }
+
     #[inline]
-    fn cursor<'c>(&self, crossing: Option<&'c Crossing>, status: &mut [u8]) -> Cursor<'c> {
+    pub(super) fn cursor<'c>(
+        &self,
+        crossing: Option<&'c Crossing>,
+        status: &mut [u8],
+    ) -> Cursor<'c> {
         let mut cursor = Cursor {
-            crossing,
-            branch: 0,
-            passed: 0,
             index: status.len(),
+            crossing,
+            ..Cursor::IDLE
         };
         if let Some(crossing) = crossing {
             cursor.branch = crossing.branch_at(self.delays.fenced[1]);
@@ -127,7 +214,6 @@ impl Row<'_> {
     #[inline(always)]
     fn advance(&self, cursor: &mut Cursor, status: &mut [u8]) {
         cursor.branch += 1;
-        cursor.passed += 1;
         if let Some(crossing) = cursor.crossing {
             self.place(cursor, crossing, status);
         }
@@ -137,9 +223,7 @@ impl Row<'_> {
     /// `index`.
     #[inline(always)]
     fn mark(&self, crossing: &Crossing, delay: f64, index: usize, status: &mut [u8]) {
-        let allowed = self
-            .crossings
-            .marginal_distance(crossing, delay, self.tolerance);
+        let allowed = self.line.marginal_distance(crossing, delay, self.tolerance);
         let (below, above) = (self.delays.fenced[index], self.delays.fenced[index + 1]);
         if delay - below <= allowed || above - delay <= allowed {
             self.mark_within(delay, allowed, index, status);
@@ -147,7 +231,7 @@ impl Row<'_> {
     }
 
     #[cold]
-    fn flag(&self, status: &mut [u8], flag: u8) {
+    pub(super) fn flag(&self, status: &mut [u8], flag: u8) {
         for s in status {
             *s |= flag;
         }
@@ -166,17 +250,23 @@ impl Row<'_> {
         );
     }
 
-    /// Fills between crossings: the cost is that of the crossings and of memory.
-    fn by_crossings(&self, n_unstable: &mut [u16], status: &mut [u8]) {
-        let crossings = self.crossings;
+    /// Fills between crossings, from `at_zero_delay` on: the cost is that of the crossings and of
+    /// memory.
+    #[inline(always)]
+    pub(super) fn by_crossings(
+        &self,
+        at_zero_delay: u64,
+        cursors: &mut [Cursor],
+        n_unstable: &mut [u16],
+        status: &mut [u8],
+    ) {
         let len = n_unstable.len();
-        let mut upper = self.cursor(crossings.upper.as_ref(), status);
-        let mut lower = self.cursor(crossings.lower.as_ref(), status);
+        let behind = |c: &Cursor| c.change() * c.passed as i64;
+        let mut n = at_zero_delay as i64 + cursors.iter().map(behind).sum::<i64>();
         let mut from = 0;
         loop {
-            let to = upper.index.min(lower.index);
-            let count =
-                (crossings.at_zero_delay + 2 * upper.passed).saturating_sub(2 * lower.passed);
+            let to = cursors.iter().fold(len, |to, c| to.min(c.index));
+            let count = n.max(0) as u64;
             if count > u64::from(MOST_COUNTED) {
                 self.flag(&mut status[from..to], SATURATED);
             }
@@ -185,22 +275,42 @@ impl Row<'_> {
                 break;
             }
             from = to;
-            if upper.index == to {
-                self.advance(&mut upper, status);
-            } else {
-                self.advance(&mut lower, status);
+            if let Some(next) = cursors.iter_mut().find(|c| c.index == to) {
+                n += next.change();
+                self.advance(next, status);
             }
         }
-        let mut touch = self.cursor(crossings.touch.as_ref(), status);
-        while touch.index < len {
-            self.advance(&mut touch, status);
-        }
-        self.undamped_cells(n_unstable, status);
     }
 
+    /// Marks the cells marginal to a touch, which changes no count.
+    #[inline(always)]
+    pub(super) fn mark_touch(&self, touch: &Crossing, status: &mut [u8]) {
+        let mut cursor = self.cursor(Some(touch), status);
+        while cursor.index < status.len() {
+            self.advance(&mut cursor, status);
+        }
+    }
+
+    /// Cell by cell: cheaper where crossings are denser than cells.
+    pub(super) fn by_cells(&self, n_unstable: &mut [u16], status: &mut [u8]) {
+        for ((tau, n), status) in self.delays.values().iter().zip(n_unstable).zip(status) {
+            let count = self.line.count(*tau, self.tolerance);
+            *n = saturated(count.n_unstable);
+            let cell = std::slice::from_mut(status);
+            if count.n_unstable > u64::from(MOST_COUNTED) {
+                self.flag(cell, SATURATED);
+            }
+            if count.marginal {
+                self.flag(cell, MARGINAL);
+            }
+        }
+    }
+}
+
+impl Row<'_, Crossings> {
     /// The cells that b = 0 makes special, see [`Crossings::marginal_everywhere_or_at_zero`].
     fn undamped_cells(&self, n_unstable: &mut [u16], status: &mut [u8]) {
-        let crossings = self.crossings;
+        let crossings = self.line;
         if !crossings.undamped {
             return;
         }
@@ -211,21 +321,6 @@ impl Row<'_> {
         }
         if self.delays.fenced[1] == 0.0 {
             n_unstable[0] = 0;
-        }
-    }
-
-    /// Cell by cell: cheaper where crossings are denser than cells.
-    fn by_cells(&self, n_unstable: &mut [u16], status: &mut [u8]) {
-        for ((tau, n), status) in self.delays.values().iter().zip(n_unstable).zip(status) {
-            let count = self.crossings.count(*tau, self.tolerance);
-            *n = saturated(count.n_unstable);
-            let cell = std::slice::from_mut(status);
-            if count.n_unstable > u64::from(MOST_COUNTED) {
-                self.flag(cell, SATURATED);
-            }
-            if count.marginal {
-                self.flag(cell, MARGINAL);
-            }
         }
     }
 }
@@ -245,7 +340,7 @@ fn fill_ahead(row: &mut [u16], length: usize, value: u16) {
     }
 }
 
-fn saturated(count: u64) -> u16 {
+pub(super) fn saturated(count: u64) -> u16 {
     count.min(u64::from(MOST_COUNTED)) as u16
 }
 
@@ -263,21 +358,20 @@ impl Crossings {
         n_unstable: &mut [u16],
         status: &mut [u8],
     ) -> bool {
-        let values = delays.values();
-        let row = Row {
-            crossings: self,
-            delays,
-            tolerance,
-            flagged: Cell::new(false),
-        };
-        let length = values[values.len() - 1] - values[0];
+        let row = Row::new(self, delays, tolerance);
         let fastest = self.upper.or(self.touch).map_or(0.0, |c| c.omega);
-        if fastest * length > 4.0 * values.len() as f64 {
+        if row.is_dense(fastest) {
             row.by_cells(n_unstable, status);
         } else {
-            row.by_crossings(n_unstable, status);
+            let mut cursors =
+                [&self.upper, &self.lower].map(|c| row.cursor(c.as_ref(), &mut *status));
+            row.by_crossings(self.at_zero_delay, &mut cursors, n_unstable, status);
+            if let Some(touch) = &self.touch {
+                row.mark_touch(touch, status);
+            }
+            row.undamped_cells(n_unstable, status);
         }
-        row.flagged.get()
+        row.flagged()
     }
 
     /// The signed distance to the nearest change of stability at every delay of a row, see

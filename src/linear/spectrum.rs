@@ -7,12 +7,10 @@
 
 use num_complex::Complex64;
 
-use super::branches::{quadratic_zeros, slow_starts, starting_values};
-use super::certificate::roots_right_of;
-use super::characteristic::{Jet, root_bound, unstable_root_bound};
-use super::collocation::{MOST_NODES, eigenvalues, nodes_for};
+use super::branches::starting_values;
+use super::collocation::{MOST_NODES, nodes_for};
+use super::equation::Equation;
 use super::newton::{Root, divide, polish};
-use crate::model::Groups;
 use crate::model::elementary::{norm, sqrt};
 
 /// Collocation with more nodes each time, at most so often.
@@ -24,6 +22,10 @@ const FARTHEST_LEFT: f64 = 700.0;
 /// many halvings.
 const CROWDED: f64 = 1e-12;
 const MOST_HALVINGS: u32 = 64;
+/// How near to the line at which roots accumulate they are looked for, in units of 1/τ.
+const BESIDE_ESSENTIAL: f64 = 1e-6;
+/// So many times as far from that line no more halvings are made towards it.
+const CLOSE: f64 = 16.0;
 /// How far from a cluster of nearly equal roots its number may be counted.
 const FARTHEST_COUNT: f64 = 0.03;
 
@@ -52,34 +54,40 @@ impl RootFinder {
     ///
     /// # Errors
     /// When roots are missing or one lies on the line within rounding.
-    pub fn right_of(&mut self, groups: Groups, tau: f64, line: f64) -> Result<&[Root], Incomplete> {
+    pub fn right_of(
+        &mut self,
+        equation: impl Equation,
+        tau: f64,
+        line: f64,
+    ) -> Result<&[Root], Incomplete> {
         self.roots.clear();
         let incomplete = Incomplete { line };
-        if tau == 0.0 || groups.uncontrolled() {
+        if tau == 0.0 || equation.uncontrolled() {
             self.starts.clear();
-            self.starts.extend(quadratic_zeros(groups.b, 1.0));
-            self.polish_starts(groups, 0.0, line);
-            self.complete(groups, 0.0, 2);
+            let count = equation.without_delay(tau, &mut self.starts);
+            self.polish_starts(equation, 0.0, line);
+            self.complete(equation, 0.0, count);
             return Ok(&self.roots);
         }
-        let count = roots_right_of(groups, tau, line).ok_or(incomplete)?;
-        starting_values(groups, tau, line, &mut self.starts);
-        self.polish_starts(groups, tau, line);
-        if self.complete(groups, tau, count) {
+        let count = equation.right_of(tau, line).ok_or(incomplete)?;
+        starting_values(equation, tau, line, &mut self.starts);
+        self.polish_starts(equation, tau, line);
+        if self.complete(equation, tau, count) {
             return Ok(&self.roots);
         }
         self.starts.clear();
-        self.starts.extend(slow_starts(groups, tau));
-        self.polish_starts(groups, tau, line);
-        if self.complete(groups, tau, count) {
+        equation.further_starts(tau, line, &mut self.starts);
+        self.polish_starts(equation, tau, line);
+        if self.complete(equation, tau, count) {
             return Ok(&self.roots);
         }
-        let mut nodes = nodes_for(tau, root_bound(groups, tau, line)).ok_or(incomplete)?;
+        let mut nodes = nodes_for(equation.memory_span(tau), equation.root_bound(tau, line))
+            .ok_or(incomplete)?;
         self.collocations += 1;
         for _ in 0..COLLOCATIONS {
-            self.starts = eigenvalues(groups, tau, nodes).ok_or(incomplete)?;
-            self.polish_starts(groups, tau, line);
-            if self.complete(groups, tau, count) {
+            self.starts = equation.eigenvalues(tau, nodes).ok_or(incomplete)?;
+            self.polish_starts(equation, tau, line);
+            if self.complete(equation, tau, count) {
                 return Ok(&self.roots);
             }
             nodes += nodes / 2;
@@ -97,22 +105,22 @@ impl RootFinder {
     /// When roots are missing.
     pub fn rightmost(
         &mut self,
-        groups: Groups,
+        equation: impl Equation,
         tau: f64,
         wanted: u64,
         leftmost: f64,
     ) -> Result<&[Root], Incomplete> {
-        let line = line_left_of(groups, tau, wanted, leftmost);
-        self.right_of(groups, tau, line)
+        let line = line_left_of(equation, tau, wanted, leftmost);
+        self.right_of(equation, tau, line)
     }
 
     /// Adds what the starting values lead to, without duplicates, in order.
-    fn polish_starts(&mut self, groups: Groups, tau: f64, line: f64) {
+    fn polish_starts(&mut self, equation: impl Equation, tau: f64, line: f64) {
         for i in 0..self.starts.len() {
-            let added = self.polish_start(groups, tau, line, self.starts[i]);
+            let added = self.polish_start(equation, tau, line, self.starts[i]);
             if let Some(root) = added.filter(Root::nearly_multiple) {
-                for neighbour in neighbours(groups, tau, root.lambda) {
-                    self.polish_start(groups, tau, line, neighbour);
+                for neighbour in neighbours(equation, tau, root.lambda) {
+                    self.polish_start(equation, tau, line, neighbour);
                 }
             }
         }
@@ -129,12 +137,12 @@ impl RootFinder {
     /// Adds the root to which `start` leads, if it is a new one, and returns it.
     fn polish_start(
         &mut self,
-        groups: Groups,
+        equation: impl Equation,
         tau: f64,
         line: f64,
         start: Complex64,
     ) -> Option<Root> {
-        let root = polish(groups, tau, start)?;
+        let root = polish(equation, tau, start)?;
         let known = self.roots.iter().any(|r| {
             let apart = 8.0 * (r.error + root.error) + 1e-12 * (1.0 + norm(root.lambda));
             norm(r.lambda - root.lambda) <= apart
@@ -148,7 +156,7 @@ impl RootFinder {
 
     /// Whether the roots are `count`. Roots that rounding hardly tells apart are as many as are
     /// counted where they are.
-    fn complete(&mut self, groups: Groups, tau: f64, count: u64) -> bool {
+    fn complete(&mut self, equation: impl Equation, tau: f64, count: u64) -> bool {
         let number = |roots: &[Root]| roots.iter().map(Root::count).sum::<u64>();
         if number(&self.roots) == count {
             return true;
@@ -164,7 +172,7 @@ impl RootFinder {
         };
         let error = cluster.iter().map(|r| r.error).fold(0.0, f64::max);
         let range = (last.lambda.re, first.lambda.re);
-        let Some((strip, counted)) = count_between(groups, tau, range, error) else {
+        let Some((strip, counted)) = count_between(equation, tau, range, error) else {
             return false;
         };
         let beside = self
@@ -196,7 +204,7 @@ impl RootFinder {
 /// A strip of real parts that holds a range and a little around it, as little as rounding (`error`)
 /// allows, and the number of roots in it.
 fn count_between(
-    groups: Groups,
+    equation: impl Equation,
     tau: f64,
     (from, to): (f64, f64),
     error: f64,
@@ -204,8 +212,8 @@ fn count_between(
     let mut near = 16.0 * error;
     while near <= FARTHEST_COUNT {
         let strip = (from - near, to + near);
-        let right = roots_right_of(groups, tau, strip.1);
-        let left = roots_right_of(groups, tau, strip.0);
+        let right = equation.right_of(tau, strip.1);
+        let left = equation.right_of(tau, strip.0);
         if let (Some(right), Some(left)) = (right, left) {
             return Some((strip, left.checked_sub(right)?));
         }
@@ -234,9 +242,13 @@ fn some_of(cluster: &[Root], number: u64) -> impl Iterator<Item = Root> {
 }
 
 /// Where the roots next to the root `lambda` are, of the cubic that touches D there.
-fn neighbours(groups: Groups, tau: f64, lambda: Complex64) -> impl Iterator<Item = Complex64> {
-    let jet = Jet::at(groups, tau, lambda);
-    let third = tau * tau * jet.delayed * (3.0 * groups.a_v - tau * jet.feedback);
+fn neighbours(
+    equation: impl Equation,
+    tau: f64,
+    lambda: Complex64,
+) -> impl Iterator<Item = Complex64> {
+    let jet = equation.jet(tau, lambda);
+    let third = equation.third(&jet, tau, lambda);
     // D′ + D″ s/2 + D‴ s²/6 = 0.
     let (half, sixth) = (0.5 * jet.second, third / 6.0);
     let root = sqrt(half * half - 4.0 * sixth * jet.first);
@@ -246,21 +258,29 @@ fn neighbours(groups: Groups, tau: f64, lambda: Complex64) -> impl Iterator<Item
         .filter(|z| z.re.is_finite() && z.im.is_finite())
 }
 
+/// A little right of where roots accumulate; −∞ where they do not.
+fn beside_essential(equation: impl Equation, tau: f64) -> f64 {
+    equation.essential_abscissa(tau) + BESIDE_ESSENTIAL / tau
+}
+
 /// A line with at least `wanted` roots to its right and few more; at or a little right of
 /// `leftmost` where there are fewer.
-fn line_left_of(groups: Groups, tau: f64, wanted: u64, leftmost: f64) -> f64 {
-    if tau == 0.0 || groups.uncontrolled() {
+fn line_left_of(equation: impl Equation, tau: f64, wanted: u64, leftmost: f64) -> f64 {
+    if tau == 0.0 || equation.uncontrolled() {
         return f64::NEG_INFINITY;
     }
-    let leftmost = leftmost.max(-FARTHEST_LEFT / tau);
+    let leftmost = leftmost
+        .max(-FARTHEST_LEFT / equation.memory_span(tau))
+        .max(beside_essential(equation, tau));
+    let accumulating = equation.essential_abscissa(tau).is_finite();
     // The line itself may hit a root; its neighbours then do not.
     let count = |line: f64| {
         [0.0, 1e-3, -1.7e-3]
             .into_iter()
             .map(|shift| line + shift * (1e-3 + line.abs()))
-            .find_map(|line| roots_right_of(groups, tau, line).map(|n| (line, n)))
+            .find_map(|line| equation.right_of(tau, line).map(|n| (line, n)))
     };
-    let (mut left, mut right) = (0.0, unstable_root_bound(groups));
+    let (mut left, mut right) = (0.0, equation.root_bound(0.0, 0.0));
     let mut step = 0.5_f64.min(1.0 / tau);
     let mut enough = None;
     loop {
@@ -274,7 +294,10 @@ fn line_left_of(groups: Groups, tau: f64, wanted: u64, leftmost: f64) -> f64 {
             _ => {}
         }
         right = left;
-        left = (left - step).max(leftmost);
+        // Where roots accumulate a line next to that has too many right of it.
+        let halfway = 0.5 * (left + leftmost);
+        let close = !accumulating || left - leftmost <= CLOSE * BESIDE_ESSENTIAL / tau;
+        left = (left - step).max(if close { leftmost } else { halfway });
         step *= 2.0;
     }
     let Some((mut line, mut n)) = enough else {
@@ -296,6 +319,7 @@ fn line_left_of(groups: Groups, tau: f64, wanted: u64, leftmost: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::model::Groups;
 
     /// Both ways to starting values lead to the same roots.
     #[test]
@@ -315,7 +339,7 @@ mod tests {
                 .to_vec();
             let radius = roots.iter().map(|r| r.lambda.norm()).fold(1.0, f64::max);
             let nodes = 2 * nodes_for(tau, radius).expect("short delays");
-            let eigenvalues = eigenvalues(groups, tau, nodes).expect("converges");
+            let eigenvalues = groups.eigenvalues(tau, nodes).expect("converges");
             for root in roots {
                 let nearest = |z: &Complex64| (root.lambda - z).norm();
                 let nearest = eigenvalues

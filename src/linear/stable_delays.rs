@@ -127,6 +127,26 @@ impl Crossings {
     }
 }
 
+/// The signed distance of `tau` to the nearest change of stability, `below` being the last stable
+/// interval that begins below it and `above` the first one beyond.
+#[inline(always)]
+pub(super) fn signed_distance(
+    tau: f64,
+    below: Option<StableInterval>,
+    above: Option<StableInterval>,
+) -> f64 {
+    let to_next = above.map_or(f64::INFINITY, |next| next.from - tau);
+    match below {
+        // Stability does not change at the lower end τ = 0 of all delays.
+        Some(StableInterval { from, to }) if tau <= to => match from {
+            0.0 => to - tau,
+            _ => (to - tau).min(tau - from),
+        },
+        Some(passed) => 0.0 - to_next.min(tau - passed.to),
+        None => 0.0 - to_next,
+    }
+}
+
 /// Distances to the nearest change of stability on one line. Quick for delays that grow from call
 /// to call, right for any.
 #[derive(Debug, Clone)]
@@ -161,16 +181,7 @@ impl<'c> MarginWalk<'c> {
         if self.crossings.always_marginal {
             return 0.0;
         }
-        let to_next = self.above.map_or(f64::INFINITY, |next| next.from - tau);
-        match self.below {
-            // Stability does not change at the lower end τ = 0 of all delays.
-            Some(StableInterval { from, to }) if tau <= to => match from {
-                0.0 => to - tau,
-                _ => (to - tau).min(tau - from),
-            },
-            Some(passed) => 0.0 - to_next.min(tau - passed.to),
-            None => 0.0 - to_next,
-        }
+        signed_distance(tau, self.below, self.above)
     }
 
     /// Finds the stable intervals that begin below and above `tau`.

@@ -29,3 +29,7 @@ pub const FLAGS: [(u8, &str); 6] = [
 /// The largest count of unstable roots that a map holds; 65535 is the fill value of cells not
 /// computed.
 pub const MOST_COUNTED: u16 = u16::MAX - 1;
+
+/// What stands for the count where there is none: infinitely many roots are unstable, or nobody
+/// knows how many. The fill value of a map.
+pub const NOT_COUNTED: u16 = u16::MAX;

@@ -4,8 +4,8 @@ use std::f64::consts::PI;
 
 use super::crossing::{Crossing, Crossings, Direction};
 use super::curves::{
-    Corner, CurvePiece, FLATNESS, MOST_ARCS, MOST_CORNERS, PlaneCurves, StableSide, TooManyCurves,
-    Vertex, Window,
+    Corner, CurveKind, CurvePiece, FLATNESS, MOST_ARCS, MOST_CORNERS, PlaneCurves, StableSide,
+    TooManyCurves, Vertex, Window,
 };
 use super::roots::bisect;
 use crate::model::elementary::{power, sin};
@@ -104,22 +104,22 @@ impl<'a, F: Fn(f64) -> Crossings> Stretch<'a, F> {
         let crossing = arm_of(&self.at(s), arm)?;
         Some(Vertex {
             p: self.p(s),
-            tau: crossing.delay(branch),
+            q: crossing.delay(branch),
             omega: crossing.omega,
         })
     }
 
     /// Delay of a branch, infinite where the arc has none.
     fn delay(&self, s: f64, arm: Arm, branch: u64) -> f64 {
-        self.vertex(s, arm, branch).map_or(f64::INFINITY, |v| v.tau)
+        self.vertex(s, arm, branch).map_or(f64::INFINITY, |v| v.q)
     }
 
     /// The branches of an arm that have a node inside the window.
     fn branches(&self, arm: Arm) -> std::ops::Range<u64> {
         let (mut from, mut to) = (u64::MAX, 0);
         for crossing in self.nodes.iter().filter_map(|c| arm_of(c, arm)) {
-            from = from.min(crossing.branch_at(*self.window.tau.start()));
-            to = to.max(crossing.branch_at(self.window.tau.end().next_up()));
+            from = from.min(crossing.branch_at(*self.window.q.start()));
+            to = to.max(crossing.branch_at(self.window.q.end().next_up()));
         }
         from.min(to)..to
     }
@@ -158,7 +158,7 @@ impl<'a, F: Fn(f64) -> Crossings> Stretch<'a, F> {
                 .iter()
                 .map(|c| {
                     let tau = arm_of(c, Arm::Upper)?.delay(branch);
-                    let inside = tau <= 2.0 * self.window.tau.end() + 1.0;
+                    let inside = tau <= 2.0 * self.window.q.end() + 1.0;
                     inside.then_some(arm_of(c, Arm::Lower)?.branch_at(tau))
                 })
                 .collect();
@@ -171,7 +171,7 @@ impl<'a, F: Fn(f64) -> Crossings> Stretch<'a, F> {
                         self.delay(s, Arm::Upper, branch) - self.delay(s, Arm::Lower, lower)
                     };
                     let s = bisect(s[0], s[1], gap);
-                    if self.window.tau.contains(&self.delay(s, Arm::Upper, branch)) {
+                    if self.window.q.contains(&self.delay(s, Arm::Upper, branch)) {
                         cuts.push(Cut {
                             s,
                             upper: branch,
@@ -211,7 +211,7 @@ impl<'a, F: Fn(f64) -> Crossings> Stretch<'a, F> {
             - 2 * (cut.lower - lower.first_branch) as i64;
         Some(Corner {
             p: self.p(cut.s),
-            tau: upper.delay(cut.upper),
+            q: upper.delay(cut.upper),
             upper: (upper.omega, cut.upper),
             lower: (lower.omega, cut.lower),
             // Before and after the corner; on one of its other two sides a pair is out, on one it
@@ -241,7 +241,7 @@ impl<'a, F: Fn(f64) -> Crossings> Stretch<'a, F> {
 
     /// The intervals of s on which a branch lies in the window, ends solved for.
     fn stretches_inside(&self, arm: Arm, branch: u64) -> Vec<(f64, f64)> {
-        let (lo, hi) = (*self.window.tau.start(), *self.window.tau.end());
+        let (lo, hi) = (*self.window.q.start(), *self.window.q.end());
         let delays: Vec<f64> = self
             .nodes
             .iter()
@@ -285,6 +285,7 @@ impl<'a, F: Fn(f64) -> Crossings> Stretch<'a, F> {
         }
         let distinct = vertices.first() != vertices.last();
         distinct.then(|| CurvePiece {
+            kind: CurveKind::Pair,
             branch,
             direction: match arm {
                 Arm::Upper => Direction::Right,
@@ -305,7 +306,7 @@ impl<'a, F: Fn(f64) -> Crossings> Stretch<'a, F> {
         };
         let off = |a: f64, m: f64, b: f64, width: f64| ((0.5 * (a + b) - m) / width).abs();
         let flat = off(a.p, m.p, b.p, self.window.p_width()) < FLATNESS
-            && off(a.tau, m.tau, b.tau, self.window.tau_width()) < FLATNESS;
+            && off(a.q, m.q, b.q, self.window.q_width()) < FLATNESS;
         if flat || halvings == 0 {
             out.push(b);
         } else {

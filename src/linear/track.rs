@@ -7,16 +7,16 @@
 //! reported. Where it finds one, where roots run into one another or an iteration does not settle,
 //! all are found anew ([`RootFinder`]). So they are at every [`BLOCK`]-th delay, which makes the
 //! values of a cell independent of where a tile begins.
+//!
+//! Longer than most files: one loop over cells, with its steps.
 
 use num_complex::Complex64;
 
-use super::certificate::{UnstableCount, roots_right_of};
 use super::characteristic::Jet;
+use super::equation::Equation;
 use super::newton::{Root, divide, halley_step};
-use super::sensitivity::Sensitivity;
 use super::spectrum::RootFinder;
 use super::status::{CERTIFIED, DISAGREE, MARGINAL, MOST_COUNTED, NOT_CONVERGED};
-use crate::model::Groups;
 
 /// Most roots that can be reported for a cell, pairs counted once.
 pub const MOST_ROOTS: usize = 8;
@@ -30,6 +30,8 @@ const COMPANIONS: usize = 2;
 const MOST_TRACKS: usize = MOST_ROOTS + COMPANIONS;
 /// Evaluations of D after which a root is lost.
 const MOST_EVALUATIONS: u32 = 4;
+/// Cells after which a narrower margin than that of the cell before is tried.
+const CELLS_WITH_A_MARGIN: u8 = 6;
 /// How far the margin may be widened where a root is nearly multiple.
 const WIDEST_MARGIN: f64 = 0.03;
 /// What a step may leave of the error, relative.
@@ -82,6 +84,32 @@ const NO_ROOT: Root = Root {
     error: 0.0,
 };
 
+/// With which margin a certificate is tried first.
+#[derive(Debug, Clone, Copy)]
+struct KeptMargin {
+    margin: f64,
+    /// So many cells more begin with it.
+    cells: u8,
+}
+
+impl KeptMargin {
+    const NONE: Self = Self {
+        margin: MARGIN,
+        cells: 0,
+    };
+
+    /// After a cell that came to `margin`, widened or not.
+    fn learn(&mut self, margin: f64, widened: bool) {
+        if widened {
+            (self.margin, self.cells) = (margin, CELLS_WITH_A_MARGIN);
+        } else if self.cells > 0 {
+            self.cells -= 1;
+        } else {
+            self.margin = (0.125 * margin).max(MARGIN);
+        }
+    }
+}
+
 /// Follows the rightmost roots along lines, keeping its memory from one line to the next.
 #[derive(Debug, Clone)]
 pub struct RootTracker {
@@ -94,6 +122,8 @@ pub struct RootTracker {
     /// How many of `roots` are reported, and how many should be.
     reported: usize,
     expected: usize,
+    /// For each of `roots`, where certificates cost much.
+    margins: [KeptMargin; MOST_ROOTS],
     /// Fewer roots were found than there are.
     short: bool,
     /// The delay at which `tracks` stand, and the step that led there.
@@ -113,6 +143,7 @@ impl RootTracker {
             tracks: [NO_TRACK; MOST_TRACKS],
             followed: 0,
             roots: [NO_ROOT; MOST_ROOTS],
+            margins: [KeptMargin::NONE; MOST_ROOTS],
             reported: 0,
             expected: 0,
             short: false,
@@ -129,17 +160,17 @@ impl RootTracker {
     /// do not depend on how the line is cut. `counts` are their numbers of unstable roots by the
     /// closed form; `status` comes with what that form has to say and gains certified, marginal,
     /// not converged or disagree.
-    pub fn follow(
+    pub fn follow<E: Equation>(
         &mut self,
-        groups: Groups,
+        equation: E,
         (delays, time_unit): (&[f64], f64),
         first: usize,
         counts: &[u16],
         status: &mut [u8],
         mut visit: impl FnMut(usize, Cell),
     ) {
-        let controlled = !groups.uncontrolled();
-        let unstable = UnstableCount::new(groups);
+        let controlled = !equation.uncontrolled();
+        let unstable = equation.unstable();
         self.work.cells += delays.len() as u64;
         for (i, ((delay, &count), status)) in
             delays.iter().zip(counts).zip(status.iter_mut()).enumerate()
@@ -147,17 +178,30 @@ impl RootTracker {
             // Without control every delay is as none: e^(−λτ) must not overflow where nothing
             // depends on it.
             let tau = if controlled { delay / time_unit } else { 0.0 };
+            if i == 0 || (first + i).is_multiple_of(BLOCK) {
+                self.margins = [KeptMargin::NONE; MOST_ROOTS];
+            }
             // Where control begins to act there are more roots than before.
             let fresh =
                 i == 0 || (first + i).is_multiple_of(BLOCK) || self.tau == 0.0 || self.short;
-            let tracked = if !fresh && self.advance(groups, tau) {
-                self.judge(groups, tau, unstable.at(tau), (count, *status))
+            let tracked = if !fresh && self.advance(equation, tau) {
+                self.judge(
+                    equation,
+                    tau,
+                    E::unstable_at(&unstable, tau),
+                    (count, *status),
+                )
             } else {
                 Err(Doubt::Missed)
             };
             let found = tracked.or_else(|_| {
-                self.start_anew(groups, tau)?;
-                self.judge(groups, tau, unstable.at(tau), (count, *status))
+                self.start_anew(equation, tau)?;
+                self.judge(
+                    equation,
+                    tau,
+                    E::unstable_at(&unstable, tau),
+                    (count, *status),
+                )
             });
             let (margin, flag) = match found {
                 Ok((margin, _)) if self.short => (margin, NOT_CONVERGED),
@@ -178,7 +222,7 @@ impl RootTracker {
     /// Continues every track to `tau`; false where the roots to be reported are not among them any
     /// more.
     #[inline]
-    fn advance(&mut self, groups: Groups, tau: f64) -> bool {
+    fn advance(&mut self, equation: impl Equation, tau: f64) -> bool {
         let step = tau - self.tau;
         let bend = if self.step > 0.0 {
             0.5 * step / self.step
@@ -191,7 +235,7 @@ impl RootTracker {
             let track = self.tracks[i];
             let ahead = track.slope + (track.slope - track.earlier_slope) * bend;
             let predicted = track.lambda + ahead * step;
-            if let Some((found, evaluations)) = correct(groups, tau, predicted) {
+            if let Some((found, evaluations)) = correct(equation, tau, predicted) {
                 self.work.evaluations += u64::from(evaluations);
                 self.tracks[kept] = Track {
                     earlier_slope: track.slope,
@@ -236,7 +280,7 @@ impl RootTracker {
 
     /// Finds all roots anew at `tau`.
     #[cold]
-    fn start_anew(&mut self, groups: Groups, tau: f64) -> Result<(), Doubt> {
+    fn start_anew(&mut self, equation: impl Equation, tau: f64) -> Result<(), Doubt> {
         self.work.reseeded += 1;
         (self.tau, self.step) = (tau, 0.0);
         self.followed = 0;
@@ -245,13 +289,13 @@ impl RootTracker {
         // Roots farther left than this are far from being the rightmost for many delays to come.
         let horizon = -0.5 - 3.0 / tau;
         let all = 2 * (self.wanted + COMPANIONS) as u64;
-        self.seed(groups, tau, all, horizon)?;
+        self.seed(equation, tau, all, horizon)?;
         if self.followed < self.wanted
             && self
-                .seed(groups, tau, 2 * self.wanted as u64, f64::NEG_INFINITY)
+                .seed(equation, tau, 2 * self.wanted as u64, f64::NEG_INFINITY)
                 .is_err()
         {
-            self.seed(groups, tau, all, horizon)?;
+            self.seed(equation, tau, all, horizon)?;
         }
         self.expected = self.wanted.min(self.followed);
         // With control and delay there are infinitely many roots.
@@ -260,12 +304,18 @@ impl RootTracker {
         Ok(())
     }
 
-    fn seed(&mut self, groups: Groups, tau: f64, count: u64, leftmost: f64) -> Result<(), Doubt> {
-        let found = self.finder.rightmost(groups, tau, count, leftmost);
+    fn seed(
+        &mut self,
+        equation: impl Equation,
+        tau: f64,
+        count: u64,
+        leftmost: f64,
+    ) -> Result<(), Doubt> {
+        let found = self.finder.rightmost(equation, tau, count, leftmost);
         let roots = found.map_err(|_| Doubt::Undecided)?;
         self.followed = roots.len().min(MOST_TRACKS);
         for (track, root) in self.tracks.iter_mut().zip(roots) {
-            let slope = Sensitivity::of(groups, tau, root.lambda).tau;
+            let slope = delay_slope(equation, tau, root.lambda);
             *track = Track {
                 lambda: root.lambda,
                 slope,
@@ -279,18 +329,32 @@ impl RootTracker {
     /// Shows that right of each reported root there are no others than those reported. Returns the
     /// margin.
     #[inline]
-    fn certify(&self, groups: Groups, tau: f64) -> Result<f64, Doubt> {
+    fn certify<E: Equation>(&mut self, equation: E, tau: f64) -> Result<f64, Doubt> {
         let roots = &self.roots[..self.reported];
         if roots.is_empty() {
             return Err(Doubt::Undecided);
         }
         let mut widest = MARGIN;
-        for root in roots {
+        let essential = equation.essential_abscissa(tau);
+        // There is always one right of the line at which they accumulate, or the cell is not ours.
+        if roots[0].lambda.re <= essential {
+            return Err(Doubt::Missed);
+        }
+        for (root, kept) in roots.iter().zip(&mut self.margins) {
+            if root.lambda.re <= essential {
+                return Err(Doubt::Undecided);
+            }
             let unit = root.lambda.re.abs().max(1.0);
-            let mut margin = MARGIN.max(16.0 * root.error / unit);
+            let least = if E::KEEPS_MARGINS {
+                kept.margin
+            } else {
+                MARGIN
+            };
+            let first = least.max(16.0 * root.error / unit);
+            let mut margin = first;
             let line = loop {
                 let line = root.lambda.re + margin * unit;
-                match roots_right_of(groups, tau, line) {
+                match equation.right_of(tau, line) {
                     Some(count) => break (line, count),
                     None if margin < WIDEST_MARGIN => margin *= 8.0,
                     None => return Err(Doubt::Undecided),
@@ -299,6 +363,9 @@ impl RootTracker {
             let known = roots.iter().filter(|r| r.lambda.re > line.0);
             if known.map(Root::count).sum::<u64>() != line.1 {
                 return Err(Doubt::Missed);
+            }
+            if E::KEEPS_MARGINS {
+                kept.learn(margin, margin > first);
             }
             widest = widest.max(margin);
         }
@@ -310,13 +377,13 @@ impl RootTracker {
     /// it in `status`.
     #[inline]
     fn judge(
-        &self,
-        groups: Groups,
+        &mut self,
+        equation: impl Equation,
         tau: f64,
         unstable: Option<u64>,
         (count, status): (u16, u8),
     ) -> Result<(f64, u8), Doubt> {
-        let margin = self.certify(groups, tau)?;
+        let margin = self.certify(equation, tau)?;
         let Some(unstable) = unstable else {
             return Ok((margin, MARGINAL));
         };
@@ -357,10 +424,10 @@ impl Doubt {
 /// The root near `predicted` at the delay `tau`; none where Halley's method does not settle at
 /// once.
 #[inline]
-fn correct(groups: Groups, tau: f64, predicted: Complex64) -> Option<(Track, u32)> {
+fn correct(equation: impl Equation, tau: f64, predicted: Complex64) -> Option<(Track, u32)> {
     let mut lambda = predicted;
     for evaluation in 1..=MOST_EVALUATIONS {
-        let jet = Jet::at(groups, tau, lambda);
+        let jet = equation.jet(tau, lambda);
         let per_slope = divide(Complex64::ONE, jet.first);
         let bend = jet.second * per_slope;
         let step = halley_step(jet.value * per_slope, bend);
@@ -372,7 +439,7 @@ fn correct(groups: Groups, tau: f64, predicted: Complex64) -> Option<(Track, u32
         if size * turn * turn <= SETTLED * (1.0 + next.l1_norm()) {
             let nearly_real = next.im != 0.0 && next.im.abs() < NEARLY_REAL * (1.0 + next.re.abs());
             if !nearly_real {
-                return Some((track_at(groups, tau, next, &jet, per_slope), evaluation));
+                return Some((track_at(equation, tau, next, &jet, per_slope), evaluation));
             }
             lambda = Complex64::new(next.re, 0.0);
         } else if turn < FARTHEST_STEP {
@@ -384,11 +451,24 @@ fn correct(groups: Groups, tau: f64, predicted: Complex64) -> Option<(Track, u32
     None
 }
 
+/// dλ/dτ at the root `lambda`.
+fn delay_slope(equation: impl Equation, tau: f64, lambda: Complex64) -> Complex64 {
+    let jet = equation.jet(tau, lambda);
+    let per_slope = -1.0 / jet.first;
+    -jet.feedback * lambda * jet.delayed * per_slope
+}
+
 /// The track at `lambda`, with D evaluated next to it.
 #[inline]
-fn track_at(groups: Groups, tau: f64, lambda: Complex64, jet: &Jet, per_slope: Complex64) -> Track {
+fn track_at(
+    equation: impl Equation,
+    tau: f64,
+    lambda: Complex64,
+    jet: &Jet,
+    per_slope: Complex64,
+) -> Track {
     let slope = jet.feedback * jet.delayed * lambda * per_slope;
-    let error = jet.rounding(groups, tau, lambda) * per_slope.l1_norm();
+    let error = equation.rounding(jet, tau, lambda) * per_slope.l1_norm();
     let mirrored = |z: Complex64| if lambda.im < 0.0 { z.conj() } else { z };
     Track {
         lambda: mirrored(lambda),

@@ -16,7 +16,7 @@ const OF_REVISIONS: f64 = 1e-6;
 pub struct TraceReport {
     /// Everything that is wrong, in words; empty for a sound trace.
     pub faults: Vec<String>,
-    /// What else there is to say.
+    /// Remarks besides.
     pub remarks: Vec<String>,
     /// Samples of the motion that was computed again.
     pub samples: u64,

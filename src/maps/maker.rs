@@ -37,7 +37,7 @@ pub struct Job<'a> {
 }
 
 impl<'a> Job<'a> {
-    /// On so many threads, everything else as usual.
+    /// The defaults, on `threads` threads.
     #[must_use]
     pub fn new(map: &'a Path, threads: usize, provenance: &'a Provenance) -> Self {
         Self {
@@ -50,7 +50,7 @@ impl<'a> Job<'a> {
     }
 }
 
-/// Damage that shows only while a map is put together is mended that often.
+/// How often damage that shows only while a map is put together is mended.
 const MOST_REPAIRS: u32 = 3;
 
 /// Computes what the tiles beside the map lack, puts the map together, and removes the tiles.
@@ -173,7 +173,7 @@ pub fn merge(
     Ok(assembled)
 }
 
-/// Whether a map that lacks nothing is at `path`, that of a plan where its hash is given.
+/// Whether a complete map is at `path`; if a hash is given, the map of that plan.
 ///
 /// # Errors
 /// When something is there that cannot be read as a map: whether it is one is not known then.

@@ -20,7 +20,7 @@ impl fmt::Display for Shown {
 
 /// A parameter outside the range in which the model has a meaning.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
-#[error("{parameter} = {} is outside its range: {allowed}", Shown(*value))]
+#[error("{}", self.told())]
 pub struct ModelError {
     /// Name of the parameter, the same word as in flags, sweep files and maps.
     pub parameter: &'static str,
@@ -31,6 +31,32 @@ pub struct ModelError {
 }
 
 impl ModelError {
+    /// The friction law itself is not `allowed`, which it would have to be.
+    #[must_use]
+    pub const fn of_law(allowed: &'static str) -> Self {
+        Self {
+            parameter: "friction",
+            value: f64::NAN,
+            allowed,
+        }
+    }
+
+    fn told(&self) -> String {
+        let Self {
+            parameter,
+            value,
+            allowed,
+        } = self;
+        match *parameter {
+            // It is no number.
+            "friction" => format!("friction: {allowed} is needed"),
+            _ => format!(
+                "{parameter} = {} is outside its range: {allowed}",
+                Shown(*value)
+            ),
+        }
+    }
+
     /// `value` if `allowed_when` holds and it is finite, else the error that names it.
     pub(crate) fn check(
         parameter: &'static str,

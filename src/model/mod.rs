@@ -11,6 +11,18 @@
 //! ```
 //!
 //! Source: F.-J. Elmer, *Controlling friction* (1997), "the letter" throughout this crate.
+//!
+//! - `elementary`: sin, exp and the like, the same bits on every processor; the only file that
+//!   imports libm
+//! - `error`: what the model refuses, and how numbers stand in messages
+//! - `friction`: Coulomb, velocity weakening, Stribeck, a table: value and slope
+//! - `friction_ranges`: bounds of a law's slope and curvature over a range of speeds
+//! - `groups`: b, a_v, a_n: all that linear stability depends on
+//! - `known_cases`: cases with known answers, for tests and benches alike
+//! - `oscillator`: mass, spring, load, gains → dimensionless groups
+//! - `rate_and_state`: rate-and-state friction about steady sliding: its groups, the critical
+//!   stiffness
+//! - `table`: a monotone cubic curve through measured points
 
 pub mod elementary;
 mod error;
@@ -19,10 +31,12 @@ mod friction_ranges;
 mod groups;
 pub mod known_cases;
 mod oscillator;
+pub mod rate_and_state;
 pub mod table;
 
 pub use error::{ModelError, Shown};
 pub use friction::FrictionLaw;
 pub use groups::Groups;
 pub use oscillator::{Control, Oscillator, SlidingPoint};
+pub use rate_and_state::{RateAndState, StateGroups};
 pub use table::Table;

@@ -80,7 +80,7 @@ impl Gap {
 pub(super) struct Known {
     /// The numbers that the map holds.
     pub(super) plane: Plane,
-    /// For each of them why it is not to be shown; none where it is.
+    /// Why each cell is not shown; none where it is.
     pub(super) gaps: Vec<Option<Gap>>,
 }
 
@@ -197,6 +197,7 @@ fn concerning(field: Field, open: bool, status: u8, with_roots: bool) -> u8 {
         Source::Line if field == Field::NUnstable && open => of_count | NOT_CONVERGED,
         Source::Line if with_roots && !certified => of_count | DISAGREE,
         Source::Line => of_count,
+        Source::Linear(_) => 0,
         // A radius that is not tight is proved all the same.
         Source::Margins(_) if open => of_count | NOT_CONVERGED,
         Source::Margins(_) => of_count,

@@ -53,7 +53,7 @@ pub enum Entry {
     },
     /// Cells are computed.
     Progress {
-        /// By this run so far.
+        /// Cells that this run has computed so far.
         cells_computed: u64,
         /// Cells that the run has still to compute.
         cells_left: u64,

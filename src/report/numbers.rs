@@ -68,7 +68,7 @@ pub fn seconds(s: f64) -> String {
     }
 }
 
-/// A number in full if that is short, else with four digits.
+/// A number in full where that is short, else with four digits.
 #[must_use]
 pub fn short(value: f64) -> String {
     let plain = format!("{value}");

@@ -19,7 +19,7 @@ const MOST_CELLS: usize = 640;
 const COLOURS: [u8; 7] = [37, 230, 180, 136, 250, 255, 16];
 /// The characters of a preview without colours.
 const SHADES: [char; 7] = ['█', ' ', '░', '▒', '?', '/', '.'];
-/// Places in both: what is no value.
+/// Places in both lists of cells that have no value to show.
 const OTHERS: usize = 4;
 const UNKNOWN: usize = 5;
 const NOT_COMPUTED: usize = 6;

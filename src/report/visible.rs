@@ -18,8 +18,7 @@ pub fn visible(text: &str) -> String {
 /// More characters of a text are in no message.
 const LONGEST: usize = 4000;
 
-/// A text on one line with its control characters spelled out, of which no more is shown than
-/// anybody reads.
+/// A text on one line with its control characters spelled out, cut where it is too long to read.
 #[must_use]
 pub fn visible_line(text: &str) -> String {
     visible(&shortened(text)).replace('\n', "\\n")

@@ -23,7 +23,7 @@ use super::{computed, openapi, page};
 /// The longest text that is read: friction laws of some thousand points.
 const LONGEST_BODY: usize = 1 << 18;
 
-/// Megabytes of what is computed at a time, and of what is sent of it.
+/// Megabytes that computations, and answers not yet sent, may take together.
 const ROOM: u32 = 128;
 
 /// What a page may load: its own files, and nothing from elsewhere.

@@ -145,7 +145,7 @@ pub(super) async fn read_body(request: Request, most: usize, next: Next) -> Resp
     }
 }
 
-/// A connection whose other end has to read what is written in time.
+/// A connection that is closed if its other end does not read in time.
 struct Patient<S> {
     stream: S,
     patience: Duration,
@@ -162,7 +162,7 @@ impl<S> Patient<S> {
         }
     }
 
-    /// What writing comes to that has to wait.
+    /// The result of a write that has to wait: an error once its time is over.
     fn wait<T>(&mut self, context: &mut Context<'_>) -> Poll<Result<T>> {
         let end = Instant::now() + self.patience;
         let until = self
@@ -237,7 +237,7 @@ impl<S: AsyncWrite + Unpin> AsyncWrite for Patient<S> {
 mod tests {
     use super::*;
 
-    /// What nobody reads is given up, and what is read is not, however much it is.
+    /// An answer that is not read is given up; one that is read is not, however long it is.
     #[cfg(unix)]
     #[test]
     fn a_client_that_does_not_read_is_given_up() {

@@ -7,6 +7,19 @@
 //!
 //! Requests are TOML as in files, answers JSON or, for charts, arrays of numbers
 //! ([`crate::explore::encoded`]). What is computed is [`crate::explore`]'s.
+//!
+//! - `access`: who may use it
+//! - `api`: what is answered at which address
+//! - `computed`: requests that are computed now
+//! - `connections`: who may hold a connection, and for how long
+//! - `maps`: maps from files: a list, and windows on them
+//! - `openapi`: the description of the interface
+//! - `page`: the page's files, `src/serve/page`, which are part of the program
+//! - `problem`: problems as answers of the server
+//! - `room`: memory for answers, until they are sent
+//! - `served`: what answers need
+//! - `socket`: a socket in the file system, for tunnels
+//! - `work`: few threads, limited time, nobody computes for who has gone
 
 mod access;
 mod api;

@@ -72,7 +72,7 @@ pub(super) enum Refused {
     Unprocessable(Problem),
 }
 
-/// What is told where there is nothing.
+/// The answer where an address has no resource.
 pub(super) fn nothing_here() -> Problem {
     Problem::of(StatusCode::NOT_FOUND, "there is nothing at this address")
 }

@@ -27,7 +27,7 @@ pub(super) struct Room {
 }
 
 impl Room {
-    /// Of so many megabytes.
+    /// Room of `units` megabytes.
     pub(super) fn of(units: u32) -> Self {
         Self {
             all: Arc::new(Semaphore::new(units as usize)),
@@ -36,7 +36,7 @@ impl Room {
         }
     }
 
-    /// Takes so many bytes, or all there are, as soon as they are there.
+    /// Waits for `bytes` of room, or for all of it where that is less, and takes it.
     pub(super) async fn take(&self, bytes: u64) -> Result<Taken, Problem> {
         let all = Arc::clone(&self.all);
         let room = all.acquire_many_owned(self.needed(bytes));
@@ -54,7 +54,7 @@ impl Room {
     }
 }
 
-/// The room that so many bytes count for.
+/// The units of room that `bytes` take.
 fn units(bytes: u64) -> u64 {
     match bytes {
         0..=SMALL => 0,

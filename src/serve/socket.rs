@@ -14,7 +14,7 @@ pub(super) struct Socket {
 }
 
 impl Socket {
-    /// Listens at `path`. A socket that nobody listens on any more is replaced, nothing else is.
+    /// Listens at `path`. Only a socket whose server has ended is replaced, and no other file.
     pub(super) fn listen(path: &Path) -> Result<(Self, UnixListener)> {
         remove_stale(path)?;
         let listener = UnixListener::bind(path)?;

@@ -3,9 +3,8 @@
 use super::cycle::{NoCycle, UncontrolledCycle, after_release, restart_after_release};
 use super::motion::{Accuracy, Motion, Parameters};
 use super::outcome::{Limits, Observer, Summary};
+use super::sliding::Sliding;
 use super::watch::{REPEATED, follow};
-use crate::linear::rightmost::Rightmost;
-use crate::linear::{Crossings, MarginalTolerance};
 use crate::model::{Control, FrictionLaw, ModelError, Oscillator, SlidingPoint};
 
 /// An initial value problem of the letter's Eqs. (1) and (2), in physical units.
@@ -19,6 +18,10 @@ pub struct Case {
     pub control: Control,
     /// Delay; greater than 0 where control acts.
     pub tau: f64,
+    /// R, the memory of the feedback, −1 < R < 1; left aside without gains.
+    pub memory: f64,
+    /// Latency of the feedback, at least 0; left aside without gains.
+    pub latency: f64,
     /// Pulling velocity.
     pub v0: f64,
     /// When control is switched on; +∞ for never. Without gains it never is.
@@ -179,6 +182,8 @@ impl Case {
             alpha_v: self.control.alpha_v * units.time,
             alpha_n: self.control.alpha_n / self.oscillator.stiffness(),
             tau: self.tau / units.time,
+            memory: self.memory,
+            latency: self.latency / units.time,
             v0: self.v0 / units.velocity,
             switch_on: if self.control == Control::default() {
                 f64::INFINITY
@@ -208,6 +213,11 @@ impl Case {
             "finite and greater than 0 under control",
             delayed,
         )?;
+        let (memory, latency) = (self.memory, self.latency);
+        let within = memory.abs() < 1.0;
+        ModelError::check("memory", memory, "greater than -1 and less than 1", within)?;
+        let known = latency.is_finite() && latency >= 0.0;
+        ModelError::check("latency", latency, "finite and at least 0", known)?;
         let switch_on = self.switch_on;
         if switch_on != f64::INFINITY {
             ModelError::check("switch_on", switch_on, "at least 0", switch_on >= 0.0)?;
@@ -219,28 +229,35 @@ impl Case {
         Ok(())
     }
 
-    /// Re λ of the rightmost root of sliding under the control that acts in the end, in 1/time, if
-    /// it is stable.
+    /// Sliding under the control that acts in the end, in the units of a motion.
     ///
     /// # Errors
     /// When v0 is out of range.
-    pub fn stable_abscissa(&self) -> Result<Option<f64>, ModelError> {
+    pub fn sliding(&self) -> Result<Sliding, ModelError> {
         let control = if self.switch_on.is_finite() {
             self.control
         } else {
             Control::default()
         };
         let sliding = SlidingPoint::of_law(&self.law, self.v0)?;
-        let groups = self.oscillator.groups(sliding, control);
         let unit = self.oscillator.time_unit();
-        let tau = self.tau / unit;
-        let count = Crossings::of(groups).count(tau, MarginalTolerance::default());
-        let rightmost = Rightmost::at(groups, tau, 1, count);
-        let stable = rightmost
-            .roots
-            .first()
-            .filter(|_| count.stable() && rightmost.certified);
-        Ok(stable.map(|root| root.lambda.re / unit))
+        Ok(Sliding {
+            groups: self.oscillator.groups(sliding, control),
+            tau: self.tau / unit,
+            memory: self.memory,
+            latency: self.latency / unit,
+        })
+    }
+
+    /// Re λ of the rightmost root of sliding under the control that acts in the end, in 1/time, if
+    /// it is stable.
+    ///
+    /// # Errors
+    /// When v0 is out of range.
+    pub fn stable_abscissa(&self) -> Result<Option<f64>, ModelError> {
+        let unit = self.oscillator.time_unit();
+        let sliding = self.sliding()?;
+        Ok(sliding.stable_abscissa().map(|abscissa| abscissa / unit))
     }
 
     /// Follows the motion to its outcome. Times, lengths and forces of the summary are physical.
@@ -307,6 +324,8 @@ mod tests {
                 alpha_n: 0.0,
             },
             tau: 4.15 * units.time,
+            memory: 0.0,
+            latency: 0.0,
             v0,
             switch_on: 70.0 * units.time,
             start: Start::State {

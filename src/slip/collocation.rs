@@ -40,6 +40,9 @@ struct Rule {
     powers: Matrix,
     /// From values at the nodes to the last two coefficients of Chebyshev's polynomials.
     tail: [[f64; NODES]; 2],
+    /// To all of them, and their coefficients of powers of s/h.
+    chebyshev: Matrix,
+    shifted: Matrix,
 }
 
 static RULE: LazyLock<Rule> = LazyLock::new(Rule::new);
@@ -71,6 +74,8 @@ impl Rule {
             integrals,
             powers,
             tail,
+            chebyshev: std::array::from_fn(|k| std::array::from_fn(|i| chebyshev(k, i))),
+            shifted,
         }
     }
 }
@@ -94,6 +99,20 @@ fn dot(row: &[f64; NODES], values: &[f64; NODES]) -> f64 {
     row.iter().zip(values).map(|(r, v)| r * v).sum()
 }
 
+/// The last coefficients of a series are left out where they are smaller than this, relative to the
+/// largest value: as powers of s/h they would be rounding a million times as large.
+const OF_ROUNDING: f64 = 4.0 * f64::EPSILON;
+
+/// The coefficients of powers of s/h of the polynomial through values at the nodes, without what is
+/// rounding alone.
+fn rounded_off(rule: &Rule, values: &[f64; NODES]) -> [f64; NODES] {
+    let size = values.iter().fold(0.0_f64, |most, v| most.max(v.abs()));
+    let series = rule.chebyshev.map(|row| dot(&row, values));
+    let order = series.iter().rposition(|c| c.abs() > OF_ROUNDING * size);
+    let terms = order.map_or(0, |order| order + 1);
+    std::array::from_fn(|p| (0..terms).map(|k| rule.shifted[k][p] * series[k]).sum())
+}
+
 /// A step that was solved.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Solved {
@@ -107,11 +126,11 @@ pub(super) struct Solved {
 
 /// The step of `length` from ẋ = `u`, a = `a`. `rates` gives u̇ and ȧ of a state, of which the
 /// delayed elongation is the third number, whose polynomial is `delayed`. None where the iteration
-/// does not come to rest.
+/// does not come to rest. `rounds_off` leaves out of the coefficients what is rounding alone.
 pub(super) fn solve(
     (u, a): (f64, f64),
     length: f64,
-    delayed: &[f64],
+    (delayed, rounds_off): (&[f64], bool),
     rates: impl Fn(f64, f64, f64) -> (f64, f64),
 ) -> Option<Solved> {
     let rule = &*RULE;
@@ -139,25 +158,32 @@ pub(super) fn solve(
         }
         if iteration == MOST_ITERATIONS || !change.is_finite() {
             // Rounding may go on for ever.
-            return (change <= 64.0 * AT_REST * scale)
-                .then(|| solved(rule, (u, a), length, (&rate_u, &rate_a)));
+            if change > 64.0 * AT_REST * scale || change.is_nan() {
+                return None;
+            }
+            break;
         }
     }
-    Some(solved(rule, (u, a), length, (&rate_u, &rate_a)))
+    Some(solved((u, a), length, (&rate_u, &rate_a), rounds_off))
 }
 
 fn solved(
-    rule: &Rule,
     (u, a): (f64, f64),
     length: f64,
     (rate_u, rate_a): (&[f64; NODES], &[f64; NODES]),
+    rounds_off: bool,
 ) -> Solved {
+    let rule = &*RULE;
     let series = |start: f64, rates: &[f64; NODES]| {
         let mut c = [0.0; MOST_ORDER + 1];
         c[0] = start;
         let mut scale = 1.0;
-        for (p, row) in rule.powers.iter().enumerate() {
-            c[p + 1] = dot(row, rates) * PER_NEXT[p] * scale;
+        let powers = match rounds_off {
+            true => rounded_off(rule, rates),
+            false => std::array::from_fn(|p| dot(&rule.powers[p], rates)),
+        };
+        for (p, power) in powers.into_iter().enumerate() {
+            c[p + 1] = power * PER_NEXT[p] * scale;
             scale /= length;
         }
         c
@@ -173,6 +199,21 @@ fn solved(
     }
 }
 
+/// The polynomial over a step of `length` through the values of a function at the nodes, and the
+/// size of the last terms of Chebyshev's series.
+pub(super) fn fit(length: f64, function: impl Fn(f64) -> f64) -> (Coefficients, f64) {
+    let rule = &*RULE;
+    let values = rule.nodes.map(|node| function(node * length));
+    let mut c = [0.0; MOST_ORDER + 1];
+    let mut scale = 1.0;
+    for (c, power) in c.iter_mut().zip(rounded_off(rule, &values)) {
+        *c = power * scale;
+        scale /= length;
+    }
+    let tails = rule.tail.iter().map(|row| dot(row, &values).abs());
+    (c, tails.fold(0.0, f64::max))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -180,7 +221,7 @@ mod tests {
     #[test]
     fn a_harmonic_oscillation_is_solved() {
         // u̇ = a − d, ȧ = −u with d = 0.3 + 0.1 s.
-        let solved = solve((0.2, 0.5), 0.5, &[0.3, 0.1], |u, a, d| (a - d, -u)).unwrap();
+        let solved = solve((0.2, 0.5), 0.5, (&[0.3, 0.1], false), |u, a, d| (a - d, -u)).unwrap();
         for s in [0.0, 0.1, 0.37, 0.5_f64] {
             // ä = −(a − d): a = d + A cos s + B sin s, ȧ(0) = 0.1 + B = −0.2.
             let (cos, sin) = (s.cos(), s.sin());
@@ -197,7 +238,8 @@ mod tests {
     #[test]
     fn the_rest_falls_with_the_length() {
         let error = |length: f64| {
-            let solved = solve((1.0, 0.0), length, &[0.0], |u, _, _| (-u * u, 0.0)).unwrap();
+            let solved =
+                solve((1.0, 0.0), length, (&[0.0], false), |u, _, _| (-u * u, 0.0)).unwrap();
             let off = (value(&solved.u, length) - 1.0 / (1.0 + length)).abs();
             assert!(
                 off <= 10.0 * solved.rest + 1e-15,
@@ -212,6 +254,6 @@ mod tests {
 
     #[test]
     fn what_does_not_come_to_rest_is_not_solved() {
-        assert!(solve((1.0, 0.0), 20.0, &[0.0], |u, _, _| (u * u, 0.0)).is_none());
+        assert!(solve((1.0, 0.0), 20.0, (&[0.0], false), |u, _, _| (u * u, 0.0)).is_none());
     }
 }

@@ -4,7 +4,7 @@
 //! Every release from uncontrolled stick has the same state, (ẋ, a) = (0, μ_S) in the units of
 //! [`super::motion`], and without control the future depends on nothing else. So if the block
 //! sticks once more it goes on periodically, and what it did in the last delay is known at every
-//! phase.
+//! phase. A memory of the feedback is that of cycles which have always been.
 //!
 //! Whether it sticks again is known before its path in the plane of u = ẋ and a has gone round
 //! once. Paths do not cross. In slip forwards the maxima of u are above v0 and its minima below,
@@ -23,6 +23,8 @@
 //! is always released forwards, at a = μ_S, since a grows while it sticks.
 
 use std::f64::consts::TAU;
+
+use crate::model::elementary::ln;
 
 use super::motion::{Accuracy, Event, Mode, Motion, Parameters};
 
@@ -103,13 +105,12 @@ pub fn restart_after_release(
         return Err(NoCycle::NoStickSlip);
     }
     let cycle = follow_cycle(motion).ok_or(NoCycle::NoStickSlip)?;
-    let controlled = parameters.alpha_v != 0.0 || parameters.alpha_n != 0.0;
-    let phase = if controlled {
+    let phase = if parameters.controlled() {
         phase.rem_euclid(cycle.period())
     } else {
         f64::INFINITY
     };
-    let before = ((parameters.tau - phase) / cycle.period()).floor();
+    let before = ((known_before(parameters, accuracy) - phase) / cycle.period()).floor();
     if before > MOST_CYCLES {
         return Err(NoCycle::LongDelay);
     }
@@ -124,6 +125,25 @@ pub fn restart_after_release(
     }
     motion.begin_here(phase);
     Ok(cycle)
+}
+
+/// How long before control acts the cycles have to be known: a delay and a latency, and as many
+/// delays more as the memory is told from the tolerance in.
+fn known_before(parameters: &Parameters, accuracy: Accuracy) -> f64 {
+    let Parameters {
+        tau,
+        memory,
+        latency,
+        ..
+    } = *parameters;
+    if !parameters.beyond_letter() {
+        return tau;
+    }
+    let remembered = match memory == 0.0 {
+        true => 0.0,
+        false => (ln(accuracy.tolerance) / ln(memory.abs())).ceil(),
+    };
+    latency + tau * (1.0 + remembered)
 }
 
 /// Follows an uncontrolled block that was just released to its next release; none where it does not
@@ -184,6 +204,8 @@ mod tests {
             alpha_v: -0.33,
             alpha_n: 0.0,
             tau,
+            memory: 0.0,
+            latency: 0.0,
             v0,
             switch_on: 0.0,
         }
@@ -230,7 +252,8 @@ mod tests {
             }
             // One delay ago the elongation was that of three or four cycles earlier.
             motion.advance(100.0);
-            let seen = motion.last_step().delayed_elongation(0.0);
+            let step = motion.last_step();
+            let seen = step.state(0.0).1 - step.fed_back(0.0);
             let ago = (wrapped - 30.0).rem_euclid(cycle.period());
             let (mut free, _) = after_release(&p, Accuracy::default(), 2.0 * period).unwrap();
             free.restart(

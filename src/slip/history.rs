@@ -1,4 +1,6 @@
 //! The elongation over the last delay, as the polynomials of the steps that made it.
+//!
+//! - `extrapolated`: a past told from two others
 
 mod extrapolated;
 
@@ -192,6 +194,36 @@ impl History {
         };
         shift(&piece.a[..=piece.order], by, out);
         reach
+    }
+
+    /// Until when the past is known and has no kink, from the time that was read last; `latest` is
+    /// the order of the kink at the end of the last step.
+    pub(super) fn until_kink(&self, latest: u32) -> Reach {
+        let next = self.pieces.iter().skip(self.at + 1);
+        let kink = next.clone().find(|piece| piece.kink < self.felt);
+        match (kink, self.pieces.back()) {
+            (Some(piece), _) => Reach {
+                until: piece.from,
+                kink: piece.kink,
+            },
+            (None, last) => Reach {
+                until: last.map_or(f64::INFINITY, |last| last.to),
+                kink: if latest < self.felt { latest } else { SMOOTH },
+            },
+        }
+    }
+
+    /// The value at a time not beyond the last step.
+    pub(super) fn at(&self, time: f64) -> f64 {
+        let next = self.pieces.partition_point(|piece| piece.to < time);
+        let piece = self.pieces.get(next).or(self.pieces.back());
+        piece.map_or(f64::NAN, |piece| {
+            let since = match piece.from.is_finite() {
+                true => time - piece.from,
+                false => 0.0,
+            };
+            value(&piece.a[..=piece.order], since)
+        })
     }
 
     /// Whether the polynomial of a piece is that of the others at `from`, which is in the present

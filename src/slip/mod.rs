@@ -4,9 +4,16 @@
 //! - [`cycle`]: motions that begin in uncontrolled stick-slip
 //! - [`motion`]: steps from event to event
 //! - [`outcome`]: what becomes of a motion
+//! - [`sliding`]: linear stability of sliding
 //! - [`step`]: the polynomials of one step
 //! - [`series`]: polynomials in time, their first zeros
 //! - [`stop`]: a flag that ends motions
+//! - `collocation`: the second integrator: a step from values of the friction law, no series
+//! - `friction_series`: the friction force of each law as such a series
+//! - `graze`: minima of ẋ in a step, and the minimum that a stop cut off
+//! - `history`: the elongation over the last delays, and its kinks
+//! - `table_series`: that of a table, cubic by cubic, and where the speed leaves one
+//! - `watch`: follows a motion until its outcome is known
 
 pub mod case;
 mod collocation;
@@ -17,6 +24,7 @@ mod history;
 pub mod motion;
 pub mod outcome;
 pub mod series;
+pub mod sliding;
 pub mod step;
 pub mod stop;
 mod table_series;

@@ -5,7 +5,13 @@
 //!
 //! ```text
 //! u̇ = a − sgn(u) μ_K(|u|) n    in slip,      u = 0 while |a| < μ_S n    in stick,   (1)
-//! ȧ = v − u,   v = v0 + α_v [a(t) − a(t−τ)],   n = 1 + α_n [a(t) − a(t−τ)]           (2)
+//! ȧ = v − u,   v = v0 + α_v S(t),   n = 1 + α_n S(t),   S(t) = a(t) − a(t−τ)          (2)
+//! ```
+//!
+//! With memory R and latency δ (`feedback`)
+//!
+//! ```text
+//! S(t) = a(t−δ) − a(t−δ−τ) + R S(t−τ)                                                 (3)
 //! ```
 //!
 //! A step is a Taylor series in the time since its start, whose coefficients follow from (1), (2)
@@ -13,16 +19,25 @@
 //! to the order of the method at no cost, and events are zeros of polynomials. A step ends where
 //! the delayed polynomial ends, if the next one is another by more than the tolerance: kinks are
 //! stepped on, one delay after the other, until they are too smooth to be felt.
+//!
+//! - `advance`: one step after the other: how long, and what ends it
+//! - `collocated`: steps by collocation: how long they are, the rates there
+//! - `events`: zeros of a step's polynomials, told apart from rounding
+//! - `parameters`: what a motion is given: parameters, integrator, accuracy
+//! - `stick`: a stuck block whose elongation grows evenly
+//! - `taylor`: steps by Taylor's method
 
 mod advance;
 mod collocated;
 mod events;
+mod feedback;
 mod parameters;
 mod stick;
 mod taylor;
 
 use super::collocation::NODES;
 use super::friction_series::FrictionSeries;
+pub(crate) use parameters::remembered;
 pub use parameters::{Accuracy, Event, Integrator, Mode, Parameters};
 
 use super::history::History;
@@ -55,6 +70,8 @@ pub struct Motion {
     order: usize,
     friction: FrictionSeries,
     history: History,
+    /// What will be fed back, where the feedback has a latency.
+    signal: History,
     mode: Mode,
     /// Time.
     pub t: f64,
@@ -62,8 +79,10 @@ pub struct Motion {
     pub u: f64,
     /// Elongation.
     pub a: f64,
-    /// Order of the lowest derivative of a that jumps now.
+    /// Order of the lowest derivative of a, or of what is kept with it, that jumps now.
     kink: u32,
+    /// That of what will be fed back, where the feedback has a latency.
+    signal_kink: u32,
     /// Since when the block has stuck while its elongation has grown evenly, at the rate of
     /// [`Motion::even_rate`]; +∞ while it does not.
     even_since: f64,
@@ -77,32 +96,39 @@ impl Motion {
     /// at all times before.
     #[must_use]
     pub fn new(parameters: Parameters, accuracy: Accuracy, u: f64, a: f64) -> Self {
-        Self::with_history(parameters, accuracy, (u, a), History::default())
+        Self::with_histories(parameters, accuracy, (u, a), Default::default())
     }
 
     /// Begins another motion, as [`Motion::new`] does, without allocating anew.
     pub fn restart(&mut self, parameters: Parameters, accuracy: Accuracy, u: f64, a: f64) {
-        let (history, stop) = (
-            std::mem::take(&mut self.history),
-            std::mem::take(&mut self.stop),
-        );
-        *self = Self::with_history(parameters, accuracy, (u, a), history).heeding(stop);
+        let histories = [&mut self.history, &mut self.signal].map(std::mem::take);
+        let stop = std::mem::take(&mut self.stop);
+        *self = Self::with_histories(parameters, accuracy, (u, a), histories).heeding(stop);
     }
 
-    fn with_history(
-        parameters: Parameters,
+    fn with_histories(
+        mut parameters: Parameters,
         accuracy: Accuracy,
         (u, a): (f64, f64),
-        mut history: History,
+        [mut history, mut signal]: [History; 2],
     ) -> Self {
+        if !parameters.controlled() {
+            // Nothing is fed back that could be remembered, or come late.
+            (parameters.memory, parameters.latency) = (0.0, 0.0);
+        }
         let tolerance = accuracy.tolerance.clamp(1e-15, 1e-3);
         let order = order(accuracy.integrator, tolerance);
         let mut friction = FrictionSeries::new(&parameters.law, parameters.velocity_unit);
         friction.restart(u.abs());
         history.restart(a, 0.0, order as u32);
+        signal.restart(0.0, 0.0, order as u32);
         let gain = parameters.alpha_v.abs().max(parameters.alpha_n.abs());
         history.look_ahead(gain, order, tolerance);
-        let zero = [0.0; MOST_ORDER + 1];
+        signal.look_ahead(gain, order, tolerance);
+        let step = Step {
+            is_late: parameters.latency > 0.0,
+            ..Step::NONE
+        };
         let mut motion = Self {
             parameters,
             integrator: accuracy.integrator,
@@ -110,21 +136,15 @@ impl Motion {
             order,
             friction,
             history,
+            signal,
             mode: Mode::Stick,
             t: 0.0,
             u,
             a,
             kink: 1,
+            signal_kink: 1,
             even_since: f64::INFINITY,
-            step: Step {
-                length: 0.0,
-                radius: 0.0,
-                order: 0,
-                u: zero,
-                a: zero,
-                n: zero,
-                delayed: zero,
-            },
+            step,
             stop: Stop::default(),
         };
         motion.mode = motion.mode_at(1.0);
@@ -149,13 +169,16 @@ impl Motion {
     /// Puts the block at the end of a stick that erased all memory: it is released at t = 0 to slip
     /// forwards from the elongation `a`, which has grown at the rate v0 for longer than a delay.
     pub fn release_from(&mut self, a: f64) {
-        let v0 = self.parameters.v0;
-        self.history.restart_rising(a, v0, self.parameters.tau);
+        let Parameters { v0, tau, .. } = self.parameters;
+        let fed_back = self.even_signal(v0);
+        let kept = self.kept(a, fed_back);
+        self.history.restart_rising(kept, v0, tau);
+        self.signal.restart(fed_back, 0.0, self.order as u32);
         (self.t, self.u, self.a) = (0.0, 0.0, a);
         self.mode = Mode::Forwards;
         self.friction.restart(0.0);
         self.even_since = f64::INFINITY;
-        self.kink = 2;
+        (self.kink, self.signal_kink) = (2, 2);
     }
 
     /// Changes v0 from now on.
@@ -164,7 +187,7 @@ impl Motion {
         if self.mode == Mode::Stick {
             self.even_since = self.t;
         }
-        self.kink = 1;
+        (self.kink, self.signal_kink) = (1, 1);
     }
 
     /// Changes the delay from now on, to less than twice what it was: the past is known for so
@@ -174,30 +197,31 @@ impl Motion {
         if self.mode == Mode::Stick {
             self.even_since = self.t;
         }
-        self.kink = 1;
+        self.kink = self.kink_of_jump();
+        self.signal_kink = 0;
     }
 
     /// Goes on with another accuracy, by the same integrator.
     pub fn refine(&mut self, accuracy: Accuracy) {
         self.tolerance = accuracy.tolerance.clamp(1e-15, 1e-3);
         self.order = order(self.integrator, self.tolerance);
-        self.history.feel(self.order as u32);
-        let gain = self
-            .parameters
-            .alpha_v
-            .abs()
-            .max(self.parameters.alpha_n.abs());
-        self.history.look_ahead(gain, self.order, self.tolerance);
+        let gain = self.gain();
+        for history in [&mut self.history, &mut self.signal] {
+            history.feel(self.order as u32);
+            history.look_ahead(gain, self.order, self.tolerance);
+        }
     }
 
     /// Becomes a copy of `other`, a motion with the same law and accuracy, in memory that is there.
     pub fn copy_from(&mut self, other: &Self) {
         self.parameters.clone_from(&other.parameters);
         self.history.copy_from(&other.history);
+        self.signal.copy_from(&other.signal);
         self.friction.copy_place(&other.friction);
         self.mode = other.mode;
         (self.t, self.u, self.a) = (other.t, other.u, other.a);
-        (self.kink, self.even_since) = (other.kink, other.even_since);
+        (self.kink, self.signal_kink) = (other.kink, other.signal_kink);
+        self.even_since = other.even_since;
         self.step.clone_from(&other.step);
     }
 
@@ -219,25 +243,33 @@ impl Motion {
         self.parameters.clone_from(&last.parameters);
         (self.parameters.v0, self.parameters.tau) = (v0, tau);
         let pasts = (&mut last.history, &mut before.history);
-        let has_room = self
+        let mut has_room = self
             .history
             .extrapolate(pasts, share, 1.01 * tau, stretches);
+        if self.parameters.latency > 0.0 {
+            let pasts = (&mut last.signal, &mut before.signal);
+            let span = 1.01 * self.parameters.latency;
+            has_room &= self.signal.extrapolate(pasts, share, span, stretches);
+        }
         self.friction.restart(0.0);
         self.mode = Mode::Forwards;
         self.a = last.a + share * (last.a - before.a);
         (self.t, self.u) = (0.0, 0.0);
-        (self.kink, self.even_since) = (1, f64::INFINITY);
+        (self.kink, self.signal_kink) = (self.kink_of_jump(), 0);
+        self.even_since = f64::INFINITY;
         has_room
     }
 
     /// Makes the present t = 0, with control acting from `switch_on` on. The past stays what it is.
     pub(super) fn begin_here(&mut self, switch_on: f64) {
-        self.history.shift(-self.t);
+        for history in [&mut self.history, &mut self.signal] {
+            history.shift(-self.t);
+        }
         self.even_since -= self.t;
         self.t = 0.0;
         self.parameters.switch_on = switch_on;
         if switch_on <= 0.0 {
-            self.kink = 1;
+            (self.kink, self.signal_kink) = (1, 1);
         }
     }
 
@@ -245,7 +277,7 @@ impl Motion {
     /// no number.
     #[must_use]
     pub fn outgrows_its_past(&self) -> bool {
-        self.u.is_nan() && self.history.is_full()
+        self.u.is_nan() && (self.history.is_full() || self.signal.is_full())
     }
 
     /// The parameters.
@@ -329,6 +361,8 @@ mod tests {
             alpha_v,
             alpha_n,
             tau,
+            memory: 0.0,
+            latency: 0.0,
             v0,
             switch_on: 70.0,
         };

@@ -17,10 +17,28 @@ pub struct Step {
     pub(super) u: Coefficients,
     pub(super) a: Coefficients,
     pub(super) n: Coefficients,
+    /// a(t−τ), less R S(t−τ) where the feedback has memory.
     pub(super) delayed: Coefficients,
+    /// S(t) where the feedback has a latency; means nothing else.
+    pub(super) late: Coefficients,
+    /// Whether it has one.
+    pub(super) is_late: bool,
 }
 
 impl Step {
+    /// A step of no length, at rest.
+    pub(super) const NONE: Self = Self {
+        length: 0.0,
+        radius: 0.0,
+        order: 0,
+        u: [0.0; MOST_ORDER + 1],
+        a: [0.0; MOST_ORDER + 1],
+        n: [0.0; MOST_ORDER + 1],
+        delayed: [0.0; MOST_ORDER + 1],
+        late: [0.0; MOST_ORDER + 1],
+        is_late: false,
+    };
+
     pub(super) fn range(c: &Coefficients, order: usize) -> &[f64] {
         &c[..=order]
     }
@@ -39,10 +57,23 @@ impl Step {
         (at(&self.u), at(&self.a), at(&self.n))
     }
 
-    /// The elongation one delay before `s`; means nothing before control acts.
+    /// S at `s`, what is fed back: a(t) − a(t−τ), with its memory and latency. Means nothing before
+    /// control acts.
     #[must_use]
-    pub fn delayed_elongation(&self, s: f64) -> f64 {
-        value(Self::range(&self.delayed, self.order), s)
+    pub fn fed_back(&self, s: f64) -> f64 {
+        let at = |c| value(Self::range(c, self.order), s);
+        match self.is_late {
+            true => value(&self.late, s),
+            false => at(&self.a) - at(&self.delayed),
+        }
+    }
+
+    /// S at the start of a step from the elongation `a`.
+    pub(super) fn fed_back_at_start(&self, a: f64) -> f64 {
+        match self.is_late {
+            true => self.late[0],
+            false => a - self.delayed[0],
+        }
     }
 
     /// ẋ and the acceleration at the start of the step.
@@ -133,7 +164,10 @@ impl Step {
     /// Coefficients k of the load, and of v.
     #[inline(always)]
     fn controlled(&mut self, control: Control, k: usize) -> f64 {
-        let difference = self.a[k] - self.delayed[k];
+        let difference = match self.is_late {
+            true => self.late[k],
+            false => self.a[k] - self.delayed[k],
+        };
         let (v0, load) = if k == 0 {
             (control.v0, 1.0)
         } else {

@@ -105,7 +105,11 @@ impl Watch {
     fn new(motion: &Motion, limits: Limits) -> Self {
         let p = motion.parameters();
         let rest = motion.sliding_elongation();
-        let tau = if p.switch_on.is_finite() { p.tau } else { 0.0 };
+        let tau = if p.switch_on.is_finite() {
+            p.remembered()
+        } else {
+            0.0
+        };
         Self {
             limits,
             switch_on: p.switch_on,
@@ -346,6 +350,8 @@ mod tests {
             alpha_v,
             alpha_n,
             tau,
+            memory: 0.0,
+            latency: 0.0,
             v0,
             switch_on: 70.0,
         }

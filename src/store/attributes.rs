@@ -61,7 +61,7 @@ pub(super) fn put_numbers<T: H5Type>(at: &Location, name: &str, values: &[T]) ->
     Ok(())
 }
 
-/// Describes a dataset of kinds, of which `names` are those with the numbers 0, 1, ….
+/// Describes a dataset of kinds: `names` are those of the numbers 0, 1, ….
 pub(super) fn put_flags(at: &Location, long_name: &str, names: &[&str]) -> hdf5::Result<()> {
     let values: Vec<u8> = (0..names.len() as u8).collect();
     put_text(at, "long_name", long_name)?;
@@ -69,7 +69,7 @@ pub(super) fn put_flags(at: &Location, long_name: &str, names: &[&str]) -> hdf5:
     put_text(at, "flag_meanings", &names.join(" "))
 }
 
-/// More bytes than this are in no attribute of slipmap's.
+/// The most bytes of an attribute: more than any that slipmap writes.
 const MOST_BYTES: usize = 64 << 20;
 
 /// Reads a text attribute. slipmap's have a fixed length; of others the library believes the length

@@ -16,6 +16,7 @@ use super::schema::{BEST, BEST_FLAG_FILL, PLANE, best as names};
 use super::variables::FILL_VALUE;
 use crate::linear::best::Kind;
 use crate::sweep::cells::best::BestSettings;
+use crate::sweep::input::quantity::Quantity;
 use crate::sweep::{Parameter, Plan};
 
 /// The best setting of one plane as the values of the group's variables, in their order; fill
@@ -63,8 +64,7 @@ struct Variable<T> {
 }
 
 impl<T: H5Type + Copy + PartialEq> Variable<T> {
-    /// Integers of which none is missing have no `_FillValue`, by which readers would turn them
-    /// into floats.
+    /// Integers without a missing one get no `_FillValue`: readers would turn them into floats.
     fn write(&self) -> hdf5::Result<()> {
         let missing = |value: &T| *value == self.fill;
         let real = !missing(&self.fill);
@@ -122,11 +122,11 @@ impl Variables<'_> {
         })
     }
 
-    fn numbers(&mut self, plan: &Plan, gain: Parameter) -> hdf5::Result<Vec<Variable<f64>>> {
+    fn numbers(&mut self, plan: &Plan, gain: &Quantity) -> hdf5::Result<Vec<Variable<f64>>> {
         let units = &plan.spec.units;
         let rate = units.of([0, 0, -1]);
         let (time, frequency) = (units.time(), units.angular_frequency());
-        let of_gain = units.of_parameter(gain);
+        let of_gain = gain.unit(units);
         let tau = Parameter::Tau;
         let mut make = |name, about| self.make(name, about, f64::NAN);
         Ok(vec![
@@ -185,7 +185,7 @@ impl BestWriter {
                     .link_creation_order(LinkCreationOrder::Indexed)
             })
             .create(BEST)?;
-        let parameter = plan.spec.axes[gain].parameter;
+        let parameter = plan.spec.axes[gain].parameter.clone();
         let title = "settings of fastest decay within the ranges of the gain and the delay";
         put_text(&group, "title", title)?;
         let plane = format!("{} {}", parameter.name(), Parameter::Tau.name());
@@ -200,7 +200,7 @@ impl BestWriter {
             shape: outer.iter().map(|&axis| plan.shape()[axis]).collect(),
         };
         Ok(Self {
-            numbers: variables.numbers(plan, parameter)?,
+            numbers: variables.numbers(plan, &parameter)?,
             flags: variables.flags()?,
             regions: variables.make(
                 names::REGIONS,
@@ -242,7 +242,7 @@ fn put_coordinates(
         let dataset = named(group.new_dataset_builder())
             .with_data(&values.values)
             .create(values.parameter.name())?;
-        describe_parameter(&dataset, values.parameter, &plan.spec.units)?;
+        describe_parameter(&dataset, &values.parameter, &plan.spec.units)?;
         dimensions.attach(&dataset, &[axes[axis]])?;
     }
     Ok(())

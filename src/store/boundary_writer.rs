@@ -8,7 +8,8 @@ use super::attributes::{put_numbers, put_text};
 use super::curve_rows::{BoundaryColumn, CurveRows, EachColumn, Named, Per};
 use super::netcdf::{DimensionId, Dimensions, named};
 use super::schema::{BOUNDARIES, PLANE};
-use crate::sweep::{Parameter, Plan};
+use crate::sweep::Plan;
+use crate::sweep::input::quantity::Quantity;
 
 /// Elements in a chunk of the appended datasets.
 const CHUNK: usize = 1 << 13;
@@ -38,10 +39,12 @@ pub(super) struct BoundaryWriter {
 struct Maker<'a> {
     group: &'a Group,
     plan: &'a Plan,
-    /// The parameter of the planes.
-    parameter: Parameter,
+    /// The first parameter of the planes.
+    parameter: Quantity,
+    /// The second one.
+    second: Quantity,
     /// The parameters of the axes outside the planes.
-    outer: Vec<Parameter>,
+    outer: Vec<Quantity>,
     dimensions: &'a mut Dimensions,
     ids: Ids,
 }
@@ -77,8 +80,10 @@ impl Maker<'_> {
                 self.make::<T>(about.per, name, (meaning, &units.angular_frequency()))
             }
             Named::Rate(name, meaning) => self.make::<T>(about.per, name, (meaning, &units.rate())),
-            Named::Parameter(prefix) => self.of_parameter(about.per, prefix, self.parameter),
-            Named::Delay(prefix) => self.of_parameter(about.per, prefix, Parameter::Tau),
+            Named::Parameter(prefix) => {
+                self.of_parameter(about.per, prefix, &self.parameter.clone())
+            }
+            Named::Second(prefix) => self.of_parameter(about.per, prefix, &self.second.clone()),
         }?;
         if let Some(counted) = about.counts {
             put_text(&dataset, "sample_dimension", counted)?;
@@ -93,10 +98,10 @@ impl Maker<'_> {
         &mut self,
         per: Per,
         prefix: &str,
-        parameter: Parameter,
+        parameter: &Quantity,
     ) -> hdf5::Result<Dataset> {
         let name = format!("{prefix}{}", parameter.name());
-        let unit = self.plan.spec.units.of_parameter(parameter);
+        let unit = parameter.unit(&self.plan.spec.units);
         self.make::<f64>(per, &name, (parameter.long_name(), &unit))
     }
 
@@ -106,7 +111,7 @@ impl Maker<'_> {
         parameters
             .map(|parameter| {
                 Ok(OuterColumn {
-                    dataset: self.of_parameter(per, prefix, parameter)?,
+                    dataset: self.of_parameter(per, prefix, &parameter)?,
                     waiting: Vec::new(),
                 })
             })
@@ -154,12 +159,12 @@ fn append<T: H5Type>(dataset: &Dataset, values: &[T]) -> hdf5::Result<()> {
 }
 
 impl BoundaryWriter {
-    /// Creates the group, for the plane of `plan` spanned by the axes `p` and delay.
+    /// Creates the group, for the plane of `plan` spanned by the axes `p` and `q`.
     pub(super) fn create(
         parent: &Group,
         dimensions: &mut Dimensions,
         plan: &Plan,
-        (p, tau): (usize, usize),
+        (p, q): (usize, usize),
     ) -> hdf5::Result<Self> {
         let group = parent
             .create_group_builder()
@@ -179,17 +184,19 @@ impl BoundaryWriter {
             dimensions.add_bare(&group, "vertex")?,
             dimensions.add_bare(&group, "corner")?,
         ];
-        let parameter = plan.spec.axes[p].parameter;
-        let plane = format!("{} {}", parameter.name(), Parameter::Tau.name());
+        let parameter = plan.spec.axes[p].parameter.clone();
+        let second = plan.spec.axes[q].parameter.clone();
+        let plane = format!("{} {}", parameter.name(), second.name());
         put_text(&group, PLANE, &plane)?;
         let axes = plan.spec.axes.iter().enumerate();
-        let outer = axes.filter(|&(axis, _)| axis != p && axis != tau);
+        let outer = axes.filter(|&(axis, _)| axis != p && axis != q);
         let mut making = Making {
             maker: Maker {
                 group: &group,
                 plan,
                 parameter,
-                outer: outer.map(|(_, axis)| axis.parameter).collect(),
+                second,
+                outer: outer.map(|(_, axis)| axis.parameter.clone()).collect(),
                 dimensions,
                 ids,
             },

@@ -23,7 +23,7 @@ const LEFT_OUT: [&str; 5] = [
     root::HISTORY,
 ];
 
-/// More attributes than this are on nothing in a map.
+/// The most attributes of an object: more than anything in a map has.
 const MOST_ATTRIBUTES: usize = 64;
 
 /// SHA-256, in hexadecimal, over every group and dataset, sorted by name: name, attributes, and for

@@ -11,8 +11,7 @@ use super::open;
 use super::schema::BOUNDARIES;
 use super::values::{self, Number};
 use crate::linear::Direction;
-use crate::linear::curves::{CurvePiece, StableSide, Vertex};
-use crate::sweep::Parameter;
+use crate::linear::curves::{CurveKind, CurvePiece, StableSide, Vertex};
 
 /// A curve of a map with the values of the axes outside its plane.
 #[derive(Debug, Clone, PartialEq)]
@@ -26,7 +25,7 @@ pub struct MapCurve {
     pub piece: CurvePiece,
 }
 
-/// Curves whose rows are read at once, and vertices of them, about.
+/// About so many curves, and vertices of them, are read at once.
 const CURVES_AT_ONCE: usize = 1 << 12;
 const VERTICES_AT_ONCE: usize = 1 << 17;
 /// No curve has more vertices than this.
@@ -100,8 +99,9 @@ struct CurveColumns {
 /// Opens the datasets of the columns that describe curves.
 struct Opening<'a> {
     group: Group,
-    /// The parameter of the planes.
+    /// The parameters of the planes.
     parameter: &'a str,
+    second: &'a str,
     columns: Vec<Option<Dataset>>,
 }
 
@@ -122,7 +122,7 @@ impl EachColumn for Opening<'_> {
                 name.to_owned()
             }
             Named::Parameter(prefix) => format!("{prefix}{}", self.parameter),
-            Named::Delay(prefix) => format!("{prefix}{}", Parameter::Tau.name()),
+            Named::Second(prefix) => format!("{prefix}{}", self.second),
         };
         let absent = about.optional && !self.group.link_exists(&name);
         let column = match about.per == Per::Corner || absent {
@@ -182,15 +182,16 @@ impl EachColumn for Fitting<'_> {
 }
 
 impl CurveColumns {
-    fn of(map: &MapFile, (p, tau): (usize, usize)) -> hdf5::Result<Self> {
+    fn of(map: &MapFile, (p, q): (usize, usize)) -> hdf5::Result<Self> {
         let name = |axis: usize| map.axes()[axis].parameter.name();
         let mut opening = Opening {
             group: map.group(BOUNDARIES)?,
             parameter: name(p),
+            second: name(q),
             columns: Vec::new(),
         };
         CurveRows::default().each(&mut opening)?;
-        let outer = (0..map.axes().len()).filter(|&axis| axis != p && axis != tau);
+        let outer = (0..map.axes().len()).filter(|&axis| axis != p && axis != q);
         Ok(Self {
             vertex_count: opening.column("vertex_count")?,
             vertices: opening.column("omega")?.size(),
@@ -278,25 +279,25 @@ pub fn curves_of(rows: &CurveRows, outer: &[Vec<f64>]) -> Option<Vec<MapCurve>> 
     let curve = |i: usize| {
         // Not negative, and all together as many as there are: the rows are consistent.
         let to = from + rows.vertex_count[i] as usize;
-        let [ps, taus, omegas] = [&rows.p, &rows.tau, &rows.omega].map(|c| &c[from..to]);
+        let [ps, qs, omegas] = [&rows.p, &rows.q, &rows.omega].map(|c| &c[from..to]);
         from = to;
         MapCurve {
             outer: outer.iter().map(|column| column[i]).collect(),
             degree_of_stability: rows.degree[i],
             piece: CurvePiece {
+                kind: CurveKind::ALL
+                    .get(usize::from(rows.kind[i].unsigned_abs()))
+                    .copied()
+                    .unwrap_or_default(),
                 branch: rows.branch[i].max(0) as u64,
                 direction: match rows.direction[i] {
                     ..0 => Direction::Left,
                     0 => Direction::Touch,
                     1.. => Direction::Right,
                 },
-                stable_side: match rows.stable_side[i] {
-                    ..0 => StableSide::Shorter,
-                    0 => StableSide::Neither,
-                    1.. => StableSide::Longer,
-                },
-                vertices: (ps.iter().zip(taus).zip(omegas))
-                    .map(|((&p, &tau), &omega)| Vertex { p, tau, omega })
+                stable_side: StableSide::of_sign(rows.stable_side[i]),
+                vertices: (ps.iter().zip(qs).zip(omegas))
+                    .map(|((&p, &q), &omega)| Vertex { p, q, omega })
                     .collect(),
             },
         }

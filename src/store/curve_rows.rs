@@ -12,8 +12,13 @@ use crate::sweep::cells::boundaries::BoundaryPlane;
 
 /// How a pair of roots crosses, in words of the map: for −1, 0, 1.
 pub const DIRECTIONS: &str = "to_the_left touch to_the_right";
-/// The side of a curve on which sliding is stable, in words of the map: for −1, 0, 1.
-pub const STABLE_SIDES: &str = "shorter_delays neither longer_delays";
+/// The side of a curve on which sliding is stable, in words of the map, for −2 to 2: −2 and 2 where
+/// the first parameter of the plane is the same along the curve. In planes without the delay the
+/// second parameter takes its place.
+pub const STABLE_SIDES: &str =
+    "smaller_parameter shorter_delays neither longer_delays larger_parameter";
+/// What lies on the line along a curve, in words of the map: for 0, 1, 2.
+pub const CURVE_KINDS: &str = "pair real_root leading_coefficient";
 
 /// What a column has a number for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -37,8 +42,8 @@ pub(super) enum Named {
     Rate(&'static str, &'static str),
     /// The parameter of the plane, its name behind this.
     Parameter(&'static str),
-    /// The delay, its name behind this.
-    Delay(&'static str),
+    /// The second parameter of the plane, the delay in planes with it, its name behind this.
+    Second(&'static str),
 }
 
 /// What there is to know of a column.
@@ -152,9 +157,9 @@ boundary_columns! {
                 Named::Number("direction", "how a pair of roots crosses with growing delay"),
             )
         };
-        /// Per curve: −1 shorter delays, 0 neither, 1 longer ones.
+        /// Per curve: −1 shorter delays, 0 neither, 1 longer ones, ∓2 smaller and larger p.
         stable_side: i8 = BoundaryColumn {
-            flags: Some((&[-1, 0, 1], STABLE_SIDES)),
+            flags: Some((&[-2, -1, 0, 1, 2], STABLE_SIDES)),
             ..column(
                 Per::Curve,
                 Named::Number(
@@ -174,16 +179,30 @@ boundary_columns! {
                 ),
             )
         };
+        /// Per curve: what lies on the line.
+        kind: i8 = BoundaryColumn {
+            flags: Some((&[0, 1, 2], CURVE_KINDS)),
+            optional: true,
+            ..column(
+                Per::Curve,
+                Named::Number(
+                    "kind",
+                    "what lies on the line along the curve: a pair of roots, a real root (at the \
+                    origin, where the line is the imaginary axis), or the leading coefficient \
+                    vanishes and roots come from infinity",
+                ),
+            )
+        };
         /// Per vertex: the parameter.
         p: f64 = column(Per::Vertex, Named::Parameter(""));
-        /// Per vertex: the delay.
-        tau: f64 = column(Per::Vertex, Named::Delay(""));
+        /// Per vertex: the delay, or another second parameter.
+        q: f64 = column(Per::Vertex, Named::Second(""));
         /// Per vertex: the frequency.
         omega: f64 = column(Per::Vertex, Named::Frequency("omega", "crossing frequency"));
         /// Per corner: the parameter.
         corner_p: f64 = column(Per::Corner, Named::Parameter("corner_"));
-        /// Per corner: the delay.
-        corner_tau: f64 = column(Per::Corner, Named::Delay("corner_"));
+        /// Per corner: the delay, or another second parameter.
+        corner_q: f64 = column(Per::Corner, Named::Second("corner_"));
         /// Per corner: the larger frequency.
         corner_omega_upper: f64 = column(
             Per::Corner,
@@ -229,7 +248,51 @@ boundary_columns! {
     }
 }
 
+/// A column as the reference of map files tells it: what it has a number for, its name, what it is.
+pub type DescribedColumn = (&'static str, String, String);
+
+struct Describing(Vec<DescribedColumn>);
+
+impl EachColumn for Describing {
+    fn see<T: H5Type>(&mut self, about: &'static BoundaryColumn, _: &[T]) -> hdf5::Result<()> {
+        let per = match about.per {
+            Per::Curve => "curve",
+            Per::Vertex => "vertex",
+            Per::Corner => "corner",
+        };
+        let (name, mut meaning) = match about.named {
+            Named::Number(name, meaning)
+            | Named::Frequency(name, meaning)
+            | Named::Rate(name, meaning) => (name.to_owned(), meaning.to_owned()),
+            Named::Parameter(prefix) => (format!("{prefix}PARAMETER"), "the parameter".into()),
+            Named::Second(prefix) => (
+                format!("{prefix}SECOND"),
+                "the second parameter, the delay in planes with it".into(),
+            ),
+        };
+        if let Some((values, words)) = about.flags {
+            let words = values.iter().zip(words.split(' '));
+            let words: Vec<_> = words
+                .map(|(value, word)| format!("{value} {word}"))
+                .collect();
+            meaning = format!("{meaning}: {}", words.join(", "));
+        }
+        self.0.push((per, name, meaning));
+        Ok(())
+    }
+}
+
 impl CurveRows {
+    /// All columns in words.
+    ///
+    /// # Errors
+    /// None: nothing is read or written.
+    pub fn described() -> hdf5::Result<Vec<DescribedColumn>> {
+        let mut described = Describing(Vec::new());
+        Self::default().each(&mut described)?;
+        Ok(described.0)
+    }
+
     /// The rows of the curves of a plane.
     #[must_use]
     pub fn of(plane: &BoundaryPlane) -> Self {
@@ -255,9 +318,10 @@ impl CurveRows {
         self.branch.push(piece.branch as i64);
         self.direction.push(piece.direction.sign());
         self.stable_side.push(piece.stable_side.sign());
+        self.kind.push(piece.kind.number());
         for vertex in &piece.vertices {
             self.p.push(vertex.p);
-            self.tau.push(vertex.tau);
+            self.q.push(vertex.q);
             self.omega.push(vertex.omega);
         }
     }
@@ -266,7 +330,7 @@ impl CurveRows {
         let (upper, lower) = (corner.upper, corner.lower);
         self.corner_degree.push(degree);
         self.corner_p.push(corner.p);
-        self.corner_tau.push(corner.tau);
+        self.corner_q.push(corner.q);
         self.corner_omega_upper.push(upper.0);
         self.corner_omega_lower.push(lower.0);
         self.corner_branch_upper.push(upper.1 as i64);

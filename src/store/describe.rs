@@ -8,9 +8,10 @@ use super::schema::{self, root};
 use crate::critical::switch_on::Phase;
 use crate::sweep::input::basin::{Basin, SCRAMBLINGS};
 use crate::sweep::input::law_kind::LawKind;
+use crate::sweep::input::quantity::Quantity;
 use crate::sweep::input::search::{LIMIT, Protocol, Search};
 use crate::sweep::input::units::Units;
-use crate::sweep::{Parameter, Plan, Setting};
+use crate::sweep::{Plan, Setting};
 
 /// Who made a map, for its root attributes.
 #[derive(Debug, Clone, Default)]
@@ -61,8 +62,11 @@ pub(super) fn put_root(file: &File, plan: &Plan, provenance: &Provenance) -> hdf
     put_friction(file, &plan.spec.fixed)
 }
 
-/// What the scalar coordinates leave open of the friction law, if there is one.
+/// What the scalar coordinates leave open of the friction law or the system, if there is one.
 pub(super) fn put_friction(file: &File, setting: &Setting) -> hdf5::Result<()> {
+    if let Some(system) = setting.system() {
+        put_text(file, root::SYSTEM, &system.to_toml())?;
+    }
     let Some(law) = setting.law() else {
         return Ok(());
     };
@@ -74,20 +78,18 @@ pub(super) fn put_friction(file: &File, setting: &Setting) -> hdf5::Result<()> {
     Ok(())
 }
 
-/// The values in `setting` of the parameters that are `scalar`, as scalar coordinates. Returns
-/// their names.
+/// Values of parameters as scalar coordinates. Returns their names.
 pub(super) fn put_scalars(
     file: &File,
-    setting: &Setting,
+    scalars: &[(Quantity, f64)],
     units: &Units,
-    scalar: impl Fn(Parameter) -> bool,
 ) -> hdf5::Result<String> {
     let mut names = Vec::new();
-    for parameter in Parameter::ALL.into_iter().filter(|&p| scalar(p)) {
+    for (parameter, value) in scalars {
         let dataset = named(file.new_dataset_builder())
             .empty::<f64>()
             .create(parameter.name())?;
-        dataset.write_scalar(&setting.get(parameter))?;
+        dataset.write_scalar(value)?;
         describe_parameter(&dataset, parameter, units)?;
         names.push(parameter.name());
     }
@@ -96,11 +98,11 @@ pub(super) fn put_scalars(
 
 pub(super) fn describe_parameter(
     dataset: &Dataset,
-    parameter: Parameter,
+    parameter: &Quantity,
     units: &Units,
 ) -> hdf5::Result<()> {
     put_text(dataset, "long_name", parameter.long_name())?;
-    put_text(dataset, "units", &units.of_parameter(parameter))
+    put_text(dataset, "units", &parameter.unit(units))
 }
 
 /// How critical velocities were looked for.

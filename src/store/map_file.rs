@@ -17,6 +17,8 @@ use super::values::{Chunks, Number, read, whole};
 use crate::sweep::engine::{FEW_FILL, N_UNSTABLE_FILL, STATUS_FILL};
 use crate::sweep::input::axis::{Axis, MOST_POINTS};
 use crate::sweep::input::field::Storage;
+use crate::sweep::input::quantity::Quantity;
+use crate::sweep::input::system::SystemModel;
 use crate::sweep::input::units::Units;
 use crate::sweep::plan::MOST_CELLS;
 use crate::sweep::{Field, Parameter, SpecError, SweepSpec};
@@ -25,7 +27,7 @@ use crate::sweep::{Field, Parameter, SpecError, SweepSpec};
 #[derive(Debug, Clone, PartialEq)]
 pub struct MapAxis {
     /// The parameter.
-    pub parameter: Parameter,
+    pub parameter: Quantity,
     /// Its values.
     pub values: Vec<f64>,
     /// Its unit, "1" if dimensionless.
@@ -48,6 +50,8 @@ pub struct Plane {
 pub struct MapFile {
     path: PathBuf,
     file: File,
+    /// Whose parameters there are, where it is not the letter's.
+    system: Option<SystemModel>,
     axes: Vec<MapAxis>,
     fields: Vec<Field>,
 }
@@ -74,7 +78,8 @@ impl MapFile {
                 format!("its format version is {version}, this program reads {oldest} to {newest}");
             return Err(StoreError::not_a_map(path, why));
         }
-        let axes = read_axes(&file, path)?;
+        let system = read_system(&file, path)?;
+        let axes = read_axes(&file, system.as_ref(), path)?;
         let fields = Field::ALL
             .into_iter()
             .filter(|field| file.link_exists(held_name(&file, *field)))
@@ -82,6 +87,7 @@ impl MapFile {
         let map = Self {
             path: path.to_owned(),
             file,
+            system,
             axes,
             fields,
         };
@@ -237,12 +243,21 @@ impl MapFile {
         self.dataset(self.name_of(field))
     }
 
+    /// The system, where it is not the letter's.
+    #[must_use]
+    pub fn system(&self) -> Option<&SystemModel> {
+        self.system.as_ref()
+    }
+
     /// Values of the parameters that are no axes.
     #[must_use]
-    pub fn scalars(&self) -> Vec<(Parameter, f64)> {
-        let on_axis = |p: &Parameter| self.axes.iter().any(|a| a.parameter == *p);
-        Parameter::ALL
-            .into_iter()
+    pub fn scalars(&self) -> Vec<(Quantity, f64)> {
+        let on_axis = |p: &Quantity| self.axes.iter().any(|a| a.parameter == *p);
+        let all = match &self.system {
+            Some(system) => system.quantities(),
+            None => Parameter::ALL.into_iter().map(Quantity::from).collect(),
+        };
+        all.into_iter()
             .filter(|p| !on_axis(p) && self.file.link_exists(p.name()))
             .filter_map(|p| {
                 let dataset = open::dataset(&self.file, p.name()).ok();
@@ -448,12 +463,16 @@ fn at(index: &[usize]) -> Vec<SliceOrIndex> {
 }
 
 /// The axes, checked as those of a sweep are.
-fn read_axes(file: &File, path: &Path) -> Result<Vec<MapAxis>, StoreError> {
+fn read_axes(
+    file: &File,
+    system: Option<&SystemModel>,
+    path: &Path,
+) -> Result<Vec<MapAxis>, StoreError> {
     let names = text(file, root::AXES)
         .map_err(|_| StoreError::not_a_map(path, "it does not name its axes"))?;
     let mut axes: Vec<MapAxis> = Vec::new();
     for name in names.split_whitespace() {
-        let axis = read_axis(file, name).map_err(|why| StoreError::not_a_map(path, why))?;
+        let axis = read_axis(file, system, name).map_err(|why| StoreError::not_a_map(path, why))?;
         if axes.iter().any(|other| other.parameter == axis.parameter) {
             let why = format!("it names its axis {name} twice");
             return Err(StoreError::not_a_map(path, why));
@@ -469,9 +488,24 @@ fn read_axes(file: &File, path: &Path) -> Result<Vec<MapAxis>, StoreError> {
     Ok(axes)
 }
 
-fn read_axis(file: &File, name: &str) -> Result<MapAxis, String> {
-    let parameter =
-        Parameter::from_name(name).ok_or_else(|| format!("it has an unknown axis {name}"))?;
+/// The system of a file of which it is not the letter's.
+fn read_system(file: &File, path: &Path) -> Result<Option<SystemModel>, StoreError> {
+    let Ok(text) = text(file, root::SYSTEM) else {
+        return Ok(None);
+    };
+    let read = text.parse().map(Some);
+    read.map_err(|error: SpecError| {
+        StoreError::not_a_map(path, format!("its system is damaged: {error}"))
+    })
+}
+
+fn read_axis(file: &File, system: Option<&SystemModel>, name: &str) -> Result<MapAxis, String> {
+    let unknown = || format!("it has an unknown axis {name}");
+    let parameter = match system {
+        Some(system) => system.quantity(name),
+        None => Parameter::from_name(name).map(Quantity::from),
+    };
+    let parameter = parameter.ok_or_else(unknown)?;
     let read = || -> hdf5::Result<(Vec<f64>, String)> {
         let dataset = open::dataset(file, name)?;
         match dataset.shape()[..] {
@@ -481,7 +515,7 @@ fn read_axis(file: &File, name: &str) -> Result<MapAxis, String> {
         Ok((whole(&dataset)?, text(&dataset, "units")?))
     };
     let (values, unit) = read().map_err(|error| format!("its axis {name} is damaged: {error}"))?;
-    let axis = Axis::new(parameter, values)
+    let axis = Axis::new(parameter.clone(), values)
         .map_err(|error| format!("its axis {name} is damaged: {error}"))?;
     Ok(MapAxis {
         parameter,

@@ -253,14 +253,12 @@ fn fill_file(
             let dataset = named(file.new_dataset_builder())
                 .with_data(&axis.values)
                 .create(axis.parameter.name())?;
-            describe_parameter(&dataset, axis.parameter, &plan.spec.units)?;
+            describe_parameter(&dataset, &axis.parameter, &plan.spec.units)?;
             dimensions.add(dataset, None)
         })
         .collect::<hdf5::Result<Vec<_>>>()?;
     let spec = &plan.spec;
-    let scalars = put_scalars(file, &spec.fixed, &spec.units, |p| {
-        spec.uses(p) && spec.axes.iter().all(|axis| axis.parameter != p)
-    })?;
+    let scalars = put_scalars(file, &spec.scalars(), &spec.units)?;
     let mut variables = Variables {
         file,
         plan,

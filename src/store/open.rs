@@ -19,9 +19,9 @@ use hdf5_sys::h5z::{H5Z_FILTER_DEFLATE, H5Z_FILTER_SHUFFLE};
 use super::error::StoreError;
 use super::lock;
 
-/// A chunk of more bytes is not slipmap's: a tile of most cells, four times.
+/// The most bytes of a chunk: four times what slipmap writes. A larger one is refused.
 const MOST_OF_CHUNK: usize = 8 << 20;
-/// More members are in no group of a map, several times.
+/// The most members of a group: several times what any map holds. More are refused.
 const MOST_NAMES: usize = 1000;
 /// HDF5's number of its filter that puts bytes of like places together.
 pub(super) const SHUFFLE: c_int = H5Z_FILTER_SHUFFLE;
@@ -29,7 +29,7 @@ pub(super) const SHUFFLE: c_int = H5Z_FILTER_SHUFFLE;
 pub(super) const DEFLATE: c_int = H5Z_FILTER_DEFLATE;
 
 unsafe extern "C" {
-    /// The binding declares it with a pointer, which it does not take.
+    /// The binding declares this function with a pointer, which the library does not take.
     fn H5PLset_loading_state(kinds: c_uint) -> i32;
 }
 
@@ -107,7 +107,7 @@ fn vet_group(group: &Group) -> hdf5::Result<()> {
 /// A group of another, by its name.
 ///
 /// # Errors
-/// Where it is not there, or in another place or file, or none that can be read.
+/// Where it is missing, in another place or file, or cannot be read.
 pub(super) fn group(of: &Group, name: &str) -> hdf5::Result<Group> {
     refuse_links(of, name)?;
     let group = of.group(name)?;
@@ -118,7 +118,7 @@ pub(super) fn group(of: &Group, name: &str) -> hdf5::Result<Group> {
 /// A dataset of a group, by its name.
 ///
 /// # Errors
-/// Where it is not there, or in another place or file, or not stored as slipmap stores datasets.
+/// Where it is missing, in another place or file, or not stored as slipmap stores datasets.
 pub(super) fn dataset(of: &Group, name: &str) -> hdf5::Result<Dataset> {
     refuse_links(of, name)?;
     let dataset = of.dataset(name)?;
@@ -184,7 +184,7 @@ unsafe extern "C" fn add_name(
     c_int::from(names.len() > MOST_NAMES)
 }
 
-/// Whether a name is that of an object of this file, and no link that leads to one.
+/// Whether a name stands for an object of this file itself, and is no link to one elsewhere.
 fn is_hard(group: &Group, name: &str) -> bool {
     let Ok(name) = CString::new(name) else {
         return false;
@@ -232,7 +232,7 @@ fn filters(plist: hid_t) -> Vec<c_int> {
     })
 }
 
-/// Why a dataset is none of slipmap's, before anything of it is read.
+/// Refuses a dataset that slipmap cannot have written, before anything in it is read.
 fn vet_dataset(dataset: &Dataset) -> Result<(), String> {
     let damaged = |error: hdf5::Error| format!("cannot be read: {error}");
     if dataset.loc_info().map_err(damaged)?.num_links != 1 {

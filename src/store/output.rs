@@ -18,7 +18,7 @@ pub struct Output {
     lock: Option<File>,
 }
 
-/// A hidden neighbour of `path` by a name that nobody else gives.
+/// A hidden file beside `path`, named so that no other program uses it.
 #[must_use]
 pub fn hidden_beside(path: &Path, purpose: &str) -> PathBuf {
     let name = path.file_name().unwrap_or_default().to_string_lossy();

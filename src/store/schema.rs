@@ -77,6 +77,8 @@ pub mod root {
     pub const MARGINAL_TOLERANCE: &str = "marginal_tolerance";
     /// [`crate::sweep::input::search::LIMIT`], where it is a map of that limit.
     pub const PROTOCOL: &str = "protocol";
+    /// The text of the system, where it is not the letter's, as a system file has it.
+    pub const SYSTEM: &str = "system";
     /// Name of the friction law, where there is one.
     pub const FRICTION_LAW: &str = "friction_law";
     /// Speeds of the points of a friction law from a table.

@@ -1,7 +1,7 @@
 //! The seal of a map: a checksum of all its bytes, in a line of text behind them.
 //!
 //! HDF5 has checksums of its own for most of what describes the data, and a map has one of its
-//! values and texts; references between datasets and what nobody thought of are under the seal
+//! values and texts; references between datasets, and anything else in the file, are under the seal
 //! alone. Readers do not see it. A program that opens a map to write to it drops it.
 
 use std::fs::{File, OpenOptions};

@@ -36,9 +36,9 @@ pub struct Report {
     pub answers: Vec<(Question, [u64; 3])>,
     /// Tiles that were computed again.
     pub tiles: u64,
-    /// Tiles computed again of which all bytes are equal.
+    /// Tiles that were computed again with the same bytes.
     pub tiles_equal: u64,
-    /// Tiles that were to be, and are not in a map that is not complete.
+    /// Tiles that were chosen for the check but are missing, in a map that is not complete.
     pub tiles_absent: u64,
 }
 
@@ -72,6 +72,18 @@ fn opened(path: &Path) -> Result<MapFile, StoreError> {
     }
 }
 
+/// The system and the parameters that are no axes are those of the sweep.
+fn check_fixed(map: &MapFile, plan: &Plan, faults: &mut Vec<String>) {
+    if map.system() != plan.spec.fixed.system() {
+        faults.push("its system is not that of the sweep".into());
+    }
+    for (parameter, value) in map.scalars() {
+        if value.to_bits() != plan.spec.fixed.value_of(&parameter).to_bits() {
+            faults.push(format!("{} is not that of the sweep", parameter.name()));
+        }
+    }
+}
+
 /// Whether axes, fields, dimensions and curves are those of `plan`; after `stop` is set, some of
 /// it.
 pub(crate) fn check_schema(map: &MapFile, plan: &Plan, report: &mut Report, stop: &AtomicBool) {
@@ -95,11 +107,7 @@ pub(crate) fn check_schema(map: &MapFile, plan: &Plan, report: &mut Report, stop
             ));
         }
     }
-    for (parameter, value) in map.scalars() {
-        if value.to_bits() != plan.spec.fixed.get(parameter).to_bits() {
-            faults.push(format!("{} is not that of the sweep", parameter.name()));
-        }
-    }
+    check_fixed(map, plan, faults);
     for field in plan
         .spec
         .fields

@@ -28,7 +28,7 @@ impl<S: Source> Source for Vec<S> {
     }
 }
 
-/// Pieces in memory: for maps that nobody has to wait for.
+/// Pieces in memory, for maps so small that no work could be lost.
 #[derive(Debug, Default)]
 pub struct InMemory(BTreeMap<Piece, Vec<u8>>);
 

@@ -1,10 +1,10 @@
-//! What the system tells of a file, by which it is seen that it is another one, or has changed.
+//! What the system says of a file: enough to see that it has changed or been replaced.
 
 use std::fs::Metadata;
 use std::path::Path;
 use std::time::SystemTime;
 
-/// What is told of a file as it is now: equal as long as the file is not replaced or written.
+/// The state of a file: equal as long as the file is neither replaced nor written to.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Stamp {
     /// Its length in bytes.
@@ -16,7 +16,7 @@ pub struct Stamp {
 }
 
 impl Stamp {
-    /// Of what is at `path`; none where there is nothing.
+    /// The state of the file at `path`; none where there is no file.
     #[must_use]
     pub fn of(path: &Path) -> Option<Self> {
         path.metadata().ok().map(|found| Self::told(&found))

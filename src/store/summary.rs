@@ -1,5 +1,6 @@
-//! What values the columns of a map hold: counted once when a tile is computed, added up when the
-//! map is written, and told by attributes, so that nobody has to read every cell to know it.
+//! The range of values of each column of a map, and how many cells have each kind. They are counted
+//! when a tile is computed, added up when the map is written, and stored as attributes, so that no
+//! reader has to go through all cells.
 
 use hdf5::{Dataset, H5Type};
 use serde::{Deserialize, Serialize};
@@ -28,7 +29,7 @@ pub struct FieldSummary {
 }
 
 impl FieldSummary {
-    /// Of real values, NaN where there is none.
+    /// Counts real values; NaN stands for no value.
     #[must_use]
     pub fn of_reals(cells: &[f64]) -> Self {
         let finite = || cells.iter().copied().filter(|value| value.is_finite());
@@ -43,7 +44,7 @@ impl FieldSummary {
         }
     }
 
-    /// Of whole numbers, `fill`, the largest of them, where there is none.
+    /// Counts whole numbers; `fill`, the largest number of the type, stands for no value.
     fn of_counts<T: Copy + Ord + Default + Into<f64>>(cells: &[T], fill: T) -> Self {
         let (low, mut high) = ends(cells, fill, |value| value);
         let mut finite = cells.len() as u64;
@@ -63,7 +64,15 @@ impl FieldSummary {
 
     /// Of so many kinds.
     fn of_kinds(cells: &[u8], kinds: usize) -> Self {
-        let of = |kind: usize| count(cells, |cell| usize::from(cell) == kind);
+        // Many are of one kind in a whole tile.
+        let same = cells.iter().all(|cell| *cell == cells[0]);
+        let of = |kind: usize| match (same, cells.first()) {
+            (true, first) => {
+                let all = first.is_some_and(|first| usize::from(*first) == kind);
+                u64::from(all) * cells.len() as u64
+            }
+            _ => count(cells, |cell| usize::from(cell) == kind),
+        };
         let kinds: Vec<u64> = (0..kinds).map(of).collect();
         Self {
             finite: kinds.iter().sum(),
@@ -85,7 +94,7 @@ impl FieldSummary {
         Self::of_counts(cells, N_UNSTABLE_FILL)
     }
 
-    /// Takes in that of other cells of the same field.
+    /// Adds the summary of other cells of the same field.
     pub fn add(&mut self, other: &Self) {
         self.range = match (self.range, other.range) {
             (Some((low, high)), Some((l, h))) => Some((low.min(l), high.max(h))),
@@ -102,7 +111,7 @@ impl FieldSummary {
         }
     }
 
-    /// Number of cells without a value, of so many.
+    /// How many of `cells` have no value.
     #[must_use]
     pub fn missing(&self, cells: u64) -> u64 {
         cells.saturating_sub(self.finite + self.infinite.iter().sum::<u64>())
@@ -209,7 +218,7 @@ pub struct StatusCounts {
 }
 
 impl StatusCounts {
-    /// Of these statuses.
+    /// Counts these statuses.
     #[must_use]
     pub fn of(cells: &[u8]) -> Self {
         // Most tiles of counts have no flag at all, and one look is enough.
@@ -229,7 +238,7 @@ impl StatusCounts {
         }
     }
 
-    /// Takes in those of other cells.
+    /// Adds the summary of other cells.
     pub fn add(&mut self, other: &Self) {
         self.computed += other.computed;
         self.unflagged += other.unflagged;
@@ -278,7 +287,7 @@ impl CellsSummary {
         }
     }
 
-    /// Takes in that of other cells.
+    /// Adds the summary of other cells.
     pub(crate) fn add(&mut self, other: &Self) {
         let fields = self.fields.len().max(other.fields.len());
         self.fields.resize(fields, FieldSummary::default());

@@ -15,13 +15,14 @@ use super::output::Output;
 use super::schema::{self, trace};
 use super::variables::FILL_VALUE;
 use crate::slip::case::Case;
+use crate::sweep::Parameter;
 use crate::sweep::cells::trace::{EVENTS, MODES, Sample, TraceEvent};
 use crate::sweep::input::units::Units;
 use crate::sweep::{CaseSpec, Trace};
 
 /// Elements in a chunk.
 const CHUNK: usize = 1 << 13;
-/// Mode and kind that stand for: no value.
+/// The number of a mode or kind that stands for no value.
 const FLAG_FILL: u8 = 255;
 
 /// Bytes of a sample before compression: time, the quantities, the mode.
@@ -125,9 +126,11 @@ fn fill_file(
 ) -> hdf5::Result<()> {
     put_provenance(file, &spec.title, provenance)?;
     put_root(file, spec, trace)?;
-    let scalars = put_scalars(file, &spec.setting, &spec.units, |p| {
-        spec.setting.uses(p) && !p.of_start()
-    })?;
+    let setting = &spec.setting;
+    let told = Parameter::ALL.into_iter();
+    let told = told.filter(|&p| setting.uses(p) && !p.of_start());
+    let told: Vec<_> = told.map(|p| (p.into(), setting.get(p))).collect();
+    let scalars = put_scalars(file, &told, &spec.units)?;
     let mut dimensions = Dimensions::default();
     let time = named(file.new_dataset_builder())
         .with_data(&column(trace, TIME.of))
@@ -165,7 +168,7 @@ fn number<T: PartialEq>(all: &[(T, &str)], value: &T) -> u8 {
     place.map_or(FLAG_FILL, |place| place as u8)
 }
 
-/// What stands of a case as attributes of the root, besides its parameters, by name.
+/// The attributes of the root that describe a case, besides its parameters, by name.
 #[must_use]
 pub fn numbers_of_case(case: &Case) -> [(&'static str, f64); 5] {
     let (x_dot0, a0) = case.initial_state();

@@ -19,7 +19,7 @@ use super::open::{self, DEFLATE, SHUFFLE};
 use crate::sweep::input::axis::MOST_POINTS;
 
 unsafe extern "C" {
-    /// Not in the binding.
+    /// A constant of HDF5 that the binding lacks.
     fn H5Dget_chunk_storage_size(dataset: hid_t, offset: *const u64, bytes: *mut u64) -> i32;
 }
 
@@ -40,7 +40,7 @@ macro_rules! number {
 }
 number!(u8, u16, u32, u64, i8, i32, i64, f32, f64);
 
-/// Whether a type of a file is that of `T`.
+/// Whether a type in a file is the type `T`.
 pub(super) fn is_of<T: H5Type>(kind: &hdf5::Result<Datatype>) -> bool {
     let Ok(kind) = kind else {
         return false;

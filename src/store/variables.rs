@@ -15,7 +15,7 @@ use crate::sweep::{Field, Plan};
 /// The attribute by which netCDF readers know cells that have no value.
 pub(super) const FILL_VALUE: &str = "_FillValue";
 
-/// Says of a dataset of integers what stands in its missing cells; none of reals, which always do.
+/// Writes the fill value of a dataset of integers. Reals always have one, NaN.
 pub(super) fn put_fill(dataset: &Dataset, storage: Storage) -> hdf5::Result<()> {
     match storage {
         Storage::Count => put_numbers(dataset, FILL_VALUE, &[N_UNSTABLE_FILL]),

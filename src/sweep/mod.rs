@@ -11,6 +11,13 @@
 //! A **line** is all delays at fixed other parameters: the closed form gives all crossings of a
 //! line at once. A **tile** is a block of lines: the unit of parallel work and of storing. Nothing
 //! passes from tile to tile, so a map does not depend on the number of threads.
+//!
+//! - `cells`: one thread's work: the third room
+//! - `engine`: pieces over threads into a sink; the only file that imports rayon
+//! - `events`: what a running sweep tells; the engine emits, the terminal listens
+//! - `grid`: a sweep computed into memory, for programs that want no file
+//! - `input`: what the user wrote: the first of the rooms of a sweep
+//! - `plan`: cells, tiles, planes of curves, the plan's hash
 
 pub mod cells;
 pub mod engine;
@@ -26,6 +33,7 @@ pub use events::{Event, Observer};
 pub use input::axis::Axis;
 pub use input::case_file::CaseSpec;
 pub use input::field::Field;
+pub use input::linear_model::LinearModel;
 pub use input::parameter::Parameter;
 pub use input::setting::Setting;
 pub use input::spec::SweepSpec;

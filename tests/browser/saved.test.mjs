@@ -568,10 +568,10 @@ test("a map that is gone or damaged while it is looked at is a message", async (
   if (await field.isVisible()) await field.selectOption("abscissa", { timeout: 1000 });
   await eventually(async () => assert.equal(await blank(page), true));
   rmSync(gone);
-  await page.evaluate(() => window.slipmap.saved.open());
-  await eventually(async () =>
-    assert.match(await told.innerText(), /no map of this id|No such file/),
-  );
+  await eventually(async () => {
+    await page.evaluate(() => window.slipmap.saved.open());
+    assert.match(await told.innerText(), /no map of this id|No such file/);
+  });
   assert.equal(await page.locator("#chart-title").innerText(), "No map");
   await page.getByRole("button", { name: "Live chart" }).click();
   await atRest(page);

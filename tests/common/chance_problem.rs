@@ -50,6 +50,8 @@ impl Chance {
             alpha_v,
             alpha_n,
             tau,
+            memory: 0.0,
+            latency: 0.0,
             stop: Stop::default(),
             options: Options::default(),
         }

@@ -192,6 +192,8 @@ pub(crate) fn problem(setting: &Setting) -> Problem {
         alpha_v: setting.alpha_v,
         alpha_n: setting.alpha_n,
         tau: setting.tau,
+        memory: setting.memory,
+        latency: setting.latency,
         stop: Stop::default(),
         options: Options::default(),
     }

@@ -22,7 +22,7 @@ fn coefficients(friction: &Friction) -> (&'static str, Vec<(&'static str, f64)>)
     (name, named)
 }
 
-/// M, κ, N0, the gains and the delay, as far as they are not by default.
+/// M, κ, N0, the gains, the delay, memory and latency, as far as they are not by default.
 fn parameters(s: &Setting) -> Vec<(&'static str, f64)> {
     let plain = [
         ("mass", s.mass),
@@ -33,6 +33,8 @@ fn parameters(s: &Setting) -> Vec<(&'static str, f64)> {
     let gains = [("alpha_v", s.alpha_v), ("alpha_n", s.alpha_n)];
     given.extend(gains.into_iter().filter(|(_, x)| *x != 0.0));
     given.push(("tau", s.tau));
+    let echo = [("memory", s.memory), ("latency", s.latency)];
+    given.extend(echo.into_iter().filter(|(_, x)| *x != 0.0));
     given
 }
 

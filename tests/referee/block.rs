@@ -2,8 +2,11 @@
 //! estimate of the error.
 //!
 //! M ẍ = κ a − sgn(ẋ) μ_K(|ẋ|) N in slip, ẋ = 0 while |κ a| < μ_S N in stick, ȧ = v − ẋ, v = v0 +
-//! α_v [a(t) − a(t−τ)], N = N0 + α_N [a(t) − a(t−τ)]. A step ends at every kink of the delayed
+//! α_v S, N = N0 + α_N S, S = a(t−δ) − a(t−δ−τ) + R S(t−τ). A step ends at every kink of the delayed
 //! elongation and of its echoes, and where the speed passes a point of a table.
+//!
+//! With memory or latency V(t) = a(t) − a(t−τ) + R V(t−τ) is kept beside a, from one end of a step
+//! to the next; then S = V(t−δ).
 
 use super::echoes::Echoes;
 use super::past::Past;
@@ -66,6 +69,8 @@ pub(crate) struct Block {
     pub setting: Setting,
     pace: Pace,
     past: Past,
+    /// V, where there is memory or latency.
+    signal: Past,
     echoes: Echoes,
     pub t: f64,
     pub u: f64,
@@ -74,6 +79,8 @@ pub(crate) struct Block {
     piece: usize,
     controlled: bool,
     stuck_since: f64,
+    /// The rate of the elongation at the end of the last step.
+    arriving: f64,
 }
 
 impl Block {
@@ -86,32 +93,43 @@ impl Block {
             true => Mode::Slip(a.signum()),
             false => Mode::Slip(u.signum()),
         };
-        Self::with_past(setting, pace, (u, a, mode), Past::rising(0.0, a, 0.0))
+        let pasts = [a, 0.0].map(|value| Past::rising(0.0, value, 0.0));
+        Self::with_pasts(setting, pace, (u, a, mode), pasts)
     }
 
-    /// A block that is released at t = 0, after a stick that outlasted the delay; none where N ≤ 0
+    /// A block that is released at t = 0, after a stick that has gone on for ever; none where N ≤ 0
     /// before that.
     pub(crate) fn released(setting: Setting, pace: Pace) -> Option<Self> {
         let s = &setting;
-        let load = s.load + s.alpha_n * s.v0 * s.tau;
+        let load = s.load + s.alpha_n * s.even_signal();
         let a = s.friction.mu_s * load / s.stiffness;
-        let past = Past::rising(0.0, a, s.v0);
-        (load > 0.0).then(|| Self::with_past(setting, pace, (0.0, a, Mode::Slip(1.0)), past))
+        let pasts = [
+            Past::rising(0.0, a, s.v0),
+            Past::rising(0.0, s.even_signal(), 0.0),
+        ];
+        (load > 0.0).then(|| Self::with_pasts(setting, pace, (0.0, a, Mode::Slip(1.0)), pasts))
     }
 
-    fn with_past(setting: Setting, pace: Pace, (u, a, mode): (f64, f64, Mode), past: Past) -> Self {
+    fn with_pasts(
+        setting: Setting,
+        pace: Pace,
+        (u, a, mode): (f64, f64, Mode),
+        [past, signal]: [Past; 2],
+    ) -> Self {
         let mut block = Self {
             piece: setting.friction.piece(u.abs()),
             controlled: setting.switch_on <= 0.0,
             setting,
             pace,
             past,
+            signal,
             echoes: Echoes::default(),
             t: 0.0,
             u,
             a,
             mode,
             stuck_since: 0.0,
+            arriving: 0.0,
         };
         block.kink(1);
         block
@@ -141,6 +159,9 @@ impl Block {
         self.echoes.pass(self.t, &self.setting, self.controlled);
         let from = self.look(self.t, self.u, self.a);
         self.past.leave(from.a_rate);
+        if !self.setting.is_plain() {
+            self.keep_signal([self.arriving, from.a_rate]);
+        }
         if from.n <= 0.0 {
             return Some(Event::LiftOff);
         }
@@ -207,24 +228,64 @@ impl Block {
             n_rate: 0.0,
         };
         if self.controlled {
-            look.n += s.alpha_n * (a - delayed);
-            look.n_rate = s.alpha_n * (a_rate - delayed_rate);
+            look.n += s.alpha_n * self.fed_back(a, delayed);
+            look.n_rate = s.alpha_n * self.fed_back(a_rate, delayed_rate);
         }
         look
     }
 
-    /// a(t−τ) and its rate; whatever, where no control acts.
+    /// S, or what it is less than a where there is no latency, and its rate; whatever, where no
+    /// control acts.
     fn delayed(&self, t: f64) -> (f64, f64) {
+        let s = &self.setting;
         match self.controlled {
-            true => self.past.at(t - self.setting.tau),
             false => (0.0, 0.0),
+            true if s.latency > 0.0 => self.signal.at(t - s.latency),
+            true => self.less_than_a(t),
         }
+    }
+
+    /// a − V = a(t−τ) − R V(t−τ), and its rate.
+    fn less_than_a(&self, t: f64) -> (f64, f64) {
+        let (then, memory) = (t - self.setting.tau, self.setting.memory);
+        let (a, rate) = self.past.at(then);
+        if memory == 0.0 {
+            return (a, rate);
+        }
+        let (v, v_rate) = self.signal.at(then);
+        (a - memory * v, rate - memory * v_rate)
+    }
+
+    /// S from what [`Self::delayed`] says, or its rate from the rate.
+    fn fed_back(&self, a: f64, delayed: f64) -> f64 {
+        match self.setting.latency > 0.0 {
+            true => delayed,
+            false => a - delayed,
+        }
+    }
+
+    /// Keeps V at the end of a step, where the rate of a is this just `before` it and just `after`.
+    fn keep_signal(&mut self, [before, after]: [f64; 2]) {
+        let s = &self.setting;
+        let (then, beside) = (self.t - s.tau, 1e-11 * s.time().max(self.t));
+        let v = self.a - self.less_than_a(self.t).0;
+        let of_a = self.past.rates_beside(then, beside);
+        let of_v = self.signal.rates_beside(then, beside);
+        let rate = |own: f64, i: usize| own - of_a[i] + s.memory * of_v[i];
+        let rates = [rate(before, 0), rate(after, 1)];
+        if self.signal.last() < self.t {
+            self.signal.arrive(self.t, v, rates[0]);
+        }
+        self.signal.leave(rates[1]);
     }
 
     /// ẍ and ȧ.
     fn rates(&self, u: f64, a: f64, delayed: f64) -> (f64, f64) {
         let s = &self.setting;
-        let difference = if self.controlled { a - delayed } else { 0.0 };
+        let difference = match self.controlled {
+            true => self.fed_back(a, delayed),
+            false => 0.0,
+        };
         let v = s.v0 + s.alpha_v * difference;
         let Mode::Slip(sign) = self.mode else {
             return (0.0, v);
@@ -255,9 +316,10 @@ impl Block {
     fn step_length(&self, now: &Look, until: f64) -> f64 {
         let s = &self.setting;
         let mut end = until;
-        if self.controlled {
+        if self.controlled || !s.is_plain() {
             end = end.min(self.echoes.next());
-        } else {
+        }
+        if !self.controlled {
             end = end.min(s.switch_on);
         }
         let room = end - self.t;
@@ -273,10 +335,15 @@ impl Block {
                 self.pace.slipping(s.time(), self.feedback() + growth, bend)
             }
         };
-        if self.controlled {
+        if self.controlled || !s.is_plain() {
             let then = self.t - s.tau;
             h = h.min(self.pace.delayed(s.tau));
             h = h.min(self.past.end_of_step(then, Pace::seen_at_once()) - then);
+        }
+        if s.latency > 0.0 {
+            let then = self.t - s.latency;
+            h = h.min(self.pace.delayed(s.latency));
+            h = h.min(self.signal.end_of_step(then, Pace::seen_at_once()) - then);
         }
         // No tiny step before an end.
         if room < h {
@@ -299,8 +366,10 @@ impl Block {
     /// to the release.
     fn stretches_evenly(&self) -> bool {
         let s = &self.setting;
-        let evenly = s.alpha_v == 0.0 && self.t - self.stuck_since >= s.tau;
-        self.mode == Mode::Stick && (!self.controlled || evenly)
+        let plain = s.is_plain();
+        let long = self.t - self.stuck_since >= s.tau + s.latency;
+        let evenly = s.alpha_v == 0.0 && s.memory == 0.0 && long;
+        self.mode == Mode::Stick && ((!self.controlled && plain) || evenly)
     }
 
     /// A little more than the time until a guard falls below 0, if all go on as they do.
@@ -334,7 +403,11 @@ impl Block {
     fn go(&mut self, to: &Look) {
         (self.t, self.u, self.a) = (to.t, to.u, to.a);
         self.past.arrive(to.t, to.a, to.a_rate);
-        self.past.forget_before(to.t - 1.5 * self.setting.tau);
+        let s = &self.setting;
+        let remembered = 1.5 * s.tau.max(s.latency);
+        self.past.forget_before(to.t - remembered);
+        self.signal.forget_before(to.t - remembered);
+        self.arriving = to.a_rate;
     }
 
     /// A guard has fallen below 0.
@@ -384,6 +457,6 @@ impl Block {
 
     /// The elongation has a kink now, as smooth as an echo of this number.
     fn kink(&mut self, echo: u32) {
-        self.echoes.follow(self.t + self.setting.tau, echo);
+        self.echoes.of_kink(self.t, echo, &self.setting);
     }
 }

@@ -20,6 +20,8 @@ fn setting(law: Law, (alpha_v, alpha_n): (f64, f64), tau: f64, v0: f64) -> Setti
         alpha_v,
         alpha_n,
         tau,
+        memory: 0.0,
+        latency: 0.0,
         v0,
         switch_on: 0.0,
     }

@@ -51,6 +51,11 @@ impl Past {
         });
     }
 
+    /// The end of the last step.
+    pub(crate) fn last(&self) -> f64 {
+        self.nodes.last().map_or(f64::NEG_INFINITY, |node| node.t)
+    }
+
     /// The elongation at a time, and its rate.
     pub(crate) fn at(&self, t: f64) -> (f64, f64) {
         let i = self.find(t);
@@ -73,6 +78,11 @@ impl Past {
             + first.after * p * (1.0 - 3.0 * q)
             + next.before * q * (1.0 - 3.0 * p);
         (value, rate)
+    }
+
+    /// The rates just before and just after a time.
+    pub(crate) fn rates_beside(&self, t: f64, beside: f64) -> [f64; 2] {
+        [t - beside, t + beside].map(|t| self.at(t).1)
     }
 
     /// The end of the `ahead`-th step from `t` on; infinite where there are fewer.

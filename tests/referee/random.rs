@@ -115,6 +115,8 @@ pub(crate) fn start(chance: &mut Chance) -> Start {
             alpha_v: alpha_v / time,
             alpha_n: alpha_n * stiffness,
             tau: tau * time,
+            memory: 0.0,
+            latency: 0.0,
             v0: v0 * length / time,
             switch_on: switch_on * time,
         },
@@ -122,6 +124,22 @@ pub(crate) fn start(chance: &mut Chance) -> Start {
         a0: a0 * length,
         horizon: horizon * time,
     }
+}
+
+/// A motion whose feedback has memory, latency or both.
+pub(crate) fn remembering(chance: &mut Chance) -> Start {
+    let mut start = start(chance);
+    echo(chance, &mut start.setting);
+    start
+}
+
+/// Memory, latency or both.
+fn echo(chance: &mut Chance, setting: &mut Setting) {
+    let memory = [1.0, 0.0, 1.0][chance.below(3)] * chance.between(-0.7, 0.85);
+    let late = memory == 0.0 || chance.below(2) == 0;
+    let latency = chance.log(0.05, 4.0) * setting.time();
+    setting.memory = memory;
+    setting.latency = if late { latency } else { 0.0 };
 }
 
 /// A law whose speeds are given over a unit of velocity.
@@ -149,6 +167,8 @@ pub(crate) fn problem(chance: &mut Chance) -> Setting {
         alpha_v,
         alpha_n,
         tau: chance.log(0.05, 10.0),
+        memory: 0.0,
+        latency: 0.0,
         v0: 1.0,
         switch_on: 0.0,
     }

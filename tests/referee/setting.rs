@@ -12,6 +12,9 @@ pub(crate) struct Setting {
     pub alpha_v: f64,
     pub alpha_n: f64,
     pub tau: f64,
+    /// R, the memory of the feedback, and its latency δ.
+    pub memory: f64,
+    pub latency: f64,
     pub v0: f64,
     /// When control begins to act; infinite for never.
     pub switch_on: f64,
@@ -21,5 +24,24 @@ impl Setting {
     /// √(M/κ).
     pub(crate) fn time(&self) -> f64 {
         (self.mass / self.stiffness).sqrt()
+    }
+
+    /// Whether what is fed back depends on more than the elongation now and one delay ago.
+    pub(crate) fn is_plain(&self) -> bool {
+        self.memory == 0.0 && self.latency == 0.0
+    }
+
+    /// For how long the past matters to nine digits.
+    pub(crate) fn remembered(&self) -> f64 {
+        let delays = match self.memory == 0.0 {
+            true => 1.0,
+            false => 1.0 + (1e-9_f64.ln() / self.memory.abs().ln()).ceil(),
+        };
+        self.latency + self.tau * delays
+    }
+
+    /// What is fed back where the elongation has always grown at v0.
+    pub(crate) fn even_signal(&self) -> f64 {
+        self.v0 * self.tau / (1.0 - self.memory)
     }
 }

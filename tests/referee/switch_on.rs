@@ -39,7 +39,7 @@ pub(crate) fn fate(setting: &Setting, pace: Pace, phase: f64, times: f64) -> Opt
     let Some(period) = to_release(&mut block, longest) else {
         return Some(Fate::NoCycle);
     };
-    let cycles = (setting.tau / period).ceil();
+    let cycles = (setting.remembered() / period).ceil();
     if cycles > MOST_CYCLES {
         return None;
     }

@@ -58,6 +58,8 @@ impl Row<'_> {
             alpha_v: self.number("alpha_v"),
             alpha_n: self.number("alpha_n"),
             tau: self.number("tau"),
+            memory: 0.0,
+            latency: 0.0,
             v0: self.word("v0").map_or(1.0, |_| self.number("v0")),
             switch_on: 0.0,
         }

@@ -10,12 +10,13 @@ options! {
         /// earlier. Where these kinds are other ones at its end a segment is halved whatever its
         /// length.
         short_segment: usize = 16, in 2..=128;
-        /// An end that surprises is looked for from scratch, unless one was so few cells before.
+        /// An end that surprises is searched from scratch, unless one of the last so many cells
+        /// was.
         surprises: usize = 2, in 1..=128;
         /// An end that far from where it was expected surprises: it changes fast along the line.
         surprise: f64 = 3e-4, in 1e-9..=0.1;
-        /// A time in slip that differs by more from that of the cell before is that of another
-        /// branch; slips that change smoothly do so by a few times less.
+        /// Where the time in slip changes by more than this share from one cell to the next, the
+        /// next cell is on another branch. Along one branch it changes a few times less.
         jump_of_slip: f64 = 0.05, in 1e-9..=0.5;
         /// How well a continuation has to meet what was found from scratch.
         meets: f64 = 3e-5, in 1e-9..=1e-3;
@@ -44,12 +45,12 @@ options! {
         /// An orbit without a second past starts below by this share of the change of the end at
         /// least.
         off_by_change: f64 = 0.15, in 0.0..=1.0;
-        /// Where a start comes to no period it is made farther off, by these factors.
+        /// Where no period is found from a start, it is moved farther off, by these factors.
         farther: [f64; 2] = [4.0, 30.0], in 1.0..=1_000.0;
-        /// Where that does not help it is made so many times [`Self::farthest`] off.
+        /// Where that does not help, it is moved off by this many times [`Self::farthest`].
         farthest_of_all: f64 = 2.0, in 1.0..=9.0;
-        /// A cell starts so many times further below its end than the transient of the cell before
-        /// reached.
+        /// A cell starts below its end by this many times what the transient of the cell before
+        /// needed.
         room: f64 = 1.5, in 1.0..=100.0;
         /// By how much nearer each cell starts at least.
         nearer: f64 = 0.5, in 0.01..=1.0;
@@ -58,11 +59,12 @@ options! {
         /// From so far below its end the next one starts then, so that slopes can be told.
         for_slopes: f64 = 1e-4, in 1e-9..=1e-2;
 
-        /// Ends in a row of which it may not be looked at what follows.
+        /// At most so many ends in a row are taken without following the block beyond them.
         most_unseen: u32 = 3, in 0..=128;
-        /// Such an end is where it was expected, to this.
+        /// The end of such a cell may differ by this from the expected one.
         as_expected: f64 = 3e-5, in 1e-9..=1e-2;
-        /// Its time in slip is that of the one that was looked at, to this.
+        /// Its time in slip may differ by this from that of the last cell that was followed beyond
+        /// its end.
         same_slip: f64 = 0.02, in 1e-9..=0.5;
         /// Stick-slip ended as clearly as this there: the lowest minimum of ẋ beyond, over v0.
         clear: f64 = 2e-3, in 1e-9..=1.0;

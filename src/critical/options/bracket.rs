@@ -1,7 +1,7 @@
 //! Options of the bounds of a critical velocity that is not decided.
 
 options! {
-    /// How the bounds that several searches give are looked at longer. Distances are relative.
+    /// How bounds are found where searches disagree. Distances are relative.
     BracketOptions {
         /// How far the lower bound lies below the lowest end: at least, and as a share of the
         /// spread of the ends of slow searches. Still slower ones end up to that much lower.
@@ -15,7 +15,7 @@ options! {
         largest_above: f64 = 0.3, in 1e-3..=10.0;
         /// The most of them.
         most_above: u32 = 40, in 1..=10_000;
-        /// From so many phases of a cycle it has to be lost.
+        /// The number of phases of a cycle from all of which stick-slip has to be lost.
         phases: u32 = 6, in 1..=1_000;
         /// The most steps of the integrator from one phase to the next.
         steps_of_cycle: u32 = 20_000, in 10..=10_000_000;

@@ -110,7 +110,7 @@ options! {
         finer: f64 = 1e-2, in 1e-6..=1.0;
         /// How well an event has to be the same by the finer tolerance.
         same_event: f64 = 1e-5, in 1e-12..=1e-2;
-        /// From so far below an event it is looked for once more.
+        /// How far below an event the search with the finer tolerance begins.
         back: f64 = 2e-3, in 1e-6..=0.5;
 
         /// The most kinds of stick-slip that follow one another.

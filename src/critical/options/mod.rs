@@ -2,6 +2,14 @@
 //!
 //! Every option has its reason, its default and its range beside it. The defaults are what maps
 //! are computed with; benches/critical_options.rs tells what each of them changes.
+//!
+//! - `along_delay`: options of continuation along a line of delays
+//! - `bracket`: options of the bounds of a critical velocity that is not decided
+//! - `continuation`: options of continuation in v0
+//! - `ramp`: options of simulation while v0 is raised
+//! - `switch_on`: options of switching control on
+//! - `table`: how such a table is written
+//! - `transition`: options of what follows an event
 
 #[macro_use]
 mod table;

@@ -1,8 +1,8 @@
 //! Options of simulation while v0 is raised.
 
 options! {
-    /// How stick-slip is followed while v0 is raised, how long it is waited for what it comes to,
-    /// and what confirms the answer. Steps are relative, times in units of √(M/κ).
+    /// How stick-slip is followed while v0 is raised, how long each v0 is held, and what confirms
+    /// the answer. Steps are relative, times in units of √(M/κ).
     RampOptions {
         /// The first step of v0. Large ones are cheap; those that lose stick-slip are undone.
         first: f64 = 0.6, in 1e-6..=10.0;
@@ -12,8 +12,8 @@ options! {
         unseen: f64 = 0.1, in 1e-6..=10.0;
         /// The last step. v_c by simulation is told to this, and agreed on to `GRAZE_PRECISION`.
         last: f64 = 1e-6, in 1e-12..=1e-2;
-        /// Up to this v0, in the units of a motion, v0 glides: it is held for a few cycles only,
-        /// and what stick-slip comes to there is not waited for. 0 where every v0 is held.
+        /// Up to this v0, in the units of a motion, v0 glides: each is held for a few cycles only,
+        /// and the outcome is not waited for. 0 where every v0 is held.
         glide: f64 = 0.0, in 0.0..=f64::INFINITY;
         /// The most v0 that are tried.
         trials: u32 = 400, in 1..=1_000_000;
@@ -37,8 +37,8 @@ options! {
         /// Start velocities, over μ_S, in order, until stick-slip is sustained at one: by
         /// continuation as well.
         starts: [f64; 6] = [1e-2, 1e-1, 1e-3, 1e-4, 1e-5, 1e-6], in 1e-9..=1.0;
-        /// The share of the way to the predicted end that is taken at first. By a larger one, such
-        /// as that of continuation, more ends are come to by a transient and left undecided.
+        /// The share of the way to the predicted end that is taken at first. With a larger one,
+        /// such as that of continuation, transients lead to more ends that stay undecided.
         share: f64 = 0.9, in 0.1..=0.999;
         /// Where stick-slip was lost is tried once more from this much nearer: it may have been the
         /// size of the step that lost it.
@@ -65,30 +65,30 @@ options! {
         /// The way within which sticks that become shorter vanish.
         soon: f64 = 1e-2, in 1e-9..=1.0;
 
-        /// How long a motion is waited for: always, so many delays, and so many of the longest
-        /// cycles.
+        /// How long a motion is followed: at least this time, this many delays, and this many of
+        /// the longest cycles.
         patience: [f64; 3] = [600.0, 20.0, 30.0], in 0.0..=1e6;
-        /// Stick-slip that does not repeat within so many cycles, and so many more for each unit of
-        /// the delay, is irregular: while v0 glides.
+        /// Stick-slip that does not repeat within the first number of cycles, plus the second for
+        /// each unit of the delay, is irregular. These are for a v0 that glides.
         cycles_gliding: [f64; 2] = [4.0, 0.5], in 0.0..=1e4;
-        /// Such cycles after usual steps of v0.
+        /// The same after usual steps of v0.
         cycles: [f64; 2] = [12.0, 1.0], in 0.0..=1e4;
-        /// Such cycles where stick-slip is looked at for long.
+        /// The same where stick-slip is followed for long.
         cycles_at_length: [f64; 2] = [24.0, 1.0], in 0.0..=1e4;
-        /// Such cycles near the end of stick-slip.
+        /// The same near the end of stick-slip.
         cycles_near_end: [f64; 2] = [60.0, 4.0], in 0.0..=1e4;
-        /// The time without a stop after which a slip is one that goes on, as a share of the time
-        /// that was waited.
+        /// A slip goes on for good if there was no stop in the last part of the time that was
+        /// waited; this share of it.
         recent: f64 = 0.25, in 0.01..=0.9;
         /// A minimum of ẋ lower than those before by more than this share falls.
         falls: f64 = 1e-3, in 1e-9..=0.5;
-        /// What grows beyond bounds is so many times as large as the forces of stick-slip and the
-        /// speed of the pull.
+        /// A motion diverges once it is this many times as large as the forces of stick-slip and
+        /// the speed of the pull.
         far: f64 = 100.0, in 2.0..=1e6;
-        /// Windows without a fall after which a slip goes on, where it is looked for shortly: a
-        /// window is a delay and two periods of free oscillation.
+        /// Windows without a fall after which a slip counts as going on, where it is followed
+        /// briefly. A window is a delay and two periods of free oscillation.
         windows: u32 = 3, in 1..=1_000;
-        /// Such windows where a slip is looked at for long.
+        /// The same where a slip is followed for long.
         windows_at_length: u32 = 10, in 1..=1_000;
         /// Windows without a fall at the end of a motion after which a slip goes on.
         windows_at_last: u32 = 6, in 1..=1_000;

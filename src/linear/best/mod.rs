@@ -15,6 +15,13 @@
 //! point at such a gain are not, however small, down to 1e-16 of the box.
 //!
 //! Longer than most files: the three stages of one search.
+//!
+//! - `condition`: what holds at an optimum: multiple roots, ties, vanishing gradients
+//! - `descend`: direct search on a function with kinks and cusps
+//! - `polish`: Newton's method on those conditions, and the certificate
+//! - `regions`: the stable regions of a box: lobes
+//! - `robust`: the setting whose slowest decay over a box of changes is fastest
+//! - `search`: what is searched, and the abscissa at a place of it
 
 mod condition;
 mod descend;

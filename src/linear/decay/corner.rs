@@ -2,6 +2,7 @@
 
 use super::plane::{DecayPlane, Family, norm, solve};
 use crate::linear::curves::Vertex;
+use crate::linear::plane::Plane;
 use crate::model::elementary::hypot;
 
 const MOST_ITERATIONS: u32 = 40;
@@ -12,7 +13,7 @@ const FIRST_FREQUENCY: f64 = 1e-3;
 /// A corner of the decaying region: the point, and the curve on which its boundary goes on.
 pub(super) struct Turn {
     pub p: f64,
-    pub tau: f64,
+    pub q: f64,
     /// Frequency of the root that lies on the line before it.
     pub before: f64,
     /// Frequency of the one that lies on it from there on.
@@ -22,12 +23,12 @@ pub(super) struct Turn {
     pub family: Family,
 }
 
-impl DecayPlane<'_> {
+impl<P: Plane> DecayPlane<'_, P> {
     /// The corner near `v`, a point of a curve of `family` where another root than its own has come
     /// to the line.
     pub(super) fn corner(&self, v: Vertex, family: Family) -> Option<Turn> {
         let own = |omega: &f64| (omega - v.omega).abs();
-        let mut others = self.candidates(v.p, v.tau);
+        let mut others = self.candidates(v.p, v.q);
         let nearest =
             (0..others.len()).min_by(|&i, &j| own(&others[i]).total_cmp(&own(&others[j])))?;
         others.remove(nearest);
@@ -37,8 +38,8 @@ impl DecayPlane<'_> {
     }
 
     /// Newton's method for roots at −σ + iω and −σ + iω′ at once, in (p, τ, ω, ω′).
-    fn double_root(&self, start: Vertex, family: Family, omega: f64) -> Option<Turn> {
-        let other_family = self.family(start.p, start.tau, omega);
+    pub(super) fn double_root(&self, start: Vertex, family: Family, omega: f64) -> Option<Turn> {
+        let other_family = self.family(start.p, start.q, omega);
         let (mut v, mut w) = (start, Vertex { omega, ..start });
         for _ in 0..MOST_ITERATIONS {
             let scales = self.scales(v);
@@ -73,7 +74,7 @@ impl DecayPlane<'_> {
             let right = [-a.value.re, -im_value, -b.value.re, -other_value];
             let step = solve(rows, right)?;
             v.p += step[0] * scales[0];
-            v.tau += step[1] * scales[1];
+            v.q += step[1] * scales[1];
             v.omega += step[2] * scales[2];
             w = Vertex {
                 omega: w.omega + step[3] * of_other,
@@ -87,11 +88,11 @@ impl DecayPlane<'_> {
         let solved = near && self.local(v).vanishes() && self.local(w).vanishes();
         solved.then(|| Turn {
             p: v.p,
-            tau: v.tau,
+            q: v.q,
             before: v.omega,
             after: w.omega,
             next: w,
-            family: self.family(w.p, w.tau, w.omega),
+            family: self.family(w.p, w.q, w.omega),
         })
     }
 
@@ -109,19 +110,19 @@ impl DecayPlane<'_> {
             let slope = |dp: f64, dtau: f64| {
                 let to = |sign: f64| Vertex {
                     p: at.p + sign * dp,
-                    tau: at.tau + sign * dtau,
+                    q: at.q + sign * dtau,
                     omega: 0.0,
                 };
                 0.5 * (self.local(to(1.0)).by_lambda.re - self.local(to(-1.0)).by_lambda.re)
             };
             let h = 1e-6;
             let rows = [
-                [here.by_p.re * scales[0], here.by_tau.re * scales[1]],
+                [here.by_p.re * scales[0], here.by_q.re * scales[1]],
                 [slope(h * scales[0], 0.0) / h, slope(0.0, h * scales[1]) / h],
             ];
             let step = solve(rows, [-here.value.re, -here.by_lambda.re])?;
             at.p += step[0] * scales[0];
-            at.tau += step[1] * scales[1];
+            at.q += step[1] * scales[1];
             if norm(step) < 1e-14 {
                 break;
             }
@@ -137,7 +138,7 @@ impl DecayPlane<'_> {
         };
         Some(Turn {
             p: at.p,
-            tau: at.tau,
+            q: at.q,
             before: 0.0,
             after: 0.0,
             next,
@@ -148,7 +149,7 @@ impl DecayPlane<'_> {
     /// The first point of the pair's curve that begins at the double real root `at`, if the
     /// boundary leaves along it.
     fn start_of_pair(&self, at: Vertex, sense: f64) -> Option<Vertex> {
-        let omega = FIRST_FREQUENCY / self.groups(at.p).1;
+        let omega = FIRST_FREQUENCY / self.plane.unit(at.p, at.q);
         let next = self.correct(Vertex { omega, ..at }, Family::Pair, [0.0, 0.0, 1.0])?;
         let leaves = sense * self.tangent(next, Family::Pair)[2] > 0.0;
         (leaves && self.inside(next)).then_some(next)
@@ -156,6 +157,6 @@ impl DecayPlane<'_> {
 
     fn near(&self, v: Vertex, w: Vertex) -> bool {
         let scales = self.scales(v);
-        hypot((v.p - w.p) / scales[0], (v.tau - w.tau) / scales[1]) < 1e-2
+        hypot((v.p - w.p) / scales[0], (v.q - w.q) / scales[1]) < 1e-2
     }
 }

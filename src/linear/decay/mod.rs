@@ -22,24 +22,38 @@
 //! columns (1/256 of the window in p), or if every column passes it in one step of its delays.
 //! Smaller windows show smaller parts. A boundary that leaves the delay free (no control at all) is
 //! no curve over p and left out.
+//!
+//! - `corner`: where two of its curves meet, double real roots among them
+//! - `letter`: the letter's characteristic function over such a plane
+//! - `plane`: D on the line Re λ = −σ over the plane, Newton's method, tangents
+//! - `seeds`: changes of "all roots decay" along columns and edges of the window
+//! - `walk`: following the boundary by predictor and corrector
+//! - `whole`: whole curves on which a pair lies on the line, cut where another root comes to it
 
 mod corner;
+mod letter;
 mod plane;
 mod seeds;
 mod walk;
+mod whole;
 
 use std::f64::consts::TAU;
 
 use super::Direction;
 use super::curves::{
-    Corner, CurvePiece, MOST_ARCS, MOST_CORNERS, PlaneCurves, StableSide, TooManyCurves, Vertex,
-    Window,
+    Corner, CurveKind, CurvePiece, MOST_ARCS, MOST_CORNERS, PlaneCurves, StableSide, TooManyCurves,
+    Vertex, Window,
 };
+use super::plane::Plane;
 use crate::model::Groups;
 use corner::Turn;
+use letter::LetterPlane;
 use plane::{DecayPlane, Family};
-use seeds::{Across, COLUMNS, Seed};
+use seeds::Seed;
 use walk::{Arc, Way};
+
+pub use seeds::{Across, COLUMNS};
+pub use whole::{Start, on_line, trace_whole};
 
 /// Steps along all boundaries of one window.
 const MOST_STEPS: usize = 1 << 20;
@@ -59,16 +73,27 @@ pub fn trace(
     sigma: f64,
     window: &Window,
 ) -> Result<PlaneCurves, TooManyCurves> {
-    let plane = DecayPlane {
+    let plane = LetterPlane {
         groups_at: &groups_at,
-        sigma,
         window,
     };
+    trace_in(&plane, sigma)
+}
+
+/// As [`trace`], of any characteristic function over a plane.
+///
+/// # Errors
+/// When there are more curves in the window than can be traced.
+pub fn trace_in(plane: &impl Plane, sigma: f64) -> Result<PlaneCurves, TooManyCurves> {
     let mut tracer = Tracer {
         found: Traced::default(),
         curves: PlaneCurves::default(),
         steps: MOST_STEPS,
-        plane,
+        plane: DecayPlane {
+            plane,
+            sigma,
+            whole: false,
+        },
     };
     for seed in tracer.plane.seeds() {
         if !tracer.found.holds(&seed) {
@@ -81,14 +106,14 @@ pub fn trace(
 /// Where the boundaries traced so far meet the lines of the seeds.
 #[derive(Default)]
 struct Traced {
-    /// Delays, for each column.
-    columns: Vec<Vec<f64>>,
-    /// Values of p on the edges of shortest and longest delay.
-    edges: [Vec<f64>; 2],
+    /// q and ω, for each column.
+    columns: Vec<Vec<(f64, f64)>>,
+    /// p and ω on the edges of smallest and largest q.
+    edges: [Vec<(f64, f64)>; 2],
 }
 
 impl Traced {
-    fn on(&mut self, line: Across) -> &mut Vec<f64> {
+    fn on(&mut self, line: Across) -> &mut Vec<(f64, f64)> {
         match line {
             Across::Column(i) => {
                 self.columns.resize(COLUMNS + 1, Vec::new());
@@ -101,18 +126,19 @@ impl Traced {
     fn holds(&mut self, seed: &Seed) -> bool {
         let slack = 1e-6 * (seed.to - seed.from);
         let range = seed.from - slack..=seed.to + slack;
-        self.on(seed.across).iter().any(|x| range.contains(x))
+        let on = self.on(seed.across);
+        on.iter().any(|(x, _)| range.contains(x))
     }
 }
 
-struct Tracer<'a> {
-    plane: DecayPlane<'a>,
+struct Tracer<'a, P> {
+    plane: DecayPlane<'a, P>,
     found: Traced,
     curves: PlaneCurves,
     steps: usize,
 }
 
-impl Tracer<'_> {
+impl<P: Plane> Tracer<'_, P> {
     /// Traces the boundary on which `seed` lies.
     fn follow(&mut self, seed: &Seed) -> Result<(), TooManyCurves> {
         let Some((start, family)) = self.plane.locate(seed) else {
@@ -154,28 +180,29 @@ impl Tracer<'_> {
 
     /// Notes where an arc meets columns and edges.
     fn mark(&mut self, arc: &Arc) {
-        let window = self.plane.window;
+        let window = self.plane.window();
         for pair in arc.vertices.windows(2) {
             for i in self.columns_between(pair[0].p, pair[1].p) {
-                let tau = self.at_column(arc.family, (pair[0], pair[1]), self.plane.column(i));
-                self.found.on(Across::Column(i)).push(tau);
+                let v = self.at_column(arc.family, (pair[0], pair[1]), self.plane.column(i));
+                self.found.on(Across::Column(i)).push((v.q, v.omega));
             }
         }
-        let slack = 1e-9 * window.tau_width();
+        let slack = 1e-9 * window.q_width();
         for end in [arc.vertices.first(), arc.vertices.last()]
             .into_iter()
             .flatten()
         {
-            for (longest, edge) in [(false, window.tau.start()), (true, window.tau.end())] {
-                if (end.tau - edge).abs() <= slack {
-                    self.found.on(Across::Edge { longest }).push(end.p);
+            for (longest, edge) in [(false, window.q.start()), (true, window.q.end())] {
+                if (end.q - edge).abs() <= slack {
+                    let on = self.found.on(Across::Edge { longest });
+                    on.push((end.p, end.omega));
                 }
             }
         }
     }
 
     fn columns_between(&self, p: f64, q: f64) -> std::ops::Range<usize> {
-        let window = self.plane.window;
+        let window = self.plane.window();
         let place = |p: f64| (p - window.p.start()) / window.p_width() * COLUMNS as f64;
         let (from, to) = (place(p.min(q)), place(p.max(q)));
         let from = (from - 1e-9).ceil().max(0.0) as usize;
@@ -184,8 +211,8 @@ impl Tracer<'_> {
         from..to.max(0.0) as usize
     }
 
-    /// The delay at which the curve from `v` to `w` passes `p`.
-    fn at_column(&self, family: Family, (v, w): (Vertex, Vertex), p: f64) -> f64 {
+    /// Where the curve from `v` to `w` passes `p`.
+    fn at_column(&self, family: Family, (v, w): (Vertex, Vertex), p: f64) -> Vertex {
         let part = if v.p == w.p {
             0.0
         } else {
@@ -193,43 +220,50 @@ impl Tracer<'_> {
         };
         let between = Vertex {
             p,
-            tau: v.tau + part * (w.tau - v.tau),
+            q: v.q + part * (w.q - v.q),
             omega: v.omega + part * (w.omega - v.omega),
         };
         let solved = self.plane.correct(between, family, [1.0, 0.0, 0.0]);
         let near = |tau: f64| {
-            let reach =
-                (w.tau - v.tau).abs() + super::curves::FLATNESS * self.plane.window.tau_width();
-            (tau - between.tau).abs() <= reach
+            let reach = (w.q - v.q).abs() + super::curves::FLATNESS * self.plane.window().q_width();
+            (tau - between.q).abs() <= reach
         };
-        solved
-            .map(|v| v.tau)
-            .filter(|&tau| near(tau))
-            .unwrap_or(between.tau)
+        solved.filter(|v| near(v.q)).unwrap_or(between)
     }
 
-    /// The piece of an arc; none where p does not vary along it.
+    /// The piece of an arc; none where the delay is left free: p does not vary along it.
     fn piece(&self, arc: &Arc) -> Option<CurvePiece> {
         let (first, last) = (arc.vertices.first()?, arc.vertices.last()?);
-        if (last.p - first.p).abs() <= 1e-13 * self.plane.window.p_width() {
-            return None;
-        }
         let middle = arc.vertices[arc.vertices.len() / 2];
+        let mut piece = CurvePiece {
+            kind: match arc.family {
+                Family::Pair => CurveKind::Pair,
+                Family::Real { .. } => CurveKind::RealRoot,
+            },
+            branch: turns(middle.omega, self.plane.plane.delay(middle.p, middle.q)),
+            direction: Direction::Left,
+            stable_side: StableSide::Longer,
+            vertices: Vec::new(),
+        };
+        if (last.p - first.p).abs() <= 1e-13 * self.plane.window().p_width() {
+            let [_, delay] = self.plane.plane.delays();
+            if delay && !self.plane.whole {
+                return None;
+            }
+            if last.q > first.q {
+                (piece.direction, piece.stable_side) = (Direction::Right, StableSide::Below);
+            } else {
+                piece.stable_side = StableSide::Above;
+            }
+            piece.vertices.clone_from(&arc.vertices);
+            return Some(piece);
+        }
         let longer = last.p > first.p;
-        Some(CurvePiece {
-            branch: turns(middle.omega, middle.tau),
-            direction: if longer {
-                Direction::Left
-            } else {
-                Direction::Right
-            },
-            stable_side: if longer {
-                StableSide::Longer
-            } else {
-                StableSide::Shorter
-            },
-            vertices: monotone(&arc.vertices, longer),
-        })
+        if !longer {
+            (piece.direction, piece.stable_side) = (Direction::Right, StableSide::Shorter);
+        }
+        piece.vertices = monotone(&arc.vertices, longer);
+        Some(piece)
     }
 }
 
@@ -256,10 +290,10 @@ fn turns(omega: f64, tau: f64) -> u64 {
 }
 
 fn corner(turn: &Turn) -> Corner {
-    let pair = |omega: f64| (omega, turns(omega, turn.tau));
+    let pair = |omega: f64| (omega, turns(omega, turn.q));
     Corner {
         p: turn.p,
-        tau: turn.tau,
+        q: turn.q,
         upper: pair(turn.before.max(turn.after)),
         lower: pair(turn.before.min(turn.after)),
         bounds_stable: true,

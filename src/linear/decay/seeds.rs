@@ -4,25 +4,23 @@ use std::f64::consts::TAU;
 
 use super::plane::{DecayPlane, Family};
 use crate::linear::curves::Vertex;
+use crate::linear::plane::Plane;
 use crate::linear::roots::narrowed;
 
 /// Stretches of equal width into which columns divide the window.
-pub(super) const COLUMNS: usize = 256;
+pub const COLUMNS: usize = 256;
 /// Steps over the window's delays at least.
 const ROWS: f64 = 256.0;
 /// Steps for each period of the fastest root that can lie on the line.
 const STEPS_PER_PERIOD: f64 = 16.0;
 /// Steps along one column at most.
 const MOST_STEPS: f64 = 16384.0;
-/// Turns of (ω₊ − ω₋)τ beyond which some root is right of the line, whatever the phases are (see
-/// the module).
-const TURNS_ENOUGH: f64 = 3.0;
 /// Relative width to which a change is enclosed before Newton's method takes over.
 const ENCLOSED: f64 = 1e-9;
 
 /// A line across the window.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Across {
+pub enum Across {
     /// All delays at one value of the parameter.
     Column(usize),
     /// The shortest or the longest delay: one edge of the window.
@@ -41,18 +39,18 @@ pub(super) struct Seed {
     pub to: f64,
 }
 
-impl DecayPlane<'_> {
+impl<P: Plane> DecayPlane<'_, P> {
     /// The parameter of column `i` of 0 to [`COLUMNS`].
     pub(super) fn column(&self, i: usize) -> f64 {
-        let (from, to) = (self.window.p.start(), self.window.p.end());
+        let (from, to) = (self.window().p.start(), self.window().p.end());
         from + (to - from) * (i as f64 / COLUMNS as f64)
     }
 
     fn edge(&self, longest: bool) -> f64 {
         if longest {
-            *self.window.tau.end()
+            *self.window().q.end()
         } else {
-            *self.window.tau.start()
+            *self.window().q.start()
         }
     }
 
@@ -78,28 +76,30 @@ impl DecayPlane<'_> {
     fn seeds_on_column(&self, column: usize, seeds: &mut Vec<Seed>) {
         let p = self.column(column);
         let (start, end) = (self.edge(false), self.edge(true));
-        let unit = self.groups(p).1;
-        let (mut tau, mut decays) = (start, self.decays(p, start));
-        while tau < end {
-            let (lower, upper) = self.band(p, tau).unwrap_or((0.0, 0.0));
-            let beyond = (upper - lower) * tau > TURNS_ENOUGH * TAU;
-            if beyond && !decays {
+        let [_, delay] = self.plane.delays();
+        let (mut q, mut decays) = (start, self.decays(p, start));
+        while q < end {
+            let band = self.plane.band(p, q, self.sigma);
+            if band.enough && !decays {
                 return;
             }
-            let period = TAU / upper.max(1.0 / unit);
-            let step = (period / STEPS_PER_PERIOD)
-                .min((end - start) / ROWS)
-                .max((end - start) / MOST_STEPS);
-            let next = (tau + step).min(end);
+            let mut step = (end - start) / ROWS;
+            if delay {
+                let period = TAU / band.highest.max(1.0 / self.plane.unit(p, q));
+                step = (period / STEPS_PER_PERIOD)
+                    .min(step)
+                    .max((end - start) / MOST_STEPS);
+            }
+            let next = (q + step).min(end);
             let decays_next = self.decays(p, next);
             if decays_next != decays {
                 seeds.push(Seed {
                     across: Across::Column(column),
-                    from: tau,
+                    from: q,
                     to: next,
                 });
             }
-            (tau, decays) = (next, decays_next);
+            (q, decays) = (next, decays_next);
         }
     }
 
@@ -110,28 +110,28 @@ impl DecayPlane<'_> {
             Across::Edge { longest } => (x, self.edge(longest)),
         };
         let decays = |x: f64| {
-            let (p, tau) = at(x);
-            self.decays(p, tau)
+            let (p, q) = at(x);
+            self.decays(p, q)
         };
         let first = decays(seed.from);
         let enough = |from: f64, to: f64| to - from <= ENCLOSED * (seed.to - seed.from);
         let (from, to) = narrowed(seed.from, seed.to, enough, |x| decays(x) == first);
-        let (p, tau) = at(0.5 * (from + to));
+        let (p, q) = at(0.5 * (from + to));
         let row = match seed.across {
             Across::Column(_) => [1.0, 0.0, 0.0],
             Across::Edge { .. } => [0.0, 1.0, 0.0],
         };
-        self.candidates(p, tau).into_iter().find_map(|omega| {
-            let family = self.family(p, tau, omega);
-            let v = self.correct(Vertex { p, tau, omega }, family, row)?;
+        self.candidates(p, q).into_iter().find_map(|omega| {
+            let family = self.family(p, q, omega);
+            let v = self.correct(Vertex { p, q, omega }, family, row)?;
             let along = match seed.across {
-                Across::Column(_) => v.tau,
+                Across::Column(_) => v.q,
                 Across::Edge { .. } => v.p,
             };
             let slack = 1e-6 * (seed.to - seed.from);
             let bounds = self.others(v).is_none_or(|n| n == 0) && v.omega >= 0.0;
             let enclosed = (from - slack..=to + slack).contains(&along);
-            (bounds && enclosed).then(|| (v, self.family(v.p, v.tau, v.omega)))
+            (bounds && enclosed).then(|| (v, self.family(v.p, v.q, v.omega)))
         })
     }
 }

@@ -10,7 +10,7 @@ type GroupsAt = fn(f64) -> (Groups, f64);
 
 /// Planes of every kind with a window each.
 fn planes() -> Vec<(GroupsAt, Window)> {
-    let window = |p: std::ops::RangeInclusive<f64>, tau| Window { p, tau: 0.0..=tau };
+    let window = |p: std::ops::RangeInclusive<f64>, tau| Window { p, q: 0.0..=tau };
     vec![
         (
             |p| (Groups::new(-0.1, p, 0.0), 1.0),
@@ -71,7 +71,7 @@ fn right_of(groups_at: GroupsAt, p: f64, tau: f64, sigma: f64) -> Option<u64> {
 /// Vertices of a piece that are not next to its ends.
 fn inner(piece: &CurvePiece) -> impl Iterator<Item = &Vertex> {
     let (first, last) = (piece.vertices[0], piece.vertices[piece.vertices.len() - 1]);
-    let apart = |v: &Vertex, w: Vertex| (v.p - w.p).hypot(v.tau - w.tau) > 1e-4;
+    let apart = |v: &Vertex, w: Vertex| (v.p - w.p).hypot(v.q - w.q) > 1e-4;
     piece
         .vertices
         .iter()
@@ -84,25 +84,25 @@ fn check(groups_at: GroupsAt, window: &Window, sigma: f64) -> PlaneCurves {
         for v in &piece.vertices {
             let (groups, unit) = groups_at(v.p);
             let lambda = Complex64::new(-sigma, v.omega) * unit;
-            let jet = Jet::at(groups, v.tau / unit, lambda);
-            let error = jet.rounding(groups, v.tau / unit, lambda);
+            let jet = Jet::at(groups, v.q / unit, lambda);
+            let error = jet.rounding(groups, v.q / unit, lambda);
             assert!(jet.value.norm() <= 100.0 * error, "{v:?}: {jet:?}");
             assert!(v.omega >= 0.0);
             assert!(window.p.contains(&v.p), "{v:?}");
-            assert!(window.tau.start() - 1e-9 <= v.tau && v.tau <= window.tau.end() + 1e-9);
+            assert!(window.q.start() - 1e-9 <= v.q && v.q <= window.q.end() + 1e-9);
         }
         let ps: Vec<f64> = piece.vertices.iter().map(|v| v.p).collect();
         assert!(ps.is_sorted() || ps.iter().rev().is_sorted(), "{ps:?}");
         let side = match piece.stable_side {
             StableSide::Shorter => -1e-7,
             StableSide::Longer => 1e-7,
-            StableSide::Neither => unreachable!("every piece bounds the region"),
+            _ => unreachable!("every piece bounds the region"),
         };
         for v in inner(piece) {
             let count = |tau: f64| right_of(groups_at, v.p, tau, sigma);
-            assert_eq!(count(v.tau + side), Some(0), "σ = {sigma} {v:?} {side}");
+            assert_eq!(count(v.q + side), Some(0), "σ = {sigma} {v:?} {side}");
             let beyond = if v.omega > 0.0 { 2 } else { 1 };
-            assert_eq!(count(v.tau - side), Some(beyond), "σ = {sigma} {v:?}");
+            assert_eq!(count(v.q - side), Some(beyond), "σ = {sigma} {v:?}");
         }
     }
     curves
@@ -128,9 +128,9 @@ fn vertices_are_exact_and_their_sides_hold_what_they_say() {
 
 /// Distance of a point from a segment, in widths of the window.
 fn distance(window: &Window, (p, tau): (f64, f64), (v, w): (Vertex, Vertex)) -> f64 {
-    let scaled = |dp: f64, dtau: f64| (dp / window.p_width(), dtau / window.tau_width());
-    let (dp, dt) = scaled(w.p - v.p, w.tau - v.tau);
-    let (ep, et) = scaled(p - v.p, tau - v.tau);
+    let scaled = |dp: f64, dtau: f64| (dp / window.p_width(), dtau / window.q_width());
+    let (dp, dt) = scaled(w.p - v.p, w.q - v.q);
+    let (ep, et) = scaled(p - v.p, tau - v.q);
     let along = ((ep * dp + et * dt) / (dp * dp + dt * dt)).clamp(0.0, 1.0);
     (ep - along * dp).hypot(et - along * dt)
 }
@@ -151,7 +151,7 @@ fn no_boundary_is_missing() {
                 // Irrational steps: off the columns.
                 let part = (0.5 + 0.618_033_988_75 * f64::from(i)).fract();
                 let p = window.p.start() + part * window.p_width();
-                let at = |j: u32| window.tau_width() * f64::from(j) / 1500.0;
+                let at = |j: u32| window.q_width() * f64::from(j) / 1500.0;
                 let decays = |tau: f64| right_of(groups_at, p, tau, sigma) == Some(0);
                 for j in (0..1500).filter(|&j| decays(at(j)) != decays(at(j + 1))) {
                     let tau = at(j) + 0.5 * (at(1) - at(0));
@@ -178,7 +178,7 @@ fn no_boundary_is_missing() {
 fn small_degrees_of_stability_tend_to_the_crossing_curves() {
     let window = Window {
         p: -3.0..=1.0,
-        tau: 0.0..=12.0,
+        q: 0.0..=12.0,
     };
     let groups_at = |a_n: f64| (Groups::new(-0.1, 0.0, a_n), 1.0);
     let crossings_at = |a_n: f64| Crossings::of(groups_at(a_n).0);
@@ -192,7 +192,7 @@ fn small_degrees_of_stability_tend_to_the_crossing_curves() {
     let near = |v: &Vertex, pieces: &[&CurvePiece]| {
         pieces.iter().any(|piece| {
             let mut segments = piece.vertices.windows(2);
-            segments.any(|w| distance(&window, (v.p, v.tau), (w[0], w[1])) < 1e-3)
+            segments.any(|w| distance(&window, (v.p, v.q), (w[0], w[1])) < 1e-3)
         })
     };
     let curves = trace(groups_at, 1e-6, &window).unwrap();
@@ -215,7 +215,7 @@ fn corners_have_both_roots_on_the_line() {
                 let (groups, unit) = groups_at(corner.p);
                 for (omega, _) in [corner.upper, corner.lower] {
                     let lambda = Complex64::new(-sigma, omega) * unit;
-                    let value = Jet::at(groups, corner.tau / unit, lambda).value;
+                    let value = Jet::at(groups, corner.q / unit, lambda).value;
                     assert!(value.norm() < 1e-11, "{corner:?} {value}");
                 }
             }
@@ -233,10 +233,10 @@ fn loose_ends(curves: &PlaneCurves, window: &Window) -> Vec<Vertex> {
         .collect();
     let loose = |(i, v): (usize, &Vertex)| {
         let edge = [*window.p.start(), *window.p.end()].contains(&v.p)
-            || v.tau < 1e-9
-            || (v.tau - window.tau.end()).abs() < 1e-9;
+            || v.q < 1e-9
+            || (v.q - window.q.end()).abs() < 1e-9;
         let mut others = ends.iter().enumerate();
-        let met = others.any(|(j, w)| i != j && v.p == w.p && v.tau == w.tau);
+        let met = others.any(|(j, w)| i != j && v.p == w.p && v.q == w.q);
         (!edge && !met).then_some(*v)
     };
     ends.iter().enumerate().filter_map(loose).collect()
@@ -272,7 +272,7 @@ fn boundaries_end_only_at_the_window_of_random_planes() {
         };
         let window = Window {
             p: 0.0..=1.0,
-            tau: 0.0..=number(1.0, 40.0),
+            q: 0.0..=number(1.0, 40.0),
         };
         let sigma = 10f64.powf(number(-3.0, 0.3));
         let curves = trace(groups_at, sigma, &window).unwrap();
@@ -295,7 +295,7 @@ fn nothing_is_traced_twice_or_differently() {
             .pieces
             .iter()
             .map(|p| p.vertices[p.vertices.len() / 2])
-            .map(|v| (v.p, v.tau))
+            .map(|v| (v.p, v.q))
             .collect();
         middles.sort_by(|a, b| a.0.total_cmp(&b.0));
         for pair in middles.windows(2) {

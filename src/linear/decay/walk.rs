@@ -3,6 +3,7 @@
 use super::corner::Turn;
 use super::plane::{DecayPlane, Family, dot, norm};
 use crate::linear::curves::{FLATNESS, Vertex};
+use crate::linear::plane::Plane;
 use crate::model::elementary::{acos, hypot};
 
 /// Longest step, in units of [`DecayPlane::scales`].
@@ -13,6 +14,10 @@ const SHORTEST: f64 = 1e-9;
 const MOST_BEND: f64 = 0.25;
 /// A corrected point is at most this part of the step away from where it was looked for.
 const MOST_CORRECTION: f64 = 0.25;
+/// A whole curve ends at this part of the scale of frequencies: at 0 it is its own mirror image.
+const SLOWEST: f64 = 1e-6;
+/// A whole curve that comes no further in so many steps ends: its frequency grows without bound.
+const STAGNANT: usize = 512;
 /// Halvings that enclose what ends a step.
 const HALVINGS: u32 = 40;
 
@@ -50,7 +55,7 @@ enum End {
     Corner(Turn),
 }
 
-impl DecayPlane<'_> {
+impl<P: Plane> DecayPlane<'_, P> {
     /// Goes along the boundary from `start`, with the decaying side on the left (`sense` = 1) or on
     /// the right (−1), for at most `most_steps`.
     pub(super) fn walk(&self, start: Vertex, family: Family, sense: f64, most_steps: usize) -> Way {
@@ -58,7 +63,14 @@ impl DecayPlane<'_> {
         let (mut way, mut place) = (Way::default(), origin);
         way.begin(vec![start], family);
         let mut step = LONGEST;
-        for _ in 0..most_steps {
+        let mut then = start;
+        for i in 1..=most_steps {
+            if self.whole && i % STAGNANT == 0 {
+                if self.near_by(then, place.v) {
+                    return way;
+                }
+                then = place.v;
+            }
             let Some((ahead, taken)) = self.step(place, sense, step) else {
                 return way;
             };
@@ -91,6 +103,16 @@ impl DecayPlane<'_> {
         way
     }
 
+    /// Nothing to be seen lies between both.
+    fn near_by(&self, v: Vertex, w: Vertex) -> bool {
+        let window = self.window();
+        let [p, q] = [
+            (v.p - w.p) / window.p_width(),
+            (v.q - w.q) / window.q_width(),
+        ];
+        hypot(p, q) < 0.5 * FLATNESS
+    }
+
     fn place(&self, v: Vertex, family: Family, sense: f64) -> Place {
         Place {
             v,
@@ -105,7 +127,7 @@ impl DecayPlane<'_> {
         let t = from.tangent;
         let predicted = Vertex {
             p: from.v.p + h * t[0] * scales[0],
-            tau: from.v.tau + h * t[1] * scales[1],
+            q: from.v.q + h * t[1] * scales[1],
             omega: from.v.omega + h * t[2] * scales[2],
         };
         let row = [0, 1, 2].map(|i| t[i] / scales[i]);
@@ -120,8 +142,8 @@ impl DecayPlane<'_> {
             if let Some(next) = self.ahead(from, h, sense) {
                 let bend = acos(dot(from.tangent, next.tangent).clamp(-1.0, 1.0));
                 let chord = hypot(
-                    (next.v.p - from.v.p) / self.window.p_width(),
-                    (next.v.tau - from.v.tau) / self.window.tau_width(),
+                    (next.v.p - from.v.p) / self.window().p_width(),
+                    (next.v.q - from.v.q) / self.window().q_width(),
                 );
                 if bend < MOST_BEND && bend * chord / 8.0 < FLATNESS {
                     return Some((next, h));
@@ -147,14 +169,16 @@ impl DecayPlane<'_> {
             && dot(from.tangent, origin.tangent) > 0.5
     }
 
-    /// The boundary of the decaying region runs through `place`, a step on from a place where it
-    /// does.
+    /// The boundary of the decaying region, or the curve as a whole, runs through `place`, a step
+    /// on from a place where it does.
     fn bounds(&self, place: &Place) -> bool {
         let of_family = match place.family {
+            Family::Pair if self.whole => place.v.omega > SLOWEST * self.scales(place.v)[2],
             Family::Pair => place.v.omega > 0.0,
             Family::Real { .. } => self.on_own_side(place),
         };
-        of_family && self.inside(place.v) && self.others(place.v).is_none_or(|n| n == 0)
+        let alone = || self.whole || self.others(place.v).is_none_or(|n| n == 0);
+        of_family && self.inside(place.v) && alone()
     }
 
     /// No other real root has joined the one on the line.
@@ -184,6 +208,7 @@ impl DecayPlane<'_> {
             return (self.at_edge(inside, outside.v, sense), End::Over);
         }
         let end_of_pair = match outside.family {
+            Family::Pair if self.whole => true,
             Family::Pair => outside.v.omega <= 0.0,
             Family::Real { .. } => !self.on_own_side(&outside),
         };
@@ -198,20 +223,24 @@ impl DecayPlane<'_> {
         let corner = Place {
             v: Vertex {
                 p: turn.p,
-                tau: turn.tau,
+                q: turn.q,
                 omega: turn.before,
             },
             ..inside
         };
-        (corner, End::Corner(turn))
+        match self.whole {
+            // Where a pair meets on the real axis its curve ends.
+            true => (corner, End::Over),
+            false => (corner, End::Corner(turn)),
+        }
     }
 
     /// `place`, moved onto the edge of the window that `beyond` has left.
     fn at_edge(&self, place: Place, beyond: Vertex, sense: f64) -> Place {
-        let (p, tau) = (&self.window.p, &self.window.tau);
+        let (p, q) = (&self.window().p, &self.window().q);
         let edge = Vertex {
             p: beyond.p.clamp(*p.start(), *p.end()),
-            tau: beyond.tau.clamp(*tau.start(), *tau.end()),
+            q: beyond.q.clamp(*q.start(), *q.end()),
             omega: beyond.omega,
         };
         let row = if edge.p == beyond.p {
@@ -258,7 +287,7 @@ impl Way {
     fn turn(&mut self, turn: Turn) {
         let corner = Vertex {
             p: turn.p,
-            tau: turn.tau,
+            q: turn.q,
             omega: turn.after,
         };
         self.begin(vec![corner], turn.family);
@@ -272,6 +301,6 @@ impl Way {
 
 /// From `v` to `w`, each coordinate in its scale.
 fn apart(v: Vertex, w: Vertex, scales: [f64; 3]) -> [f64; 3] {
-    let difference = [w.p - v.p, w.tau - v.tau, w.omega - v.omega];
+    let difference = [w.p - v.p, w.q - v.q, w.omega - v.omega];
     [0, 1, 2].map(|i| difference[i] / scales[i])
 }

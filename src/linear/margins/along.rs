@@ -3,12 +3,13 @@
 
 use super::affine::Affine;
 use super::enclosure::{Enclosed, Point, SlidingLaw, root_bound};
-use super::nearest::{Family, Nearest, nearest};
+use super::nearest::{Family, MOST_BOXES, Nearest, nearest};
 use super::surroundings::is_stable;
 use super::{Limits, Setting};
 use crate::linear::Crossings;
 use crate::model::Groups;
 use crate::model::elementary::exp;
+use crate::model::friction::Kind;
 
 /// Decay rates above this are not told from infinity.
 const LARGEST_EXPONENT: f64 = 300.0;
@@ -35,7 +36,7 @@ pub fn delay(setting: &Setting) -> Limits {
     let family = Along::delay(setting);
     let longest = longest_delay(setting);
     Limits {
-        lower: found_or(nearest(&family, tau, 0.0), 0.0),
+        lower: found_or(nearest(&family, (tau, 0.0), &mut { MOST_BOXES }), 0.0),
         upper: outwards(&family, tau, tau.max(1.0), longest),
     }
 }
@@ -44,14 +45,21 @@ pub fn delay(setting: &Setting) -> Limits {
 /// above where it is not, up to 1024 times `v0`.
 #[must_use]
 pub fn velocity(setting: &Setting, law: &SlidingLaw<'_>, v0: f64) -> Limits {
+    if matches!(law.law.kind(), Kind::Coulomb { .. }) {
+        // No velocity changes D.
+        return Limits {
+            lower: 0.0,
+            upper: f64::INFINITY,
+        };
+    }
     let family = Along {
         setting: *setting,
         what: Varied::Velocity(*law),
     };
     let change = |to: f64| {
-        let mut from = v0;
+        let (mut from, mut left) = (v0, MOST_BOXES);
         loop {
-            match nearest(&family, from, to) {
+            match nearest(&family, (from, to), &mut left) {
                 Nearest::At(v) => {
                     // Where a pair only touches the line, the search goes on beyond.
                     let beyond = v + 1e-6 * (to - v).clamp(-v, v);
@@ -92,10 +100,10 @@ fn found_or(nearest: Nearest, none: f64) -> f64 {
 /// The nearest value above `from`, looked for in steps that grow; infinite where there is none up
 /// to `last`.
 fn outwards(family: &Along<'_>, from: f64, step: f64, last: f64) -> f64 {
-    let (mut start, mut step) = (from, step);
+    let (mut start, mut step, mut left) = (from, step, MOST_BOXES);
     while start < last {
         let end = (start + step).min(last);
-        match nearest(family, start, end) {
+        match nearest(family, (start, end), &mut left) {
             Nearest::None => (start, step) = (end, 4.0 * step),
             found => return found_or(found, f64::INFINITY),
         }

@@ -22,6 +22,18 @@
 //! where a pair only touches the axis, the search goes on.
 //!
 //! What holds for several parameters at once tells the [`Radius`].
+//!
+//! - `affine`: complex affine arithmetic
+//! - `along`: limits along the delay, the latency and the sliding velocity
+//! - `crossing_delays`: the delays at which a root is on the line, over boxes of the other
+//!   variables
+//! - `enclosure`: D over boxes of frequency and parameters
+//! - `nearest_change`: the nearest value of one parameter at which stability is lost, as the count
+//!   has it
+//! - `not_stable`: settings around one that are not stable
+//! - `radius`: the stability radius, proved
+//! - `surroundings`: the settings around a setting: what D depends on, which are stable
+//! - `trig_polynomial`: all zeros of functions that are polynomials in ω, sin tω and cos tω
 
 mod affine;
 mod along;

@@ -10,8 +10,8 @@ use std::collections::BinaryHeap;
 
 use super::enclosure::Enclosed;
 
-/// Boxes that are looked at before a search is given up.
-const MOST_BOXES: usize = 1 << 16;
+/// Boxes that are looked at along one direction before what is left of it is given up.
+pub(super) const MOST_BOXES: u32 = 1 << 17;
 /// How far below a box a zero may be found.
 const NEAR: f64 = 1e-9;
 /// Distances that differ by less are the same.
@@ -66,8 +66,9 @@ impl Ord for Part {
     }
 }
 
-/// The parameter nearest to `from` at which D has a zero on the line, on the way to `to`.
-pub(super) fn nearest(family: &impl Family, from: f64, to: f64) -> Nearest {
+/// The parameter nearest to `from` at which D has a zero on the line, on the way to `to`. `left`:
+/// the boxes that may be looked at, less by those that were.
+pub(super) fn nearest(family: &impl Family, (from, to): (f64, f64), left: &mut u32) -> Nearest {
     let whole = (from.min(to), from.max(to));
     let apart = |p: (f64, f64)| (p.0 - from).max(from - p.1).max(0.0);
     let mut best = f64::INFINITY;
@@ -77,7 +78,8 @@ pub(super) fn nearest(family: &impl Family, from: f64, to: f64) -> Nearest {
         omega: (0.0, family.bound(whole)),
         parameter: whole,
     }]);
-    for _ in 0..MOST_BOXES {
+    while *left > 0 {
+        *left -= 1;
         let Some(part) = parts.pop().filter(|part| part.distance < best) else {
             return found;
         };

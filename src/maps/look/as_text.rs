@@ -3,7 +3,7 @@
 
 use crate::critical::switch_on::Phase;
 use crate::model::Control;
-use crate::sweep::input::command::{command_line, vc_command};
+use crate::sweep::input::command::{command_line, system_command, vc_command};
 use crate::sweep::input::parameter::Parameter;
 use crate::sweep::input::search::Protocol;
 use crate::sweep::input::setting::Setting;
@@ -35,6 +35,12 @@ impl CellTexts {
             let asked = "vc --protocol=limit";
             return Self {
                 command: command_line(asked, &setting, Parameter::of_limit),
+                ..Self::default()
+            };
+        }
+        if setting.system().is_some() {
+            return Self {
+                command: system_command(&setting),
                 ..Self::default()
             };
         }

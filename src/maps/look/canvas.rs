@@ -14,7 +14,7 @@ pub const UNREAD: u8 = 2;
 pub const NOT_COMPUTED: u8 = 4;
 /// It lies beyond the axes, and shows no cell.
 pub const BEYOND: u8 = 8;
-/// Its value is that of a cell that it hides, until the one that it shows is read.
+/// The pixel has the value of a hidden cell for now: the cell that it is to show is not read yet.
 const HIDDEN_SEEN: u8 = 128;
 
 /// Pixels of cells, the slower axis of the map row by row.

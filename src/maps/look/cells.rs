@@ -6,11 +6,11 @@ use std::sync::Arc;
 pub(super) trait Cell: Copy + Eq + Default + Send + Sync + 'static {
     /// Bytes of a cell.
     const SIZE: usize;
-    /// From its bytes, of which there are as many.
+    /// A cell from its bytes, [`Self::SIZE`] of them.
     fn of(bytes: &[u8]) -> Self;
     /// Forgets the type.
     fn wrapped(cells: Arc<Cells<Self>>) -> AnyCells;
-    /// Remembers it; none where it is another one.
+    /// The cells in their own type; none where they are of another one.
     fn unwrapped(cells: &AnyCells) -> Option<&Arc<Cells<Self>>>;
 }
 
@@ -191,8 +191,7 @@ impl<'a, T: Cell> Reader<'a, T> {
         }
     }
 
-    /// The one value of the cells from place to place, of which there is one at least; none where
-    /// they differ.
+    /// The value that all cells of a range have; none where they differ. The range is not empty.
     pub(super) fn only(&mut self, from: usize, to: usize) -> Option<T> {
         match self.cells {
             Cells::Each(cells) => {

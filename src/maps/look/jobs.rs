@@ -11,7 +11,7 @@ use crate::sweep::plan::pieces::mixed;
 /// A chunk that is to be looked at.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct Job {
-    /// Of the status, else of the field.
+    /// True for a chunk of the status, false for one of the field.
     pub status: bool,
     /// Numbers of the chunk along the slower and the faster axis.
     pub chunk: (usize, usize),

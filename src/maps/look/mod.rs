@@ -7,6 +7,18 @@
 //! ```
 //!
 //! Nothing is averaged: a pixel shows one cell, and says so where it hides others of another value.
+//!
+//! - `as_text`: a cell's setting as a point, a problem of v_c, a case file and a command line
+//! - `canvas`: its pixels: the nearest cell, and whether others differ
+//! - `cells`: cells in memory, as runs of equal ones where that is short
+//! - `jobs`: chunks that are still to be read, in few bytes each
+//! - `pixels`: which cells the pixels along an axis show and hide
+//! - `reading`: from stored chunks to pixels
+//! - `shelf`: cells that were read, as long as there is room
+//! - `short`: chunks of equal bytes, inflated once
+//! - `source`: where cells come from: the map's file, or the tiles of its run
+//! - `view`: a window that is being read, chunk by chunk
+//! - `window`: what is asked of a window, and what is told
 
 pub mod as_text;
 mod canvas;
@@ -133,7 +145,7 @@ impl Look {
         (source.version, source.cells_done)
     }
 
-    /// What is told of the map itself, by its file or its tiles.
+    /// The description of the map, from its file or its tiles.
     pub fn told<T>(
         &self,
         of_file: impl FnOnce(&crate::store::MapFile) -> T,
@@ -279,7 +291,7 @@ mod tests {
         };
         Facts {
             axes: vec![MapAxis {
-                parameter: Parameter::Tau,
+                parameter: Parameter::Tau.into(),
                 values: (0..20).map(f64::from).collect(),
                 unit: "1".into(),
             }],

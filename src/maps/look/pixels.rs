@@ -191,7 +191,7 @@ impl Rising<'_> {
 }
 
 impl Pixels {
-    /// The pixels of a stretch of an axis with these values, of which there is one at least.
+    /// The pixels of a stretch of an axis with these values; there is at least one.
     ///
     /// # Errors
     /// When there is no such stretch, in words.

@@ -153,7 +153,7 @@ impl Reading {
         }
     }
 
-    /// Shows what is kept of a window; what is not stays to be read.
+    /// Shows the chunks of a window that are in memory; the others remain to be read.
     pub(super) fn show_kept(&self, view: &View) {
         let mut jobs = std::mem::take(&mut *locked(&view.jobs));
         jobs.retain(|job| {

@@ -45,7 +45,8 @@ pub(super) struct Shelf {
 }
 
 impl Shelf {
-    /// Cells that are there, of a map of this version; `now` grows with what is looked at.
+    /// The cells under this key, if they are in memory and of this version of the map; `now` counts
+    /// accesses.
     pub(super) fn get(&mut self, key: &Key, version: u64, now: u64) -> Option<AnyCells> {
         let kept = self.kept.get_mut(key)?;
         if kept.missing.is_some_and(|then| then != version) {

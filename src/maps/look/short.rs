@@ -26,7 +26,7 @@ pub(super) struct Stored {
 pub(super) struct Short(HashMap<Stored, AnyCells>);
 
 impl Short {
-    /// By what a chunk is remembered; none where it is too long.
+    /// The key by which a chunk is remembered; none where the chunk is too long.
     pub(super) fn key(layout: &ChunkLayout, stored: &[u8]) -> Option<Stored> {
         (stored.len() < SHORT).then(|| Stored {
             cells: layout.cells(),

@@ -26,7 +26,7 @@ pub struct Facts {
     pub axes: Vec<MapAxis>,
     /// Its fields.
     pub fields: Vec<Field>,
-    /// The sweep that it is of; none where its text is not understood, or is another's.
+    /// The sweep of the map; none where its text is not understood or does not fit the map.
     pub plan: Option<Plan>,
     /// How its columns are stored: the fields, then the status.
     pub layouts: Vec<ChunkLayout>,
@@ -87,7 +87,7 @@ pub(super) struct Source {
     stamp: Option<Stamp>,
     looked: Instant,
     refreshed: Instant,
-    /// Grows with what is there.
+    /// A number that grows as tiles come.
     pub version: u64,
     /// Cells that are there.
     pub cells_done: u64,
@@ -99,7 +99,7 @@ pub(super) enum Still {
     Same,
     /// More cells are there.
     Grown,
-    /// It is another map, or none: it has to be opened again.
+    /// Another map, or none, has taken the place of this one: it has to be opened again.
     Gone,
 }
 
@@ -181,7 +181,7 @@ impl Source {
     }
 }
 
-/// A number that changes with what is there.
+/// A number that changes whenever tiles have come.
 fn version_of(stamp: Option<Stamp>, cells: &Cells) -> u64 {
     match cells {
         Cells::Growing(growing) => growing.done().0,
@@ -198,9 +198,9 @@ fn facts_of_tiles(growing: &GrowingMap) -> Facts {
     let plan = growing.plan();
     let units = &plan.spec.units;
     let axes = plan.spec.axes.iter().map(|axis| MapAxis {
-        parameter: axis.parameter,
+        parameter: axis.parameter.clone(),
         values: axis.values.clone(),
-        unit: units.of_parameter(axis.parameter),
+        unit: axis.parameter.unit(units),
     });
     Facts {
         axes: axes.collect(),
@@ -218,8 +218,8 @@ fn facts_of_file(columns: &FileColumns) -> Facts {
     let plan = map.sweep().and_then(Plan::new).ok();
     let plan = plan.filter(|plan| {
         let told = plan.spec.axes.iter();
-        let told = told.map(|axis| (axis.parameter, &axis.values));
-        told.eq(axes.iter().map(|axis| (axis.parameter, &axis.values)))
+        let told = told.map(|axis| (&axis.parameter, &axis.values));
+        told.eq(axes.iter().map(|axis| (&axis.parameter, &axis.values)))
     });
     Facts {
         fields: map.fields().to_vec(),

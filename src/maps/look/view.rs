@@ -13,7 +13,7 @@ use super::source::Facts;
 use super::window::{Asked, Numbers, Shot, Shown};
 use crate::sweep::engine::STATUS_FILL;
 
-/// The pixels of a field, of which there are three types.
+/// The pixels of a field, in one of three types.
 #[derive(Debug)]
 pub(super) enum AnyCanvas {
     U8(Canvas<u8>),
@@ -184,7 +184,7 @@ impl View {
         all.collect()
     }
 
-    /// What it shows so far, of a map of these facts.
+    /// The window as it is so far.
     #[must_use]
     pub fn shot(&self, facts: &Facts) -> Shot {
         // Before the pixels are looked at: what is called complete is.

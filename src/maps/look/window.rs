@@ -1,4 +1,4 @@
-//! What is asked of a window on a map, and what is told.
+//! A window on a map: the request and the answer.
 
 use super::pixels::Stretch;
 use crate::sweep::Field;
@@ -12,7 +12,7 @@ pub struct Asked {
     pub x: usize,
     /// The axis from bottom to top; none: a line along `x`.
     pub y: Option<usize>,
-    /// The index along every axis; those of `x` and `y` mean nothing.
+    /// The index along every axis; the entries of `x` and `y` are not used.
     pub at: Vec<usize>,
     /// The pixels along `x`.
     pub across: Stretch,

@@ -7,6 +7,7 @@ use super::curve_labels::{Curves, Place, places};
 use super::degrees::Degrees;
 use super::error::PictureError;
 use super::inset::{self, Inset};
+use super::kinds;
 use super::legend::{Legend, Swatch};
 use super::options::PictureOptions;
 use super::page::{self, SMALL};
@@ -136,7 +137,7 @@ fn families<'a>(map: &MapFile, view: &'a View, curves: &'a [MapCurve]) -> Vec<Fa
 /// The parts of a curve within a panel.
 fn traced(panel: &Panel, piece: &CurvePiece) -> Vec<Vec<Point>> {
     let vertices = piece.vertices.iter();
-    let points: Vec<Point> = vertices.map(|v| panel.at(v.p, v.tau)).collect();
+    let points: Vec<Point> = vertices.map(|v| panel.at(v.p, v.q)).collect();
     clip::within(&points, panel.area)
 }
 
@@ -187,12 +188,13 @@ fn draw_curves(families: &[Family], degrees: &Degrees, panel: &Panel, scene: &mu
                 degrees.draw(curve.degree_of_stability, &points, family.colour, scene);
             }
         }
-        for points in family
-            .bounding
-            .iter()
-            .flat_map(|piece| traced(panel, piece))
-        {
-            scene.path(points, family.colour, WIDTH * u);
+        for piece in &family.bounding {
+            for points in traced(panel, piece) {
+                match kinds::dash(piece.kind) {
+                    Some(dash) => scene.dashed(&points, family.colour, WIDTH * u, dash),
+                    None => scene.path(points, family.colour, WIDTH * u),
+                }
+            }
         }
     }
 }
@@ -278,7 +280,7 @@ fn legend(map: &MapFile, view: &View, families: &[Family], degrees: &Degrees) ->
         heading = vec![
             Rich::plain("stable inside,"),
             Rich::plain("at ")
-                .and_symbol(axis.parameter)
+                .and_symbol(&axis.parameter)
                 .and(&suffix(&axis.unit, " (", ")"))
                 .and(" ="),
         ];
@@ -304,6 +306,8 @@ fn legend(map: &MapFile, view: &View, families: &[Family], degrees: &Degrees) ->
         [family] => family.colour,
         _ => INK,
     };
+    let bounding = families.iter().flat_map(|family| family.bounding.iter());
+    entries.extend(kinds::entries(&bounding.copied(), colour, WIDTH));
     entries.extend(degrees.entries(colour));
     Legend { heading, entries }
 }

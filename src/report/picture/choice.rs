@@ -81,7 +81,8 @@ fn says_more(map: &MapFile) -> Option<Field> {
 fn default_field(map: &MapFile) -> Field {
     says_more(map)
         .or_else(|| map.stability_field())
-        .or_else(|| map.fields().first().copied())
+        // What is special of cells says least where nothing is.
+        .or_else(|| map.fields().iter().copied().find(|f| *f != Field::Reason))
         .unwrap_or(Field::NUnstable)
 }
 
@@ -107,9 +108,10 @@ fn untitled(map: &MapFile, field: Field) -> &'static str {
 
 /// The title asked for, or that of the map's sweep.
 pub(super) fn title(map: &MapFile, options: &PictureOptions) -> Option<String> {
-    let of_sweep = || map.root_text(root::TITLE);
-    let title = options.title.clone().or_else(of_sweep);
-    let title = title.filter(|title| !title.trim().is_empty())?;
+    let of_sweep = options.title.clone().or_else(|| map.root_text(root::TITLE));
+    let of_system = || Some(map.system()?.title.clone());
+    let said = |title: &String| !title.trim().is_empty();
+    let title = of_sweep.filter(said).or_else(|| of_system().filter(said))?;
     Some(shortened(&title))
 }
 

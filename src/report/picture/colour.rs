@@ -77,6 +77,19 @@ const REGIMES: [Rgb; 5] = [
     NO_VALUE,
 ];
 
+/// No reason, a root at the origin, one on the axis, infinitely many unstable roots, the neutral
+/// limit, no rightmost root, degree unknown, refused.
+const REASONS: [Rgb; 8] = [
+    Rgb(0xc7, 0xea, 0xe5),
+    Rgb(0xdf, 0xc2, 0x7d),
+    Rgb(0x7a, 0x46, 0x08),
+    Rgb(0x22, 0x22, 0x22),
+    Rgb(0x2c, 0x4a, 0x7c),
+    Rgb(0x35, 0x97, 0x8f),
+    Rgb(0x9e, 0x9a, 0xc8),
+    Rgb(0xbb, 0x77, 0x55),
+];
+
 /// The critical velocity from one slip, from the orbit, from simulation; small counts from 0 on.
 const FEW: [Rgb; 4] = [
     Rgb(0xc7, 0xea, 0xe5),
@@ -121,6 +134,7 @@ pub(super) fn of_kind(field: Field, number: f64) -> Rgb {
     let colours: &[Rgb] = match field {
         Field::Outcome => &OUTCOMES,
         Field::Regime => &REGIMES,
+        Field::Reason => &REASONS,
         _ => &FEW,
     };
     match number {

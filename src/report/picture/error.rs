@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use crate::store::StoreError;
-use crate::sweep::Parameter;
+use crate::sweep::input::quantity::Quantity;
 
 /// What went wrong.
 #[derive(Debug, thiserror::Error)]
@@ -104,7 +104,7 @@ pub enum PictureError {
     #[error("{} is no axis of the map", parameter.name())]
     NotAnAxis {
         /// The parameter.
-        parameter: Parameter,
+        parameter: Quantity,
         /// Names of the axes.
         axes: String,
     },
@@ -112,7 +112,7 @@ pub enum PictureError {
     #[error("{} = {value} is outside the map: {from} to {to}", parameter.name())]
     OutsideAxis {
         /// The parameter.
-        parameter: Parameter,
+        parameter: Quantity,
         /// The value.
         value: f64,
         /// Smallest value of the axis.
@@ -128,9 +128,9 @@ pub enum PictureError {
     )]
     SeveralValues {
         /// The one.
-        first: Parameter,
+        first: Quantity,
         /// The other.
-        second: Parameter,
+        second: Quantity,
     },
     /// The picture could not be rendered.
     #[error("cannot render the picture: {0}")]

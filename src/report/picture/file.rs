@@ -74,8 +74,8 @@ impl Picture {
         Ok(output.commit()?)
     }
 
-    /// Writes the file under a name that nobody asked for: what is there is replaced only if it is
-    /// an earlier picture of the same. Nobody's work is lost.
+    /// Writes the file under a name that the user did not choose. Only an earlier picture of the
+    /// same map and field is replaced, so no other work is lost.
     ///
     /// # Errors
     /// When something else is there, or the file cannot be written.

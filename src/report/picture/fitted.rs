@@ -85,7 +85,7 @@ pub(super) fn fitted(panel: &Panel, known: Known, sides: &Sides, u: f64) -> Know
     }
 }
 
-/// The middles of so many equal parts of every cell.
+/// The middles of `parts` equal parts of every cell.
 fn divided(edges: &[f64], parts: usize) -> Vec<f64> {
     let middle = |i: usize| (i as f64 + 0.5) / parts as f64;
     let cell = |pair: &[f64]| {
@@ -131,7 +131,7 @@ impl Grid<'_> {
 mod tests {
     use super::*;
     use crate::linear::Direction;
-    use crate::linear::curves::{StableSide, Vertex};
+    use crate::linear::curves::{CurveKind, StableSide, Vertex};
     use crate::report::picture::page::Area;
     use crate::report::picture::scale::Scale;
 
@@ -151,10 +151,11 @@ mod tests {
         };
         let vertex = |p| Vertex {
             p,
-            tau: p + 0.207,
+            q: p + 0.207,
             omega: 1.0,
         };
         let line = CurvePiece {
+            kind: CurveKind::Pair,
             branch: 0,
             direction: Direction::Left,
             stable_side: StableSide::Longer,

@@ -7,16 +7,18 @@ use super::error::PictureError;
 use super::fitted::{Sides, fitted};
 use super::hatch;
 use super::key::{BOUNDARY_WIDTH, Key};
+use super::kinds;
 use super::options::PictureOptions;
 use super::page::{self, Area};
 use super::panels::{Panel, Panels, Words};
 use super::scale::Scale;
 use super::scene::{Mark, Scene};
+use super::speed;
 use super::stable_area::stable_throughout;
 use super::symbols;
 use super::text::axis_title;
 use super::view::View;
-use crate::linear::curves::StableSide;
+use crate::linear::curves::{CurvePiece, StableSide, Vertex};
 use crate::report::known::Known;
 use crate::store::MapFile;
 use crate::store::map_file::MapCurve;
@@ -53,28 +55,30 @@ pub(super) fn draw(
         .collect::<Result<_, _>>()?;
     let degrees = Degrees::of(map, curves);
     let symbols = symbols::of_view(map, view, y)?;
-    let entries = [degrees.entries(INK), symbols::entries(&symbols)].concat();
+    let kinds = kinds::entries(&bounding(curves), INK, BOUNDARY_WIDTH);
+    let entries = [kinds, degrees.entries(INK), symbols::entries(&symbols)].concat();
     let key = Key::new((field, &unit), &planes, !curves.is_empty(), options)?.with(entries);
     let column = match options.no_legend {
         true => None,
         false => Some(body.cut_right(key.width(u), GAP * u)),
     };
     let (x_axis, y_axis) = (&map.axes()[view.x], &map.axes()[y]);
-    let scales = (Scale::around(&x_axis.values), Scale::around(&y_axis.values));
+    let scales = (speed::scale(map, x_axis), Scale::around(&y_axis.values));
     let headings = view.panels.iter().map(|p| view.heading(map, p)).collect();
-    let words = Words::of(axis_title(x_axis), axis_title(y_axis), headings);
+    let words = Words::of(speed::title(map, x_axis), axis_title(y_axis), headings);
     let panels = Panels::new(scene, body, scales, words);
     let parts = panels.list.iter().zip(planes).zip(&view.panels);
     for (((panel, plane), index), symbols) in parts.zip(&symbols) {
         let outer = view.outer_values(map, index);
         let here: Vec<&MapCurve> = curves.iter().filter(|c| c.outer == outer).collect();
-        let plane = match changes_at_boundary(field) {
+        let turned = view.is_turned(map);
+        let plane = match changes_at_boundary(field) && !turned {
             true => cut(map, (view.x, y), index, panel, plane, &here, u)?,
             false => plane,
         };
         draw_cells(panel, &plane, &key, scene);
         for curve in here {
-            draw_curve(panel, curve, &degrees, scene);
+            draw_curve(panel, (curve, turned), &degrees, scene);
         }
         symbols::draw(panel, symbols, scene);
     }
@@ -93,6 +97,13 @@ pub(super) fn draw(
         );
     }
     Ok(())
+}
+
+/// The curves that bound the stable region.
+fn bounding(curves: &[MapCurve]) -> impl Iterator<Item = &CurvePiece> + Clone {
+    let bounds =
+        |c: &&MapCurve| c.degree_of_stability == 0.0 && c.piece.stable_side != StableSide::Neither;
+    curves.iter().filter(bounds).map(|curve| &curve.piece)
 }
 
 /// Whether the field is another one on the other side of the boundary of stability.
@@ -127,12 +138,23 @@ fn cut(
     Ok(fitted(panel, known, &sides, u))
 }
 
-fn draw_curve(panel: &Panel, curve: &MapCurve, degrees: &Degrees, scene: &mut Scene) {
+/// Draws a curve; `turned` with its second parameter from left to right.
+fn draw_curve(
+    panel: &Panel,
+    (curve, turned): (&MapCurve, bool),
+    degrees: &Degrees,
+    scene: &mut Scene,
+) {
     if curve.piece.stable_side != StableSide::Neither {
-        let vertices = curve.piece.vertices.iter();
-        let points: Vec<_> = vertices.map(|v| panel.at(v.p, v.tau)).collect();
+        let at = |v: &Vertex| match turned {
+            true => panel.at(v.q, v.p),
+            false => panel.at(v.p, v.q),
+        };
+        let points: Vec<_> = curve.piece.vertices.iter().map(at).collect();
         if curve.degree_of_stability > 0.0 {
             degrees.draw(curve.degree_of_stability, &points, INK, scene);
+        } else if let Some(dash) = kinds::dash(curve.piece.kind) {
+            scene.dashed(&points, INK, BOUNDARY_WIDTH * scene.unit(), dash);
         } else {
             scene.path(points, INK, BOUNDARY_WIDTH * scene.unit());
         }

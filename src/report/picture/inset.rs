@@ -15,7 +15,8 @@ const SQUARE: f64 = 10.0;
 const SMALL_REGION: f64 = 0.25;
 /// Room around the small regions, as a part of what they take.
 const ROOM: f64 = 0.06;
-/// So much larger has their area to become, and by no less than so much along either axis.
+/// An inset is drawn if it makes the area of the regions larger by the first factor, and neither
+/// axis shorter than by the second.
 const WORTH: f64 = 3.0;
 const LEAST: f64 = 1.0;
 /// Empty squares around an inset.
@@ -160,7 +161,7 @@ impl Squares {
         }
     }
 
-    /// The area of all regions that are small; none where there is none, or no other.
+    /// The area that frames all small regions; none where there are none, or where all are small.
     fn small_regions(&self) -> Option<Area> {
         let mut seen = vec![false; self.taken.len()];
         let mut all: Option<Area> = None;

@@ -97,7 +97,7 @@ impl Key {
     }
 }
 
-/// What of some planes is no value.
+/// Which kinds of missing values some planes have.
 pub(super) fn of_gaps(field: Field, planes: &[Known]) -> Vec<(Swatch, Rich)> {
     let there = |gap: &Gap| planes.iter().any(|plane| plane.gaps.contains(&Some(*gap)));
     let entry = |gap: Gap| (Swatch::Gap(gap), Rich::plain(gap.words(field)));

@@ -12,10 +12,10 @@ use super::options::PictureOptions;
 use super::page::{self, SMALL};
 use super::panels::{Panel, Panels, Words};
 use super::rectangles::{Rectangle, rectangles};
-use super::scale::Scale;
 use super::scene::{Align, Point, Scene};
+use super::speed;
 use super::stable_line;
-use super::text::{Rich, axis_title, field_name, field_title, number, suffix};
+use super::text::{Rich, field_name, field_title, number, suffix};
 use super::value_scale;
 use super::view::View;
 use crate::report::known::{Gap, Known};
@@ -65,7 +65,7 @@ pub(super) fn draw(
     let mut body = page::head(scene, &title, &notes);
     let axis = &map.axes()[view.x];
     let scales = (
-        Scale::around(&axis.values),
+        speed::scale(map, axis),
         value_scale::asked(field, &finite(&lines).collect::<Vec<_>>(), options)?,
     );
     let u = scene.unit();
@@ -84,7 +84,7 @@ pub(super) fn draw(
         false => Some(body.cut_right(legend.width(u), 30.0 * u)),
     };
     let words = Words {
-        x: axis_title(axis),
+        x: speed::title(map, axis),
         y: ordinate(map, fields),
         headings: vec![None],
         names: field.kinds().unwrap_or_default(),
@@ -306,7 +306,7 @@ fn legend(map: &MapFile, view: &View, lines: &[Graph]) -> Legend {
             parameter, unit, ..
         } = &map.axes()[axis];
         let unit = suffix(unit, " (", ")");
-        let heading = Rich::symbol(*parameter).and(&unit).and(" =");
+        let heading = Rich::symbol(parameter).and(&unit).and(" =");
         legend.heading.push(heading);
     }
     if lines.len() > 1 {
@@ -338,6 +338,7 @@ fn add_gaps(legend: &mut Legend, lines: &[Graph]) {
 mod tests {
     use super::*;
     use crate::report::picture::colour::PAPER;
+    use crate::report::picture::scale::Scale;
     use crate::report::picture::scene::Mark;
 
     /// A number that is not known is no point of a line.

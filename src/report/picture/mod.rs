@@ -14,8 +14,23 @@
 //!   them, and free places on curves
 //! - `trace`, `stack`: a motion over time, in panels above one another
 //! - `roots`: the characteristic roots of a point, and its line of delays
+//! - `speed`: delays that are periods, by their speed
 //! - `degrees`: dashed curves of degrees of stability; `symbols`: places with a meaning
 //! - `colour`, `gradient`, `text`, `font`: how things look
+//! - `boundaries`: the boundaries of stability in one plane, a colour for each value of the axis
+//!   outside it
+//! - `error`: why a picture could not be drawn
+//! - `heat`: heat maps of a field
+//! - `kinds`: boundaries that are no pair of roots on the axis
+//! - `line`: fields along the one axis that is left: one at several values of another axis, or
+//!   several together
+//! - `pdf`: from SVG to PDF; the only file that imports svg2pdf
+//! - `rectangles`: cells as few rectangles
+//! - `render`: from a scene to the bytes of a PNG or SVG file
+//! - `scene`: what is on a picture, in pixels from its upper left corner, apart from how it is
+//!   rendered
+//! - `told_apart`: tests: colours under three kinds of colour blindness
+//! - `view`: what of a map is shown
 
 mod areas;
 mod boundaries;
@@ -33,6 +48,7 @@ mod hatch;
 mod heat;
 mod inset;
 mod key;
+mod kinds;
 mod legend;
 mod line;
 mod off_scale;
@@ -46,6 +62,7 @@ mod render;
 mod roots;
 mod scale;
 mod scene;
+mod speed;
 mod stable_area;
 mod stable_line;
 mod stack;
@@ -187,10 +204,12 @@ fn compose(map: &MapFile, options: &PictureOptions, most: usize) -> Result<Scene
         false => Vec::new(),
     };
     let fits = view.along.is_some() && view.of <= MOST_PANELS && view.outer_axes(map) == 1;
-    let by_default = fits && choice.leaves_curves(map) && !curves.is_empty();
+    let by_default =
+        fits && !view.is_turned(map) && choice.leaves_curves(map) && !curves.is_empty();
     match options.kind {
-        Some(PictureKind::Boundaries) if !in_plane => {
+        Some(PictureKind::Boundaries) if !in_plane || view.is_turned(map) => {
             return Err(no_curves(match map.boundary_plane() {
+                _ if view.is_turned(map) => "over a speed they are drawn over the cells alone",
                 None => "its sweep traced none",
                 Some(_) => "they lie in another plane, of whose axes one is held",
             }));

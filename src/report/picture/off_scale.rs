@@ -33,7 +33,7 @@ impl Off {
         Self::Below,
     ];
 
-    /// The kind of a value; none where the panel has a place for it.
+    /// The kind of a value that is off the scale; none for one within it.
     fn of(value: f64, panel: &Panel) -> Option<Self> {
         match value {
             f64::INFINITY => Some(Self::Infinite),
@@ -89,8 +89,8 @@ impl Along<'_> {
 }
 
 /// Draws the bars of all lines, those of one edge above one another; gives what they mean. A value
-/// beyond the scale has one where its ends are `asked` for: by default all are within, but those
-/// that go on to 0 or to errors that nobody tells apart.
+/// beyond the scale has a bar where the ends of the scale are `asked` for. By default all values
+/// are within it, but those that fall to 0 and errors too large to matter.
 pub(super) fn draw(
     panel: &Panel,
     lines: &[Along],

@@ -4,7 +4,8 @@ use std::ops::RangeInclusive;
 
 use super::error::PictureError;
 use super::gradient::ColourMap;
-use crate::sweep::{Field, Parameter};
+use crate::sweep::Field;
+use crate::sweep::input::quantity::Quantity;
 
 /// Widths and heights that make a picture, in pixels.
 const SIZES: RangeInclusive<u32> = 300..=5000;
@@ -51,7 +52,7 @@ pub struct PictureOptions {
     pub kind: Option<PictureKind>,
     /// Values at which axes are held: the nearest on the axis. Several for one axis make as many
     /// panels or colours.
-    pub at: Vec<(Parameter, f64)>,
+    pub at: Vec<(Quantity, f64)>,
     /// Width and height in pixels, 300 to 5000 each.
     pub size: (u32, u32),
     /// The title; by default the sweep's in pictures of the field that it shows, else what the
@@ -105,7 +106,7 @@ impl PictureOptions {
         }
     }
 
-    /// Refuses what is about a scale of values, for pictures that have none.
+    /// Refuses options about a scale of values for pictures that have no such scale.
     pub(super) fn about_values(&self, why: &'static str) -> Result<(), PictureError> {
         let asked = [
             (self.range.is_some(), "--range"),

@@ -54,7 +54,7 @@ impl Paint {
     /// The colours of a field that has these values, as they are asked for.
     ///
     /// # Errors
-    /// When what is asked for does not go with the field or its values.
+    /// When an option does not fit the field or its values.
     pub(super) fn of(
         field: Field,
         values: &[f64],
@@ -307,7 +307,7 @@ fn no_scale(option: &'static str) -> PictureError {
     }
 }
 
-/// A logarithmic scale over all `values`, of which 0 may be one where it is told apart.
+/// A logarithmic scale over all `values`. They may include 0 if it has a colour of its own.
 ///
 /// # Errors
 /// When a value has no logarithm.

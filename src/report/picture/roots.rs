@@ -21,7 +21,7 @@ const DOT: f64 = 11.0;
 const RING: f64 = 23.0;
 const HOLE: f64 = 17.0;
 const WIDTH: f64 = 2.6;
-/// The line of the delay asked for, and that of the certificate.
+/// The width of the lines at the delay that is asked for and at the certificate.
 const MARK_WIDTH: f64 = 2.0;
 const DASH: (f64, f64) = (9.0, 7.0);
 /// How much of the colours of stable delays and of the unstable half-plane is left.
@@ -69,7 +69,7 @@ pub(super) fn draw(picture: &PointPicture, scene: &mut Scene) {
     legend.draw(scene, column);
 }
 
-/// The setting, and what is known of it.
+/// The setting, its roots and stable delays.
 fn notes(picture: &PointPicture) -> Vec<Rich> {
     let PointPicture { point, units, .. } = picture;
     let given = [
@@ -83,31 +83,33 @@ fn notes(picture: &PointPicture) -> Vec<Rich> {
         .map(|(parameter, value)| assignment(parameter, value, &units.of_parameter(parameter)))
         .collect();
     notes.push(Rich::plain(&verdict(point)));
-    if let Some(abscissa) = point.spectrum.abscissa {
+    if let Some(abscissa) = point.stability.spectrum.abscissa {
         let rate = suffix(&units.rate(), " ", "");
         notes.push(Rich::plain(&format!(
             "spectral abscissa {}{rate}",
             number(abscissa)
         )));
     }
-    if !point.spectrum.certified {
+    if !point.stability.spectrum.certified {
         notes.push(Rich::plain("the roots are not certified"));
     }
     notes
 }
 
 fn verdict(point: &Point) -> String {
-    match (point.marginal, point.stable) {
-        (true, _) => "sliding is marginal".into(),
-        (_, true) => "sliding is stable".into(),
-        _ => format!("sliding is unstable: {} roots", point.n_unstable),
+    let stability = &point.stability;
+    match (stability.marginal, stability.stable, stability.n_unstable) {
+        (true, ..) => "sliding is marginal".into(),
+        (_, true, _) => "sliding is stable".into(),
+        (.., Some(n)) => format!("sliding is unstable: {n} roots"),
+        (.., None) => stability.reason.unwrap_or("not known").into(),
     }
 }
 
 /// The complex plane.
 fn draw_plane(picture: &PointPicture, area: Area, scene: &mut Scene) {
     let (u, units) = (scene.unit(), picture.units);
-    let spectrum = &picture.point.spectrum;
+    let spectrum = &picture.point.stability.spectrum;
     let (x, y) = scales(&spectrum.roots);
     let unit = |unit: &str| suffix(unit, "  (", ")");
     let title = format!("Im λ{}", unit(&units.angular_frequency()));
@@ -219,8 +221,9 @@ fn draw_counts(picture: &PointPicture, area: Area, scene: &mut Scene) {
         [panel.at(from, n), panel.at(to, n)]
     });
     scene.path(stairs.collect(), colour::of_line(1, 3), WIDTH * u);
-    let here = panel.at(point.tau, point.n_unstable as f64);
-    scene.dot(here, INK, DOT * u);
+    if let Some(n) = point.stability.n_unstable {
+        scene.dot(panel.at(point.tau, n as f64), INK, DOT * u);
+    }
     stack.draw_axes(scene);
 }
 
@@ -232,7 +235,7 @@ fn legend(picture: &PointPicture) -> Legend {
     let PointPicture { point, along, .. } = picture;
     let mut entries = Vec::new();
     let mut entry = |swatch, text: &str| entries.push((swatch, Rich::plain(text)));
-    let roots = &point.spectrum.roots;
+    let roots = &point.stability.spectrum.roots;
     if let Some([re, im]) = roots.first() {
         let words = ["rightmost root", "rightmost roots"][both(*im).len() - 1];
         entry(Swatch::Ring(colour_of_root(*re), RING, HOLE, DOT), words);
@@ -242,7 +245,7 @@ fn legend(picture: &PointPicture) -> Legend {
         let text = format!("the next ones, {} in all", number_of(roots));
         entry(Swatch::Dot(last, DOT), &text);
     }
-    if point.spectrum.certified_line.is_some() {
+    if point.stability.spectrum.certified_line.is_some() {
         let line = Swatch::Dashed(SOFT_INK, 0.7 * MARK_WIDTH, DASH);
         entry(line, "no root is right of it, certified");
     }

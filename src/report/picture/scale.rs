@@ -1,16 +1,30 @@
 //! From the values of an axis to places along it.
 
 use super::ticks::{self, Tick};
+use crate::sweep::input::system::SpeedUnit;
 
 /// Ratios of neighbouring values on a logarithmic axis agree this well.
 const SAME_RATIO: f64 = 1e-6;
 /// A logarithmic scale over less than this factor shows nothing that a linear one does not.
 const SMALLEST_SPAN: f64 = 3.0;
+/// Where on a scale of speeds stands what is faster than all of them.
+const FASTER: f64 = 1.5;
 
-/// A linear or logarithmic scale between two values.
+/// How values lie between the ends.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Spread {
+    /// Equal steps.
+    Linear,
+    /// Equal ratios.
+    Logarithmic,
+    /// The values are periods, and equal steps are those of their speed.
+    Speed(SpeedUnit),
+}
+
+/// A scale between two values.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Scale {
-    log: bool,
+    spread: Spread,
     from: f64,
     to: f64,
     smallest_step: f64,
@@ -22,7 +36,10 @@ impl Scale {
     pub(super) fn between(values: &[f64]) -> Self {
         let (from, to) = ends(values);
         Self {
-            log: log_spaced(values),
+            spread: match log_spaced(values) {
+                true => Spread::Logarithmic,
+                false => Spread::Linear,
+            },
             from,
             to,
             smallest_step: 0.0,
@@ -37,10 +54,23 @@ impl Scale {
         Self { from, to, ..scale }
     }
 
+    /// The scale of the speeds that go with the periods `values`, the slowest to the left; none
+    /// where fewer than two of them are positive. A period of 0 has no place on it.
+    pub(super) fn of_speeds(values: &[f64], unit: SpeedUnit) -> Option<Self> {
+        let positive: Vec<f64> = values.iter().copied().filter(|v| *v > 0.0).collect();
+        let (from, to) = ends(&positive);
+        (positive.len() > 1 && from < to).then_some(Self {
+            spread: Spread::Speed(unit),
+            from,
+            to,
+            smallest_step: 0.0,
+        })
+    }
+
     /// A linear scale between two different values.
     pub(super) fn linear(from: f64, to: f64) -> Self {
         Self {
-            log: false,
+            spread: Spread::Linear,
             from,
             to,
             smallest_step: 0.0,
@@ -50,7 +80,7 @@ impl Scale {
     /// A logarithmic scale between two different positive values.
     pub(super) fn logarithmic(from: f64, to: f64) -> Self {
         Self {
-            log: true,
+            spread: Spread::Logarithmic,
             ..Self::linear(from, to)
         }
     }
@@ -68,7 +98,7 @@ impl Scale {
 
     /// True for a logarithmic scale.
     pub(super) fn is_logarithmic(&self) -> bool {
-        self.log
+        self.spread == Spread::Logarithmic
     }
 
     /// This scale with ticks at least this far apart.
@@ -81,19 +111,28 @@ impl Scale {
 
     /// Where a value lies: 0 at the lower end, 1 at the upper one.
     pub(super) fn part(&self, value: f64) -> f64 {
-        if self.log {
-            (value / self.from).ln() / (self.to / self.from).ln()
-        } else {
-            (value - self.from) / (self.to - self.from)
+        match self.spread {
+            Spread::Logarithmic => (value / self.from).ln() / (self.to / self.from).ln(),
+            Spread::Linear => (value - self.from) / (self.to - self.from),
+            Spread::Speed(unit) => {
+                let (slowest, fastest) = (unit.speed(self.to), unit.speed(self.from));
+                let speed = unit.speed(value.max(f64::MIN_POSITIVE));
+                // What is faster than all of the scale is just beyond it.
+                ((speed - slowest) / (fastest - slowest)).min(FASTER)
+            }
         }
     }
 
     /// The value at a part of the way.
     pub(super) fn value(&self, part: f64) -> f64 {
-        if self.log {
-            self.from * (self.to / self.from).powf(part)
-        } else {
-            self.from + (self.to - self.from) * part
+        match self.spread {
+            Spread::Logarithmic => self.from * (self.to / self.from).powf(part),
+            Spread::Linear => self.from + (self.to - self.from) * part,
+            Spread::Speed(unit) => {
+                let (slowest, fastest) = (unit.speed(self.to), unit.speed(self.from));
+                // The period of a speed is found as the speed of a period is.
+                unit.speed(slowest + (fastest - slowest) * part)
+            }
         }
     }
 
@@ -104,32 +143,37 @@ impl Scale {
 
     /// Ticks at round values, about `most` of them with a label.
     pub(super) fn ticks(&self, most: usize) -> Vec<Tick> {
-        if self.log && self.to < 0.0 {
-            let mirrored = ticks::logarithmic(-self.to, -self.from, most).into_iter();
-            mirrored.rev().map(Tick::mirrored).collect()
-        } else if self.log {
-            ticks::logarithmic(self.from, self.to, most)
-        } else {
-            ticks::linear(self.from, self.to, most, self.smallest_step)
+        match self.spread {
+            Spread::Logarithmic if self.to < 0.0 => {
+                let mirrored = ticks::logarithmic(-self.to, -self.from, most).into_iter();
+                mirrored.rev().map(Tick::mirrored).collect()
+            }
+            Spread::Logarithmic => ticks::logarithmic(self.from, self.to, most),
+            Spread::Linear => ticks::linear(self.from, self.to, most, self.smallest_step),
+            Spread::Speed(unit) => {
+                let (slowest, fastest) = (unit.speed(self.to), unit.speed(self.from));
+                let of_speed = ticks::linear(slowest, fastest, most, self.smallest_step);
+                let period = |tick: Tick| Tick {
+                    value: unit.speed(tick.value),
+                    ..tick
+                };
+                let moving = of_speed.into_iter().filter(|tick| tick.value > 0.0);
+                moving.map(period).collect()
+            }
         }
     }
 
     /// The edges of the cells of `values`, one more than there are: midpoints on the scale, and as
-    /// far beyond the ends.
+    /// far beyond the ends. Those of periods end within them.
     pub(super) fn edges(&self, values: &[f64]) -> Vec<f64> {
-        let middle = |a: f64, b: f64| {
-            if self.log {
-                (a * b).sqrt().copysign(a)
-            } else {
-                0.5 * (a + b)
-            }
+        let middle = |a: f64, b: f64| match self.spread {
+            Spread::Logarithmic => (a * b).sqrt().copysign(a),
+            Spread::Linear | Spread::Speed(_) => 0.5 * (a + b),
         };
-        let mirrored = |end: f64, edge: f64| {
-            if self.log {
-                end * end / edge
-            } else {
-                2.0 * end - edge
-            }
+        let mirrored = |end: f64, edge: f64| match self.spread {
+            Spread::Logarithmic => end * end / edge,
+            Spread::Linear => 2.0 * end - edge,
+            Spread::Speed(_) => end,
         };
         let inner: Vec<f64> = values.windows(2).map(|w| middle(w[0], w[1])).collect();
         let (Some(&first), Some(&last)) = (values.first(), values.last()) else {
@@ -201,7 +245,7 @@ mod tests {
         assert!((scale.value(2.0 / 3.0) - 1.0).abs() < 1e-12);
         assert!((scale.edges(&values)[1] - 0.1f64.powf(1.5)).abs() < 1e-12);
         for linear in [&[1.0, 2.0, 3.0][..], &[-4.0, -2.0, 1.0], &[1.0, 4.0]] {
-            assert!(!Scale::between(linear).log, "{linear:?}");
+            assert!(!Scale::between(linear).is_logarithmic(), "{linear:?}");
         }
     }
 
@@ -226,6 +270,25 @@ mod tests {
         assert_eq!(ends(&[1e-9, 0.0, 20.0]), Some((0.01, 26.0)));
         assert_eq!(ends(&[1.3, 10.0, f64::INFINITY]), Some((1.0, 13.0)));
         assert_eq!(scale(&[0.0, -1.0, f64::NAN]), None);
+    }
+
+    #[test]
+    fn periods_lie_by_their_speeds() {
+        let unit = SpeedUnit::RevolutionsPerMinute;
+        let scale = Scale::of_speeds(&[0.0, 0.01, 0.02, 0.04], unit).unwrap();
+        // 1500, 3000 and 6000 rpm.
+        for (period, part) in [(0.04, 0.0), (0.02, 1.0 / 3.0), (0.01, 1.0), (0.0, FASTER)] {
+            assert!((scale.part(period) - part).abs() < 1e-12, "{period}");
+        }
+        assert!((scale.value(1.0 / 3.0) - 0.02).abs() < 1e-12);
+        let ticks = scale.ticks(5);
+        let labels: Vec<_> = ticks.iter().filter_map(|t| t.label.as_deref()).collect();
+        assert_eq!(labels, ["2000", "3000", "4000", "5000", "6000"]);
+        assert!((ticks[1].value - 0.02).abs() < 1e-15);
+        let edges = scale.filling_edges(&[0.0, 0.01, 0.02, 0.04]);
+        assert_eq!(edges.first(), Some(&0.01));
+        assert_eq!(edges.last(), Some(&0.04));
+        assert_eq!(Scale::of_speeds(&[0.0, 1.0], unit), None);
     }
 
     #[test]

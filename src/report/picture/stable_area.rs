@@ -80,7 +80,8 @@ pub(super) fn intervals(
         match side {
             StableSide::Longer => start = start.or(Some(here)),
             StableSide::Shorter => intervals.extend(start.take().map(|from| (from, here))),
-            StableSide::Neither => {}
+            // Lines of one p are at none.
+            StableSide::Neither | StableSide::Below | StableSide::Above => {}
         }
     }
     intervals.extend(start.map(|from| (from, top)));
@@ -119,13 +120,14 @@ fn delay_at(vertices: &[Vertex], p: f64) -> Option<f64> {
     } else {
         (p - a.p) / (b.p - a.p)
     };
-    Some(a.tau + part * (b.tau - a.tau))
+    Some(a.q + part * (b.q - a.q))
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::linear::Direction;
+    use crate::linear::curves::CurveKind;
     use crate::report::picture::page::Area;
     use crate::report::picture::scale::Scale;
 
@@ -143,8 +145,9 @@ mod tests {
     }
 
     fn piece(side: StableSide, from: (f64, f64), to: (f64, f64)) -> CurvePiece {
-        let vertex = |(p, tau)| Vertex { p, tau, omega: 1.0 };
+        let vertex = |(p, q)| Vertex { p, q, omega: 1.0 };
         CurvePiece {
+            kind: CurveKind::Pair,
             branch: 0,
             direction: Direction::Right,
             stable_side: side,

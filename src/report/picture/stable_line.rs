@@ -142,8 +142,8 @@ pub(super) fn crossings(map: &MapFile, x: usize, index: &[usize]) -> Result<Vec<
 /// otherwise.
 fn crossed(piece: &CurvePiece, held_at: f64, along_delay: bool) -> impl Iterator<Item = f64> {
     let place = move |v: &Vertex| match along_delay {
-        true => (v.p, v.tau),
-        false => (v.tau, v.p),
+        true => (v.p, v.q),
+        false => (v.q, v.p),
     };
     piece.vertices.windows(2).filter_map(move |pair| {
         let ((a, from), (b, to)) = (place(&pair[0]), place(&pair[1]));

@@ -86,7 +86,7 @@ pub(super) fn of_view(map: &MapFile, view: &View, y: usize) -> Result<Vec<Placed
     Ok(view.panels.iter().map(of).collect())
 }
 
-/// What the symbols of some panels mean, each once.
+/// The meanings of the symbols in some panels, each once.
 pub(super) fn entries(panels: &[Placed]) -> Vec<(Swatch, Rich)> {
     let all = panels.iter().flatten();
     let mut there: Vec<Symbol> = Vec::new();
@@ -113,15 +113,15 @@ pub(super) fn draw(panel: &Panel, symbols: &[(Symbol, (f64, f64))], scene: &mut 
 
 /// The place of even sliding in a plane of starts.
 fn sliding_in(map: &MapFile, plane: (usize, usize), index: &[usize]) -> Option<(f64, f64)> {
-    let parameters = [plane.0, plane.1].map(|axis| map.axes()[axis].parameter);
+    let parameters = [plane.0, plane.1].map(|axis| map.axes()[axis].parameter.known());
     let swapped = match parameters {
-        [Parameter::A0, Parameter::XDot0] => false,
-        [Parameter::XDot0, Parameter::A0] => true,
+        [Some(Parameter::A0), Some(Parameter::XDot0)] => false,
+        [Some(Parameter::XDot0), Some(Parameter::A0)] => true,
         _ => return None,
     };
     let mut setting = map.sweep().ok()?.fixed;
     for (axis, &i) in map.axes().iter().zip(index) {
-        setting.set(axis.parameter, axis.values[i]);
+        setting.vary(&axis.parameter, axis.values[i]);
     }
     let (elongation, velocity) = sliding(&setting)?;
     Some(match swapped {

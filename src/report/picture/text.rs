@@ -2,8 +2,9 @@
 
 use super::font;
 use crate::store::map_file::MapAxis;
+use crate::sweep::Field;
+use crate::sweep::input::quantity::Quantity;
 use crate::sweep::input::source::{OfRoots, Source};
-use crate::sweep::{Field, Parameter};
 
 /// Subscripts relative to the text.
 const SUBSCRIPT_SIZE: f64 = 0.72;
@@ -24,7 +25,7 @@ impl Rich {
     }
 
     /// The symbol of a parameter.
-    pub(super) fn symbol(parameter: Parameter) -> Self {
+    pub(super) fn symbol(parameter: impl Into<Quantity>) -> Self {
         Self::default().and_symbol(parameter)
     }
 
@@ -52,9 +53,15 @@ impl Rich {
         self
     }
 
-    /// The text followed by the symbol of a parameter; a 0 at its end is a subscript.
-    pub(super) fn and_symbol(self, parameter: Parameter) -> Self {
+    /// The text followed by the symbol of a parameter; a 0 at its end is a subscript. A name of
+    /// several words is no formula.
+    pub(super) fn and_symbol(self, parameter: impl Into<Quantity>) -> Self {
+        let parameter = parameter.into();
         let symbol = parameter.symbol();
+        let mut behind = symbol.split('_').skip(1);
+        if symbol.is_ascii() && behind.any(|part| part.len() != 1) {
+            return self.and(symbol);
+        }
         match symbol.strip_suffix('0') {
             Some(base) => self.and_formula(&format!("{base}_0")),
             None => self.and_formula(symbol),
@@ -106,15 +113,20 @@ fn run_size(size: f64, lowered: bool) -> f64 {
 }
 
 /// "μ′ = −0.3 s m⁻¹".
-pub(super) fn assignment(parameter: Parameter, value: f64, unit: &str) -> Rich {
+pub(super) fn assignment(parameter: impl Into<Quantity>, value: f64, unit: &str) -> Rich {
     Rich::symbol(parameter).and(&format!(" = {}{}", number(value), suffix(unit, " ", "")))
 }
 
 /// "gain of velocity control α_v (s⁻¹)".
 pub(super) fn axis_title(axis: &MapAxis) -> Rich {
-    Rich::plain(axis.parameter.long_name())
-        .and("  ")
-        .and_symbol(axis.parameter)
+    let (long, symbol) = (axis.parameter.long_name(), axis.parameter.symbol());
+    // Of a system's own parameter there may be nothing to say but its name.
+    let named = match long == symbol {
+        true => Rich::default(),
+        false => Rich::plain(long).and("  "),
+    };
+    named
+        .and_symbol(&axis.parameter)
         .and(&suffix(&axis.unit, "  (", ")"))
 }
 
@@ -236,6 +248,7 @@ fn with_minus(text: &str) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::sweep::Parameter;
 
     #[test]
     fn numbers_are_short_and_have_a_minus_sign() {

@@ -23,7 +23,7 @@ const DASH: (f64, f64) = (9.0, 7.0);
 const SETTLED: (f64, f64) = (1.0, 5.0);
 /// Part of the width for the panels over time.
 const OVER_TIME: f64 = 0.655;
-/// Points of the phase portrait: after so many, from the end, what is older is covered by them.
+/// The most points of the phase portrait, counted from the end: older ones would be covered.
 const MOST_PORTRAIT: usize = 30_000;
 
 /// What a curve shows of a sample.

@@ -15,7 +15,7 @@ const BEYOND: f64 = 1.3;
 /// The scale of the finite values of a field, as it is asked for.
 ///
 /// # Errors
-/// When what is asked for does not go with the field or its values.
+/// When an option does not fit the field or its values.
 pub(super) fn asked(
     field: Field,
     values: &[f64],

@@ -1,11 +1,13 @@
 //! What of a map is shown: the axes of the plane, and the values along the others.
 
 use super::error::PictureError;
+use super::speed;
 use super::text::{Rich, assignment};
 use crate::store::MapFile;
 use crate::store::map_file::MapAxis;
 use crate::sweep::Parameter;
 use crate::sweep::input::axis::nearest;
+use crate::sweep::input::quantity::Quantity;
 use crate::sweep::input::units::Units;
 
 /// More panels, or more colours, than this are not told apart.
@@ -16,7 +18,7 @@ pub(super) const MOST_PANELS: usize = 12;
 pub(super) struct View {
     /// Axis from left to right.
     pub x: usize,
-    /// Axis from bottom to top; none where only one axis is left.
+    /// The axis from bottom to top; none in a picture along one axis.
     pub y: Option<usize>,
     /// The axis along which the panels differ; none for a single one.
     pub along: Option<usize>,
@@ -31,7 +33,7 @@ type Asked = Option<Vec<usize>>;
 
 impl View {
     /// The view of `map` at the values `at` (the nearest on their axes) of as many axes.
-    pub(super) fn new(map: &MapFile, at: &[(Parameter, f64)]) -> Result<Self, PictureError> {
+    pub(super) fn new(map: &MapFile, at: &[(Quantity, f64)]) -> Result<Self, PictureError> {
         let asked = asked(map, at)?;
         let free: Vec<usize> = (0..map.axes().len())
             .filter(|&a| asked[a].is_none() && map.axes()[a].values.len() > 1)
@@ -39,7 +41,14 @@ impl View {
         let (x, y) = match (map.boundary_plane(), free.as_slice()) {
             (_, []) => return Err(PictureError::NothingToDraw),
             (_, &[x]) => (x, None),
-            (Some((p, tau)), free) if free.contains(&p) && free.contains(&tau) => (p, Some(tau)),
+            (Some((p, q)), free) if free.contains(&p) && free.contains(&q) => {
+                match speed::is_shown(map, &map.axes()[q]) {
+                    true => (q, Some(p)),
+                    false => (p, Some(q)),
+                }
+            }
+            (_, &[.., a, b]) if speed::is_shown(map, &map.axes()[a]) => (a, Some(b)),
+            (_, &[.., a, b]) if speed::is_shown(map, &map.axes()[b]) => (b, Some(a)),
             (_, &[.., a, b]) if map.axes()[a].parameter == Parameter::Tau => (b, Some(a)),
             (_, &[.., a, b]) => (a, Some(b)),
         };
@@ -84,8 +93,16 @@ impl View {
 
     /// True if this is the plane of the map's crossing curves.
     pub(super) fn is_boundary_plane(&self, map: &MapFile) -> bool {
+        let upright = self
+            .y
+            .is_some_and(|y| map.boundary_plane() == Some((self.x, y)));
+        upright || self.is_turned(map)
+    }
+
+    /// True if this is the plane of the curves with their second parameter from left to right.
+    pub(super) fn is_turned(&self, map: &MapFile) -> bool {
         self.y
-            .is_some_and(|y| map.boundary_plane() == Some((self.x, y)))
+            .is_some_and(|y| map.boundary_plane() == Some((y, self.x)))
     }
 
     /// Number of axes outside the plane along which the map varies.
@@ -117,7 +134,7 @@ impl View {
             unit,
             values,
         } = &map.axes()[axis];
-        Some(assignment(*parameter, values[panel[axis]], unit))
+        Some(assignment(parameter, values[panel[axis]], unit))
     }
 
     /// What all panels have in common, and how many are left out.
@@ -125,21 +142,24 @@ impl View {
         let mut notes = Vec::new();
         if let Some(axis) = self.along.filter(|_| self.of > self.panels.len()) {
             let text = format!("{} of {} values of ", self.panels.len(), self.of);
-            notes.push(Rich::plain(&text).and_symbol(map.axes()[axis].parameter));
+            notes.push(Rich::plain(&text).and_symbol(&map.axes()[axis].parameter));
         }
         for (a, axis) in map.axes().iter().enumerate() {
             if a != self.x && Some(a) != self.y && Some(a) != self.along {
                 let value = self.panels.first().map_or(0, |panel| panel[a]);
-                notes.push(assignment(axis.parameter, axis.values[value], &axis.unit));
+                notes.push(assignment(&axis.parameter, axis.values[value], &axis.unit));
             }
         }
         let units = map.units();
         // Only what differs from the default, and the gains, since a gain of 0 means no such
         // control.
         for (parameter, value) in map.scalars() {
-            let gain = matches!(parameter, Parameter::AlphaV | Parameter::AlphaN);
+            let gain = matches!(
+                parameter,
+                Quantity::Known(Parameter::AlphaV | Parameter::AlphaN)
+            );
             if gain || parameter.default_value() != Some(value) {
-                notes.push(assignment(parameter, value, &units.of_parameter(parameter)));
+                notes.push(assignment(&parameter, value, &parameter.unit(&units)));
             }
         }
         if units == Units::default() {
@@ -149,9 +169,10 @@ impl View {
     }
 }
 
-fn asked(map: &MapFile, at: &[(Parameter, f64)]) -> Result<Vec<Asked>, PictureError> {
+fn asked(map: &MapFile, at: &[(Quantity, f64)]) -> Result<Vec<Asked>, PictureError> {
     let mut asked: Vec<Asked> = vec![None; map.axes().len()];
-    for &(parameter, value) in at {
+    for (parameter, value) in at {
+        let (parameter, value) = (parameter.clone(), *value);
         let found = map.axes().iter().position(|a| a.parameter == parameter);
         let Some(axis) = found else {
             let names: Vec<&str> = map.axes().iter().map(|a| a.parameter.name()).collect();
@@ -183,8 +204,8 @@ fn several(map: &MapFile, asked: &[Asked]) -> Result<Option<usize>, PictureError
     let first = axes.next();
     if let (Some(first), Some(second)) = (first, axes.next()) {
         return Err(PictureError::SeveralValues {
-            first: map.axes()[first].parameter,
-            second: map.axes()[second].parameter,
+            first: map.axes()[first].parameter.clone(),
+            second: map.axes()[second].parameter.clone(),
         });
     }
     Ok(first)

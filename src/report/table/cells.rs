@@ -58,7 +58,7 @@ pub(super) fn about(map: &MapFile) -> About {
 
 /// The column of an axis.
 pub(super) fn of_axis(axis: &MapAxis) -> Column {
-    Column::of_parameter(axis.parameter, &axis.unit)
+    Column::of_parameter(&axis.parameter, &axis.unit)
 }
 
 fn columns(map: &MapFile, fields: &[Field]) -> Vec<Column> {

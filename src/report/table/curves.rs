@@ -7,15 +7,14 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use super::cells::{about, of_axis};
 use super::{Column, Table, TableError};
 use crate::linear::Direction;
-use crate::linear::curves::StableSide;
-use crate::store::curve_rows::{DIRECTIONS, STABLE_SIDES};
+use crate::store::curve_rows::{CURVE_KINDS, DIRECTIONS, STABLE_SIDES};
 use crate::store::map_file::MapCurve;
 use crate::store::schema::DEGREE_OF_STABILITY;
 use crate::store::{MapAxis, MapFile};
 
 /// Writes the curves of a map, those of `held` axes outside their planes at these indices alone:
-/// the number of the curve, the axes outside its plane, its degree of stability, branch, direction
-/// and stable side, then the vertex. Returns the number of rows; none where the map holds no
+/// the number of the curve, the axes outside its plane, its degree of stability, branch, direction,
+/// stable side and kind, then the vertex. Returns the number of rows; none where the map holds no
 /// curves.
 ///
 /// # Errors
@@ -80,6 +79,7 @@ fn columns(map: &MapFile, outer: &[usize], plane: [&MapAxis; 2]) -> Vec<Column> 
             "",
             "side of the curve on which sliding is stable",
         ),
+        Column::of("kind", "", "what lies on the line along the curve"),
     ];
     let number = Column::of("curve", "", "number of the curve, in the order of the map");
     let outer = outer.iter().map(|&axis| of_axis(&map.axes()[axis]));
@@ -103,11 +103,8 @@ fn write_curve(
         Direction::Touch => 1,
         Direction::Right => 2,
     };
-    let side = match piece.stable_side {
-        StableSide::Shorter => 0,
-        StableSide::Neither => 1,
-        StableSide::Longer => 2,
-    };
+    let side = (piece.stable_side.sign() + 2) as usize;
+    let kind = usize::from(piece.kind.number().unsigned_abs());
     let word = |words: &'static str, place| words.split(' ').nth(place).unwrap_or("");
     for vertex in &piece.vertices {
         table.whole(number)?;
@@ -118,7 +115,8 @@ fn write_curve(
         table.whole(piece.branch)?;
         table.text(word(DIRECTIONS, direction))?;
         table.text(word(STABLE_SIDES, side))?;
-        for value in [vertex.p, vertex.tau, vertex.omega] {
+        table.text(word(CURVE_KINDS, kind))?;
+        for value in [vertex.p, vertex.q, vertex.omega] {
             table.number(value)?;
         }
         table.end_row()?;

@@ -1,8 +1,13 @@
 //! Tables as text (CSV): one row of names, then one row for each cell, vertex, sample or event.
 //!
-//! Numbers have as many digits as tell them from all others, infinities are `inf` and `-inf`, what
-//! there is not is empty, kinds are words. Comments, where they are asked for, are lines before the
-//! names that begin with `#`.
+//! Numbers have the fewest digits that read back as the same bits. Infinities are `inf` and `-inf`,
+//! a missing value is empty, kinds are words. Comments, where they are asked for, are lines that
+//! begin with `#`, before the names.
+//!
+//! - `cells`: the cells of a map as rows
+//! - `curves`: the crossing curves of a map as rows, one for each vertex
+//! - `motion`: a motion as rows
+//! - `starts`: starts of motions and what became of them, as rows
 
 mod cells;
 mod curves;
@@ -19,7 +24,7 @@ pub use starts::write_starts;
 
 use super::visible::visible_line;
 use crate::store::StoreError;
-use crate::sweep::Parameter;
+use crate::sweep::input::quantity::Quantity;
 use crate::sweep::input::units::Units;
 
 /// Why a table is not complete.
@@ -62,7 +67,7 @@ impl Column {
         }
     }
 
-    fn of_parameter(parameter: Parameter, unit: &str) -> Self {
+    fn of_parameter(parameter: &Quantity, unit: &str) -> Self {
         Self::of(parameter.name(), unit, parameter.long_name())
     }
 }
@@ -70,7 +75,7 @@ impl Column {
 /// What comments say besides the columns: texts, and values of parameters.
 struct About {
     texts: Vec<(&'static str, String)>,
-    fixed: Vec<(Parameter, f64)>,
+    fixed: Vec<(Quantity, f64)>,
     units: Units,
 }
 
@@ -78,7 +83,7 @@ impl About {
     /// The texts that there are: of a map and a trace alike.
     fn new(
         texts: impl IntoIterator<Item = (&'static str, Option<String>)>,
-        fixed: Vec<(Parameter, f64)>,
+        fixed: Vec<(Quantity, f64)>,
         units: Units,
     ) -> Self {
         let there = |(name, text): (&'static str, Option<String>)| {
@@ -162,7 +167,7 @@ fn write_comments(out: &mut impl Write, about: &About, columns: &[Column]) -> io
     for (parameter, value) in &about.fixed {
         let mut text = String::new();
         put_number(&mut text, *value);
-        let unit = in_brackets(&about.units.of_parameter(*parameter));
+        let unit = in_brackets(&parameter.unit(&about.units));
         writeln!(out, "# {} = {text}{unit}", parameter.name())?;
     }
     for column in columns {

@@ -79,6 +79,6 @@ fn about(spec: &CaseSpec) -> About {
         ("friction", setting.law().map(|law| law.name().to_owned())),
         ("start", assumed_start(disturbance)),
     ];
-    let fixed = fixed.map(|p| (p, setting.get(p))).collect();
+    let fixed = fixed.map(|p| (p.into(), setting.get(p))).collect();
     About::new(texts, fixed, spec.units.clone())
 }

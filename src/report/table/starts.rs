@@ -27,7 +27,7 @@ pub fn write_starts(
     let scrambling = Column::of("scrambling", "", "which of the independent sequences");
     let starts = of
         .iter()
-        .map(|p| Column::of_parameter(*p, &units.of_parameter(*p)));
+        .map(|p| Column::of_parameter(&(*p).into(), &units.of_parameter(*p)));
     let outcome = Column::of(Field::Outcome.name(), "", Field::Outcome.long_name());
     let columns: Vec<_> = [scrambling]
         .into_iter()

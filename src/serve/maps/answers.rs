@@ -1,4 +1,4 @@
-//! What is told of a map's cells and curves, by the process that reads it.
+//! Answers about a map's cells and curves, made by the process that reads it.
 
 use std::collections::BTreeMap;
 use std::sync::{Mutex, PoisonError};
@@ -16,7 +16,7 @@ use crate::sweep::Field;
 use crate::sweep::engine::{FEW_FILL, N_UNSTABLE_FILL, STATUS_FILL};
 use crate::sweep::input::field::Storage;
 
-/// A window is waited for so long; then what was read so far is told.
+/// How long an answer waits for a whole window; then it has what was read so far.
 const PATIENCE: Duration = Duration::from_millis(250);
 /// The most bytes of the values of a window: half as many reals.
 const MOST_BYTES: usize = MOST_PIXELS * MOST_PIXELS * 4;
@@ -131,7 +131,7 @@ fn encoded(
 ) -> Result<[Vec<u8>; 2], serde_json::Error> {
     let mut arrays = Arrays::default();
     let mut axis = |axis: usize, shown: &Shown| WindowAxis {
-        name: facts.axes[axis].parameter.name(),
+        name: facts.axes[axis].parameter.name().to_owned(),
         index: arrays.push(shown.index.iter().copied()),
         values: arrays.push(shown.values.iter().copied()),
     };
@@ -167,7 +167,7 @@ fn at(facts: &Facts, index: &[usize], spanned: &[Option<usize>]) -> Vec<WindowAt
     let axes = facts.axes.iter().zip(index).enumerate();
     axes.filter(|(axis, _)| !spanned.contains(&Some(*axis)))
         .map(|(_, (axis, &index))| WindowAt {
-            name: axis.parameter.name(),
+            name: axis.parameter.name().to_owned(),
             index,
             value: axis.values[index],
         })
@@ -245,7 +245,7 @@ pub(super) fn cell(look: &Look, query: &CellQuery) -> Result<MapCell, Refused> {
     let texts = texts.unwrap_or_default();
     Ok(MapCell {
         axes: axes
-            .map(|(axis, &i)| (axis.parameter.name(), axis.values[i]))
+            .map(|(axis, &i)| (axis.parameter.name().to_owned(), axis.values[i]))
             .collect(),
         fields,
         kinds,

@@ -46,7 +46,7 @@ pub(super) struct WindowHead {
 #[derive(Serialize, ToSchema)]
 pub(super) struct WindowAxis {
     /// The axis.
-    pub name: &'static str,
+    pub name: String,
     /// The index of the cell that each pixel shows.
     pub index: Array,
     /// Its value.
@@ -57,7 +57,7 @@ pub(super) struct WindowAxis {
 #[derive(Serialize, ToSchema)]
 pub(super) struct WindowAt {
     /// The axis.
-    pub name: &'static str,
+    pub name: String,
     /// The index.
     pub index: usize,
     /// Its value.
@@ -196,7 +196,7 @@ pub(super) struct MapTold {
     pub flags: Vec<MapFlag>,
     /// The axes of the plane of its curves.
     #[schema(required)]
-    pub curves_plane: Option<[&'static str; 2]>,
+    pub curves_plane: Option<[String; 2]>,
     /// How critical velocities were looked for.
     #[schema(required)]
     pub protocol: Option<&'static str>,
@@ -221,11 +221,11 @@ pub(super) struct MapField {
 #[derive(Serialize, ToSchema)]
 pub(super) struct MapScalar {
     /// Its name.
-    pub name: &'static str,
+    pub name: String,
     /// The symbol.
-    pub symbol: &'static str,
+    pub symbol: String,
     /// What it is.
-    pub long_name: &'static str,
+    pub long_name: String,
     /// The unit; "1" where there is none.
     pub unit: String,
     /// Its value.
@@ -245,7 +245,7 @@ pub(super) struct MapFlag {
 #[derive(Serialize, ToSchema)]
 pub(super) struct MapCell {
     /// Its value along each axis.
-    pub axes: BTreeMap<&'static str, f64>,
+    pub axes: BTreeMap<String, f64>,
     /// Its value of each field: a number, `inf`, `-inf`, or null where there is none.
     pub fields: BTreeMap<&'static str, CellValue>,
     /// The names of its kinds, of fields that have such.

@@ -8,8 +8,9 @@ use crate::store::MapFile;
 use crate::store::map_file::MapAxis;
 use crate::store::schema::root;
 use crate::store::tiles::GrowingMap;
+use crate::sweep::Field;
+use crate::sweep::input::quantity::Quantity;
 use crate::sweep::input::search::LIMIT;
-use crate::sweep::{Field, Parameter};
 
 /// The most values of an axis that are listed.
 const MOST_VALUES: usize = 4096;
@@ -89,7 +90,8 @@ pub(super) fn description(look: &Look) -> MapTold {
         fields: facts.fields.iter().map(field).collect(),
         scalars: scalars(look),
         flags: FLAGS.map(|(mask, name)| MapFlag { mask, name }).into(),
-        curves_plane: plane.map(|(p, tau)| [p, tau].map(|axis| facts.axes[axis].parameter.name())),
+        curves_plane: plane
+            .map(|(p, tau)| [p, tau].map(|axis| facts.axes[axis].parameter.name().to_owned())),
         protocol,
         program_version: look.told(
             |map| map.root_text(root::PROGRAM_VERSION),
@@ -110,20 +112,13 @@ pub(super) fn sweep(look: &Look) -> String {
 /// The parameters that are no axes.
 fn scalars(look: &Look) -> Vec<MapScalar> {
     let facts = look.facts();
-    let found: Vec<(Parameter, f64)> = look.told(MapFile::scalars, |growing| {
-        let spec = &growing.plan().spec;
-        let on_axis = |p: Parameter| spec.axes.iter().any(|axis| axis.parameter == p);
-        let held = Parameter::ALL.into_iter();
-        let held = held.filter(|&p| spec.uses(p) && !on_axis(p));
-        held.map(|p| (p, spec.fixed.get(p))).collect()
-    });
+    let found = look.told(MapFile::scalars, |growing| growing.plan().spec.scalars());
     let units = facts.plan.as_ref().map(|plan| &plan.spec.units);
-    let unit = |p: Parameter| units.map_or("1".into(), |units| units.of_parameter(p));
-    let told = |(p, value): (Parameter, f64)| MapScalar {
-        name: p.name(),
-        symbol: p.symbol(),
-        long_name: p.long_name(),
-        unit: unit(p),
+    let told = |(of, value): (Quantity, f64)| MapScalar {
+        name: of.name().to_owned(),
+        symbol: of.symbol().to_owned(),
+        long_name: of.long_name().to_owned(),
+        unit: units.map_or("1".into(), |units| of.unit(units)),
         value,
     };
     found.into_iter().map(told).collect()

@@ -138,7 +138,7 @@ pub(super) struct Refused {
 }
 
 impl Refused {
-    /// The request asks for what there is not.
+    /// The map does not hold what is asked for.
     pub(super) fn asked(detail: impl Into<String>) -> Self {
         let status = 422;
         let detail = detail.into();
@@ -186,7 +186,7 @@ pub(super) struct Frame {
 }
 
 impl Frame {
-    /// Writes an answer, of which the bytes may go on with `more`.
+    /// Writes an answer; its bytes may go on with `more`.
     ///
     /// # Errors
     /// When it cannot be written.

@@ -13,9 +13,9 @@ use super::process::{Held, Place, Reader, ReaderCommand, Trouble};
 use super::readers::refused;
 use super::scan::{Found, Mark, Scanned, scan};
 
-/// Names are looked at again after so long.
+/// How long a scan of the folder stays valid.
 const BETWEEN_SCANS: Duration = Duration::from_secs(1);
-/// A list waits so long for what is not known yet.
+/// How long a list waits for maps that are not known yet.
 const PATIENCE: Duration = Duration::from_millis(1500);
 /// After how many tries the time between them grows no more.
 const MOST_DOUBLED: u32 = 5;
@@ -148,7 +148,7 @@ impl List {
         self.told()
     }
 
-    /// Has processes tell what is not known, or has changed; how many that are.
+    /// Asks processes about maps that are new or have changed, and says how many these are.
     fn ask_unknown(self: &Arc<Self>) -> usize {
         let mut known = self.known();
         let Known {

@@ -7,6 +7,19 @@
 //! ```
 //!
 //! This process opens no map: a damaged one can end who reads it.
+//!
+//! - `answers`: windows, curves and cells as answers
+//! - `child`: its own side
+//! - `described`: what is answered about maps, described where it is defined
+//! - `description`: what a map tells of itself besides its cells
+//! - `frames`: what passes between both
+//! - `list`: what is known of each, told by a process of its own
+//! - `places`: which processes there are at a time
+//! - `process`: the server's side of such a process
+//! - `readers`: what is asked of maps
+//! - `routes`: what is answered about maps at which address
+//! - `scan`: what may be a map below a folder, by names alone
+//! - `test_reader`: a process for tests that can be held
 
 mod answers;
 mod child;

@@ -65,8 +65,8 @@ impl Readers {
         Some(reader)
     }
 
-    /// Gives up a process for another map: one that nobody asks now, or else, where there are as
-    /// many as may be, the one that was asked longest ago, which ends once it has answered.
+    /// Ends a process to make room for another map: an idle one, or else, where the limit is
+    /// reached, the one that was asked longest ago, once it has answered.
     fn make_room(&mut self, taken: bool) {
         let full = self.there.len() + self.starting.len() >= MOST_READERS;
         let idle = |(_, reader): &(PathBuf, Arc<Reader>)| Arc::strong_count(reader) == 1;
@@ -134,7 +134,7 @@ impl Places {
         Some(place)
     }
 
-    /// Starts a process, and has it among those that are there, also where nobody waits any more.
+    /// Starts a process and keeps it, even if whoever asked for it has gone meanwhile.
     async fn start(self: &Arc<Self>, path: &Path, place: Place) -> Result<Arc<Reader>, Trouble> {
         let (places, path) = (Arc::clone(self), path.to_owned());
         let starting = tokio::task::spawn_blocking(move || {

@@ -94,7 +94,7 @@ struct Waiting {
 /// A process, until somebody waits for its end.
 type Running = Arc<Mutex<Option<Child>>>;
 
-/// A process that reads a map; it is told to end with this.
+/// A process that reads a map. It ends when this is dropped.
 #[derive(Debug)]
 pub(super) struct Reader {
     child: Running,

@@ -14,7 +14,7 @@ use crate::sweep::plan::in_hexadecimal;
 
 /// Folders within folders that are searched.
 const DEEPEST: usize = 8;
-/// Names that are looked at.
+/// The most names that a scan reads.
 const MOST_NAMES: usize = 50_000;
 /// Maps that are listed.
 const MOST_MAPS: usize = 2000;
@@ -25,7 +25,7 @@ const TILES: &str = ".tiles";
 /// Digits of an id.
 const DIGITS: usize = 16;
 
-/// What is there of a map, by which it is seen that something has changed.
+/// The files of a map and their states: they differ where anything has changed.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub(super) struct Mark {
     file: Option<Stamp>,
@@ -60,7 +60,7 @@ impl Found {
         tiles.max(self.mark.file.and_then(|stamp| stamp.modified))
     }
 
-    /// The state of a map that can be read, of which all cells are there or not.
+    /// The state of a map that can be read: complete or not.
     pub(super) fn state(&self, complete: bool) -> &'static str {
         match (self.mark.file, self.running) {
             // Also where another one is being computed.
@@ -187,7 +187,7 @@ fn id_of(relative: &Path) -> String {
     id
 }
 
-/// What the system tells of a map; none where it is gone again.
+/// The files of a map as the system sees them; none where they are gone again.
 fn look(root: &Path, path: PathBuf, odd: Option<&'static str>) -> Option<Found> {
     let relative = path.strip_prefix(root).ok()?;
     let folders = shards::present(&path).unwrap_or_default();

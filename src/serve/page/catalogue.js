@@ -21,6 +21,11 @@ export const RANGES = {
   alpha_v: [-3, 3],
   alpha_n: [-10, 10],
   tau: [0, 25],
+  memory: [-0.95, 0.95],
+  latency: [0, 5],
+  load_lag: [0, 2],
+  velocity_lag: [0, 2],
+  sensor_lag: [0, 2],
   mass: [0.1, 10],
   stiffness: [0.1, 10],
   normal_load: [0.1, 10],
@@ -36,6 +41,11 @@ const AXES = {
   alpha_v: [-1.6, 0.4],
   alpha_n: [-3, 1],
   tau: [0, 12],
+  memory: [-0.9, 0.9],
+  latency: [0, 2],
+  load_lag: [0, 1],
+  velocity_lag: [0, 1],
+  sensor_lag: [0, 1],
   mass: [0.2, 5],
   stiffness: [0.2, 5],
   normal_load: [0.2, 5],
@@ -68,6 +78,8 @@ export function withoutZero([from, to]) {
 export class Catalogue {
   /** @param {{parameters: object[], laws: object[], fields: object[]}} told as slipmap answers */
   constructor({ parameters, laws, fields }) {
+    // The page follows motions under every law that it offers.
+    laws = laws.filter((law) => law.motions);
     Object.assign(this, { parameters, laws, fields });
     this.byName = new Map(parameters.map((parameter) => [parameter.name, parameter]));
   }

@@ -4,7 +4,7 @@ import { RANGES, SHOWN, UNITS, withoutZero } from "./catalogue.js";
 import { element, make } from "./dom.js";
 import { drawLaw } from "./plots.js";
 import { told, unitOf, withUnit } from "./scale.js";
-import { MODEL, highestOf, parametersOf, pointTexts } from "./sweep.js";
+import { FEEDBACK, MODEL, highestOf, parametersOf, pointTexts } from "./sweep.js";
 
 const STEPS = 1000;
 
@@ -90,10 +90,16 @@ export class Controls {
     const names = parametersOf(state, this.catalogue);
     const free = names.filter((name) => name !== state.x.name && name !== state.y.name);
     const sliders = (list) => list.map((name) => this.#slider(name));
-    const first = free.filter((name) => !MODEL.includes(name) && name !== "mu_k");
+    const others = [...FEEDBACK, ...MODEL, "mu_k"];
+    const first = free.filter((name) => !others.includes(name));
     element("sliders").replaceChildren(...sliders(first));
-    const others = free.filter((name) => MODEL.includes(name) || name === "mu_k");
-    element("model-sliders").replaceChildren(...sliders(others));
+    for (const [id, list] of [
+      ["feedback-sliders", FEEDBACK],
+      ["model-sliders", [...MODEL, "mu_k"]],
+    ]) {
+      const these = free.filter((name) => list.includes(name));
+      element(id).replaceChildren(...sliders(these));
+    }
     const legend = element("axes").querySelector("legend");
     const axes = [
       ["Across", "x", "y"],

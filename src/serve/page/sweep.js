@@ -5,6 +5,9 @@ import { GAINS } from "./catalogue.js";
 /** Parameters of the block, its spring and its load. */
 export const MODEL = ["mass", "stiffness", "normal_load"];
 
+/** Parameters of the feedback beyond the letter's. */
+export const FEEDBACK = ["memory", "latency", "load_lag", "velocity_lag", "sensor_lag"];
+
 /** The parameters on which what is shown depends, in the order in which they are set. */
 export function parametersOf(state, catalogue) {
   // Of three that say the same, the page sets two.
@@ -12,7 +15,7 @@ export function parametersOf(state, catalogue) {
     (name) => name !== "mu_prime_rest",
   );
   const sliding = state.law === "none" ? ["mu_prime", "mu_k"] : ["v0", ...described, "mu_s"];
-  return [...sliding, ...GAINS[state.control], "tau", ...MODEL];
+  return [...sliding, ...GAINS[state.control], "tau", ...FEEDBACK, ...MODEL];
 }
 
 const ofLaw = (name) => ["mu0", "v_s", "mu_s"].includes(name);
@@ -96,7 +99,7 @@ function tablesOf(state, catalogue, names) {
 function fixedOf(state, catalogue, names) {
   const value = (name) => catalogue.value(state, name);
   const usual = (name) =>
-    [...MODEL, "mu_k"].includes(name) && value(name) === catalogue.about(name).default;
+    [...FEEDBACK, ...MODEL, "mu_k"].includes(name) && value(name) === catalogue.about(name).default;
   const kept = names.filter((name) => !ofLaw(name) && !usual(name));
   return kept.map((name) => line(name, value(name))).join("");
 }

@@ -1,7 +1,8 @@
 //! One step after the other.
 
+use super::feedback::{DelayLimit, PastLimits};
 use super::{Event, Integrator, LEAST_ORDER, Mode, Motion};
-use crate::slip::history::SMOOTH;
+use crate::slip::history::{History, SMOOTH};
 use crate::slip::series::value;
 
 /// The part of what a polynomial looks ahead that steps take where they outlast the delay: they
@@ -18,15 +19,10 @@ const MOST_SHORTER: u32 = 12;
 #[derive(Debug, Clone, Copy)]
 struct Now {
     controlled: bool,
+    /// The feedback has memory or latency.
+    beyond_letter: bool,
     /// It is stuck, and its elongation has grown evenly for a delay.
     evenly: bool,
-}
-
-/// How long a step may be for the delayed elongation, and the order of the kink there.
-#[derive(Debug, Clone, Copy)]
-struct DelayLimit {
-    length: f64,
-    kink: u32,
 }
 
 impl Motion {
@@ -40,16 +36,18 @@ impl Motion {
         let controlled = self.t >= self.parameters.switch_on;
         let now = Now {
             controlled,
+            beyond_letter: self.parameters.beyond_letter(),
             evenly: self.sticks_evenly(),
         };
-        let delay = self.read_delayed(now);
+        let past = self.read_delayed(now);
+        let delay = past.first();
         let limit = self.limit(now, &delay, horizon);
         let radius = self.expand_within(now, limit);
         if self.step.n[0] <= 0.0 {
             self.step.length = 0.0;
             return Some(Event::LiftOff);
         }
-        let length = self.length(radius, limit, &delay, controlled);
+        let length = self.length(radius, limit, &delay, now);
         let found = self.first_event(length);
         let mut length = found.map_or(length, |(s, _)| s);
         let mut event = found.map(|(_, event)| event);
@@ -63,16 +61,21 @@ impl Motion {
         if self.mode == Mode::Stick {
             self.note_evenness();
         }
-        self.kink = SMOOTH;
-        if let Some(crossing) = crossing {
-            self.kink = crossing.kink;
-        } else if event.is_some() {
-            self.kink = 2;
-        } else if !controlled && length == until_switch {
+        let switches = event.is_none() && crossing.is_none() && !controlled;
+        let switches = switches && length == until_switch;
+        if switches {
             self.t = self.parameters.switch_on;
-            self.kink = if self.parameters.alpha_v == 0.0 { 2 } else { 1 };
-            return Some(Event::SwitchOn);
-        } else if length == delay.length && delay.kink != SMOOTH {
+            event = Some(Event::SwitchOn);
+        }
+        self.kink = match (&crossing, event) {
+            (Some(crossing), _) => crossing.kink,
+            (None, Some(Event::SwitchOn)) if self.parameters.alpha_v != 0.0 => 1,
+            (None, Some(_)) => 2,
+            (None, None) => SMOOTH,
+        };
+        if now.beyond_letter {
+            self.note_kinks(self.kink, &past, controlled);
+        } else if self.kink == SMOOTH && length == delay.length && delay.kink != SMOOTH {
             self.kink = self.passed_on(delay.kink);
         }
         event.map(|event| self.change_mode(event))
@@ -88,8 +91,11 @@ impl Motion {
 
     /// The longest step that delay, switch-on and `horizon` allow.
     fn limit(&self, now: Now, delay: &DelayLimit, horizon: f64) -> f64 {
-        let limit = delay.length.min(horizon - self.t);
+        let mut limit = delay.length.min(horizon - self.t);
         let p = &self.parameters;
+        if now.beyond_letter && !(now.controlled && now.evenly) {
+            limit = limit.min(self.unforeseen(now.controlled));
+        }
         if !now.controlled {
             limit.min(p.switch_on - self.t)
         } else if self.mode == Mode::Stick && p.alpha_v != 0.0 && !now.evenly {
@@ -103,7 +109,9 @@ impl Motion {
 
     /// Works out the polynomials of a step; how long they hold.
     fn expand_within(&mut self, now: Now, limit: f64) -> f64 {
-        let Now { controlled, evenly } = now;
+        let Now {
+            controlled, evenly, ..
+        } = now;
         match (self.even_rate(), self.integrator) {
             (Some(rate), _) if controlled && evenly => self.stick_evenly(rate),
             (_, Integrator::Taylor) => {
@@ -116,10 +124,15 @@ impl Motion {
     }
 
     /// How long a step of polynomials that hold for `radius` is, if no event ends it.
-    fn length(&self, radius: f64, limit: f64, delay: &DelayLimit, controlled: bool) -> f64 {
-        let foreseen = controlled && self.integrator == Integrator::Taylor;
+    fn length(&self, radius: f64, limit: f64, delay: &DelayLimit, now: Now) -> f64 {
+        let reads = now.controlled || now.beyond_letter;
+        let foreseen = reads && self.integrator == Integrator::Taylor;
         let balanced = BALANCED * self.history.ahead() * radius;
-        let free = match foreseen && self.parameters.tau < balanced {
+        let shortest = match self.step.is_late {
+            true => self.parameters.tau.min(self.parameters.latency),
+            false => self.parameters.tau,
+        };
+        let free = match foreseen && shortest < balanced {
             // The next step, one delay behind, uses the polynomial of this one beyond its end.
             true => balanced,
             false => radius,
@@ -137,28 +150,34 @@ impl Motion {
     }
 
     /// Fills the delayed polynomial. Tells how long a step may be for it, and the kink there.
-    fn read_delayed(&mut self, now: Now) -> DelayLimit {
+    fn read_delayed(&mut self, now: Now) -> PastLimits {
         // Also before control acts, so that memory does not grow with time.
         self.history
             .forget_before(self.t - 2.0 * self.parameters.tau);
-        if !now.controlled {
-            return DelayLimit {
-                length: f64::INFINITY,
-                kink: SMOOTH,
-            };
+        self.signal
+            .forget_before(self.t - 2.0 * self.parameters.latency);
+        let of_delay = |delay: DelayLimit| PastLimits {
+            delay,
+            latency: DelayLimit::NONE,
+        };
+        if !now.controlled && !now.beyond_letter {
+            return of_delay(DelayLimit::NONE);
         }
-        if now.evenly {
-            return DelayLimit {
+        if now.evenly && now.controlled {
+            return of_delay(DelayLimit {
                 length: self.longest_stick(),
                 kink: SMOOTH,
-            };
+            });
+        }
+        if now.beyond_letter {
+            return self.read_past(now.controlled);
         }
         let time = self.t - self.parameters.tau;
         let reach = self.history.read(time, self.kink, &mut self.step.delayed);
-        DelayLimit {
+        of_delay(DelayLimit {
             length: reach.until - time,
             kink: reach.kink,
-        }
+        })
     }
 
     /// `length`, or less of it where it outlasts the delay: the polynomial of the last step stood
@@ -168,14 +187,27 @@ impl Motion {
     /// step to step where a polynomial is used far beyond its end, as those of a stick do, which
     /// has no terms of its own to hold against them.
     fn as_foreseen(&self, length: f64) -> f64 {
-        let mut beyond = length - self.parameters.tau;
+        let p = &self.parameters;
+        // With memory no step outlasts the delay, so that what is kept is a.
+        let a = &self.step.a[..=self.step.order];
+        let length = self.as_told(a, &self.history, p.tau, length);
+        if !(self.step.is_late && length > p.latency) {
+            return length;
+        }
+        let (v, order) = self.signal_of_step();
+        self.as_told(&v[..=order], &self.signal, p.latency, length)
+    }
+
+    /// `length`, or less of it where it outlasts this `delay` and what the last polynomial of the
+    /// `history` told is not what comes, the polynomial `c`.
+    fn as_told(&self, c: &[f64], history: &History, delay: f64, length: f64) -> f64 {
+        let mut beyond = length - delay;
         if beyond <= 0.0 {
             return length;
         }
-        let a = &self.step.a[..=self.step.order];
-        let stretch = a[0].abs().max(self.parameters.law.mu_s());
+        let stretch = self.step.a[0].abs().max(self.parameters.law.mu_s());
         let holds = |s: f64| {
-            let off = value(a, s) - self.history.foreseen(self.t + s);
+            let off = value(c, s) - history.foreseen(self.t + s);
             // What is not a number ends the motion elsewhere, not here.
             off.is_nan() || off.abs() <= FORESEEN * self.tolerance * stretch
         };
@@ -185,14 +217,14 @@ impl Motion {
         for _ in 0..MOST_SHORTER {
             beyond *= SHORTER;
             if holds(beyond) {
-                return beyond + self.parameters.tau;
+                return beyond + delay;
             }
         }
-        self.parameters.tau
+        delay
     }
 
     /// The order of a kink of the delayed elongation after it has passed into the motion.
-    fn passed_on(&self, kink: u32) -> u32 {
+    pub(super) fn passed_on(&self, kink: u32) -> u32 {
         let smoother = match (self.mode, self.parameters.alpha_v != 0.0) {
             (_, true) => 1,
             // A stuck block feels the load only when it is released.
@@ -209,16 +241,20 @@ impl Motion {
         self.u = value(u, length);
         self.a = value(a, length);
         self.t += length;
+        self.step.length = length;
+        self.step.radius = radius;
         let around = match self.integrator {
             Integrator::Taylor => radius.max(length),
             // Nothing holds a polynomial by its values outside of its step.
             Integrator::Collocation => 0.0,
         };
-        if !self.history.push(self.t, around, a, self.kink) {
+        let has_room = match self.parameters.beyond_letter() {
+            true => self.keep(around),
+            false => self.history.push(self.t, around, a, self.kink),
+        };
+        if !has_room {
             (self.u, self.a) = (f64::NAN, f64::NAN);
         }
-        self.step.length = length;
-        self.step.radius = radius;
     }
 
     /// The mode after `event`, which may turn out to be another one.

@@ -21,10 +21,12 @@ impl Motion {
     /// delayed polynomial is there.
     pub(super) fn collocate(&mut self, controlled: bool, limit: f64) -> f64 {
         let control = self.control(controlled);
-        let load = 1.0 + control.alpha_n * (self.a - self.step.delayed[0]);
+        let load = 1.0 + control.alpha_n * self.step.fed_back_at_start(self.a);
         let mut length = self.step_of_scale(control, load).min(limit);
+        let reads = self.parameters.beyond_letter();
         for _ in 0..MOST_TIMES {
-            if self.solve_step(control, length) {
+            let fits = !reads || self.fit_past(length, controlled);
+            if self.solve_step(control, length) && fits {
                 break;
             }
             length *= SHORTER;
@@ -54,9 +56,9 @@ impl Motion {
             Mode::Forwards => 1.0,
             Mode::Backwards => -1.0,
         };
-        let order = self.order;
-        let rates = |u: f64, a: f64, delayed: f64| {
-            let difference = a - delayed;
+        let (order, late) = (self.order, self.step.is_late);
+        let rates = |u: f64, a: f64, past: f64| {
+            let difference = if late { past } else { a - past };
             let pull = control.v0 + control.alpha_v * difference;
             let load = 1.0 + control.alpha_n * difference;
             if direction == 0.0 {
@@ -66,8 +68,12 @@ impl Motion {
                 (a - direction * friction, pull - u)
             }
         };
-        let delayed = &self.step.delayed[..=order];
-        let Some(solved) = solve((self.u, self.a), length, delayed, rates) else {
+        let past = match late {
+            true => &self.step.late,
+            false => &self.step.delayed,
+        };
+        let past = (&past[..=order], self.parameters.beyond_letter());
+        let Some(solved) = solve((self.u, self.a), length, past, rates) else {
             return false;
         };
         let size = self.a.abs().max(self.u.abs()).max(self.parameters.v0);
@@ -75,6 +81,9 @@ impl Motion {
         (step.order, step.u, step.a) = (order, solved.u, solved.a);
         for (n, (a, delayed)) in step.n.iter_mut().zip(step.a.iter().zip(&step.delayed)) {
             *n = control.alpha_n * (a - delayed);
+        }
+        if late {
+            step.n = step.late.map(|late| control.alpha_n * late);
         }
         step.n[0] += 1.0;
         solved.rest <= self.tolerance * size

@@ -41,10 +41,43 @@ pub struct Parameters {
     pub alpha_n: f64,
     /// τ √(κ/M), greater than 0 where control acts.
     pub tau: f64,
+    /// R, the memory of the feedback, −1 < R < 1; left aside without gains.
+    pub memory: f64,
+    /// δ √(κ/M) ≥ 0, the latency of the feedback; left aside without gains.
+    pub latency: f64,
     /// v0 √(κM)/N0.
     pub v0: f64,
     /// When control begins to act.
     pub switch_on: f64,
+}
+
+impl Parameters {
+    /// Whether any gain acts.
+    #[must_use]
+    pub fn controlled(&self) -> bool {
+        self.alpha_v != 0.0 || self.alpha_n != 0.0
+    }
+
+    /// Whether the feedback has memory or latency: more than the letter's own.
+    #[must_use]
+    pub fn beyond_letter(&self) -> bool {
+        self.controlled() && (self.memory != 0.0 || self.latency != 0.0)
+    }
+
+    /// How long what happens acts on, as the feedback remembers it: τ/(1 − |R|) + δ, one delay
+    /// where there is neither memory nor latency.
+    #[must_use]
+    pub fn remembered(&self) -> f64 {
+        match self.beyond_letter() {
+            true => remembered(self.tau, self.memory, self.latency),
+            false => self.tau,
+        }
+    }
+}
+
+/// τ/(1 − |R|) + δ.
+pub(crate) fn remembered(tau: f64, memory: f64, latency: f64) -> f64 {
+    tau / (1.0 - memory.abs()) + latency
 }
 
 /// How steps are made.

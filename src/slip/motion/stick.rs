@@ -7,29 +7,41 @@ use crate::slip::series::spread;
 const EVEN: f64 = 0.1;
 
 impl Motion {
-    /// The rate v at which the elongation of a stuck block grows evenly: v = v0 + α_v v τ. Other
-    /// ways to grow die out where α_v τ < 1; else they do not, and there is none.
+    /// The rate v at which the elongation of a stuck block grows evenly: v = v0 + α_v v τ/(1 − R).
+    /// Other ways to grow die out where α_v τ < 1; else they do not, and there is none.
+    ///
+    /// With memory or latency they die out where |α_v| τ/(1 − |R|) < 1: S then follows ȧ with less
+    /// than its own size.
     pub(super) fn even_rate(&self) -> Option<f64> {
         let p = &self.parameters;
-        let share = p.alpha_v * p.tau;
-        (share < 1.0).then(|| p.v0 / (1.0 - share))
+        let share = p.alpha_v * p.tau / (1.0 - p.memory);
+        let least = match p.beyond_letter() {
+            true => p.alpha_v.abs() * p.tau / (1.0 - p.memory.abs()),
+            false => share,
+        };
+        (least < 1.0).then(|| p.v0 / (1.0 - share))
     }
 
     /// A stuck block's elongation has grown evenly for a delay, and so it goes on until release.
+    /// What is fed back has been constant for as long, and for a latency.
     pub(super) fn sticks_evenly(&self) -> bool {
-        self.even_since + self.parameters.tau <= self.t
+        let p = &self.parameters;
+        self.even_since + p.tau.max(p.latency) <= self.t
     }
 
     /// Works out the coefficients of a block that sticks evenly, which hold without end.
     pub(super) fn stick_evenly(&mut self, rate: f64) -> f64 {
-        let Parameters { alpha_n, tau, .. } = self.parameters;
+        let Parameters { alpha_n, .. } = self.parameters;
+        let signal = self.even_signal(rate);
         let step = &mut self.step;
         for c in [&mut step.u, &mut step.a, &mut step.n, &mut step.delayed] {
             c.fill(0.0);
         }
+        step.late.fill(0.0);
+        step.late[0] = signal;
         step.order = 1;
         (step.a[0], step.a[1]) = (self.a, rate);
-        (step.delayed[0], step.delayed[1]) = (self.a - rate * tau, rate);
+        (step.delayed[0], step.delayed[1]) = (self.a - signal, rate);
         step.n[0] = 1.0 + alpha_n * (step.a[0] - step.delayed[0]);
         f64::INFINITY
     }
@@ -45,7 +57,12 @@ impl Motion {
             let allowed = (EVEN * self.tolerance * share * dies_out).max(ROUNDING);
             let a = &step.a[1..=step.order];
             let off = ((a[0] - rate).abs() + spread(a, step.length)) * step.length;
-            off <= allowed * step.a[0].abs().max(self.parameters.law.mu_s())
+            let stretch = step.a[0].abs().max(self.parameters.law.mu_s());
+            off <= allowed * stretch
+                && (!self.parameters.beyond_letter() || {
+                    let allowed = EVEN * self.tolerance * dies_out / (1.0 + self.gain());
+                    self.signal_is_even(rate, allowed.max(ROUNDING) * stretch)
+                })
         });
         if !even {
             self.even_since = self.t;

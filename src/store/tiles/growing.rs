@@ -1,5 +1,5 @@
-//! A map of which there are only tiles yet, read as far as it is there: no file is written for it,
-//! and what was read once is not read again.
+//! A map whose run is not complete, read from its tiles as far as there are any. No file is written
+//! for it, and no tile is read twice.
 
 use std::path::{Path, PathBuf};
 

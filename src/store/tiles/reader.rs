@@ -134,7 +134,7 @@ pub struct TileReader {
 }
 
 impl TileReader {
-    /// Of a folder, no file of which is known.
+    /// For a folder from which no file has been read yet.
     fn empty(path: &Path, layout: Digest, pieces: Pieces) -> Self {
         Self {
             path: path.to_owned(),

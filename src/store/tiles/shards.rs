@@ -86,7 +86,7 @@ fn shard_of(name: &str) -> Option<Shard> {
     format!("{number}/{of}").parse().ok()
 }
 
-/// The shards of `map` of which something is there, by number.
+/// The shards of `map` that have a folder, by number.
 ///
 /// # Errors
 /// When the system refuses; not where there is no folder at all.

@@ -11,7 +11,7 @@
 //! lies. Where sliding is linearly unstable the share is 0, whatever is undecided: only exceptional
 //! starts come to an unstable state.
 
-use crate::linear::{Crossings, MarginalTolerance};
+use crate::linear::MarginalTolerance;
 use crate::model::Control;
 use crate::slip::case::{Case, CaseError, Start};
 use crate::slip::cycle::NoCycle;
@@ -108,12 +108,11 @@ impl Asked {
                 Err(error) => return Err(error),
             },
         };
-        let (groups, unit) = setting.groups()?;
-        let tau = match case.control == Control::default() {
-            true => 0.0,
-            false => case.tau / unit,
-        };
-        let count = Crossings::of(groups).count(tau, MarginalTolerance::default());
+        let mut sliding = case.sliding()?;
+        if case.control == Control::default() {
+            sliding.tau = 0.0;
+        }
+        let count = sliding.count(MarginalTolerance::default());
         Ok(Some(Self {
             abscissa: case.stable_abscissa()?,
             case,
@@ -431,7 +430,8 @@ mod tests {
             }
         }
         assert_eq!(all, 960);
-        assert!(missed <= 48, "{missed}");
+        // Of so rare parts fewer are missed than the 5 % that are promised.
+        assert!(missed <= 24, "{missed}");
     }
 
     #[test]

@@ -234,6 +234,6 @@ pub fn best_of_plane(plan: &Plan, index: &[usize]) -> Option<BestSettings> {
         gain: axes[p].range(),
         tau: axes[tau].range(),
     };
-    let gain = searched_gain(axes[p].parameter)?;
+    let gain = searched_gain(axes[p].parameter.known()?)?;
     best_settings(&plan.setting(index), gain, &ranges).ok()
 }

@@ -1,6 +1,10 @@
-//! Crossing curves of a whole sweep, and those of its degrees of stability: one plane (parameter,
-//! delay) for each setting of the other axes.
+//! Crossing curves of a whole sweep, and those of its degrees of stability: one plane of two of its
+//! axes for each setting of the others.
+//!
+//! Planes of the letter's own system with the delay have curves in closed form; those of any other
+//! system, or of other parameters, are followed step by step.
 
+use super::any_plane;
 use crate::linear::Crossings;
 use crate::linear::curves::{PlaneCurves, TooManyCurves, Window, scan_breakpoints, trace};
 use crate::linear::decay;
@@ -9,8 +13,8 @@ use crate::model::friction::{FrictionLaw, Kind};
 use crate::model::{Groups, ModelError};
 use crate::sweep::input::parameter::Parameter;
 use crate::sweep::input::setting::Setting;
-use crate::sweep::plan::Plan;
 use crate::sweep::plan::tile::index_of;
+use crate::sweep::plan::{Plan, traced_by_closed_form};
 
 /// Steps in which breakpoints are looked for along a parameter that is no gain.
 const SCAN_STEPS: usize = 4096;
@@ -56,17 +60,24 @@ pub(super) fn plane_spanned(plan: &Plan, plane: Option<(usize, usize)>, number: 
 /// # Errors
 /// When a parameter is outside the model's range.
 pub fn trace_plane(plan: &Plan, index: &[usize]) -> Result<BoundaryPlane, ModelError> {
-    let curves = match plan.boundary_plane {
-        Some((p, tau)) => {
-            let window = Window {
-                p: ends(plan.spec.axes[p].range()),
-                tau: ends(plan.spec.axes[tau].range()),
-            };
-            let parameter = plan.spec.axes[p].parameter;
-            let degrees = &plan.spec.degrees_of_stability;
-            trace_window(&plan.setting(index), parameter, &window, degrees)?
-        }
-        None => Vec::new(),
+    let Some((p, q)) = plan.boundary_plane else {
+        return Ok(BoundaryPlane {
+            index: index.to_vec(),
+            curves: Vec::new(),
+        });
+    };
+    let (setting, axes) = (plan.setting(index), &plan.spec.axes);
+    let window = Window {
+        p: ends(axes[p].range()),
+        q: ends(axes[q].range()),
+    };
+    let degrees = &plan.spec.degrees_of_stability;
+    let letter = traced_by_closed_form(&plan.spec, q);
+    let curves = if let Some(p) = axes[p].parameter.known().filter(|_| letter) {
+        trace_window(&setting, p, &window, degrees)?
+    } else {
+        let of = [&axes[p].parameter, &axes[q].parameter];
+        any_plane::trace_window(&setting, of, &window, degrees)?
     };
     Ok(BoundaryPlane {
         index: index.to_vec(),
@@ -148,7 +159,7 @@ fn breakpoints(
 /// The last value of `parameter` below a jump of the groups, and the first one above it. The slope
 /// of a table jumps at its first and at its last speed, which themselves belong to the curve
 /// between them.
-fn jumps(setting: &Setting, parameter: Parameter) -> Result<Vec<[f64; 2]>, ModelError> {
+pub(super) fn jumps(setting: &Setting, parameter: Parameter) -> Result<Vec<[f64; 2]>, ModelError> {
     let law = setting.friction_law()?;
     let (Parameter::V0, Some(Kind::Table(table))) =
         (parameter, law.as_ref().map(FrictionLaw::kind))
@@ -162,7 +173,7 @@ fn jumps(setting: &Setting, parameter: Parameter) -> Result<Vec<[f64; 2]>, Model
 
 /// The parts of a window between jumps. Nothing crosses the imaginary axis at a jump itself, so no
 /// curve runs along it.
-fn split(window: &Window, jumps: &[[f64; 2]]) -> Vec<Window> {
+pub(super) fn split(window: &Window, jumps: &[[f64; 2]]) -> Vec<Window> {
     let (mut start, end) = (*window.p.start(), *window.p.end());
     let mut parts = Vec::new();
     for &[below, above] in jumps {
@@ -174,12 +185,12 @@ fn split(window: &Window, jumps: &[[f64; 2]]) -> Vec<Window> {
     parts.push(start..=end);
     let part = |p| Window {
         p,
-        tau: window.tau.clone(),
+        q: window.q.clone(),
     };
     parts.into_iter().map(part).collect()
 }
 
-fn joined(
+pub(super) fn joined(
     curves: Result<PlaneCurves, TooManyCurves>,
     more: Result<PlaneCurves, TooManyCurves>,
 ) -> Result<PlaneCurves, TooManyCurves> {
@@ -228,7 +239,7 @@ mod tests {
                     for pair in piece.vertices.windows(2) {
                         let (p, q) = (pair[0], pair[1]);
                         if (p.p <= v0) != (q.p <= v0) {
-                            at.push(p.tau + (q.tau - p.tau) * (v0 - p.p) / (q.p - p.p));
+                            at.push(p.q + (q.q - p.q) * (v0 - p.p) / (q.p - p.p));
                         }
                     }
                 }

@@ -14,7 +14,7 @@ pub(super) fn fill(plan: &Plan, tile: &Tile, strides: &[usize], buffers: &mut Ti
     let mut setting = plan.spec.fixed.clone();
     for_each_index(&tile.extent, None, |inside| {
         for (i, axis) in plan.spec.axes.iter().enumerate() {
-            setting.set(axis.parameter, axis.values[tile.offset[i] + inside[i]]);
+            setting.vary(&axis.parameter, axis.values[tile.offset[i] + inside[i]]);
         }
         let at = place_of(inside, strides);
         let [gamma, mu_ratio] = [Parameter::Gamma, Parameter::MuRatio].map(|p| setting.get(p));

@@ -20,6 +20,29 @@ impl Places {
     pub(super) const fn of(self, i: usize) -> usize {
         self.at + i * self.stride
     }
+
+    /// Copies the cells of a line to where they belong.
+    #[inline]
+    pub(super) fn copy<T: Copy>(self, from: &[T], to: &mut [T]) {
+        if self.stride == 1 {
+            to[self.at..][..from.len()].copy_from_slice(from);
+            return;
+        }
+        for (i, value) in from.iter().enumerate() {
+            to[self.of(i)] = *value;
+        }
+    }
+
+    /// Puts one value into all `len` cells of a line.
+    pub(super) fn fill<T: Copy>(self, value: T, len: usize, to: &mut [T]) {
+        if self.stride == 1 {
+            to[self.at..][..len].fill(value);
+            return;
+        }
+        for i in 0..len {
+            to[self.of(i)] = value;
+        }
+    }
 }
 
 /// Numbers of the cells of a line in the whole map, all cells counted row by row.

@@ -1,17 +1,62 @@
 //! The fields that come from characteristic roots: from the dimensionless roots of a cell to
 //! physical values.
 
+use num_complex::Complex64;
+
 use super::buffers::Column;
 use super::line::Places;
+use crate::linear::equation::Equation;
+use crate::linear::general::RootCounter;
 use crate::linear::sensitivity::Sensitivity;
 use crate::linear::track::{Cell, RootTracker};
 use crate::model::Groups;
 use crate::sweep::input::field::Field;
+use crate::sweep::input::linear_model::{FeedbackLoop, PerGroup};
 use crate::sweep::input::source::{OfRoots, Slope, Source};
 
+/// An equation whose roots move with the groups.
+pub(super) trait Moving: Equation {
+    /// What is known of how they move.
+    type Loop: Copy;
+
+    /// How the root `lambda` moves at the delay `tau`.
+    fn sensitivity(self, of_loop: Self::Loop, tau: f64, lambda: Complex64) -> Sensitivity;
+}
+
+impl Moving for Groups {
+    type Loop = ();
+
+    fn sensitivity(self, (): (), tau: f64, lambda: Complex64) -> Sensitivity {
+        Sensitivity::of(self, tau, lambda)
+    }
+}
+
+impl<'l> Moving for &'l RootCounter {
+    /// NaN for the groups where there is no such loop.
+    type Loop = Option<&'l FeedbackLoop>;
+
+    fn sensitivity(self, of_loop: Self::Loop, tau: f64, lambda: Complex64) -> Sensitivity {
+        let jet = self.jet(tau, lambda);
+        let per_slope = -1.0 / jet.first;
+        let unknown = Complex64::new(f64::NAN, f64::NAN);
+        let per = of_loop.map(|of| of.per_group(lambda, jet.difference));
+        let of = |derivative: fn(&PerGroup) -> Complex64| {
+            per.as_ref()
+                .map_or(unknown, |per| derivative(per) * per_slope)
+        };
+        Sensitivity {
+            b: of(|per| per.b),
+            a_v: of(|per| per.a_v),
+            a_n: of(|per| per.a_n),
+            tau: -jet.feedback * lambda * jet.delayed * per_slope,
+        }
+    }
+}
+
 /// A line of cells, or a part of it.
-pub(super) struct Line<'a> {
-    pub groups: Groups,
+pub(super) struct Line<'a, E: Moving> {
+    pub equation: E,
+    pub of_loop: E::Loop,
     /// √(M/κ).
     pub time_unit: f64,
     /// How much each group grows with its parameter: b per μ_K′, a_v per α_v, a_n per α_N.
@@ -39,13 +84,18 @@ impl RootColumns {
         })
     }
 
+    /// Whether derivatives of the abscissa are asked for.
+    pub(super) fn sensitive(&self) -> bool {
+        self.sensitive
+    }
+
     /// Computes the cells of a line into `columns`, at `places`.
     ///
     /// `counts` are the numbers of unstable roots; `status` gains what following the roots has to
     /// say.
-    pub(super) fn fill(
+    pub(super) fn fill<E: Moving>(
         &mut self,
-        line: &Line,
+        line: &Line<E>,
         counts: &[u16],
         status: &mut [u8],
         columns: &mut [Column],
@@ -57,13 +107,14 @@ impl RootColumns {
             let slopes = match cell.roots.first() {
                 Some(root) if sensitive => {
                     let tau = line.delays[i] / line.time_unit;
-                    slopes(line, &Sensitivity::of(line.groups, tau, root.lambda))
+                    let of_loop = line.of_loop;
+                    slopes(line, &line.equation.sensitivity(of_loop, tau, root.lambda))
                 }
                 _ => [f64::NAN; 4],
             };
             // Without control or delay there is one pair; else a root that is not there was not
             // found.
-            let beyond = if line.groups.uncontrolled() || line.delays[i] == 0.0 {
+            let beyond = if line.equation.uncontrolled() || line.delays[i] == 0.0 {
                 f64::NEG_INFINITY
             } else {
                 f64::NAN
@@ -77,7 +128,7 @@ impl RootColumns {
         };
         let first = line.first;
         self.tracker
-            .follow(line.groups, delays, first, counts, status, visit);
+            .follow(line.equation, delays, first, counts, status, visit);
     }
 }
 
@@ -122,7 +173,7 @@ pub fn relaxation_time(abscissa: f64) -> f64 {
 /// The derivatives of the abscissa in units of the sweep, in the order of [`Slope`]: Re λ/T with T
 /// = √(M/κ), by the chain rule over τ/T and the groups, each proportional to its parameter.
 #[inline]
-fn slopes(line: &Line, sensitivity: &Sensitivity) -> [f64; 4] {
+fn slopes<E: Moving>(line: &Line<E>, sensitivity: &Sensitivity) -> [f64; 4] {
     let (unit, per) = (line.time_unit, line.per_parameter);
     let mut slopes = [0.0; 4];
     for (slope, derivative) in [

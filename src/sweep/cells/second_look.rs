@@ -5,12 +5,14 @@ use super::vc;
 use crate::critical::switch_on::Phase;
 use crate::critical::{CriticalVelocity, Method, Regime, Transition};
 use crate::linear::certificate::roots_right_of;
+use crate::linear::general::{self, Class, RootCounter};
 use crate::linear::status::{DISAGREE, MARGINAL, NOT_CONVERGED, SATURATED};
-use crate::model::{Groups, ModelError};
+use crate::model::ModelError;
 use crate::slip::case::Case;
 use crate::slip::motion::{Accuracy, Integrator};
 use crate::slip::outcome::Outcome;
 use crate::sweep::input::field::{Field, number_of_transition};
+use crate::sweep::input::linear_model::LinearModel;
 use crate::sweep::input::search::Protocol;
 use crate::sweep::input::setting::Setting;
 use crate::sweep::plan::Plan;
@@ -91,13 +93,14 @@ pub fn second_look(
     let mut answers = Vec::new();
     let holds = |field| plan.spec.fields.contains(&field);
     if plan.spec.has_sliding() && (holds(Field::NUnstable) || holds(Field::Abscissa)) {
-        let (groups, unit) = setting.groups()?;
+        let (model, unit) = setting.linear()?;
         let tau = plan.delay(index) / unit;
+        let right_of = right_of(&model, tau);
         if holds(Field::NUnstable) {
-            answers.push((Question::Count, count(groups, tau, stored)));
+            answers.push((Question::Count, count(&*right_of, stored)));
         }
         if holds(Field::Abscissa) {
-            answers.push((Question::Abscissa, abscissa(groups, (tau, unit), stored)));
+            answers.push((Question::Abscissa, abscissa(&*right_of, unit, stored)));
         }
     }
     if plan.spec.follows_motions() && holds(Field::Outcome) {
@@ -134,25 +137,49 @@ fn told(same: bool) -> Answer {
     }
 }
 
-fn count(groups: Groups, tau: f64, stored: &Stored) -> Answer {
+/// The number of roots right of a line by the argument principle, the largest number there is where
+/// there are infinitely many; none where it does not tell.
+type RightOf = dyn Fn(f64) -> Option<u64>;
+
+fn right_of(model: &LinearModel, tau: f64) -> Box<RightOf> {
+    match model {
+        LinearModel::Letter(groups) => {
+            let groups = *groups;
+            Box::new(move |line| roots_right_of(groups, tau, line))
+        }
+        LinearModel::General(system) if system.class() == Class::DegreeUnknown => {
+            Box::new(|_| None)
+        }
+        LinearModel::General(system) => {
+            let counter = RootCounter::new(system);
+            Box::new(move |line| match counter.right_of(tau, line) {
+                general::RightOf::Infinite => Some(u64::MAX),
+                other => other.finite(),
+            })
+        }
+    }
+}
+
+fn count(right_of: &RightOf, stored: &Stored) -> Answer {
     if stored.status & (MARGINAL | SATURATED) != 0 {
         return Answer::Open;
     }
-    match roots_right_of(groups, tau, 0.0) {
+    match right_of(0.0) {
         Some(roots) => told(roots as f64 == (stored.value)(Field::NUnstable)),
         None => Answer::Open,
     }
 }
 
-fn abscissa(groups: Groups, (tau, unit): (f64, f64), stored: &Stored) -> Answer {
+fn abscissa(right_of: &RightOf, unit: f64, stored: &Stored) -> Answer {
     let abscissa = (stored.value)(Field::Abscissa) * unit;
-    if stored.status & (NOT_CONVERGED | DISAGREE) != 0 || abscissa == f64::NEG_INFINITY {
+    let infinite = stored.status & SATURATED != 0 && abscissa.is_nan();
+    let open = stored.status & (NOT_CONVERGED | DISAGREE) != 0 || infinite;
+    if open || abscissa == f64::NEG_INFINITY {
         return Answer::Open;
     }
     let margin = (stored.value)(Field::CertificateMargin);
     let margin = margin.max(1e-12) * abscissa.abs().max(1.0);
-    let right = |line| roots_right_of(groups, tau, line);
-    match (right(abscissa + margin), right(abscissa - margin)) {
+    match (right_of(abscissa + margin), right_of(abscissa - margin)) {
         (Some(beyond), Some(reached)) => told(beyond == 0 && reached > 0),
         // A NaN is no abscissa, and the status does not say why.
         _ if abscissa.is_nan() => Answer::Differs,

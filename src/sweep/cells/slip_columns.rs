@@ -3,11 +3,11 @@
 use super::buffers::TileBuffers;
 use super::line::{Here, SlowLine};
 use crate::linear::status::NOT_CONVERGED;
-use crate::model::Groups;
 use crate::slip::case::{Case, CaseError};
 use crate::slip::cycle::NoCycle;
 use crate::slip::motion::Motion;
 use crate::slip::outcome::{Outcome, Summary};
+use crate::slip::sliding::Sliding;
 use crate::sweep::input::simulation::Simulation;
 use crate::sweep::input::source::Source;
 use crate::sweep::input::spec::SweepSpec;
@@ -17,19 +17,19 @@ pub(super) struct SlipColumns<'p> {
     simulation: &'p Simulation,
     /// The memory of all motions.
     motion: Option<Motion>,
-    sliding: Sliding,
+    sliding: KnownSliding,
 }
 
 /// What is known of sliding in the cells of the line followed last. Lines that differ in nothing
 /// but the motions' start share it.
 #[derive(Default)]
-struct Sliding(Vec<Option<Known>>);
+struct KnownSliding(Vec<Option<Known>>);
 
 /// The spectral abscissa of sliding at one place, if it is stable there.
 #[derive(Clone, Copy)]
 struct Known {
-    /// The groups, the delay and the unit of time.
-    of: (Groups, f64, f64),
+    /// Sliding there, and the unit of time.
+    of: (Sliding, f64),
     abscissa: Option<f64>,
 }
 
@@ -39,15 +39,15 @@ impl<'p> SlipColumns<'p> {
         spec.follows_motions().then(|| Self {
             simulation: &spec.simulation,
             motion: None,
-            sliding: Sliding::default(),
+            sliding: KnownSliding::default(),
         })
     }
 
-    /// Follows the motions of a line with these groups into `buffers`. The status gains
+    /// Follows the motions of a line into `buffers`. The status gains
     /// [`NOT_CONVERGED`] where a motion stays undecided.
-    pub(super) fn fill(&mut self, line: &SlowLine, groups: Groups, buffers: &mut TileBuffers) {
+    pub(super) fn fill(&mut self, line: &SlowLine, buffers: &mut TileBuffers) {
         line.each(|here| {
-            let motion = self.motion_at(&here, groups);
+            let motion = self.motion_at(&here);
             if motion.outcome == Outcome::Undecided {
                 buffers.status[here.place] |= NOT_CONVERGED;
             }
@@ -59,8 +59,8 @@ impl<'p> SlipColumns<'p> {
     }
 
     /// What becomes of the motion in a cell.
-    fn motion_at(&mut self, here: &Here, groups: Groups) -> Summary {
-        match self.follow(here, groups) {
+    fn motion_at(&mut self, here: &Here) -> Summary {
+        match self.follow(here) {
             Ok(Some(summary)) => summary,
             Err(CaseError::NoCycle(NoCycle::NoStickSlip)) => Summary::without(Outcome::NoCycle),
             // The sweep's values were checked: what is refused here is beyond what can be followed.
@@ -68,7 +68,7 @@ impl<'p> SlipColumns<'p> {
         }
     }
 
-    fn follow(&mut self, here: &Here, groups: Groups) -> Result<Option<Summary>, CaseError> {
+    fn follow(&mut self, here: &Here) -> Result<Option<Summary>, CaseError> {
         let Some(case) = self.simulation.case(here.setting, 0.0)? else {
             return Ok(None);
         };
@@ -79,18 +79,18 @@ impl<'p> SlipColumns<'p> {
             }
             none => none.insert(case.motion()?),
         };
-        let abscissa = self.sliding.at(groups, &case, here.i)?;
+        let abscissa = self.sliding.at(&case, here.i)?;
         Ok(Some(case.follow(motion, abscissa, &mut ())))
     }
 }
 
-impl Sliding {
-    /// The abscissa of the case with these groups, the `i`-th of its line.
-    fn at(&mut self, groups: Groups, case: &Case, i: usize) -> Result<Option<f64>, CaseError> {
+impl KnownSliding {
+    /// The abscissa of the case, the `i`-th of its line.
+    fn at(&mut self, case: &Case, i: usize) -> Result<Option<f64>, CaseError> {
         if self.0.len() <= i {
             self.0.resize(i + 1, None);
         }
-        let of = (groups, case.tau, case.units().time);
+        let of = (case.sliding()?, case.units().time);
         match self.0[i] {
             Some(known) if known.of == of => Ok(known.abscissa),
             _ => {

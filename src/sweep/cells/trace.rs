@@ -335,7 +335,7 @@ impl Sample {
         let (step, p) = (motion.last_step(), motion.parameters());
         let (u, a, n) = step.state(s);
         let difference = if begun.t >= p.switch_on {
-            a - step.delayed_elongation(s)
+            step.fed_back(s)
         } else {
             0.0
         };

@@ -5,8 +5,8 @@ use crate::critical::{
     CriticalVelocity, CriticalWindows, Method, Options, Problem, RampOptions, Regime, Transition,
     along_delay, by_simulation, critical_velocity,
 };
+use crate::linear::MarginalTolerance;
 use crate::linear::roots::narrowed;
-use crate::linear::{Crossings, MarginalTolerance};
 use crate::model::ModelError;
 use crate::model::elementary::pow;
 use crate::slip::case::CaseUnits;
@@ -16,6 +16,7 @@ use crate::sweep::input::parameter::Parameter;
 use crate::sweep::input::regime_at_v0::RegimeAtV0;
 use crate::sweep::input::search::Protocol;
 use crate::sweep::input::setting::Setting;
+use crate::sweep::input::simulation::NOT_IN_MOTIONS;
 
 /// Error allowed in a step where control is switched on.
 const SWITCH_ON_ACCURACY: f64 = 1e-9;
@@ -38,14 +39,11 @@ pub struct Asked {
 /// When the setting has no friction law, or a value is out of the model's range: a gain needs a
 /// delay τ > 0.
 pub fn asked(setting: &Setting) -> Result<Asked, ModelError> {
+    setting.check_of_letter(NOT_IN_MOTIONS, "0 where a critical velocity is looked for")?;
     let oscillator = setting.oscillator()?;
     let units = CaseUnits::of(&oscillator);
     let Some(law) = setting.friction_law()? else {
-        return Err(ModelError {
-            parameter: "friction",
-            value: f64::NAN,
-            allowed: "a friction law",
-        });
+        return Err(ModelError::of_law("a friction law"));
     };
     let control = setting.control();
     let tau = setting.get(Parameter::Tau);
@@ -62,6 +60,8 @@ pub fn asked(setting: &Setting) -> Result<Asked, ModelError> {
         alpha_v: control.alpha_v * units.time,
         alpha_n: control.alpha_n / oscillator.stiffness(),
         tau: tau / units.time,
+        memory: setting.get(Parameter::Memory),
+        latency: setting.get(Parameter::Latency) / units.time,
         stop: Stop::default(),
         options: Options::default(),
     };
@@ -169,7 +169,7 @@ impl Asked {
     ) -> RegimeAtV0 {
         let Self { problem, units } = self;
         let speed = v0 / units.velocity;
-        let count = Crossings::of(problem.groups(speed)).count(problem.tau, tolerance);
+        let count = problem.sliding(speed).count(tolerance);
         if count.marginal {
             return RegimeAtV0::Undecided;
         }
@@ -467,6 +467,8 @@ mod tests {
             alpha_v: 0.0,
             alpha_n: 0.0,
             tau: 1.0,
+            memory: 0.0,
+            latency: 0.0,
             stop: Stop::default(),
             options: Options::default(),
         };

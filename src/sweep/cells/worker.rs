@@ -1,23 +1,29 @@
 //! One thread's work: the cells of a tile, line by line, into buffers that are used again.
+//!
+//! Longer than most files: each kind of line, of the letter and beyond, is filled from here.
 
 use std::ops::Range;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use super::basin_columns::BasinColumns;
 use super::buffers::{Column, FEW_FILL, N_UNSTABLE_FILL, TileBuffers, one_zero_and_one_nan};
+use super::general_columns::{GeneralColumns, GeneralLine};
 use super::limit_columns;
 use super::line::{Numbers, Places, SlowLine};
+use super::lines::Lines;
 use super::margin_columns::MarginColumns;
 use super::root_columns::{Line, RootColumns};
 use super::slip_columns::SlipColumns;
 use super::vc_columns::VcColumns;
 use crate::linear::Crossings;
+use crate::linear::general::{Reason, System};
 use crate::linear::row::Delays;
 use crate::linear::status::NOT_CONVERGED;
-use crate::model::{Control, Groups, ModelError, Oscillator, SlidingPoint};
+use crate::model::Groups;
 use crate::sweep::input::field::Field;
+use crate::sweep::input::linear_model::{FeedbackLoop, LinearModel};
 use crate::sweep::input::parameter::Parameter;
-use crate::sweep::input::setting::Setting;
+use crate::sweep::input::source::{OfLinear, Source};
 use crate::sweep::plan::Plan;
 use crate::sweep::plan::tile::{Tile, for_each_index, place_of, strides_of};
 
@@ -44,6 +50,10 @@ pub struct Worker<'p> {
     row: RowBuffers,
     /// Follows roots, where a field needs them.
     roots: Option<RootColumns>,
+    /// Lines of general systems.
+    general: GeneralColumns,
+    /// Whether a field tells of the linear model itself.
+    tells_linear: bool,
     /// Looks for margins, where a field needs them.
     margins: Option<MarginColumns>,
     /// Follows motions, where a field needs them.
@@ -56,80 +66,8 @@ pub struct Worker<'p> {
     map_strides: Vec<u64>,
     /// Whether cells have a sliding state.
     slides: bool,
-}
-
-/// The groups of one line after the other. What does not change from line to line is not computed
-/// again.
-struct Lines<'p> {
-    plan: &'p Plan,
-    setting: Setting,
-    /// Index of the setting along each axis.
-    index: Vec<usize>,
-    /// What the gains do not change.
-    uncontrolled: Option<Result<(Oscillator, SlidingPoint), ModelError>>,
-}
-
-impl<'p> Lines<'p> {
-    fn new(plan: &'p Plan) -> Self {
-        let index = vec![0; plan.spec.axes.len()];
-        Self {
-            plan,
-            setting: plan.setting(&index),
-            index,
-            uncontrolled: None,
-        }
-    }
-
-    /// Goes to the line at `offset` + `inside`.
-    #[inline(always)]
-    fn move_to(&mut self, offset: &[usize], inside: &[usize]) {
-        for (axis, known) in self.index.iter_mut().enumerate() {
-            let index = offset[axis] + inside[axis];
-            if *known != index {
-                *known = index;
-                let axis = &self.plan.spec.axes[axis];
-                self.setting.set(axis.parameter, axis.values[index]);
-                if !matches!(
-                    axis.parameter,
-                    Parameter::AlphaV | Parameter::AlphaN | Parameter::Tau
-                ) {
-                    self.uncontrolled = None;
-                }
-            }
-        }
-    }
-
-    /// The groups of the line, and its unit of time.
-    #[inline(always)]
-    fn groups(&mut self) -> Result<(Groups, f64), ModelError> {
-        let setting = &self.setting;
-        let uncontrolled = self
-            .uncontrolled
-            .get_or_insert_with(|| Ok((setting.oscillator()?, setting.sliding_point()?)));
-        let (oscillator, sliding) = uncontrolled.as_ref().map_err(Clone::clone)?;
-        let groups = oscillator.groups(*sliding, setting.control());
-        Ok((groups, oscillator.time_unit()))
-    }
-
-    /// How much each group grows with its parameter on the current line: b per μ_K′, a_v per α_v,
-    /// a_n per α_N.
-    fn groups_per_parameter(&self) -> Groups {
-        match &self.uncontrolled {
-            Some(Ok((oscillator, sliding))) => {
-                // Every group is proportional to its parameter.
-                let one_each = SlidingPoint {
-                    mu_prime: 1.0,
-                    ..*sliding
-                };
-                let control = Control {
-                    alpha_v: 1.0,
-                    alpha_n: 1.0,
-                };
-                oscillator.groups(one_each, control)
-            }
-            _ => Groups::new(f64::NAN, f64::NAN, f64::NAN),
-        }
-    }
+    /// The delay of a cell, where the polynomials of the system depend on it.
+    by_delay: Option<Delays>,
 }
 
 /// One row on its way to a tile whose delays are not next to one another in memory.
@@ -161,12 +99,24 @@ impl<'p> Worker<'p> {
                 delay_margin: vec![0.0; longest],
             },
             roots: RootColumns::new(&plan.spec.fields),
+            general: GeneralColumns::default(),
+            tells_linear: plan
+                .spec
+                .fields
+                .iter()
+                .any(|f| matches!(f.source(), Source::Linear(_))),
             margins: MarginColumns::new(&plan.spec.fields),
             slip: SlipColumns::new(&plan.spec),
             basin: BasinColumns::new(&plan.spec),
             vc: VcColumns::new(&plan.spec),
             map_strides: strides_of(plan.shape()),
             slides: plan.spec.has_sliding(),
+            by_delay: plan
+                .spec
+                .fixed
+                .system()
+                .filter(|system| system.depends_on_delay())
+                .map(|_| Delays::new(&[0.0])),
         }
     }
 
@@ -206,14 +156,23 @@ impl<'p> Worker<'p> {
         for_each_index(&tile.extent, self.plan.tau_axis, |inside| {
             let at = place_of(inside, &self.strides);
             self.lines.move_to(&tile.offset, inside);
-            let groups = match self.lines.groups() {
+            if let Some(mut one) = self.by_delay.take() {
+                self.fill_by_delay(&mut one, at, stop);
+                self.by_delay = Some(one);
+                return;
+            }
+            let groups = match self.lines.model() {
                 _ if !self.slides => {
                     self.fill_without_sliding(at);
                     None
                 }
-                Ok((groups, time_unit)) => {
+                Ok((LinearModel::Letter(groups), time_unit)) => {
                     self.fill_line(groups, time_unit, at);
                     Some(groups)
+                }
+                Ok((LinearModel::General(system), time_unit)) => {
+                    self.fill_general(&system, time_unit, at, stop);
+                    None
                 }
                 Err(_) => return self.refuse_line(at),
             };
@@ -236,6 +195,83 @@ impl<'p> Worker<'p> {
         }
         if self.roots.is_some() {
             self.fill_roots(groups, time_unit, at);
+        }
+        if self.tells_linear {
+            self.fill_linear(&crossings, at);
+        }
+    }
+
+    /// Computes the cells of a line of a general system.
+    fn fill_general(&mut self, system: &System, time_unit: f64, at: usize, stop: &AtomicBool) {
+        let sensitive = self.roots.as_ref().is_some_and(RootColumns::sensitive);
+        let of_loop = sensitive.then(|| FeedbackLoop::of(&self.lines.setting).ok());
+        let of_loop = of_loop.flatten();
+        let line = GeneralLine {
+            system,
+            of_loop: of_loop.as_ref(),
+            time_unit,
+            stiffness_ratio: self.lines.setting.stiffness_ratio().unwrap_or(f64::NAN),
+            per_parameter: self.lines.groups_per_parameter(),
+            delays: &self.delays,
+            first: self.delay_range.start,
+            tolerance: self.plan.spec.tolerance,
+            places: Places {
+                at,
+                stride: self.stride,
+            },
+            stop,
+        };
+        self.general
+            .fill(&line, self.roots.as_mut(), &mut self.buffers);
+        self.unflagged = false;
+    }
+
+    /// Computes the cells of a line whose polynomials depend on the delay, each as its own line.
+    fn fill_by_delay(&mut self, one: &mut Delays, at: usize, stop: &AtomicBool) {
+        for i in 0..self.delays.values().len() {
+            let (tau, place) = (self.delays.values()[i], at + i * self.stride);
+            one.set_one(tau);
+            self.lines.setting.set(Parameter::Tau, tau);
+            let Ok((LinearModel::General(system), time_unit)) = self.lines.model() else {
+                self.refuse(place, 1);
+                continue;
+            };
+            let line = GeneralLine {
+                system: &system,
+                of_loop: None,
+                time_unit,
+                stiffness_ratio: f64::NAN,
+                per_parameter: self.lines.groups_per_parameter(),
+                delays: one,
+                first: 0,
+                tolerance: self.plan.spec.tolerance,
+                places: Places {
+                    at: place,
+                    stride: 1,
+                },
+                stop,
+            };
+            self.general
+                .fill(&line, self.roots.as_mut(), &mut self.buffers);
+        }
+        self.unflagged = false;
+    }
+
+    /// What the letter's own system tells besides counts and roots: nothing is special but b = 0
+    /// without control, and roots accumulate nowhere.
+    fn fill_linear(&mut self, crossings: &Crossings, at: usize) {
+        let reason = match crossings.always_marginal {
+            true => Reason::RootOnAxis.number(),
+            false => 0,
+        };
+        let len = self.delays.values().len();
+        for place in (at..).step_by(self.stride).take(len) {
+            self.buffers.put(place, |field| match field.source() {
+                Source::Linear(OfLinear::Reason) => Some(f64::from(reason)),
+                Source::Linear(OfLinear::EssentialAbscissa) => Some(f64::NEG_INFINITY),
+                Source::Linear(OfLinear::StiffnessRatio) => Some(f64::NAN),
+                _ => None,
+            });
         }
     }
 
@@ -294,7 +330,8 @@ impl<'p> Worker<'p> {
             false => &mut row.status[..len],
         };
         let line = Line {
-            groups,
+            equation: groups,
+            of_loop: (),
             time_unit,
             per_parameter: self.lines.groups_per_parameter(),
             delays: self.delays.values(),
@@ -327,7 +364,8 @@ impl<'p> Worker<'p> {
     }
 
     /// Computes margins and the fields of motions and of the critical velocity, in a line whose
-    /// status is there; margins and motions where there is a sliding state, with its groups.
+    /// status is there; motions where there is a sliding state, margins where it is the letter's,
+    /// with its groups.
     fn fill_slowly(
         &mut self,
         offset: &[usize],
@@ -359,8 +397,8 @@ impl<'p> Worker<'p> {
         if let (Some(margins), Some(_)) = (&mut self.margins, groups) {
             margins.fill(&line, &mut self.buffers);
         }
-        if let (Some(slip), Some(groups)) = (&mut self.slip, groups) {
-            slip.fill(&line, groups, &mut self.buffers);
+        if let (Some(slip), true) = (&mut self.slip, self.slides) {
+            slip.fill(&line, &mut self.buffers);
         }
         if let Some(basin) = &mut self.basin {
             basin.fill(&line, &mut self.buffers);
@@ -374,7 +412,11 @@ impl<'p> Worker<'p> {
     /// A line outside the model's range: its cells keep fill values and say that nothing converged
     /// there.
     fn refuse_line(&mut self, at: usize) {
-        let len = self.delays.values().len();
+        self.refuse(at, self.delays.values().len());
+    }
+
+    /// The same of the first `len` cells from `at` on.
+    fn refuse(&mut self, at: usize, len: usize) {
         self.unflagged = false;
         for place in (at..).step_by(self.stride).take(len) {
             self.buffers.status[place] = NOT_CONVERGED;

@@ -1,6 +1,7 @@
 //! The axes of a sweep.
 
 use super::parameter::Parameter;
+use super::quantity::Quantity;
 use crate::model::Shown;
 use crate::model::elementary::pow;
 
@@ -20,26 +21,33 @@ pub enum Spacing {
 #[derive(Debug, Clone, PartialEq)]
 pub struct Axis {
     /// The parameter.
-    pub parameter: Parameter,
+    pub parameter: Quantity,
     /// Its values, at least one.
     pub values: Vec<f64>,
 }
 
-/// The axes of the planes in which curves can be traced, (parameter, delay): the last gain axis,
-/// else the last other axis on which linear stability depends, and the delay. None where there are
-/// no two such axes with two values or more.
+/// The axes of the planes in which curves can be traced, (p, q): a delay that varies is q, p the
+/// last gain axis, else the last other axis on which linear stability depends. Without one they are
+/// the last two such axes. None where there are no two of them with two values or more.
 #[must_use]
 pub fn plane_of_curves(axes: &[Axis]) -> Option<(usize, usize)> {
-    let several =
-        |axis: &Axis, delay: bool| axis.len() > 1 && (axis.parameter == Parameter::Tau) == delay;
-    let tau = axes.iter().position(|axis| several(axis, true))?;
-    let last = |gain: bool| {
-        axes.iter().rposition(|axis| {
-            let is_gain = matches!(axis.parameter, Parameter::AlphaV | Parameter::AlphaN);
-            several(axis, false) && (is_gain || !(gain || axis.parameter.of_start()))
-        })
+    let matters = |axis: &Axis| {
+        let of_start = axis.parameter.known().is_some_and(Parameter::of_start);
+        axis.len() > 1 && !of_start
     };
-    Some((last(true).or_else(|| last(false))?, tau))
+    let is_delay = |axis: &Axis| axis.parameter == Parameter::Tau;
+    let is_gain =
+        |axis: &Axis| axis.parameter == Parameter::AlphaV || axis.parameter == Parameter::AlphaN;
+    let place = |wanted: &dyn Fn(&Axis) -> bool| {
+        axes.iter().rposition(|axis| matters(axis) && wanted(axis))
+    };
+    if let Some(tau) = place(&is_delay) {
+        let p = place(&is_gain).or_else(|| place(&|axis| !is_delay(axis)))?;
+        return Some((p, tau));
+    }
+    let q = place(&|_| true)?;
+    let p = axes[..q].iter().rposition(matters)?;
+    Some((p, q))
 }
 
 /// Values that make no axis, in words.
@@ -117,14 +125,13 @@ impl Axis {
     /// # Errors
     /// When a value is outside the parameter's range, or the values are not strictly monotonic.
     /// Delays must increase.
-    pub fn new(parameter: Parameter, values: Vec<f64>) -> Result<Self, AxisError> {
+    pub fn new(parameter: impl Into<Quantity>, values: Vec<f64>) -> Result<Self, AxisError> {
+        let parameter = parameter.into();
         if values.is_empty() {
             return Err(AxisError("the list is empty".into()));
         }
         for &value in &values {
-            parameter
-                .check(value)
-                .map_err(|e| AxisError(e.to_string()))?;
+            parameter.check(value).map_err(AxisError)?;
         }
         let increasing = values.windows(2).all(|w| w[0] < w[1]);
         let decreasing = values.windows(2).all(|w| w[0] > w[1]);

@@ -3,6 +3,7 @@
 use std::borrow::Cow;
 use std::ops::Range;
 
+use super::keys::{BASIN, ENDS, names};
 use super::parameter::Parameter;
 use super::setting::Setting;
 use super::toml_reader::{Entry, SpecError};
@@ -193,7 +194,7 @@ impl BasinKeys {
                 }
                 "x_dot0" => self.basin.x_dot0 = Some(self.read_box(&entry, Parameter::XDot0)?),
                 "a0" => self.basin.a0 = Some(self.read_box(&entry, Parameter::A0)?),
-                _ => return Err(entry.unknown(&["over", "starts", "x_dot0", "a0"])),
+                _ => return Err(entry.unknown(&names(&BASIN))),
             }
         }
         Ok(())
@@ -206,7 +207,7 @@ impl BasinKeys {
             match end.key {
                 "from" => from = Some(end.number()?),
                 "to" => to = Some(end.number()?),
-                _ => return Err(end.unknown(&["from", "to"])),
+                _ => return Err(end.unknown(&ENDS)),
             }
         }
         let missing = |name| entry.error(format!("{name} is missing"));

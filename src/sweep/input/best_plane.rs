@@ -18,9 +18,9 @@ pub fn searched_gain(parameter: Parameter) -> Option<SearchedGain> {
 /// the delay, if both have more points than one.
 #[must_use]
 pub fn gain_plane(axes: &[Axis]) -> Option<(usize, usize)> {
-    let gain = axes
-        .iter()
-        .rposition(|axis| axis.len() > 1 && searched_gain(axis.parameter).is_some())?;
+    let gain = axes.iter().rposition(|axis| {
+        axis.len() > 1 && axis.parameter.known().and_then(searched_gain).is_some()
+    })?;
     let tau = axes
         .iter()
         .position(|axis| axis.len() > 1 && axis.parameter == Parameter::Tau)?;

@@ -34,6 +34,7 @@
 use std::ops::Range;
 
 use super::given::{GivenParameters, read_units};
+use super::keys::{CASE, TRACE, names};
 use super::parameter::{Group, LARGEST, Parameter};
 use super::setting::Setting;
 use super::simulation::{DISTURBED, POSITIVE, Simulation};
@@ -49,20 +50,6 @@ const MOST_SAMPLES: u64 = 64;
 
 /// Keys of sweep files that case files do not have.
 const OF_SWEEPS: [&str; 5] = ["fields", "axes", "boundaries", "best", "protocol"];
-
-/// The keys of a case file.
-const KEYS: [&str; 10] = [
-    "title",
-    "friction",
-    "fixed",
-    "switch_on",
-    "horizon",
-    "tolerance",
-    "steps",
-    "start",
-    "trace",
-    "units",
-];
 
 /// How densely a motion is sampled between its events.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -114,7 +101,7 @@ pub fn kind_of_text(text: &str) -> Option<TextKind> {
     let all = |known: &[&str]| entries.iter().all(|entry| known.contains(&entry.key));
     if entries.iter().any(|entry| OF_SWEEPS.contains(&entry.key)) {
         Some(TextKind::Sweep)
-    } else if entries.is_empty() || !all(&KEYS) {
+    } else if entries.is_empty() || !all(&names(&CASE)) {
         None
     } else if all(&["fixed", "friction", "units"]) {
         Some(TextKind::Setting)
@@ -162,7 +149,7 @@ impl std::str::FromStr for CaseSpec {
                         "it is a key of a sweep file, of a map: `slipmap run` takes it",
                     ));
                 }
-                _ => return Err(entry.unknown(&KEYS)),
+                _ => return Err(entry.unknown(&names(&CASE))),
             }
         }
         draft.finish(text)
@@ -206,7 +193,7 @@ impl Draft {
                 }
                 "samples" => Sampling::PerStep(read_samples(&entry)?),
                 "interval" => Sampling::Interval(entry.number_within(POSITIVE)?),
-                _ => return Err(entry.unknown(&["until", "samples", "interval"])),
+                _ => return Err(entry.unknown(&names(&TRACE))),
             };
             if self.sampling.replace(sampling).is_some() {
                 return Err(SpecError::at(
@@ -223,6 +210,7 @@ impl Draft {
             return Err(SpecError::whole("a case needs a friction law")
                 .help("for example: [friction] law = \"weakening\", mu0 = 0.5, v_s = 0.5"));
         };
+        self.given.check_motions()?;
         let mut setting = self.given.setting();
         let optional = (setting.control() == Control::default()).then_some(Parameter::Tau);
         self.given.check(optional.as_slice(), Some(&law_place))?;

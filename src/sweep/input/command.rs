@@ -4,6 +4,7 @@ use super::law_kind::LawKind;
 use super::parameter::Parameter;
 use super::search::Protocol;
 use super::setting::Setting;
+use super::system::shipped;
 use crate::critical::switch_on::Phase;
 
 /// `slipmap COMMAND` with the friction law of a setting and its `wanted` parameters, those of
@@ -45,6 +46,27 @@ pub fn vc_command(setting: &Setting, protocol: Protocol) -> Option<String> {
     };
     let known = |p: Parameter| setting.uses(p) && !p.of_start() && p != Parameter::V0;
     command_line(&command, setting, known)
+}
+
+/// `slipmap point` of a setting of a system that is part of the program; none for others, whose
+/// files only their users know.
+#[must_use]
+pub fn system_command(setting: &Setting) -> Option<String> {
+    let model = setting.system()?;
+    let known = |name: &str| shipped::system(name).is_some_and(|known| known == *model);
+    let mut names = shipped::SHIPPED.into_iter().map(|(name, _)| name);
+    let name = names.find(|name| known(name))?;
+    let sets: String = setting
+        .own()
+        .filter(|(own, value)| own.default.to_bits() != value.to_bits())
+        .map(|(own, value)| format!(" --set={}={value}", own.name))
+        .collect();
+    let others = Parameter::of_systems(model.is_feedback()).iter();
+    let others: String = others
+        .filter(|p| setting.uses(**p))
+        .map(|p| format!(" --{}={}", p.name(), setting.get(*p)))
+        .collect();
+    Some(format!("slipmap point --system={name}{sets}{others}"))
 }
 
 #[cfg(test)]

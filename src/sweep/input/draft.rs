@@ -1,6 +1,12 @@
 //! Reads a sweep file.
+//!
+//! - `beyond`: what a sweep with memory, latency or lags cannot have
+//! - `checks`: whether what it says fits together
+//! - `of_system`: whether a sweep of a system fits together
 
+mod beyond;
 mod checks;
+mod of_system;
 
 use std::ops::Range;
 
@@ -8,14 +14,17 @@ use super::axis::{Axis, MOST_POINTS};
 use super::basin::BasinKeys;
 use super::field::Field;
 use super::given::{GivenParameters, read_units};
+use super::keys::{SWEEP, names};
 use super::limit_spec::LimitDraft;
 use super::parameter::Parameter;
+use super::quantity::Quantity;
 use super::search::LIMIT;
 use super::simulation::{DISTURBED, Simulation};
-use super::spec::SweepSpec;
+use super::spec::{SweepSpec, beyond_letter};
 use super::spec_values::{
     read_degrees, read_field, read_fields, read_list, read_range, read_tolerance,
 };
+use super::system_draft::SystemDraft;
 use super::toml_reader::{Entry, SpecError, entries, parse};
 use super::units::Units;
 use super::vc_keys::VcKeys;
@@ -45,20 +54,34 @@ impl SweepSpec {
     pub fn read(text: &str, most_points: u64) -> Result<Self, SpecError> {
         let document = parse(text)?;
         let mut draft = Draft::default();
-        for entry in entries(document.get_ref(), "") {
+        let all = entries(document.get_ref(), "");
+        // What names mean depends on it, wherever it stands.
+        if let Some(system) = all.iter().find(|entry| entry.key == "system") {
+            draft.system = Some(SystemDraft::read(system, text)?);
+        }
+        for entry in all {
             draft.limit.note_key(&entry);
+            if draft.system.is_some() {
+                SystemDraft::check_key(&entry)?;
+            }
             match entry.key {
+                "system" => {}
                 "title" => entry.line()?.clone_into(&mut draft.title),
                 "protocol" if entry.string()? == LIMIT => {
                     draft.is_limit = true;
                 }
                 "picture" => draft.picture = Some((read_field(&entry)?, entry.span.clone())),
                 "fields" => draft.read_fields(&entry)?,
-                "boundaries" => draft.boundaries = Some(entry.boolean()?),
+                "boundaries" => {
+                    draft.boundaries = Some(entry.boolean()?);
+                }
                 "degree_of_stability" => draft.read_degrees(&entry)?,
                 "best" => draft.best = entry.boolean()?.then(|| entry.key_span.clone()),
                 "axes" => draft.read_axes(&entry, most_points.min(MOST_POINTS))?,
-                "fixed" => draft.given.read_fixed(&entry, |_| true)?,
+                "fixed" => match &mut draft.system {
+                    Some(system) => system.read_fixed(&entry)?,
+                    None => draft.given.read_fixed(&entry, |_| true)?,
+                },
                 "friction" => draft.given.read_friction(&entry)?,
                 "start" => draft.given.read_start(&entry)?,
                 "simulation" => draft.read_simulation(&entry)?,
@@ -72,33 +95,12 @@ impl SweepSpec {
                          in a sweep, [simulation] has the horizon and the steps",
                     ));
                 }
-                _ => return Err(entry.unknown(&KEYS)),
+                _ => return Err(entry.unknown(&names(&SWEEP))),
             }
         }
         draft.finish(text)
     }
 }
-
-/// The keys of a sweep file.
-const KEYS: [&str; 17] = [
-    "title",
-    "picture",
-    "fields",
-    "boundaries",
-    "degree_of_stability",
-    "best",
-    VcKeys::KEYS[0],
-    VcKeys::KEYS[1],
-    VcKeys::KEYS[2],
-    "axes",
-    "fixed",
-    "friction",
-    "start",
-    "simulation",
-    "basin",
-    "units",
-    "tolerance",
-];
 
 /// What was read of a sweep file, and where, until it is known to fit together.
 #[derive(Default)]
@@ -126,6 +128,8 @@ struct Draft {
     degrees_place: Option<Range<usize>>,
     /// Where the best settings are asked for, if they are.
     best: Option<Range<usize>>,
+    /// The system, where it is not the letter's.
+    system: Option<SystemDraft>,
     axes: Vec<Axis>,
     axes_place: Option<Range<usize>>,
     given: GivenParameters,
@@ -173,9 +177,7 @@ impl Draft {
     fn read_axes(&mut self, axes: &Entry, most_points: u64) -> Result<(), SpecError> {
         self.axes_place = Some(axes.key_span.clone());
         for entry in axes.table()? {
-            let parameter = Parameter::from_name(entry.key)
-                .ok_or_else(|| entry.unknown(&Parameter::ALL.map(Parameter::name)))?;
-            self.given.give(&entry, parameter)?;
+            let parameter = self.give_axis(&entry)?;
             let points: u64 = self.axes.iter().map(|axis| axis.len() as u64).sum();
             if points > MOST_POINTS_TOGETHER {
                 let message = format!(
@@ -187,12 +189,23 @@ impl Draft {
             let values = if entry.is_table() {
                 read_range(&entry, most_points)?
             } else {
-                read_list(&entry, parameter)?
+                read_list(&entry, &parameter)?
             };
             let axis = Axis::new(parameter, values).map_err(|e| entry.error(e.0))?;
             self.axes.push(axis);
         }
         Ok(())
+    }
+
+    /// The parameter of an axis.
+    fn give_axis(&mut self, entry: &Entry) -> Result<Quantity, SpecError> {
+        if let Some(system) = &mut self.system {
+            return system.give(entry);
+        }
+        let parameter = Parameter::from_name(entry.key)
+            .ok_or_else(|| entry.unknown(&Parameter::ALL.map(Parameter::name)))?;
+        self.given.give(entry, parameter)?;
+        Ok(parameter.into())
     }
 
     fn finish(self, text: &str) -> Result<SweepSpec, SpecError> {
@@ -204,7 +217,9 @@ impl Draft {
                     .help("for example: [axes] tau = { from = 0, to = 12, points = 1201 }")
             });
         }
-        let (fixed, critical, default_fields) = if self.is_limit {
+        let (fixed, critical, default_fields) = if let Some(system) = &self.system {
+            (self.check_system(system)?, None, vec![Field::NUnstable])
+        } else if self.is_limit {
             (
                 self.limit.check(&self.given, self.axes_place.as_ref())?,
                 None,
@@ -218,7 +233,14 @@ impl Draft {
         if critical.is_none() && self.motion_place.is_some() && !self.given.has_start() {
             simulation.disturbance = DISTURBED;
         }
-        let fields = self.fields.unwrap_or(default_fields);
+        let mut fields = self.fields.unwrap_or(default_fields);
+        let beyond = fixed.has_state()
+            || fixed.system().is_some()
+            || beyond_letter(&fixed, &self.axes, &Parameter::BEYOND_LETTER).is_some();
+        if beyond && fields.iter().any(|f| f.of_sliding()) && !fields.contains(&Field::Reason) {
+            fields.push(Field::Reason);
+            fields.sort_unstable();
+        }
         let basin = match &self.basin_place {
             Some(_) => Some(self.basin.basin()?),
             None => None,

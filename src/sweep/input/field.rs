@@ -5,9 +5,10 @@
 use super::catalogue::catalogue;
 use super::nearest::did_you_mean;
 use super::regime_at_v0::RegimeAtV0;
-use super::source::{OfMargins, OfRoots, Slope, Source};
+use super::source::{OfLinear, OfMargins, OfRoots, Slope, Source};
 use super::units::Units;
 use crate::critical::{CriticalVelocity, Method, Transition};
+use crate::linear::general::Reason;
 use crate::slip::outcome::Outcome;
 
 /// How a field is stored.
@@ -285,6 +286,28 @@ catalogue! {
             ),
             ..ROW
         };
+        /// Why the cell is not like others: 0, or the number of a [`Reason`].
+        Reason = Row {
+            name: "reason",
+            long_name: "why the linear stability of the cell is not like that of others",
+            short_name: "reason",
+            storage: Storage::Kind,
+            kinds: Some(|| {
+                let names = Reason::ALL.into_iter().map(Reason::name);
+                std::iter::once("none").chain(names).collect()
+            }),
+            source: Source::Linear(OfLinear::Reason),
+            comment: Some(
+                "root-at-origin, root-on-axis: at every delay a root lies on the imaginary axis, \
+                 marginal in status; infinite: infinitely many unstable roots, n_unstable has no \
+                 value; neutral-limit: roots accumulate at the imaginary axis, it is never \
+                 exponentially stable; no-rightmost-root: the abscissa is the essential one, a \
+                 supremum, and there are no other roots, told beside fields of roots; \
+                 degree-unknown: the highest coefficient is within rounding of 0; refused: the \
+                 imaginary axis is crossed everywhere or nowhere",
+            ),
+            ..ROW
+        };
         /// Signed distance in τ to the nearest change of stability.
         DelayMargin = Row {
             name: "delay_margin",
@@ -400,6 +423,33 @@ catalogue! {
             comment: Some("in units of max(1/t, |abscissa|), t = sqrt(mass/stiffness)"),
             ..ROW
         };
+        /// The real part at which roots accumulate.
+        EssentialAbscissa = Row {
+            name: "essential_abscissa",
+            long_name: "real part at which infinitely many characteristic roots accumulate",
+            short_name: "essential abscissa",
+            measure: RATE,
+            source: Source::Linear(OfLinear::EssentialAbscissa),
+            spread: Spread::BetterBelow,
+            comment: Some(
+                "log|memory|/tau; -infinity where they accumulate nowhere: without memory or delay",
+            ),
+            ..ROW
+        };
+        /// Stiffness over the critical one of rate-and-state friction.
+        StiffnessRatio = Row {
+            name: "stiffness_ratio",
+            long_name: "stiffness over the critical one, below which steady sliding without \
+                        control is unstable",
+            short_name: "κ/κ_c",
+            source: Source::Linear(OfLinear::StiffnessRatio),
+            spread: Spread::Magnitudes,
+            comment: Some(
+                "of rate-and-state friction; infinity where evolution_effect is not larger than \
+                 direct_effect: stable at every stiffness",
+            ),
+            ..ROW
+        };
         /// The factor of both gains, below 1, at which sliding is no longer stable.
         GainMarginLower = Row {
             name: "gain_margin_lower",
@@ -433,10 +483,11 @@ catalogue! {
         /// The largest further latency of the feedback.
         LatencyMargin = Row {
             name: "latency_margin",
-            long_name: "largest further latency of the feedback up to which sliding stays stable",
+            long_name: "largest latency of the feedback, counted from none, up to which sliding \
+                        stays stable",
             short_name: "latency margin",
             measure: TIME,
-            comment: Some("infinity where no latency matters; 0 where unstable"),
+            comment: Some("infinity where no latency matters; 0 where unstable without latency"),
             spread: Spread::LongTail,
             stable: Some(|value| value > 0.0),
             ..margin(OfMargins::Latency)
@@ -849,7 +900,7 @@ impl Field {
     pub const fn of_sliding(self) -> bool {
         matches!(
             self.source(),
-            Source::Line | Source::Roots(_) | Source::Margins(_)
+            Source::Line | Source::Roots(_) | Source::Linear(_) | Source::Margins(_)
         )
     }
 
@@ -940,6 +991,17 @@ fn range(first: Field, last: Field) -> String {
 mod tests {
     use super::*;
     use crate::linear::track::MOST_ROOTS;
+
+    /// In the order in which a tile has its columns, and so in which a map takes them.
+    #[test]
+    fn counts_stand_before_kinds_and_kinds_before_numbers() {
+        let place = |field: Field| match field.storage() {
+            Storage::Count => 0,
+            Storage::Kind | Storage::Few => 1,
+            Storage::Real => 2,
+        };
+        assert!(Field::ALL.is_sorted_by_key(|field| place(*field)));
+    }
 
     #[test]
     fn every_field_has_a_name_and_a_meaning_of_its_own() {
@@ -1034,14 +1096,15 @@ mod tests {
     fn numbered_names_are_listed_as_ranges() {
         assert_eq!(
             known_fields(),
-            "n_unstable, outcome, method, regime, windows, delay_margin, abscissa, abscissa_2 … \
-             abscissa_8, frequency, frequency_2 … frequency_8, relaxation_time, \
+            "n_unstable, outcome, method, regime, windows, reason, delay_margin, abscissa, \
+             abscissa_2 … abscissa_8, frequency, frequency_2 … frequency_8, relaxation_time, \
              d_abscissa_d_tau, d_abscissa_d_alpha_v, d_abscissa_d_alpha_n, \
-             d_abscissa_d_mu_prime, certificate_margin, gain_margin_lower, gain_margin_upper, \
-             phase_margin, latency_margin, stability_radius, settle_time, last_release, n_min, \
-             peak_force, basin_share, basin_share_error, basin_share_upper, vc, vc_lower, \
-             vc_upper, v_liftoff, stick_time, slip_time, v_smooth, vc_over_vtilde, omega0_T, \
-             liftoff_over_vtilde, vc_weak_control, vc_strong_control, weak_control_error, \
+             d_abscissa_d_mu_prime, certificate_margin, essential_abscissa, stiffness_ratio, \
+             gain_margin_lower, gain_margin_upper, phase_margin, latency_margin, \
+             stability_radius, settle_time, last_release, n_min, peak_force, basin_share, \
+             basin_share_error, basin_share_upper, vc, vc_lower, vc_upper, v_liftoff, stick_time, \
+             slip_time, v_smooth, vc_over_vtilde, omega0_T, liftoff_over_vtilde, \
+             vc_weak_control, vc_strong_control, weak_control_error, \
              strong_control_error"
         );
     }

@@ -3,8 +3,9 @@
 
 use std::ops::Range;
 
-use super::friction_table::{GivenTable, PAIRS};
-use super::law_kind::{Formula, LawKind};
+use super::friction_table::GivenTable;
+use super::keys::{FRICTION_TABLE, UNITS, names};
+use super::law_kind::{Formula, LawKind, NO_MOTIONS};
 use super::nearest::did_you_mean;
 use super::parameter::Parameter;
 use super::setting::{GivenError, Setting};
@@ -107,10 +108,11 @@ impl GivenParameters {
     /// Reads the table `[friction]`.
     pub(super) fn read_friction(&mut self, friction: &Entry) -> Result<(), SpecError> {
         let of_laws = Parameter::ALL.into_iter().filter(|p| p.of_friction_law());
-        let names: Vec<_> = ["law"]
+        let [law, table @ ..] = FRICTION_TABLE.map(|key| key.name);
+        let known: Vec<_> = [law]
             .into_iter()
             .chain(of_laws.map(Parameter::name))
-            .chain(["speeds", "mu_k", PAIRS])
+            .chain(table)
             .collect();
         let mut law = None;
         for entry in friction.table()? {
@@ -118,7 +120,7 @@ impl GivenParameters {
                 Some(parameter) => self.read_value(&entry, parameter)?,
                 None if entry.key == "law" => law = Some(entry),
                 None if self.table.read(&entry)? => {}
-                None => return Err(entry.unknown(&names)),
+                None => return Err(entry.unknown(&known)),
             }
         }
         let Some(law) = law else {
@@ -149,6 +151,17 @@ impl GivenParameters {
             );
         }
         Ok(LawKind::Formula(law))
+    }
+
+    /// Motions can be followed under the law, as far as that alone tells.
+    pub(super) fn check_motions(&self) -> Result<(), SpecError> {
+        match &self.law {
+            Some((law, place)) if law.has_state() => {
+                let message = format!("the {} law has no motions here", law.name());
+                Err(SpecError::at(place.clone(), message).help(NO_MOTIONS))
+            }
+            _ => Ok(()),
+        }
     }
 
     /// Where to tell that the friction law is ill-posed: at what it is at rest, or at its name.
@@ -226,7 +239,7 @@ pub(super) fn read_units(units: &Entry) -> Result<Units, SpecError> {
             "force" => &mut force,
             "length" => &mut length,
             "time" => &mut time,
-            _ => return Err(entry.unknown(&["force", "length", "time"])),
+            _ => return Err(entry.unknown(&names(&UNITS))),
         };
         let name = entry.string()?;
         Units::check_name(name).map_err(|why| entry.error(why))?;

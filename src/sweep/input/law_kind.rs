@@ -3,7 +3,7 @@
 use super::catalogue::catalogue;
 use super::parameter::Parameter;
 use super::setting::Setting;
-use crate::model::{FrictionLaw, ModelError, Table};
+use crate::model::{FrictionLaw, ModelError, RateAndState, Table};
 
 /// What there is to know of a law that parameters alone describe.
 struct Row {
@@ -53,6 +53,20 @@ catalogue! {
                 FrictionLaw::stribeck(mu0, v_s, at.get(Parameter::MuS))
             },
         };
+        /// [`RateAndState`], which is no function of the velocity alone.
+        RateAndState = Row {
+            name: "rate-and-state",
+            formula: "μ = μ0 + A_f ln(v/v*) + B_f ln(v*θ/D_c)",
+            parameters: &[
+                Parameter::Mu0,
+                Parameter::VStar,
+                Parameter::DirectEffect,
+                Parameter::EvolutionEffect,
+                Parameter::SlipDistance,
+            ],
+            needed: 5,
+            law: |_| Err(ModelError::of_law(OF_VELOCITY)),
+        };
     }
 }
 
@@ -96,6 +110,12 @@ pub enum LawKind {
     Table(Table),
 }
 
+/// What a law with a state is not.
+pub(super) const OF_VELOCITY: &str = "a law of the velocity alone";
+/// Why no motion is followed under a law with a state.
+pub const NO_MOTIONS: &str = "its coefficient has no value at rest, so that sticks are slow slips: \
+    motions under it are not followed";
+
 impl LawKind {
     /// The name of [`LawKind::Table`].
     pub const TABLE: &str = "table";
@@ -116,18 +136,50 @@ impl LawKind {
         formulas.chain([Self::TABLE]).collect::<Vec<_>>().join(", ")
     }
 
-    /// The names of the laws that a parameter describes: of all for μ_S.
+    /// The names of the laws that a parameter describes.
     #[must_use]
     pub fn with(parameter: Parameter) -> String {
-        if parameter == Parameter::MuS {
-            return Self::names();
-        }
-        let described = |law: &Formula| law.row().parameters.contains(&parameter);
-        let laws = Formula::ALL.into_iter().filter(described);
-        laws.map(Formula::name).collect::<Vec<_>>().join(", ")
+        let described = |law: &Formula| {
+            let law = Self::Formula(*law);
+            law.parameters().contains(&parameter) || law.optional() == parameter
+        };
+        let laws = Formula::ALL
+            .into_iter()
+            .filter(described)
+            .map(Formula::name);
+        let table = (parameter == Parameter::MuS).then_some(Self::TABLE);
+        laws.chain(table).collect::<Vec<_>>().join(", ")
     }
 
-    /// The parameters that describe the law, besides μ_S.
+    /// The one parameter of the law that need not be given.
+    #[must_use]
+    pub const fn optional(&self) -> Parameter {
+        match self.has_state() {
+            true => Parameter::LoadMemory,
+            false => Parameter::MuS,
+        }
+    }
+
+    /// Whether the coefficient depends on a state besides the velocity: then there is no
+    /// [`FrictionLaw`], and no motion is followed.
+    #[must_use]
+    pub const fn has_state(&self) -> bool {
+        matches!(self, Self::Formula(Formula::RateAndState))
+    }
+
+    /// The law with its state and the parameters of a setting; none where it has no state.
+    pub(super) fn with_state(&self, setting: &Setting) -> Option<RateAndState> {
+        self.has_state().then(|| RateAndState {
+            mu0: setting.get(Parameter::Mu0),
+            v_star: setting.get(Parameter::VStar),
+            direct_effect: setting.get(Parameter::DirectEffect),
+            evolution_effect: setting.get(Parameter::EvolutionEffect),
+            slip_distance: setting.get(Parameter::SlipDistance),
+            load_memory: setting.get(Parameter::LoadMemory),
+        })
+    }
+
+    /// The parameters that describe the law and have to be given, see [`LawKind::needed`].
     #[must_use]
     pub const fn parameters(&self) -> &'static [Parameter] {
         match self {

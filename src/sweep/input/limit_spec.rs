@@ -39,6 +39,16 @@ impl LimitDraft {
         Ok(())
     }
 
+    /// All fields that are asked for, with their places.
+    pub(super) fn fields(&self) -> impl Iterator<Item = &(Field, Range<usize>)> {
+        self.fields.iter()
+    }
+
+    /// The first field that is asked for and of this kind, and where.
+    pub(super) fn first_field(&self, of: fn(Field) -> bool) -> Option<&(Field, Range<usize>)> {
+        self.fields.iter().find(|(field, _)| of(*field))
+    }
+
     /// The parameters of a sweep of the limit that are no axes; what is missing is told at `axes`.
     pub(super) fn check(
         &self,

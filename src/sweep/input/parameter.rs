@@ -17,6 +17,8 @@ enum Range {
     NotNegative,
     Positive,
     Part,
+    /// Between −1 and 1, both left out.
+    WithinOne,
     Negative,
 }
 
@@ -94,6 +96,17 @@ const SLOPE: [i32; 3] = [0, -1, 1];
 const STIFFNESS: [i32; 3] = [1, -1, 0];
 const TIME: [i32; 3] = [0, 0, 1];
 const VELOCITY: [i32; 3] = [0, 1, -1];
+
+/// A lag of first order.
+const LAG: Row = Row {
+    dimension: TIME,
+    range: Range::NotNegative,
+    default: Some(0.0),
+    ..ROW
+};
+
+/// The largest number below 1.
+const BELOW_ONE: f64 = 1.0 - 0.5 * f64::EPSILON;
 
 catalogue! {
     /// A parameter of the model, of the friction law or of the control.
@@ -218,6 +231,63 @@ catalogue! {
             }),
             ..ROW
         };
+        /// R, the memory of the feedback.
+        Memory = Row {
+            name: "memory",
+            symbol: "R",
+            long_name: "share of the feedback that is fed back again one delay later",
+            range: Range::WithinOne,
+            default: Some(0.0),
+            flag: Some(Flag {
+                value: "R",
+                help: "R, share of the feedback fed back again one delay later [default: 0]",
+            }),
+            ..ROW
+        };
+        /// δ, the latency of the feedback.
+        Latency = Row {
+            symbol: "δ",
+            name: "latency",
+            long_name: "latency of the feedback",
+            flag: Some(Flag {
+                value: "T",
+                help: "δ, latency: time until the feedback acts [default: 0]",
+            }),
+            ..LAG
+        };
+        /// T_a, the lag of the load behind its command.
+        LoadLag = Row {
+            symbol: "T_a",
+            name: "load_lag",
+            long_name: "time constant with which the load follows its command",
+            flag: Some(Flag {
+                value: "T",
+                help: "T_a, time constant with which the load follows its command [default: 0]",
+            }),
+            ..LAG
+        };
+        /// T_v, the lag of the pulling velocity behind its command.
+        VelocityLag = Row {
+            symbol: "T_v",
+            name: "velocity_lag",
+            long_name: "time constant with which the pulling velocity follows its command",
+            flag: Some(Flag {
+                value: "T",
+                help: "T_v, time constant with which the velocity follows its command [default: 0]",
+            }),
+            ..LAG
+        };
+        /// T_s, the lag of the sensor behind the elongation.
+        SensorLag = Row {
+            symbol: "T_s",
+            name: "sensor_lag",
+            long_name: "time constant with which the sensor follows the elongation",
+            flag: Some(Flag {
+                value: "T",
+                help: "T_s, time constant with which the sensor follows elongation [default: 0]",
+            }),
+            ..LAG
+        };
         /// μ0 of a friction law.
         Mu0 = Row {
             name: "mu0",
@@ -254,6 +324,71 @@ catalogue! {
             flag: Some(Flag {
                 value: "B",
                 help: "Slope of the weakening law at rest, −μ0/v_s, instead of --mu0 or --v-s",
+            }),
+            ..ROW
+        };
+        /// v* of rate-and-state friction.
+        VStar = Row {
+            name: "v_star",
+            symbol: "v*",
+            long_name: "velocity at which steady sliding has the friction coefficient mu0",
+            dimension: VELOCITY,
+            group: Group::Law,
+            flag: Some(Flag {
+                value: "V_STAR",
+                help: "v* of rate-and-state friction, where steady sliding has μ0",
+            }),
+            ..ROW
+        };
+        /// A_f, the direct effect.
+        DirectEffect = Row {
+            name: "direct_effect",
+            symbol: "A_f",
+            long_name: "direct effect of the velocity on the friction coefficient",
+            group: Group::Law,
+            flag: Some(Flag {
+                value: "A",
+                help: "A_f of rate-and-state friction, the direct effect",
+            }),
+            ..ROW
+        };
+        /// B_f, the effect of evolution.
+        EvolutionEffect = Row {
+            name: "evolution_effect",
+            symbol: "B_f",
+            long_name: "effect of the evolving state on the friction coefficient",
+            group: Group::Law,
+            flag: Some(Flag {
+                value: "B",
+                help: "B_f of rate-and-state friction, the effect of evolution",
+            }),
+            ..ROW
+        };
+        /// D_c, the distance in which the state evolves.
+        SlipDistance = Row {
+            name: "slip_distance",
+            symbol: "D_c",
+            long_name: "slip distance in which the state of friction evolves",
+            dimension: [0, 1, 0],
+            group: Group::Law,
+            flag: Some(Flag {
+                value: "D_C",
+                help: "D_c of rate-and-state friction, the distance in which the state evolves",
+            }),
+            ..ROW
+        };
+        /// c: how much a change of the load takes from the state.
+        LoadMemory = Row {
+            name: "load_memory",
+            symbol: "c",
+            long_name: "share of a change of the load that the state of friction takes up at once",
+            range: Range::NotNegative,
+            default: Some(0.0),
+            group: Group::Law,
+            flag: Some(Flag {
+                value: "C",
+                help: "c of rate-and-state friction: how much the state takes up of a change of \
+                    the load [default: 0]",
             }),
             ..ROW
         };
@@ -398,6 +533,7 @@ impl Parameter {
             Range::NotNegative => [0.0, LARGEST],
             Range::Positive => [1.0 / LARGEST, LARGEST],
             Range::Part => [1.0 / LARGEST, 1.0],
+            Range::WithinOne => [-BELOW_ONE, BELOW_ONE],
             Range::Negative => [-LARGEST, -1.0 / LARGEST],
         }
     }
@@ -406,6 +542,38 @@ impl Parameter {
     #[must_use]
     pub const fn of_friction_law(self) -> bool {
         matches!(self.group(), Group::Law)
+    }
+
+    /// Memory, latency and lags: what the letter's feedback has not. At 0, their default, there is
+    /// none of it, and nothing is said of them.
+    pub const BEYOND_LETTER: [Self; 5] = [
+        Self::Memory,
+        Self::Latency,
+        Self::LoadLag,
+        Self::VelocityLag,
+        Self::SensorLag,
+    ];
+
+    /// The lags of load, velocity and sensor.
+    pub const LAGS: [Self; 3] = [Self::LoadLag, Self::VelocityLag, Self::SensorLag];
+
+    /// The parameters of every system from a file besides its own: the delay, in feedback form also
+    /// memory and latency.
+    #[must_use]
+    pub const fn of_systems(feedback: bool) -> &'static [Self] {
+        match feedback {
+            true => &[Self::Tau, Self::Memory, Self::Latency],
+            false => &[Self::Tau],
+        }
+    }
+
+    /// True for [`Parameter::BEYOND_LETTER`].
+    #[must_use]
+    pub const fn beyond_letter(self) -> bool {
+        matches!(
+            self,
+            Self::Memory | Self::Latency | Self::LoadLag | Self::VelocityLag | Self::SensorLag
+        )
     }
 
     /// True for the parameters of the start of a motion.
@@ -428,6 +596,7 @@ impl Parameter {
             Range::NotNegative => "0 or more, at most 1e12",
             Range::Positive => "greater than 0, between 1e-12 and 1e12",
             Range::Part => "greater than 0, between 1e-12 and 1",
+            Range::WithinOne => "greater than -1 and less than 1",
             Range::Negative => "less than 0, between -1e12 and -1e-12",
         }
     }

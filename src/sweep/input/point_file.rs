@@ -132,6 +132,7 @@ fn check_critical_of(given: &GivenParameters, setting: &mut Setting) -> Result<(
         return Err(SpecError::whole(message)
             .help("for example: [friction] law = \"weakening\", mu0 = 0.5, v_s = 0.5"));
     }
+    given.check_motions()?;
     for parameter in [Parameter::XDot0, Parameter::A0] {
         if let Some(place) = given.place(parameter) {
             let message = format!("{} has no meaning here", parameter.name());

@@ -1,10 +1,18 @@
 //! One value for every parameter, and what has to be given for it.
 
 use std::cmp::Ordering;
+use std::sync::Arc;
 
-use super::law_kind::LawKind;
+use super::law_kind::{LawKind, OF_VELOCITY};
+use super::own_system::OwnSystem;
 use super::parameter::{Group, Parameter};
-use crate::model::{Control, FrictionLaw, Groups, ModelError, Oscillator, SlidingPoint};
+use super::quantity::Quantity;
+use super::system::parameter::OwnParameter;
+use super::system::{Evaluation, SystemModel, Undefined};
+use crate::linear::general::System;
+use crate::model::{
+    Control, FrictionLaw, Groups, ModelError, Oscillator, RateAndState, SlidingPoint,
+};
 
 /// Why a set of given parameters does not make a setting.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -88,6 +96,7 @@ impl GivenError {
 pub struct Setting {
     values: [f64; Parameter::ALL.len()],
     law: Option<LawKind>,
+    system: Option<OwnSystem>,
 }
 
 impl Setting {
@@ -96,7 +105,75 @@ impl Setting {
     #[must_use]
     pub fn new(law: Option<LawKind>) -> Self {
         let values = Parameter::ALL.map(|p| p.default_value().unwrap_or(f64::NAN));
-        Self { values, law }
+        Self {
+            values,
+            law,
+            system: None,
+        }
+    }
+
+    /// The default values of a system from a file; its delay is NaN until it is set.
+    #[must_use]
+    pub fn of_system(model: Arc<SystemModel>) -> Self {
+        Self {
+            system: Some(OwnSystem::new(model)),
+            ..Self::new(None)
+        }
+    }
+
+    /// The system from a file, where it is not the letter's.
+    #[must_use]
+    pub fn system(&self) -> Option<&SystemModel> {
+        self.system.as_ref().map(|system| &*system.model)
+    }
+
+    /// The own parameters of the system, with their values.
+    pub fn own(&self) -> impl Iterator<Item = (&Arc<OwnParameter>, f64)> {
+        self.system.iter().flat_map(OwnSystem::parameters)
+    }
+
+    /// Values at which the system from a file is evaluated; none where it is the letter's.
+    #[must_use]
+    pub fn evaluation(&self) -> Option<(&SystemModel, Evaluation)> {
+        let system = self.system.as_ref()?;
+        let mut at = Evaluation::default();
+        system.put_into(&mut at, self.every_systems());
+        Some((&system.model, at))
+    }
+
+    /// The system from a file at this setting, evaluated in `at`; none where it is the letter's.
+    ///
+    /// # Errors
+    /// Where an expression has no finite value.
+    pub fn own_system(&self, at: &mut Evaluation) -> Option<Result<System, Undefined>> {
+        let system = self.system.as_ref()?;
+        system.put_into(at, self.every_systems());
+        Some(system.model.at(at))
+    }
+
+    /// What every system has besides its own: delay, memory and latency.
+    fn every_systems(&self) -> [f64; 3] {
+        [Parameter::Tau, Parameter::Memory, Parameter::Latency].map(|p| self.get(p))
+    }
+
+    /// The value of what an axis is of.
+    #[must_use]
+    pub fn value_of(&self, quantity: &Quantity) -> f64 {
+        match (quantity, &self.system) {
+            (Quantity::Known(parameter), _) => self.get(*parameter),
+            (Quantity::Own(own), Some(system)) => system.get(own),
+            (Quantity::Own(_), None) => f64::NAN,
+        }
+    }
+
+    /// Sets the value of what an axis is of.
+    #[inline]
+    pub fn vary(&mut self, quantity: &Quantity, value: f64) {
+        match (quantity, &mut self.system) {
+            (Quantity::Known(parameter), _) => self.set(*parameter, value),
+            (Quantity::Own(own), Some(system)) => system.set(own, value),
+            (Quantity::Own(_), None) => {}
+        }
     }
 
     /// The value of a parameter.
@@ -123,8 +200,59 @@ impl Setting {
     /// [`SweepSpec::uses`](super::spec::SweepSpec::uses).
     #[must_use]
     pub fn uses(&self, parameter: Parameter) -> bool {
-        let taken = parameter.of_start() || Self::takes(self.law.as_ref(), parameter);
-        taken && !self.get(parameter).is_nan()
+        let taken = match &self.system {
+            Some(system) => Parameter::of_systems(system.model.is_feedback()).contains(&parameter),
+            None => parameter.of_start() || Self::takes(self.law.as_ref(), parameter),
+        };
+        let value = self.get(parameter);
+        taken && !value.is_nan() && !(parameter.beyond_letter() && value == 0.0)
+    }
+
+    /// The first of these parameters by which the setting is beyond the letter's own system. What
+    /// nothing feeds back is not remembered either, and comes to nothing late: without gains memory
+    /// and latency are left aside.
+    #[must_use]
+    pub fn beyond_letter(&self, of: &[Parameter]) -> Option<Parameter> {
+        let idle = self.control() == Control::default();
+        let left_aside = |p: Parameter| idle && matches!(p, Parameter::Memory | Parameter::Latency);
+        let mut of = of.iter().copied();
+        of.find(|&p| self.get(p) != 0.0 && !left_aside(p))
+    }
+
+    /// Whether friction has a state besides the velocity.
+    #[must_use]
+    pub fn has_state(&self) -> bool {
+        self.law.as_ref().is_some_and(LawKind::has_state)
+    }
+
+    /// Refuses what is beyond the letter's own system by one of these parameters, for computations
+    /// that know nothing of them; `allowed` says what is allowed there, and where.
+    ///
+    /// # Errors
+    /// Names the first of them that is not 0.
+    pub fn check_of_letter(
+        &self,
+        of: &[Parameter],
+        allowed: &'static str,
+    ) -> Result<(), ModelError> {
+        if self.system.is_some() {
+            return Err(ModelError {
+                parameter: "system",
+                value: f64::NAN,
+                allowed: "the letter's where a block on its spring is meant",
+            });
+        }
+        if self.has_state() {
+            return Err(ModelError::of_law(OF_VELOCITY));
+        }
+        match self.beyond_letter(of) {
+            Some(parameter) => Err(ModelError {
+                parameter: parameter.name(),
+                value: self.get(parameter),
+                allowed,
+            }),
+            None => Ok(()),
+        }
     }
 
     /// True for the parameters that a setting with this law can have, its start left aside.
@@ -133,7 +261,7 @@ impl Setting {
             (_, Group::Limit) => false,
             (Some(_), Group::Sliding) => false,
             (Some(law), Group::Law) => {
-                parameter == Parameter::MuS || law.parameters().contains(&parameter)
+                parameter == law.optional() || law.parameters().contains(&parameter)
             }
             (None, Group::Law | Group::Pull) => false,
             _ => true,
@@ -177,12 +305,28 @@ impl Setting {
         }
     }
 
-    /// The friction law with its parameters.
+    /// The friction law with its parameters; none where there is none of the velocity alone.
     ///
     /// # Errors
     /// When the law is ill-posed, see [`FrictionLaw`].
     pub fn friction_law(&self) -> Result<Option<FrictionLaw>, ModelError> {
-        self.law.as_ref().map(|law| law.at(self)).transpose()
+        let law = self.law.as_ref().filter(|law| !law.has_state());
+        law.map(|law| law.at(self)).transpose()
+    }
+
+    /// The law of rate-and-state friction, where it is that.
+    #[must_use]
+    pub fn rate_and_state(&self) -> Option<RateAndState> {
+        self.law.as_ref()?.with_state(self)
+    }
+
+    /// κ/κ_c of rate-and-state friction, infinite where sliding without control is stable at every
+    /// stiffness; none where it is not that law.
+    #[must_use]
+    pub fn stiffness_ratio(&self) -> Option<f64> {
+        let (law, oscillator) = (self.rate_and_state()?, self.oscillator().ok()?);
+        let groups = law.groups(&oscillator, self.get(Parameter::V0));
+        Some(groups.stiffness_ratio())
     }
 
     /// μ_K and μ_K′ at the sliding velocity: from the friction law, or as given.
@@ -190,6 +334,9 @@ impl Setting {
     /// # Errors
     /// When the law is ill-posed.
     pub fn sliding_point(&self) -> Result<SlidingPoint, ModelError> {
+        if let Some(law) = self.rate_and_state() {
+            return law.steady(self.get(Parameter::V0));
+        }
         match self.friction_law()? {
             Some(law) => SlidingPoint::of_law(&law, self.get(Parameter::V0)),
             None => Ok(SlidingPoint {
@@ -214,8 +361,13 @@ impl Setting {
     /// The dimensionless groups and the unit of time √(M/κ).
     ///
     /// # Errors
-    /// When a parameter is outside the model's range.
+    /// When a parameter is outside the model's range, and for all that has more than these groups:
+    /// memory, latency, lags or a state of friction.
     pub fn groups(&self) -> Result<(Groups, f64), ModelError> {
+        self.check_of_letter(
+            &Parameter::BEYOND_LETTER,
+            "0 in what is known of the letter's own feedback alone",
+        )?;
         let oscillator = self.oscillator()?;
         let groups = oscillator.groups(self.sliding_point()?, self.control());
         Ok((groups, oscillator.time_unit()))
@@ -224,7 +376,8 @@ impl Setting {
     /// Whether there is a delay that nothing acts on: both gains are 0.
     #[must_use]
     pub fn has_idle_delay(&self) -> bool {
-        self.control() == Control::default() && self.get(Parameter::Tau) > 0.0
+        let idle = self.system.is_none() && self.control() == Control::default();
+        idle && self.get(Parameter::Tau) > 0.0
     }
 
     /// Both gains.

@@ -3,6 +3,7 @@
 
 use std::ops::{Range, RangeInclusive};
 
+use super::keys::{SIMULATION, names};
 use super::parameter::{LARGEST, Parameter};
 use super::setting::Setting;
 use super::toml_reader::{Entry, SpecError};
@@ -18,6 +19,13 @@ const STEPS: u64 = 1_000_000;
 const MOST_STEPS: u64 = 1_000_000_000;
 /// Times and lengths that are greater than zero.
 pub(super) const POSITIVE: RangeInclusive<f64> = 1.0 / LARGEST..=LARGEST;
+
+/// What motions do not know.
+pub(crate) const NOT_IN_MOTIONS: &[Parameter] = &[
+    Parameter::LoadLag,
+    Parameter::VelocityLag,
+    Parameter::SensorLag,
+];
 
 /// The keys `horizon`, `tolerance` and `steps`: of a case file, and of the table `[simulation]` of
 /// a sweep file.
@@ -65,9 +73,6 @@ pub fn assumed_start(disturbance: f64) -> Option<String> {
 }
 
 impl Simulation {
-    /// Names of the keys.
-    pub(super) const KEYS: [&'static str; 3] = ["horizon", "tolerance", "steps"];
-
     /// Takes the value of an entry that is one of the keys; false where it is none.
     pub(super) fn read(&mut self, entry: &Entry) -> Result<bool, SpecError> {
         match entry.key {
@@ -94,7 +99,7 @@ impl Simulation {
     pub(super) fn read_table(&mut self, table: &Entry) -> Result<(), SpecError> {
         for entry in table.table()? {
             if !self.read(&entry)? {
-                return Err(entry.unknown(&Self::KEYS));
+                return Err(entry.unknown(&names(&SIMULATION)));
             }
         }
         Ok(())
@@ -125,6 +130,7 @@ impl Simulation {
     /// # Errors
     /// When a parameter is outside the model's range.
     pub fn case(&self, setting: &Setting, switch_on: f64) -> Result<Option<Case>, ModelError> {
+        setting.check_of_letter(NOT_IN_MOTIONS, "0 where motions are followed")?;
         let Some(law) = setting.friction_law()? else {
             return Ok(None);
         };
@@ -157,6 +163,8 @@ impl Simulation {
             law,
             control: setting.control(),
             tau: setting.get(Parameter::Tau),
+            memory: setting.get(Parameter::Memory),
+            latency: setting.get(Parameter::Latency),
             v0,
             switch_on,
             start,

@@ -14,6 +14,8 @@ pub enum Source {
     Line,
     /// The characteristic roots of a cell.
     Roots(OfRoots),
+    /// The linear model of a cell, besides its counts and roots.
+    Linear(OfLinear),
     /// How far a cell is from the boundary of stability.
     Margins(OfMargins),
     /// The motion of the block, which needs a friction law and depends on its start.
@@ -42,6 +44,18 @@ pub enum OfRoots {
     Derivative(Slope),
     /// How far right of the spectral abscissa no root is certified to lie.
     CertificateMargin,
+}
+
+/// What the linear model of a cell tells besides counts and roots.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum OfLinear {
+    /// Why the cell is not like others: 0, or the number of a
+    /// [`Reason`](crate::linear::general::Reason).
+    Reason,
+    /// The real part at which roots accumulate.
+    EssentialAbscissa,
+    /// Stiffness over the critical one of rate-and-state friction.
+    StiffnessRatio,
 }
 
 /// A margin of a cell, see [`margins`](crate::linear::margins).

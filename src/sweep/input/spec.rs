@@ -60,10 +60,13 @@
 //! marginal = 1.4e-14
 //! ```
 
+use std::sync::Arc;
+
 use super::axis::Axis;
 use super::basin::Basin;
 use super::field::Field;
 use super::parameter::Parameter;
+use super::quantity::Quantity;
 use super::search::Search;
 use super::setting::Setting;
 use super::simulation::Simulation;
@@ -116,6 +119,31 @@ impl SweepSpec {
         }
     }
 
+    /// What cells depend on and is no axis, with its value.
+    #[must_use]
+    pub fn scalars(&self) -> Vec<(Quantity, f64)> {
+        let known = Parameter::ALL.into_iter().filter(|p| self.uses(*p));
+        let own = self.fixed.own();
+        let own = own.map(|(own, _)| Quantity::Own(Arc::clone(own)));
+        let all = known.map(Quantity::from).chain(own);
+        let on_axis = |of: &Quantity| self.axes.iter().any(|axis| axis.parameter == *of);
+        all.filter(|of| !on_axis(of))
+            .map(|of| {
+                let value = self.fixed.value_of(&of);
+                (of, value)
+            })
+            .collect()
+    }
+
+    /// Whether some cell has memory, latency, lags or a state of friction: more than the letter's
+    /// own system.
+    #[must_use]
+    pub fn beyond_letter(&self) -> bool {
+        let of = &Parameter::BEYOND_LETTER;
+        let other = self.fixed.has_state() || self.fixed.system().is_some();
+        other || beyond_letter(&self.fixed, &self.axes, of).is_some()
+    }
+
     /// Whether there is a sliding state in each cell whose linear stability can be asked for: a
     /// friction law needs a v0.
     #[must_use]
@@ -151,4 +179,15 @@ impl SweepSpec {
     pub fn follows_motions(&self) -> bool {
         self.critical.is_none() && self.fields.iter().any(|f| f.of_motion())
     }
+}
+
+/// The first of the parameters `of` by which some cell is beyond the letter's own feedback.
+pub(super) fn beyond_letter(fixed: &Setting, axes: &[Axis], of: &[Parameter]) -> Option<Parameter> {
+    let mut most = fixed.clone();
+    for axis in axes {
+        // Any value that is not 0 will do.
+        let value = axis.values.iter().copied().find(|value| *value != 0.0);
+        most.vary(&axis.parameter, value.unwrap_or(0.0));
+    }
+    most.beyond_letter(of)
 }

@@ -2,7 +2,8 @@
 
 use super::axis::{Spacing, spaced};
 use super::field::{Field, fields_meant, known_fields};
-use super::parameter::Parameter;
+use super::keys::{RANGE, TOLERANCE, names};
+use super::quantity::Quantity;
 use super::toml_reader::{Entry, SpecError};
 use crate::linear::MarginalTolerance;
 use crate::model::Shown;
@@ -31,7 +32,7 @@ pub(super) fn read_range(axis: &Entry, most: u64) -> Result<Vec<f64>, SpecError>
                     }
                 }
             }
-            _ => return Err(entry.unknown(&["from", "to", "points", "spacing"])),
+            _ => return Err(entry.unknown(&names(&RANGE))),
         }
     }
     let missing = |name| axis.error(format!("{name} is missing"));
@@ -45,7 +46,7 @@ pub(super) fn read_range(axis: &Entry, most: u64) -> Result<Vec<f64>, SpecError>
     spaced(from, to, points, spacing).map_err(|e| axis.error(e.0))
 }
 
-pub(super) fn read_list(axis: &Entry, parameter: Parameter) -> Result<Vec<f64>, SpecError> {
+pub(super) fn read_list(axis: &Entry, parameter: &Quantity) -> Result<Vec<f64>, SpecError> {
     let elements = axis
         .array()
         .map_err(|e| e.help("an axis is a list of values or { from = …, to = …, points = … }"))?;
@@ -55,7 +56,7 @@ pub(super) fn read_list(axis: &Entry, parameter: Parameter) -> Result<Vec<f64>, 
             let value = element.number()?;
             parameter
                 .check(value)
-                .map_err(|e| SpecError::at(element.span.clone(), e.to_string()))
+                .map_err(|why| SpecError::at(element.span.clone(), why))
         })
         .collect()
 }
@@ -129,7 +130,7 @@ pub(super) fn read_tolerance(tolerance: &Entry) -> Result<MarginalTolerance, Spe
             "marginal" => {
                 result = MarginalTolerance(entry.number_within(f64::EPSILON..=0.01)?);
             }
-            _ => return Err(entry.unknown(&["marginal"])),
+            _ => return Err(entry.unknown(&names(&TOLERANCE))),
         }
     }
     Ok(result)

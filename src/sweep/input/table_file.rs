@@ -1,30 +1,56 @@
-//! A friction law whose points stand in a file of their own: `table = "curve.csv"` of a sweep or
-//! case file. They are put into its text, so that what is stored with a map or trace is complete.
+//! What stands in a file of its own: the points of a friction law, `table = "curve.csv"` of a sweep
+//! or case file, or a system, `system = "turning.toml"` of a sweep file. It is put into the text,
+//! so that what is stored with a map or trace is complete.
 
 use std::ops::Range;
 
 use super::friction_table::{PAIRS, table_of_columns};
+use super::system::{SystemModel, shipped};
 use super::toml_reader::{Entry, SpecError, entries, parse};
 
-/// A text with the points in the place of the file's name.
+/// A text with what stands in other files in the place of their names.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Inlined {
     /// The text that is read and stored.
     pub text: String,
-    /// Where the name stood in the text as it was written, and where the points stand now.
+    /// Where the name stood in the text as it was written, and where what it names stands now.
     places: Option<(Range<usize>, Range<usize>)>,
 }
 
+/// Why a text with what it names cannot be had.
+#[derive(Debug, Clone, PartialEq)]
+pub enum NotInlined {
+    /// At a place of the text.
+    Here(SpecError),
+    /// At a place of a file that it names.
+    There {
+        /// The name of that file.
+        name: String,
+        /// Its text.
+        text: String,
+        /// What is wrong there.
+        error: SpecError,
+    },
+}
+
+impl From<SpecError> for NotInlined {
+    fn from(error: SpecError) -> Self {
+        Self::Here(error)
+    }
+}
+
 impl Inlined {
-    /// Puts the points of the file that `friction.table` names, if it names one, into `text`.
-    /// `read` gives the text of a file, or says why it cannot be read.
+    /// Puts the system that `system` names, or the points of the file that `friction.table` names,
+    /// into `text`, if it names one. `read` gives the text of a file, or says why it cannot be
+    /// read.
     ///
     /// # Errors
-    /// When the file cannot be read, or what is in it is no table: at its name.
+    /// When the file cannot be read, or what is in it is no table: at its name. When it is no
+    /// system: in that file.
     pub fn new(
         text: &str,
         read: impl FnOnce(&str) -> Result<String, String>,
-    ) -> Result<Self, SpecError> {
+    ) -> Result<Self, NotInlined> {
         let unchanged = Self {
             text: text.to_owned(),
             places: None,
@@ -33,22 +59,29 @@ impl Inlined {
         let Ok(document) = parse(text) else {
             return Ok(unchanged);
         };
-        let friction = entries(document.get_ref(), "").into_iter();
-        let friction = friction.filter(|entry| entry.key == "friction");
+        let all = entries(document.get_ref(), "");
+        let system = all.iter().find(|entry| entry.key == "system");
+        if let Some((entry, Ok(name))) = system.map(|entry| (entry, entry.string())) {
+            return Ok(Self::with(text, entry, &system_of(entry, name, read)?));
+        }
+        let friction = all.into_iter().filter(|entry| entry.key == "friction");
         let inside = friction.filter_map(|entry| entry.table().ok()).flatten();
         let mut tables = inside.filter(|entry| entry.key == PAIRS);
         let named = tables.find_map(|entry| Some((entry.string().ok()?, entry)));
         let Some((name, entry)) = named else {
             return Ok(unchanged);
         };
-        let points = points(&entry, name, read)?;
+        Ok(Self::with(text, &entry, &points(&entry, name, read)?))
+    }
+
+    /// `text` with another value of an entry.
+    fn with(text: &str, entry: &Entry, value: &str) -> Self {
         let old = entry.span.clone();
-        let new = old.start..old.start + points.len();
-        let text = [&text[..old.start], &points, &text[old.end..]].concat();
-        Ok(Self {
-            text,
+        let new = old.start..old.start + value.len();
+        Self {
+            text: [&text[..old.start], value, &text[old.end..]].concat(),
             places: Some((old, new)),
-        })
+        }
     }
 
     /// An error in [`Inlined::text`] with its place in the text as it was written.
@@ -63,6 +96,30 @@ impl Inlined {
             }
         }
         error
+    }
+}
+
+/// The shipped system `name`, or that of the file, as a table.
+fn system_of(
+    entry: &Entry,
+    name: &str,
+    read: impl FnOnce(&str) -> Result<String, String>,
+) -> Result<String, NotInlined> {
+    if let Some(system) = shipped::system(name) {
+        return Ok(system.to_inline_table());
+    }
+    let text = read(name).map_err(|why| {
+        entry
+            .error(format!("cannot read {name}: {why}"))
+            .help(shipped::meant(name))
+    })?;
+    match text.parse::<SystemModel>() {
+        Ok(system) => Ok(system.to_inline_table()),
+        Err(error) => Err(NotInlined::There {
+            name: name.to_owned(),
+            text,
+            error,
+        }),
     }
 }
 
@@ -100,6 +157,9 @@ mod tests {
             "curve.csv" => Ok(CURVE.to_owned()),
             "bad.csv" => Ok("speed,mu\n0,0.5\n\n0.25,x\n".to_owned()),
             _ => Err("there is none".to_owned()),
+        })
+        .map_err(|error| match error {
+            NotInlined::Here(error) | NotInlined::There { error, .. } => error,
         })
     }
 

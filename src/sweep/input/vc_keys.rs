@@ -22,9 +22,6 @@ pub(super) struct VcKeys {
 }
 
 impl VcKeys {
-    /// Names of the keys.
-    pub(super) const KEYS: [&'static str; 3] = ["protocol", "phase", "verify"];
-
     /// Takes the value of an entry that is one of the keys; false where it is none.
     pub(super) fn read(&mut self, entry: &Entry) -> Result<bool, SpecError> {
         match entry.key {
@@ -61,7 +58,7 @@ impl VcKeys {
     /// The keys that are given, with their places.
     pub(super) fn given(&self) -> impl Iterator<Item = (&'static str, &Range<usize>)> {
         let places = [&self.protocol_place, &self.worst_place, &self.verify_place];
-        let keys = Self::KEYS.into_iter().zip(places);
+        let keys = ["protocol", "phase", "verify"].into_iter().zip(places);
         keys.filter_map(|(key, place)| Some((key, place.as_ref()?)))
     }
 

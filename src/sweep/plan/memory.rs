@@ -85,18 +85,28 @@ fn pasts(plan: &Plan) -> u64 {
     count * past(longest_delay(plan))
 }
 
-/// What a motion with such a delay, τ √(κ/M), is remembered of.
-fn past(delay: f64) -> u64 {
+/// What a motion with such a delay, τ √(κ/M), is remembered of, and with such a latency.
+fn past([delay, latency]: [f64; 2]) -> u64 {
     // Two delays are kept. What the memory of a deque may be larger than what is in it.
-    let steps = 2.0 * delay * STEPS_PER_TIME + STEPS_AT_LEAST;
-    let steps = (steps.min(MOST_KEPT as f64) as u64).next_power_of_two();
-    steps * BYTES_OF_A_STEP as u64
+    let kept = |delay: f64| {
+        let steps = 2.0 * delay * STEPS_PER_TIME + STEPS_AT_LEAST;
+        let steps = (steps.min(MOST_KEPT as f64) as u64).next_power_of_two();
+        steps * BYTES_OF_A_STEP as u64
+    };
+    match latency > 0.0 {
+        // Kinks come back after both.
+        true => 2 * kept(f64::INFINITY),
+        false => kept(delay),
+    }
 }
 
-/// The delay of a setting, τ √(κ/M).
-fn delay(setting: &Setting) -> f64 {
+/// The delay of a setting, τ √(κ/M), as the memory of the feedback makes it longer, and the
+/// latency.
+fn delay(setting: &Setting) -> [f64; 2] {
     let unit = setting.oscillator().map_or(1.0, |o| o.time_unit());
-    setting.get(Parameter::Tau) / unit
+    let share = 1.0 - setting.get(Parameter::Memory).abs();
+    let delay = setting.get(Parameter::Tau) / unit / share;
+    [delay, setting.get(Parameter::Latency) / unit]
 }
 
 /// Bytes that following one motion of a setting takes at most.
@@ -111,20 +121,21 @@ pub fn of_critical_velocity(setting: &Setting) -> u64 {
     PASTS_OF_CRITICAL * past(delay(setting))
 }
 
-/// The longest delay of a sweep, τ √(κ/M).
-fn longest_delay(plan: &Plan) -> f64 {
+/// The longest delay of a sweep, τ √(κ/M), and the longest latency.
+fn longest_delay(plan: &Plan) -> [f64; 2] {
     let (mut longest, mut others) = (plan.spec.fixed.clone(), plan.spec.fixed.clone());
     for axis in &plan.spec.axes {
         let (from, to) = axis.range();
         // The unit of time is the shorter the smaller the mass and the larger the stiffness.
-        let (at, other) = match axis.parameter {
-            Parameter::Mass => (from, to),
+        let (at, other) = match axis.parameter.known() {
+            Some(Parameter::Mass) => (from, to),
             _ => (to, from),
         };
-        longest.set(axis.parameter, at);
-        others.set(axis.parameter, other);
+        longest.vary(&axis.parameter, at);
+        others.vary(&axis.parameter, other);
     }
-    delay(&longest).max(delay(&others))
+    let (one, other) = (delay(&longest), delay(&others));
+    [one[0].max(other[0]), one[1].max(other[1])]
 }
 
 #[cfg(test)]

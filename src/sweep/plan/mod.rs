@@ -1,4 +1,9 @@
 //! The plan of a sweep: its cells, cut into tiles.
+//!
+//! - `memory`: how much memory a run takes at most, and how many threads that leaves
+//! - `pieces`: what a sweep is made of, shards of it, and what is still to be computed
+//! - `tile`: rectangular blocks of cells
+//! - `tile_size`: how large tiles are, where lines may be cut
 
 pub mod memory;
 pub mod pieces;
@@ -34,6 +39,8 @@ pub const MOST_TILES: usize = 1 << 21;
 const MOST_PLANES: u64 = 1_000_000;
 /// Planes up to which crossing curves are traced without being asked for.
 const PLANES_TRACED_UNASKED: u64 = 1000;
+/// And where every curve is followed step by step.
+const PLANES_WALKED_UNASKED: u64 = 100;
 
 /// A sweep ready to run.
 #[derive(Debug, Clone)]
@@ -178,7 +185,7 @@ impl Plan {
     pub fn setting(&self, index: &[usize]) -> Setting {
         let mut setting = self.spec.fixed.clone();
         for (axis, &i) in self.spec.axes.iter().zip(index) {
-            setting.set(axis.parameter, axis.values[i]);
+            setting.vary(&axis.parameter, axis.values[i]);
         }
         setting
     }
@@ -219,6 +226,10 @@ impl Plan {
             facts.push((TableColumn::Speeds.name(), table.speeds().into()));
             facts.push((TableColumn::MuK.name(), table.mu_k().into()));
         }
+        if let Some(system) = fixed.system() {
+            let text = system.to_toml().into_bytes();
+            facts.push(("system", text.into_iter().map(f64::from).collect()));
+        }
         facts.push(("axes", one(spec.axes.len() as f64)));
         for axis in &spec.axes {
             facts.push((axis.parameter.name(), axis.values.as_slice().into()));
@@ -226,6 +237,11 @@ impl Plan {
         for parameter in Parameter::ALL.into_iter().filter(|&p| spec.uses(p)) {
             if !spec.axes.iter().any(|a| a.parameter == parameter) {
                 facts.push((parameter.name(), one(fixed.get(parameter))));
+            }
+        }
+        for (own, value) in fixed.own() {
+            if !spec.axes.iter().any(|a| a.parameter.name() == own.name) {
+                facts.push((&own.name, one(value)));
             }
         }
         facts.extend(spec.fields.iter().map(|f| (f.first_name(), none())));
@@ -314,17 +330,30 @@ pub fn in_hexadecimal(bytes: &[u8]) -> String {
 
 /// The plane of crossing curves; none where there is no such plane, or where it is not wanted.
 fn boundary_plane(spec: &SweepSpec) -> Option<(usize, usize)> {
-    let (p, tau) = plane_of_curves(&spec.axes).filter(|_| spec.has_sliding())?;
+    let (p, q) = plane_of_curves(&spec.axes).filter(|_| spec.has_sliding())?;
     let planes: u64 = spec
         .axes
         .iter()
         .enumerate()
-        .filter(|&(i, _)| i != p && i != tau)
+        .filter(|&(i, _)| i != p && i != q)
         .map(|(_, axis)| axis.len() as u64)
         .product();
     let asked = spec
         .boundaries
         .or((!spec.degrees_of_stability.is_empty()).then_some(true));
-    let wanted = asked.unwrap_or(planes <= PLANES_TRACED_UNASKED);
-    wanted.then_some((p, tau))
+    let most = match (traced_by_closed_form(spec, q), spec.beyond_letter()) {
+        (true, _) => PLANES_TRACED_UNASKED,
+        (false, true) => PLANES_WALKED_UNASKED,
+        // The letter's own planes without the delay have them where they are asked for.
+        (false, false) => 0,
+    };
+    let wanted = asked.unwrap_or(planes <= most);
+    wanted.then_some((p, q))
+}
+
+/// Whether the curves of planes whose second axis is `q` are those of the letter's own lines of
+/// delays.
+#[must_use]
+pub fn traced_by_closed_form(spec: &SweepSpec, q: usize) -> bool {
+    spec.axes[q].parameter == Parameter::Tau && !spec.beyond_letter()
 }

@@ -21,9 +21,10 @@ pub(super) fn rows(data: &[u8]) {
             .collect(),
         direction: (0..length(2, curves)).map(|_| bytes.byte() as i8).collect(),
         stable_side: (0..length(3, curves)).map(|_| bytes.byte() as i8).collect(),
+        kind: (0..curves).map(|_| bytes.byte() as i8).collect(),
         degree: (0..length(4, curves)).map(|_| bytes.real()).collect(),
         p: (0..length(5, vertices)).map(|_| bytes.real()).collect(),
-        tau: (0..length(6, vertices)).map(|_| bytes.real()).collect(),
+        q: (0..length(6, vertices)).map(|_| bytes.real()).collect(),
         omega: (0..length(7, vertices)).map(|_| bytes.real()).collect(),
         vertex_count,
         ..CurveRows::default()

@@ -24,12 +24,14 @@ impl Draft {
         self.check_best()?;
         let fixed = self.given.setting();
         self.check_law(&fixed)?;
+        self.check_beyond_letter(&fixed)?;
+        self.check_stiffness_ratio(&fixed)?;
         let critical = self.check_nonlinear(&fixed)?;
         Ok((fixed, critical))
     }
 
     /// There are boundaries beside which to trace degrees of stability.
-    fn check_degrees(&self) -> Result<(), SpecError> {
+    pub(super) fn check_degrees(&self) -> Result<(), SpecError> {
         let Some(place) = &self.degrees_place else {
             return Ok(());
         };
@@ -45,7 +47,8 @@ impl Draft {
         if plane_of_curves(&self.axes).is_none() {
             return refuse(
                 "there is no plane for its curves",
-                "an axis tau and another axis are needed, with two values or more each",
+                "two axes of linear stability are needed, such as a gain and tau, each with two \
+                 values or more",
             );
         }
         Ok(())
@@ -75,11 +78,14 @@ impl Draft {
         for axis in &self.axes {
             let (smallest, largest) = axis.range();
             // With a slope at rest, μ0 grows with v_s and with the slope's size.
-            let value = match axis.parameter {
+            let Some(parameter) = axis.parameter.known() else {
+                continue;
+            };
+            let value = match parameter {
                 Parameter::Mu0 | Parameter::VS => largest,
                 _ => smallest,
             };
-            worst.set(axis.parameter, value);
+            worst.set(parameter, value);
         }
         worst
             .friction_law()

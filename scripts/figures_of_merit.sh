@@ -1,0 +1,64 @@
+#!/usr/bin/env bash
+# All benches in one go, and a table of the ratios that they print, with machine and date, as the guide shows it:
+#
+#   scripts/figures_of_merit.sh [--peers] [--browser] [--short]
+#
+#   --peers     also the crate differential-equations and JiTCDDE (benches/peers/run.sh)
+#   --browser   also the page in a headless browser beside plotly.js and h5web (scripts/browser.sh bench --peers)
+#   --short     as little of each as shows that it works: its figures mean nothing
+#
+# What each bench prints is kept in target/figures-of-merit. On a machine with other work ratios mean more than times.
+set -euo pipefail
+
+# shellcheck source=scripts/setup.sh
+. "$(dirname "${BASH_SOURCE[0]}")/setup.sh"
+cd "$SLIPMAP_ROOT"
+
+peers='' browser='' short=''
+for argument in "$@"; do
+    case $argument in
+    --peers) peers=1 ;;
+    --browser) browser=1 ;;
+    --short) short=1 ;;
+    *) die "unknown argument $argument: see the head of scripts/figures_of_merit.sh" ;;
+    esac
+done
+[ -z "$short" ] || export SLIPMAP_BENCH_CELLS=60 SLIPMAP_CELLS=5
+
+folder=target/figures-of-merit
+mkdir -p "$folder"
+
+# kept NAME COMMAND…: runs it, shows what it prints and keeps that.
+kept() {
+    local name=$1
+    shift
+    say ""
+    say "== $*"
+    "$@" 2>&1 | tee "$folder/$name.txt"
+}
+
+for bench in throughput roots margins motion critical; do
+    # The features are words of their own, or nothing at all.
+    # shellcheck disable=SC2086
+    kept "$bench" cargo bench --locked $SLIPMAP_CARGO_FEATURES --bench "$bench"
+done
+[ -z "$peers" ] || kept peers benches/peers/run.sh ${short:+1}
+[ -z "$browser" ] || kept browser scripts/browser.sh bench --peers
+
+processor=$(sed -n 's/^model name[^:]*: //p' /proc/cpuinfo 2>/dev/null | head -n 1)
+[ -n "$processor" ] || processor=$(sysctl -n machdep.cpu.brand_string 2>/dev/null || uname -m)
+threads=$(getconf _NPROCESSORS_ONLN)
+load=$(uptime | sed 's/.*load average[s]*: //')
+revision=$(git describe --always --dirty 2>/dev/null || echo unknown)
+{
+    printf '%s, %s threads, load %s, %s, revision %s%s\n\n' "$processor" "$threads" "$load" "$(date +%F)" "$revision" \
+        "${short:+, SHORT RUN: figures mean nothing}"
+    printf '| bench | what it printed |\n| --- | --- |\n'
+    for file in "$folder"/*.txt; do
+        name=$(basename "$file" .txt)
+        # Lines that compare: they have a ratio, a share or a time for each cell.
+        grep -E '( = |times|differs|agree|mean|µs|cell by cell|tracked)' "$file" |
+            grep -vE '^(warning|error| *Compiling| *Finished| *Running|==)' | sed 's/|/\\|/g' |
+            while IFS= read -r line; do printf '| %s | %s |\n' "$name" "$line"; done
+    done
+} | tee "$folder/table.md"

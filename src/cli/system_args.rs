@@ -1,0 +1,142 @@
+//! A system from a file, or one that is part of the program, in the place of the letter's:
+//! `--system FILE|NAME --set NAME=VALUE`.
+
+use std::path::Path;
+
+use slipmap::model::Shown;
+use slipmap::sweep::Parameter;
+use slipmap::sweep::input::nearest::did_you_mean;
+use slipmap::sweep::input::system::shipped;
+use slipmap::sweep::input::system::{Evaluation, SystemModel};
+
+use super::failure::Failure;
+use super::sweep_file::read_system;
+
+#[derive(Debug, clap::Args)]
+pub(super) struct SystemArgs {
+    /// A system from a file, or of the program by its name, in the place of the letter's
+    #[arg(long, value_name = "FILE|NAME")]
+    pub system: Option<String>,
+    /// With --system: the value of one of its parameters; once for each that is not at its default
+    #[arg(long, value_name = "NAME=VALUE", value_parser = parse_set, requires = "system",
+          allow_hyphen_values = true)]
+    set: Vec<Set>,
+}
+
+/// A value of a parameter, as the flag says it.
+#[derive(Debug, Clone, PartialEq)]
+struct Set {
+    name: String,
+    value: f64,
+}
+
+fn parse_set(text: &str) -> Result<Set, String> {
+    let (name, value) = text
+        .split_once('=')
+        .ok_or("expected NAME=VALUE, for example zeta=0.02")?;
+    let value = value.trim().parse::<f64>().ok().filter(|v| v.is_finite());
+    Ok(Set {
+        name: name.trim().to_owned(),
+        value: value.ok_or("the value after = must be a finite number")?,
+    })
+}
+
+/// The system of that name, or of the file at that path.
+pub(super) fn system_of(named: &str) -> Result<SystemModel, Failure> {
+    if let Some(model) = shipped::system(named) {
+        return Ok(model);
+    }
+    let path = Path::new(named);
+    let is_path = path.components().count() > 1 || path.extension().is_some();
+    if !is_path && !path.exists() {
+        return Err(Failure::bad_input_with_help(
+            format!("--system {named} is neither a file nor the name of a system"),
+            shipped::meant(named),
+        ));
+    }
+    read_system(path)
+}
+
+/// The parameters that every system may have besides its own, each with a flag.
+pub(super) const OTHERS: [Parameter; 3] = [Parameter::Tau, Parameter::Memory, Parameter::Latency];
+
+impl SystemArgs {
+    /// The system and its setting; none where no system is given. `flag` gives the value of the
+    /// flag of one of [`OTHERS`].
+    pub(super) fn read(
+        &self,
+        flag: impl Fn(Parameter) -> Option<f64>,
+    ) -> Result<Option<(SystemModel, Evaluation)>, Failure> {
+        let Some(named) = &self.system else {
+            return Ok(None);
+        };
+        let model = system_of(named)?;
+        let mut at = model.defaults();
+        let mut others = OTHERS.map(flag);
+        for (i, set) in self.set.iter().enumerate() {
+            if self.set[..i].iter().any(|before| before.name == set.name) {
+                return Err(given_twice(&set.name));
+            }
+            let other = OTHERS.into_iter().position(|p| p.name() == set.name);
+            match (model.index_of(&set.name), other) {
+                (Some(index), _) => {
+                    let checked = model.parameters[index].check(set.value);
+                    at.own[index] = checked.map_err(|why| {
+                        let value = Shown(set.value);
+                        Failure::bad_input(format!("--set {}={value}: {why}", set.name))
+                    })?;
+                }
+                (None, Some(other)) if others[other].is_some() => {
+                    return Err(given_twice(&set.name));
+                }
+                (None, Some(other)) => others[other] = Some(set.value),
+                (None, None) => return Err(unknown(&set.name, &model)),
+            }
+        }
+        for (parameter, value) in OTHERS.into_iter().zip(others) {
+            let Some(value) = value else { continue };
+            let name = parameter.name();
+            if parameter != Parameter::Tau && !model.is_feedback() {
+                return Err(Failure::bad_input_with_help(
+                    format!("this system has no {name}"),
+                    "a system of B and A has memory and latency, one of P and Q has not",
+                ));
+            }
+            let checked = parameter.check(value);
+            let value = checked.map_err(|e| Failure::out_of_range(&format!("--{name}"), &e))?;
+            match parameter {
+                Parameter::Memory => at.memory = value,
+                Parameter::Latency => at.latency = value,
+                _ => at.tau = value,
+            }
+        }
+        match others[0] {
+            Some(_) => Ok(Some((model, at))),
+            None => Err(Failure::bad_input_with_help(
+                "--tau is not given",
+                format!(
+                    "--tau: {}, {}",
+                    Parameter::Tau.long_name(),
+                    Parameter::Tau.allowed()
+                ),
+            )),
+        }
+    }
+}
+
+fn given_twice(name: &str) -> Failure {
+    Failure::bad_input(format!("{name} is given twice"))
+}
+
+fn unknown(name: &str, model: &SystemModel) -> Failure {
+    let others = OTHERS
+        .into_iter()
+        .filter(|p| *p == Parameter::Tau || model.is_feedback());
+    let mut known: Vec<&str> = model.parameters.iter().map(|own| &*own.name).collect();
+    known.extend(others.map(|other| -> &str { other.name() }));
+    let meant = did_you_mean(name, known.iter().copied());
+    Failure::bad_input_with_help(
+        format!("--set: the system has no parameter {name}"),
+        format!("{meant}its parameters: {}", known.join(", ")),
+    )
+}

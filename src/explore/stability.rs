@@ -1,0 +1,360 @@
+//! Linear stability of a linear model at a delay and over all others, with its roots.
+
+use serde::Serialize;
+
+use super::finite;
+use crate::linear::certificate::roots_right_of;
+use crate::linear::crossing::Crossing;
+use crate::linear::general::reason::Reason;
+use crate::linear::general::{DelayLine, RootCounter, Spectrum as GeneralSpectrum, System};
+use crate::linear::newton::Root;
+use crate::linear::rightmost::Rightmost;
+use crate::linear::spectrum::Incomplete;
+use crate::linear::stable_delays::StableInterval;
+use crate::linear::{Crossings, Direction, MarginalTolerance};
+use crate::model::Groups;
+use crate::sweep::LinearModel;
+
+/// Near a tangency there can be millions of stable intervals; more than this are cut, and the
+/// answer says so.
+const MOST_INTERVALS: usize = 100_000;
+
+/// What there is to know of the stability of a linear model at a delay.
+#[derive(Debug, Clone, Serialize)]
+#[cfg_attr(feature = "serve", derive(utoipa::ToSchema))]
+pub struct Stability {
+    /// The number of characteristic roots with positive real part; null where there are infinitely
+    /// many or it is not known, see `reason`.
+    pub n_unstable: Option<u64>,
+    /// Whether sliding is stable.
+    pub stable: bool,
+    /// Whether that is within rounding of a boundary.
+    pub marginal: bool,
+    /// Why the point is not like others: `root-at-origin`, `root-on-axis`, `infinite`,
+    /// `neutral-limit`, `no-rightmost-root`, `degree-unknown` or `refused`; null where it is.
+    pub reason: Option<&'static str>,
+    /// All intervals of delays in which sliding is stable, by shortest delay; the end of the last
+    /// one is null where it has none.
+    pub stable_delays: Vec<[Option<f64>; 2]>,
+    /// Some are left out.
+    pub stable_delays_truncated: bool,
+    /// The distance in τ to the nearest change of stability, positive where stable; null where it
+    /// never changes, and where it is not known.
+    pub delay_margin: Option<f64>,
+    /// The sign of that distance, also of an infinite one: 1 where stable, −1 where unstable, 0 on
+    /// a boundary and where it is not known.
+    pub delay_margin_sign: i8,
+    /// The number of unstable roots as the delay goes to 0; null where there are infinitely many or
+    /// it is not known.
+    pub n_at_zero_delay: Option<u64>,
+    /// The shortest delay at which roots cross the imaginary axis; null where they do at none.
+    pub first_crossing: Option<f64>,
+    /// By how much the number of unstable roots grows there; null where there is no such delay.
+    pub first_change: Option<i8>,
+    /// Where roots cross the imaginary axis as the delay grows.
+    pub crossings: Vec<PointCrossing>,
+    /// The latencies at the point's delay.
+    #[serde(flatten)]
+    pub latencies: Latencies,
+    /// The real part at which infinitely many roots accumulate; null where they do nowhere.
+    pub essential_abscissa: Option<f64>,
+    /// The rightmost roots.
+    #[serde(flatten)]
+    pub spectrum: Spectrum,
+    /// Re λ of the line right of which roots were to be counted; null where none was asked for.
+    pub line: Option<f64>,
+    /// The number of roots right of that line; null where none was asked for, where a root lies
+    /// within rounding of it, and where there are infinitely many: it is less than
+    /// `essential_abscissa`.
+    pub n_right_of_line: Option<u64>,
+}
+
+/// What there is to know of the latencies of the feedback at one delay.
+#[derive(Debug, Clone, Default, Serialize)]
+#[cfg_attr(feature = "serve", derive(utoipa::ToSchema))]
+pub struct Latencies {
+    /// All intervals of latencies in which sliding is stable at the point's delay, by shortest
+    /// latency; the end of the last one is null where it has none. Null where latency has no
+    /// meaning in the system.
+    pub stable_latencies: Option<Vec<[Option<f64>; 2]>>,
+    /// Some are left out.
+    pub stable_latencies_truncated: bool,
+    /// The latency margin: ∞ where nothing is lost, NaN where it is not known; none where latency
+    /// has no meaning.
+    #[serde(skip)]
+    pub margin: Option<f64>,
+}
+
+/// A crossing frequency, with its delays `first_delay` + 2πk/ω.
+#[derive(Debug, Clone, Serialize)]
+#[cfg_attr(feature = "serve", derive(utoipa::ToSchema))]
+pub struct PointCrossing {
+    /// ω.
+    pub omega: f64,
+    /// The shortest delay.
+    pub first_delay: f64,
+    /// Where the pair goes as the delay grows: `left`, `right` or `touch`.
+    pub direction: &'static str,
+}
+
+/// The rightmost roots in physical units; none where nothing converged.
+#[derive(Debug, Clone, Serialize)]
+#[cfg_attr(feature = "serve", derive(utoipa::ToSchema))]
+pub struct Spectrum {
+    /// The spectral abscissa; null where no root converged.
+    pub abscissa: Option<f64>,
+    /// |Im λ| of the rightmost root; null where no root converged, and where there is none.
+    pub frequency: Option<f64>,
+    /// Re λ and Im λ ≥ 0, by falling real part.
+    pub roots: Vec<[f64; 2]>,
+    /// Whether the argument principle confirms that none is missing.
+    pub certified: bool,
+    /// No root is farther right than abscissa + this times max(1/√(M/κ), |abscissa|); null where no
+    /// root converged.
+    pub certificate_margin: Option<f64>,
+    /// Re λ of a vertical line, right of the rightmost root, that the argument principle finds no
+    /// root right of; null where it does not tell.
+    pub certified_line: Option<f64>,
+    /// Why there are fewer roots than asked for.
+    #[serde(skip)]
+    pub fewer: Option<String>,
+    /// Some were not found that are there.
+    #[serde(skip)]
+    pub incomplete: bool,
+}
+
+/// What is asked of a linear model.
+#[derive(Debug, Clone, Copy)]
+pub struct Wanted {
+    /// The number of rightmost roots, 1 to 64.
+    pub roots: u8,
+    /// Re λ of a line right of which roots are counted.
+    pub line: Option<f64>,
+}
+
+impl Stability {
+    /// Of a linear model with the unit of time `time_unit`, at the delay `tau`.
+    #[must_use]
+    pub fn of(model: &LinearModel, time_unit: f64, tau: f64, wanted: Wanted) -> Self {
+        let mut stability = match model {
+            LinearModel::Letter(groups) => Self::of_letter(*groups, time_unit, tau, wanted),
+            LinearModel::General(system) => Self::of_system(system, time_unit, tau, wanted),
+        };
+        stability.latencies = Latencies::of(&model.system(), (tau / time_unit, time_unit));
+        stability
+    }
+
+    fn of_letter(groups: Groups, time_unit: f64, tau: f64, wanted: Wanted) -> Self {
+        let crossings = Crossings::of(groups).in_physical_time(time_unit);
+        let count = crossings.count(tau, MarginalTolerance::default());
+        let mut intervals = crossings.stable_delays();
+        let stable: Vec<StableInterval> = intervals.by_ref().take(MOST_INTERVALS).collect();
+        let delay_margin = crossings.delay_margin(tau);
+        let first = first_crossing(crossings.iter());
+        let count_right = |line: f64| roots_right_of(groups, tau / time_unit, line * time_unit);
+        Self {
+            n_unstable: Some(count.n_unstable),
+            stable: count.stable(),
+            marginal: count.marginal,
+            reason: None,
+            stable_delays: ends(&stable),
+            stable_delays_truncated: intervals.next().is_some(),
+            delay_margin: finite(delay_margin),
+            delay_margin_sign: sign(delay_margin),
+            n_at_zero_delay: Some(crossings.at_zero_delay),
+            first_crossing: first.map(|(delay, _)| delay),
+            first_change: first.map(|(_, change)| change),
+            crossings: crossings.iter().map(PointCrossing::of).collect(),
+            latencies: Latencies::default(),
+            essential_abscissa: None,
+            spectrum: Spectrum::of_letter(groups, time_unit, tau, wanted.roots),
+            line: wanted.line,
+            n_right_of_line: wanted.line.and_then(count_right),
+        }
+    }
+
+    fn of_system(system: &System, time_unit: f64, tau: f64, wanted: Wanted) -> Self {
+        let line = DelayLine::of(system);
+        let counter = RootCounter::new(system);
+        let at = tau / time_unit;
+        let found = GeneralSpectrum::at(&counter, &line, at, wanted.roots.into());
+        let line = line.in_physical_time(time_unit);
+        let mut intervals = line.stable_intervals();
+        let stable: Vec<StableInterval> = intervals.by_ref().take(MOST_INTERVALS).collect();
+        let delay_margin = line.margins().margin_at(tau);
+        let first = line.changes().next();
+        let count = found.count;
+        let stable_here = count.is_some_and(|count| count.stable());
+        let essential = found.essential_abscissa / time_unit;
+        let count_right = |line: f64| counter.right_of(at, line * time_unit).finite();
+        Self {
+            n_unstable: count.map(|count| count.n_unstable),
+            // At ρ = 1 nothing decays at a rate of its own.
+            stable: stable_here && found.reason != Some(Reason::NeutralLimit),
+            marginal: count.is_some_and(|count| count.marginal)
+                || found.reason == Some(Reason::RootAtOrigin),
+            reason: found.reason.map(Reason::name),
+            stable_delays: ends(&stable),
+            stable_delays_truncated: intervals.next().is_some() || intervals.gave_up(),
+            delay_margin: finite(delay_margin),
+            delay_margin_sign: sign(delay_margin),
+            n_at_zero_delay: (!line.uncounted).then_some(line.at_zero_delay),
+            first_crossing: first.map(|change| change.tau),
+            first_change: first.map(|change| change.by),
+            crossings: line.crossings.iter().map(PointCrossing::of).collect(),
+            latencies: Latencies::default(),
+            essential_abscissa: finite(essential),
+            line: wanted.line,
+            n_right_of_line: wanted.line.and_then(count_right),
+            spectrum: Spectrum::of_system(&counter, &found, (at, time_unit), wanted.roots),
+        }
+    }
+}
+
+impl Latencies {
+    /// At the dimensionless delay `tau`.
+    fn of(system: &System, (tau, time_unit): (f64, f64)) -> Self {
+        let Some(line) = DelayLine::of_latencies(system, tau) else {
+            return Self::default();
+        };
+        let line = line.in_physical_time(time_unit);
+        let mut intervals = line.stable_intervals();
+        let stable: Vec<StableInterval> = intervals.by_ref().take(MOST_INTERVALS).collect();
+        Self {
+            stable_latencies: Some(ends(&stable)),
+            stable_latencies_truncated: intervals.next().is_some() || intervals.gave_up(),
+            margin: system.latency_margin(tau).map(|margin| margin * time_unit),
+        }
+    }
+}
+
+fn ends(intervals: &[StableInterval]) -> Vec<[Option<f64>; 2]> {
+    let ends = |s: &StableInterval| [Some(s.from), finite(s.to)];
+    intervals.iter().map(ends).collect()
+}
+
+fn sign(margin: f64) -> i8 {
+    match margin {
+        0.0 => 0,
+        // The cast takes NaN to 0.
+        margin => margin.signum() as i8,
+    }
+}
+
+/// The shortest delay at which a pair crosses, and by how much the count grows there.
+fn first_crossing<'c>(crossings: impl Iterator<Item = &'c Crossing>) -> Option<(f64, i8)> {
+    crossings
+        .filter(|c| c.direction != Direction::Touch)
+        .map(|c| (c.delay(c.first_branch), 2 * c.direction.sign()))
+        .min_by(|a, b| a.0.total_cmp(&b.0))
+}
+
+impl PointCrossing {
+    fn of(crossing: &Crossing) -> Self {
+        Self {
+            omega: crossing.omega,
+            first_delay: crossing.delay(crossing.first_branch),
+            direction: match crossing.direction {
+                Direction::Left => "left",
+                Direction::Right => "right",
+                Direction::Touch => "touch",
+            },
+        }
+    }
+}
+
+/// Rightmost roots, dimensionless.
+struct Listed<'r> {
+    roots: &'r [Root],
+    margin: f64,
+    certified: bool,
+    missing: Option<&'r Incomplete>,
+}
+
+impl Spectrum {
+    fn of_letter(groups: Groups, time_unit: f64, tau: f64, wanted: u8) -> Self {
+        let tau = tau / time_unit;
+        let count = Crossings::of(groups).count(tau, MarginalTolerance::default());
+        let found = Rightmost::at(groups, tau, wanted.into(), count);
+        let listed = Listed {
+            roots: &found.roots,
+            margin: found.margin,
+            certified: found.certified,
+            missing: found.missing.as_ref(),
+        };
+        let no_more = no_more(tau == 0.0, groups.uncontrolled());
+        let right_of = |line| roots_right_of(groups, tau, line);
+        Self::of(&listed, time_unit, wanted, no_more, right_of)
+    }
+
+    fn of_system(
+        counter: &RootCounter,
+        found: &GeneralSpectrum,
+        (tau, time_unit): (f64, f64),
+        wanted: u8,
+    ) -> Self {
+        let listed = Listed {
+            roots: &found.roots,
+            margin: found.margin,
+            certified: found.certified,
+            missing: found.missing.as_ref(),
+        };
+        let no_more = match found.reason {
+            Some(Reason::NoRightmostRoot) => {
+                "there is no rightmost one: roots accumulate at the abscissa from the left"
+            }
+            Some(Reason::Infinite) => "infinitely many roots lie right of the imaginary axis",
+            Some(Reason::DegreeUnknown) => "the highest coefficient is within rounding of 0",
+            Some(Reason::Refused) => "systems of this kind are not answered",
+            _ => no_more(tau == 0.0, counter.system().uncontrolled()),
+        };
+        let right_of = |line| counter.right_of(tau, line).finite();
+        let spectrum = Self::of(&listed, time_unit, wanted, no_more, right_of);
+        Self {
+            abscissa: finite(found.abscissa / time_unit),
+            ..spectrum
+        }
+    }
+
+    /// In units of time of which `time_unit` makes one dimensionless; `no_more` says why there may
+    /// be fewer roots than `wanted` though none is missing.
+    fn of(
+        found: &Listed,
+        time_unit: f64,
+        wanted: u8,
+        no_more: &str,
+        right_of: impl Fn(f64) -> Option<u64>,
+    ) -> Self {
+        let line = found.roots.first().map(|root| {
+            let re = root.lambda.re;
+            re + found.margin * re.abs().max(1.0)
+        });
+        let certified_line = line.filter(|line| right_of(*line) == Some(0));
+        let roots: Vec<[f64; 2]> = found
+            .roots
+            .iter()
+            .map(|root| [root.lambda.re / time_unit, root.lambda.im / time_unit])
+            .collect();
+        let missing = found.missing;
+        let fewer = missing.map_or_else(|| no_more.to_owned(), ToString::to_string);
+        Self {
+            abscissa: roots.first().map(|root| root[0]),
+            frequency: roots.first().map(|root| root[1]),
+            fewer: (roots.len() < wanted.into()).then_some(fewer),
+            roots,
+            certified: found.certified,
+            certificate_margin: finite(found.margin),
+            certified_line: certified_line.map(|line| line / time_unit),
+            incomplete: missing.is_some(),
+        }
+    }
+}
+
+/// Why there are fewer roots than asked for though none is missing.
+fn no_more(without_delay: bool, uncontrolled: bool) -> &'static str {
+    match (without_delay, uncontrolled) {
+        (true, _) => "there are no others: the delay is 0",
+        (_, true) => "there are no others without control",
+        _ => "no others can be told from -infinity",
+    }
+}

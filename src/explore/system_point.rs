@@ -1,0 +1,92 @@
+//! Linear stability of a system from a file at a point of its parameters.
+
+use std::collections::BTreeMap;
+
+use serde::Serialize;
+
+use super::finite;
+use super::stability::{Stability, Wanted};
+use crate::linear::general::Class;
+use crate::sweep::LinearModel;
+use crate::sweep::input::system::{Evaluation, SystemModel, Undefined};
+
+/// What there is to know of a point of a system.
+#[derive(Debug, Clone, Serialize)]
+#[cfg_attr(feature = "serve", derive(utoipa::ToSchema))]
+pub struct SystemPoint {
+    /// What the system is, by its file; may be empty.
+    pub system: String,
+    /// Its own parameters by their names.
+    pub parameters: BTreeMap<String, f64>,
+    /// τ.
+    pub tau: f64,
+    /// R; null for P and Q, which have no memory.
+    pub memory: Option<f64>,
+    /// δ; null for P and Q, which have no latency.
+    pub latency: Option<f64>,
+    /// Whether all delays are known at once. Where P or Q depends on the delay they are not: then
+    /// `n_unstable` and the roots are all that is told, `stable_delays` and `crossings` are empty
+    /// and what else is said of other delays is null.
+    pub line_of_delays: bool,
+    /// The largest further latency of the feedback, counted from none, everything else being fixed;
+    /// 0 where the setting without latency is not stable. Null where no latency spoils it, where it
+    /// is not known, and for P and Q, which have no latency.
+    pub latency_margin: Option<f64>,
+    /// Its stability, with its roots.
+    #[serde(flatten)]
+    pub stability: Stability,
+}
+
+/// Why there is no answer.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+pub enum NoAnswer {
+    /// An expression has no value.
+    #[error(transparent)]
+    Undefined(#[from] Undefined),
+    /// Nothing can be said of any delay.
+    #[error("this system is not answered: |P| = |Q| on all of the imaginary axis")]
+    Refused,
+}
+
+impl SystemPoint {
+    /// At a setting.
+    ///
+    /// # Errors
+    /// When an expression has no value there, or the system is one of those that are refused.
+    pub fn at(model: &SystemModel, at: &mut Evaluation, wanted: Wanted) -> Result<Self, NoAnswer> {
+        let system = model.at(at)?;
+        if system.class() == Class::Refused {
+            return Err(NoAnswer::Refused);
+        }
+        let own = model.parameters.iter().map(|own| own.name.clone());
+        let line_of_delays = !model.depends_on_delay();
+        let feedback = model.is_feedback();
+        let system = LinearModel::General(Box::new(system));
+        let mut stability = Stability::of(&system, 1.0, at.tau, wanted);
+        if !line_of_delays {
+            forget_other_delays(&mut stability);
+        }
+        Ok(Self {
+            system: model.title.clone(),
+            parameters: own.zip(at.own.iter().copied()).collect(),
+            tau: at.tau,
+            memory: feedback.then_some(at.memory),
+            latency: feedback.then_some(at.latency),
+            line_of_delays,
+            latency_margin: stability.latencies.margin.and_then(finite),
+            stability,
+        })
+    }
+}
+
+/// Leaves what is true at the delay itself: at others P and Q are not the same.
+fn forget_other_delays(stability: &mut Stability) {
+    stability.stable_delays.clear();
+    stability.stable_delays_truncated = false;
+    stability.delay_margin = None;
+    stability.delay_margin_sign = 0;
+    stability.n_at_zero_delay = None;
+    stability.first_crossing = None;
+    stability.first_change = None;
+    stability.crossings.clear();
+}

@@ -1,0 +1,107 @@
+//! Feedback that comes late: D = B(1 − R E) − A e^(−λδ)(1 − E), with two delays.
+//!
+//! On the imaginary axis either of them is a line while the other one is fixed, with crossings by
+//! the same (4) and (5) as without latency; only that |P|² − |Q|² swings with the delay that is
+//! fixed, and its zeros are found along ω.
+//!
+//! - [`wave`]: functions that swing with one delay, and all their zeros
+//! - [`prepared`]: such a function and its slope at one frequency, with bounds; steps and zeros
+//! - [`window`]: where zeros of a polynomial can be
+//! - [`on_line`]: D on a vertical line in its two forms
+//! - [`sum`]: the argument of a sum of two terms along a line
+//! - [`count`]: how many roots lie right of a line, in either form
+//! - [`line`]: all latencies at one delay; the latency margin
+//! - [`roots`]: D and its derivatives, where roots can be, and starts for them
+
+mod count;
+mod line;
+mod on_line;
+mod prepared;
+mod roots;
+mod sum;
+mod wave;
+mod window;
+
+use super::parts::{Angle, Feedback};
+use super::polynomial::Polynomial;
+use super::switches::Switches;
+use super::system::{Class, System};
+use on_line::OnLine;
+
+pub use on_line::Form;
+
+impl System {
+    /// The feedback, where it comes late.
+    pub(super) fn late(&self) -> Option<&Feedback> {
+        self.feedback.as_ref().filter(|f| f.latency > 0.0)
+    }
+
+    /// The latency δ; 0 where there is none.
+    #[must_use]
+    pub fn latency(&self) -> f64 {
+        self.late().map_or(0.0, |f| f.latency)
+    }
+
+    /// The same system with the latency `latency` ≥ 0; none where it is not in feedback form.
+    #[must_use]
+    pub fn with_latency(&self, latency: f64) -> Option<Self> {
+        if self.uncontrolled() {
+            return Some(*self);
+        }
+        let Feedback {
+            open, gain, memory, ..
+        } = self.feedback?;
+        Some(Self::feedback(open, gain, memory, latency))
+    }
+}
+
+impl Feedback {
+    /// P and Q have degrees only without latency; here B alone decides, and R.
+    pub(super) fn late_class(&self) -> Class {
+        if !self.open.degree_known() {
+            return Class::DegreeUnknown;
+        }
+        let ratio = self.memory.abs();
+        if self.open.is_zero() || ratio == 1.0 || self.gain.degree() >= self.open.degree() {
+            return Class::Refused;
+        }
+        match ratio {
+            0.0 => Class::Retarded,
+            ratio if ratio < 1.0 => Class::Neutral { ratio },
+            _ => Class::Infinite,
+        }
+    }
+
+    /// With B and A divided by λ.
+    pub(super) fn divided_by_variable(&self) -> Self {
+        Self {
+            open: self.open.divided_by_variable(),
+            gain: self.gain.divided_by_variable(),
+            ..*self
+        }
+    }
+
+    /// Where (3) of [`on_line`] changes its sign on the imaginary axis; false where that is open.
+    pub(super) fn late_switches(&self, switches: &mut Switches) -> bool {
+        self.switches_on(0.0, 0.0, switches)
+    }
+
+    /// As [`Feedback::late_switches`], on any line at the delay `tau`.
+    pub(super) fn switches_on(&self, tau: f64, line: f64, switches: &mut Switches) -> bool {
+        let Some(on_line) = OnLine::new(self, tau, line) else {
+            return false;
+        };
+        let wave = on_line.wave(Form::Delay);
+        wave.switches(on_line.window(), switches).is_ok()
+    }
+
+    /// The argument of −P Q* at iω, P and Q being 𝒫 and 𝒬 of (1) in [`on_line`].
+    pub(super) fn late_phase(&self, omega: f64, error: f64) -> Option<Angle> {
+        OnLine::new(self, 0.0, 0.0)?.phase(Form::Delay, omega, error)
+    }
+
+    /// B and A have no more than a constant between them: nothing else depends on λ.
+    pub(super) fn polynomials(&self) -> [&Polynomial; 2] {
+        [&self.open, &self.gain]
+    }
+}

@@ -1,0 +1,224 @@
+//! A function that swings with one delay with all that is evaluated of it at one frequency, side by
+//! side; the longest steps that cannot step over a zero.
+
+use super::super::polynomial::{MOST_DEGREE, Polynomial};
+use crate::linear::rounded::Rounded;
+use crate::model::elementary::sincos;
+
+/// Rounded operations behind each value, in units of ε of its terms.
+const ROUNDINGS: f64 = 4.0;
+/// What rounding of the length of a step itself may add to it.
+const A_LITTLE_LESS: f64 = 1.0 - 1e-9;
+/// Steps of Newton's method, with halvings between, until a zero is polished.
+const MOST_POLISHINGS: usize = 100;
+const VALUES: usize = 6;
+const ERRORS: usize = 5;
+const BENDS: usize = 2;
+const LENGTH: usize = MOST_DEGREE + 1;
+
+/// The coefficients of all that is evaluated at one frequency, side by side.
+pub(super) struct Prepared {
+    /// u, v, w; u′/ω, v′/ω and (ωw)′.
+    values: [[f64; VALUES]; LENGTH],
+    /// Bounds on the errors of u, v and w; the even and the odd part of one on the error of f′.
+    errors: [[f64; ERRORS]; LENGTH],
+    /// The even and the odd part of M.
+    bends: [[f64; BENDS]; LENGTH],
+    length: usize,
+    t: f64,
+}
+
+/// f and f′ at one frequency with bounds on their errors.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct At {
+    pub omega: f64,
+    pub value: Rounded,
+    pub slope: Rounded,
+}
+
+impl At {
+    /// The sign of f, or none where it is lost.
+    #[inline]
+    pub(super) fn sign(&self) -> Option<bool> {
+        self.value.decided().then_some(self.value.value > 0.0)
+    }
+}
+
+#[inline]
+fn horner<const N: usize>(coefficients: &[[f64; N]], x: f64) -> [f64; N] {
+    let mut sum = [0.0; N];
+    for c in coefficients.iter().rev() {
+        for (sum, c) in sum.iter_mut().zip(c) {
+            *sum = *sum * x + c;
+        }
+    }
+    sum
+}
+
+impl Prepared {
+    /// Of u, v and w at the delay `t`.
+    pub(super) fn new(parts: &[Polynomial; 3], t: f64) -> Self {
+        let degree = parts.iter().map(Polynomial::degree).max().unwrap_or(0);
+        let mut prepared = Self {
+            values: [[0.0; VALUES]; LENGTH],
+            errors: [[0.0; ERRORS]; LENGTH],
+            bends: [[0.0; BENDS]; LENGTH],
+            length: degree + 1,
+            t,
+        };
+        let unit = (ROUNDINGS + 2.0 * degree as f64) * f64::EPSILON;
+        let coefficient = |part: usize, k: usize| match k {
+            k if k <= degree => parts[part].coefficient(k),
+            _ => Rounded {
+                value: 0.0,
+                error: 0.0,
+            },
+        };
+        for k in 0..=degree {
+            let [u, v, w] = [0, 1, 2].map(|part| coefficient(part, k));
+            let [next_u, next_v, next_w] = [0, 1, 2].map(|part| coefficient(part, k + 1));
+            let (even, odd) = (2.0 * (k + 1) as f64, (2 * k + 1) as f64);
+            prepared.values[k] = [
+                u.value,
+                v.value,
+                w.value,
+                even * next_u.value,
+                even * next_v.value,
+                odd * w.value,
+            ];
+            let error = |c: Rounded| c.error + unit * c.value.abs();
+            let size = |c: Rounded| c.error + c.value.abs();
+            prepared.errors[k] = [
+                error(u),
+                error(v),
+                error(w),
+                t * error(v) + odd * error(w),
+                even * (error(next_u) + 2.0 * error(next_v)) + t * error(w),
+            ];
+            prepared.bends[k] = [
+                // Of (u + v) − v cos ωt.
+                even * odd
+                    * ((next_u.value + next_v.value).abs()
+                        + next_u.error
+                        + next_v.error
+                        + size(next_v))
+                    + t * (t * size(v) + 2.0 * odd * size(w)),
+                2.0 * even * t * size(next_v) + even * (odd + 2.0) * size(next_w) + t * t * size(w),
+            ];
+        }
+        prepared
+    }
+
+    #[inline]
+    pub(super) fn at(&self, omega: f64) -> At {
+        let x = omega * omega;
+        let [u, v, w, u_slope, v_slope, w_slope] = horner(&self.values[..self.length], x);
+        let errors = horner(&self.errors[..self.length], x);
+        let angle = omega * self.t;
+        let (half_sin, half_cos) = sincos(0.5 * angle);
+        let (versine, sin) = (2.0 * half_sin * half_sin, 2.0 * half_sin * half_cos);
+        let cos = 1.0 - versine;
+        let value = u + v * versine + omega * w * sin;
+        let slope = omega * (u_slope + v_slope * versine)
+            + (v * self.t + w_slope) * sin
+            + omega * w * self.t * cos;
+        // The angle is rounded as well.
+        let turned = f64::EPSILON * angle;
+        let error = errors[0]
+            + errors[1] * versine
+            + omega * errors[2] * sin.abs()
+            + turned * (v.abs() * sin.abs() + omega * w.abs() * cos.abs());
+        let slope_error = errors[3] + omega * errors[4] + turned * self.bend(omega);
+        At {
+            omega,
+            value: Rounded { value, error },
+            slope: Rounded {
+                value: slope,
+                error: slope_error,
+            },
+        }
+    }
+
+    /// M up to `omega`.
+    #[inline]
+    pub(super) fn bend(&self, omega: f64) -> f64 {
+        let [even, odd] = horner(&self.bends[..self.length], omega * omega);
+        even + omega * odd
+    }
+
+    /// A step from `from` within which f has one zero at most, no longer than `longest`, and
+    /// whether it can have one.
+    #[inline]
+    pub(super) fn step(&self, from: &At, longest: f64) -> (f64, bool) {
+        let bend = self.bend(from.omega + longest);
+        let left = from.value.value.abs() - from.value.error;
+        let falling = -from
+            .slope
+            .value
+            .copysign(from.slope.value * from.value.value);
+        let falling = falling + from.slope.error;
+        let root = (falling * falling + 2.0 * bend * left).sqrt();
+        let clear = if falling > 0.0 {
+            2.0 * left / (falling + root)
+        } else {
+            (root - falling) / bend
+        };
+        let monotone = (from.slope.value.abs() - from.slope.error) / bend;
+        if clear >= monotone {
+            (A_LITTLE_LESS * clear, false)
+        } else {
+            (A_LITTLE_LESS * monotone, true)
+        }
+    }
+
+    /// The zero between `from` and `to`, at which the signs of f differ, f being monotone between;
+    /// with a bound on its error.
+    pub(super) fn polish(&self, from: &At, to: &At, precision: f64) -> (f64, f64) {
+        let rising = to.value.value > 0.0;
+        let (mut low, mut high) = (from.omega, to.omega);
+        let start = if from.value.value.abs() < to.value.value.abs() {
+            from
+        } else {
+            to
+        };
+        let mut at = *start;
+        let mut last = f64::INFINITY;
+        for _ in 0..MOST_POLISHINGS {
+            let newton = at.omega - at.value.value / at.slope.value;
+            let step = (newton - at.omega).abs();
+            let inside = low < newton && newton < high && step < 0.5 * last;
+            if inside && step <= precision.max(4.0 * f64::EPSILON) * at.omega {
+                break;
+            }
+            let next = if inside { newton } else { 0.5 * (low + high) };
+            last = if inside { step } else { high - low };
+            if next <= low || next >= high {
+                break;
+            }
+            at = self.at(next);
+            if (at.value.value > 0.0) == rising {
+                high = next;
+            } else {
+                low = next;
+            }
+            if !at.value.decided() {
+                break;
+            }
+        }
+        (at.omega, self.error(&at, (from.omega, to.omega)))
+    }
+
+    /// How far the zero in the range of a monotone f can be from where `at` is.
+    fn error(&self, at: &At, (from, to): (f64, f64)) -> f64 {
+        let above = at.value.value.abs() + at.value.error;
+        let slope = at.slope.value.abs() - at.slope.error;
+        let near = 2.0 * above / slope;
+        // With |f′| at least half of what it is here, the zero is no farther than that.
+        let error = if near > 0.0 && self.bend(at.omega + near) * near <= 0.5 * slope {
+            near
+        } else {
+            (to - at.omega).max(at.omega - from)
+        };
+        error + f64::EPSILON * at.omega
+    }
+}

@@ -1,0 +1,60 @@
+//! Any linear system with one delay, D(λ) = P(λ) + Q(λ) e^(−λτ), retarded or neutral.
+//!
+//! - `polynomial`: P, Q and what is made of them, each coefficient with a bound on its error
+//! - `zeros`: all zeros of such a polynomial, in discs that are known to hold them
+//! - `system`: one setting, its class, and |P|² − |Q|² and D on a vertical line
+//! - `switches`: where |P| and |Q| change places on such a line
+//! - `right_of`: how many roots lie right of a line, in closed form
+//! - `equation`: a system as what finds and follows roots takes it
+//! - `rightmost`: the rightmost roots, or where roots accumulate
+//! - `line`: all delays of a setting: crossings and counts
+//! - `count`: the count at one delay
+//! - `row`: counts and margins at many delays
+//! - `stable`: the delays at which it is stable
+//! - `latency`: feedback that comes late
+//! - `curves`: exact boundaries over a plane of two parameters
+//! - `ends`: where lobes of feedback with memory and latency end
+//! - `starts`: where the curves of a plane begin to be followed
+//! - `level`, `sides`: curves on which a function vanishes, and what holds on both sides of them
+//! - `plane`: a system over a plane of two of its parameters
+//! - `reason`: why a cell is not like the others
+//! - `isolate`: positive zeros of F that are simple and apart, by Descartes' rule on halved
+//!   intervals
+//! - `parts`: what a system is made of: its feedback form, e^(−στ), angles with their errors
+//! - `products`: products of numbers with bounds on their errors, sums of them, |P(iω)|²
+//! - `routh`: zeros right of the imaginary axis by Routh's array
+//! - `shifted`: P and Q on any vertical line, F = |P|² − |κQ|² there, and the argument of −P Q*
+
+mod count;
+pub mod curves;
+pub mod ends;
+mod equation;
+mod isolate;
+mod latency;
+mod level;
+pub mod line;
+mod parts;
+pub mod plane;
+pub mod polynomial;
+mod products;
+pub mod reason;
+pub mod right_of;
+pub mod rightmost;
+mod routh;
+mod row;
+mod shifted;
+mod sides;
+pub mod stable;
+mod starts;
+mod switches;
+pub mod system;
+pub mod zeros;
+
+pub use latency::Form;
+pub use line::DelayLine;
+pub use plane::{Setting, SystemPlane};
+pub use polynomial::Polynomial;
+pub use reason::Reason;
+pub use right_of::{RightOf, RootCounter};
+pub use rightmost::Spectrum;
+pub use system::{Class, System};

@@ -1,0 +1,393 @@
+//! How many roots lie right of a vertical line: the argument principle in closed form, for any
+//! degree.
+//!
+//! ```text
+//! p = P(σ + iω),  q = κ Q(σ + iω),  F_σ(x) = |p|² − |q|²,  x = ω²                            (6)
+//! N_σ = n_P + ν₀ + 2 Σ_j s_j m_j,   m_j = round[(φ_j − ψ_j + ω_j τ)/2π]                      (7)
+//! ```
+//!
+//! n_P is the number of zeros of P right of the line, φ and ψ are the arguments of p and q,
+//! continuous in ω, ω_j the frequencies at which F_σ changes its sign and s_j = ±1 that change.
+//! ν₀ = 0 where |p(0)| > |q(0)|, else [ψ(0) − φ(0)]/π. Between the ω_j one term dominates, and the
+//! argument of D keeps within a right angle of its argument: no turn is stepped over.
+//!
+//! Only whole turns come from the zeros r of P and Q, arg = Σ arctan[(ω − Im r)/(σ − Re r)]; the
+//! fraction comes from P and Q themselves. Equation numbers are those of the derivation for
+//! general systems.
+
+use std::f64::consts::{PI, TAU};
+
+use num_complex::Complex64;
+
+use super::latency::Form;
+use super::parts::{Angle, Decay};
+use super::polynomial::{MOST_DEGREE, Polynomial};
+use super::shifted::Shifted;
+use super::switches::{Switch, Switches, each_switch};
+use super::system::{Class, System};
+use super::zeros::Zeros;
+use crate::model::elementary::atan2;
+
+/// How far the two ways to an argument may differ before neither is trusted.
+pub(super) const SAME_TURN: f64 = 1.0;
+
+/// The number of roots right of a line.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum RightOf {
+    /// So many.
+    Roots(u64),
+    /// Infinitely many: the line lies left of the one at which they accumulate.
+    Infinite,
+    /// A root lies within rounding of the line.
+    Undecided,
+}
+
+impl RightOf {
+    /// The number, where it is finite and known.
+    #[must_use]
+    pub fn finite(self) -> Option<u64> {
+        match self {
+            Self::Roots(n) => Some(n),
+            Self::Infinite | Self::Undecided => None,
+        }
+    }
+}
+
+/// Counts roots of one system at any delay right of any line.
+#[derive(Debug, Clone)]
+pub struct RootCounter {
+    system: System,
+    p: Factors,
+    q: Factors,
+}
+
+/// A polynomial by its zeros.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Factors {
+    zeros: [Complex64; MOST_DEGREE],
+    count: usize,
+    positive: bool,
+}
+
+impl Factors {
+    fn of(polynomial: &Polynomial) -> Self {
+        let mut factors = Self {
+            zeros: [Complex64::ZERO; MOST_DEGREE],
+            count: polynomial.degree(),
+            positive: polynomial.leading().value > 0.0,
+        };
+        for (zero, disc) in factors.zeros.iter_mut().zip(Zeros::of(polynomial).discs()) {
+            *zero = disc.centre;
+        }
+        factors
+    }
+
+    fn zeros(&self) -> &[Complex64] {
+        &self.zeros[..self.count]
+    }
+
+    /// How many lie right of `line`.
+    pub(super) fn right_of(&self, line: f64) -> usize {
+        self.zeros().iter().filter(|r| r.re > line).count()
+    }
+
+    /// The argument at σ itself, in units of π: 0 or 1.
+    fn half_turns_at_zero(&self, line: f64) -> i64 {
+        let beyond = |r: &&Complex64| r.im == 0.0 && r.re > line;
+        let odd = self.zeros().iter().filter(beyond).count() % 2 == 1;
+        i64::from(self.positive == odd)
+    }
+
+    /// The argument at σ + iω, continuous in ω ≥ 0.
+    pub(super) fn argument(&self, line: f64, omega: f64) -> f64 {
+        let mut turned = Turned::NOT;
+        self.turn(line, omega, 1.0, &mut turned);
+        PI * self.half_turns_at_zero(line) as f64 + turned.angle()
+    }
+
+    /// Turns by what the argument at σ + iω is beyond that at σ, times `sign` = ±1.
+    #[inline]
+    fn turn(&self, line: f64, omega: f64, sign: f64, turned: &mut Turned) {
+        for r in self.zeros() {
+            // A zero on the line itself counts as left of it.
+            let aside = line - r.re;
+            let along = if aside < 0.0 { -sign } else { sign };
+            turned.by(aside.abs(), along * (omega - r.im));
+        }
+    }
+}
+
+/// A sum of angles as a direction and whole turns.
+#[derive(Debug, Clone, Copy)]
+struct Turned {
+    re: f64,
+    im: f64,
+    turns: f64,
+}
+
+impl Turned {
+    const NOT: Self = Self {
+        re: 1.0,
+        im: 0.0,
+        turns: 0.0,
+    };
+
+    /// Adds the angle of `re` + i `im`, which is no more than a right one: `re` ≥ 0.
+    #[inline(always)]
+    fn by(&mut self, re: f64, im: f64) {
+        if re == 0.0 && im == 0.0 {
+            return;
+        }
+        let next = (self.re * re - self.im * im, self.re * im + self.im * re);
+        if im > 0.0 && self.im >= 0.0 && next.1 < 0.0 {
+            self.turns += 1.0;
+        } else if im < 0.0 && self.im < 0.0 && next.1 >= 0.0 {
+            self.turns -= 1.0;
+        }
+        (self.re, self.im) = next;
+        let size = self.re.abs() + self.im.abs();
+        if !(1e-100..1e100).contains(&size) {
+            self.re /= size;
+            self.im /= size;
+        }
+    }
+
+    fn angle(&self) -> f64 {
+        atan2(self.im, self.re) + TAU * self.turns
+    }
+}
+
+/// A frequency at which one of (7)'s turns is counted.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Turn {
+    pub omega: f64,
+    pub omega_error: f64,
+    pub sign: f64,
+    /// φ − ψ and a bound on its error.
+    pub phase: f64,
+    pub phase_error: f64,
+}
+
+impl Turn {
+    /// m of (7), or none where it might round either way.
+    #[inline]
+    pub(super) fn turns(&self, tau: f64) -> Option<f64> {
+        let angle = self.omega * tau;
+        let turns = (self.phase + angle) / TAU;
+        let error = self.phase_error
+            + self.omega_error * tau
+            + 4.0 * f64::EPSILON * (angle + self.phase.abs());
+        let whole = (turns + 0.5).floor();
+        let left = 0.5 - (turns - whole).abs();
+        (left * TAU > error).then_some(whole)
+    }
+}
+
+/// Equation (7) on one line, with everything in it that does not depend on the delay.
+#[derive(Debug, Clone, Default)]
+pub struct Turning {
+    /// n_P + ν₀.
+    pub(super) without_turns: i64,
+    pub(super) turns: Vec<Turn>,
+}
+
+impl Turning {
+    /// The number of roots right of the line at the delay `tau`, the one it was made for; any where
+    /// the line is the imaginary axis. None where a root is too near to the line.
+    #[must_use]
+    pub fn at(&self, tau: f64) -> Option<u64> {
+        let mut sum = 0.0;
+        for turn in &self.turns {
+            sum += turn.sign * turn.turns(tau)?;
+        }
+        u64::try_from(self.without_turns + 2 * sum as i64).ok()
+    }
+}
+
+/// Why (7) gives no number on a line.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum NoNumber {
+    Infinite,
+    Undecided,
+}
+
+impl RootCounter {
+    /// For `system`, which is not one of unknown degree.
+    #[must_use]
+    pub fn new(system: &System) -> Self {
+        let [p, q] = match system.late() {
+            // What swings with the latency has no finite number of zeros.
+            Some(feedback) => feedback.polynomials(),
+            None => [&system.p, &system.q],
+        };
+        Self {
+            system: *system,
+            p: Factors::of(p),
+            q: Factors::of(&q.without_open_leading()),
+        }
+    }
+
+    /// The number of roots with Re λ > `line` at the delay `tau` ≥ 0. Real roots count once, pairs
+    /// twice.
+    #[must_use]
+    pub fn right_of(&self, tau: f64, line: f64) -> RightOf {
+        if tau == 0.0 || self.system.uncontrolled() {
+            return self.without_delay(tau, line);
+        }
+        if let Some(feedback) = self.system.late() {
+            return self.late(feedback, tau, line);
+        }
+        let mut sum = 0.0;
+        let without_turns = self.on_line(tau, line, |turn| {
+            turn.turns(tau).is_some_and(|turns| {
+                sum += turn.sign * turns;
+                true
+            })
+        });
+        match without_turns {
+            Ok(without_turns) => u64::try_from(without_turns + 2 * sum as i64)
+                .map_or(RightOf::Undecided, RightOf::Roots),
+            Err(NoNumber::Infinite) => RightOf::Infinite,
+            Err(NoNumber::Undecided) => RightOf::Undecided,
+        }
+    }
+
+    /// Equation (7) on the imaginary axis, for every delay τ > 0; none where it cannot be had at
+    /// any.
+    #[must_use]
+    pub fn unstable(&self) -> Option<Turning> {
+        if self.system.late().is_some() {
+            return self.late_unstable(Form::Delay, 0.0);
+        }
+        let mut turns = Vec::with_capacity(self.system.p.degree());
+        let without_turns = self.on_line(0.0, 0.0, |turn| {
+            turns.push(turn);
+            true
+        });
+        Some(Turning {
+            without_turns: without_turns.ok()?,
+            turns,
+        })
+    }
+
+    /// The system itself.
+    #[must_use]
+    pub fn system(&self) -> &System {
+        &self.system
+    }
+
+    /// B and A by their zeros, of a system with latency.
+    pub(super) fn late_factors(&self) -> (&Factors, &Factors) {
+        (&self.p, &self.q)
+    }
+
+    /// The frequencies above 0 at which a root can lie on `line` at the delay `tau`, the largest
+    /// first, each with the sign with which it counts in (7).
+    pub(super) fn frequencies(&self, tau: f64, line: f64) -> Vec<(f64, i8)> {
+        let mut switches = Switches::default();
+        if let Some(feedback) = self.system.late() {
+            feedback.switches_on(tau, line, &mut switches);
+        } else if let Some(decay) = Decay::new(line, tau) {
+            let modulus = self.system.on_line(line, decay).modulus();
+            switches.find(&modulus.without_open_leading());
+        }
+        switches.list.iter().map(|s| (s.omega, s.sign)).collect()
+    }
+
+    /// The zeros of P, with latency those of B.
+    pub(super) fn zeros_of_p(&self) -> &[Complex64] {
+        self.p.zeros()
+    }
+
+    fn without_delay(&self, tau: f64, line: f64) -> RightOf {
+        let sum = if tau == 0.0 {
+            self.system.without_delay()
+        } else {
+            self.system.p
+        };
+        if !sum.degree_known() {
+            return RightOf::Undecided;
+        }
+        let mut right = 0;
+        for set in Zeros::of(&sum).sets() {
+            let (from, to) = set.real_parts();
+            if from > line {
+                right += set.count() as u64;
+            } else if to > line {
+                return RightOf::Undecided;
+            }
+        }
+        RightOf::Roots(right)
+    }
+
+    /// n_P + ν₀ of (7), and each of its turns to `each`, which says whether the next one matters.
+    fn on_line(
+        &self,
+        tau: f64,
+        line: f64,
+        mut each: impl FnMut(Turn) -> bool,
+    ) -> Result<i64, NoNumber> {
+        let open = NoNumber::Undecided;
+        let system = &self.system;
+        match system.class() {
+            Class::DegreeUnknown | Class::Refused => return Err(open),
+            Class::Infinite => return Err(NoNumber::Infinite),
+            _ => {}
+        }
+        let on_line = system.on_line(line, Decay::new(line, tau).ok_or(open)?);
+        if !on_line.on_real_axis().decided() {
+            return Err(open);
+        }
+        let mut modulus = on_line.modulus();
+        if system.class() == Class::NeutralLimit && line == 0.0 {
+            modulus = modulus.without_open_leading();
+        }
+        if !modulus.leading().decided() {
+            return Err(open);
+        }
+        if modulus.leading().value < 0.0 {
+            return Err(NoNumber::Infinite);
+        }
+        let mut going_on = true;
+        let found = each_switch(&modulus, |switch| {
+            going_on = going_on && self.turn(&on_line, line, &switch).is_some_and(&mut each);
+        });
+        if !going_on || found.is_none() {
+            return Err(open);
+        }
+        let constant = modulus.coefficient(0);
+        let mut without_turns = self.p.right_of(line) as i64;
+        // Where that is open though D(σ) is not, |p| = |q| without a root: then ν₀ = 0.
+        if constant.decided() && constant.value < 0.0 {
+            without_turns += self.q.half_turns_at_zero(line) - self.p.half_turns_at_zero(line);
+        }
+        Ok(without_turns)
+    }
+
+    fn turn(&self, on_line: &Shifted, line: f64, switch: &Switch) -> Option<Turn> {
+        let Angle { value, error } = on_line.phase(switch.omega, switch.error)?;
+        // The argument of −P Q* is half a turn from that of P Q*.
+        let fraction = value + PI;
+        let phase = fraction + TAU * self.whole_turns(line, switch.omega, value)?;
+        Some(Turn {
+            omega: switch.omega,
+            omega_error: switch.error,
+            sign: f64::from(switch.sign),
+            phase,
+            phase_error: error + 4.0 * f64::EPSILON * phase.abs(),
+        })
+    }
+
+    /// The whole turns by which φ − ψ at `omega` is ahead of `angle` + π, the argument of −P Q*
+    /// being `angle`; none where the zeros of P and Q tell too little.
+    fn whole_turns(&self, line: f64, omega: f64, angle: f64) -> Option<f64> {
+        let mut turned = Turned::NOT;
+        self.p.turn(line, omega, 1.0, &mut turned);
+        self.q.turn(line, omega, -1.0, &mut turned);
+        let half_turns = self.p.half_turns_at_zero(line) - self.q.half_turns_at_zero(line);
+        let rough = PI * half_turns as f64 + turned.angle();
+        let ahead = rough - (angle + PI);
+        let turns = (ahead / TAU).round();
+        ((ahead - TAU * turns).abs() < SAME_TURN).then_some(turns)
+    }
+}

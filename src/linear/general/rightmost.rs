@@ -1,0 +1,90 @@
+//! The spectral abscissa of a general system: that of its rightmost roots, or where roots
+//! accumulate.
+
+use super::line::DelayLine;
+use super::reason::Reason;
+use super::right_of::{RightOf, RootCounter};
+use super::system::System;
+use crate::linear::count::{Count, MarginalTolerance};
+use crate::linear::newton::Root;
+use crate::linear::rightmost::Rightmost;
+use crate::linear::spectrum::Incomplete;
+
+/// How near to the line at which roots accumulate a root is told from it, in units of 1/τ.
+const BESIDE: f64 = 1e-9;
+
+/// What is known of the roots at one delay.
+#[derive(Debug, Clone)]
+pub struct Spectrum {
+    /// The number of unstable roots; none where it is infinite or not known.
+    pub count: Option<Count>,
+    /// The rightmost roots by falling real part, pairs counted once.
+    pub roots: Vec<Root>,
+    /// The largest real part, or its supremum; NaN where it is not known.
+    pub abscissa: f64,
+    /// Where roots accumulate: ln ρ/τ, −∞ in retarded equations.
+    pub essential_abscissa: f64,
+    /// No root lies right of the abscissa + margin·max(1, |abscissa|); NaN where nothing is known.
+    pub margin: f64,
+    /// The argument principle confirms that, and the number of unstable roots.
+    pub certified: bool,
+    /// What is special here.
+    pub reason: Option<Reason>,
+    /// What was not found, if anything.
+    pub missing: Option<Incomplete>,
+}
+
+/// A line right of the one at which the roots of `system` accumulate at the delay `tau`, as near as
+/// roots are told from it; none where they accumulate nowhere.
+#[must_use]
+pub fn beside_accumulation(system: &System, tau: f64) -> Option<f64> {
+    let essential = system.essential_abscissa(tau);
+    let beside = essential + BESIDE * essential.abs().max(1.0 / tau);
+    beside.is_finite().then_some(beside)
+}
+
+impl Spectrum {
+    /// The `wanted` rightmost roots, at least one, at the delay `tau` ≥ 0 of the line `line` of the
+    /// system of `counter`.
+    #[must_use]
+    pub fn at(counter: &RootCounter, line: &DelayLine, tau: f64, wanted: usize) -> Self {
+        let essential_abscissa = counter.system().essential_abscissa(tau);
+        let mut spectrum = Self {
+            count: None,
+            roots: Vec::new(),
+            abscissa: f64::NAN,
+            essential_abscissa,
+            margin: f64::NAN,
+            certified: false,
+            reason: line.reason,
+            missing: None,
+        };
+        if line.uncounted && tau > 0.0 {
+            return spectrum;
+        }
+        let count = line.count(tau, MarginalTolerance::default());
+        spectrum.count = Some(count);
+        if let Some(beside) = beside_accumulation(counter.system(), tau)
+            && counter.right_of(tau, beside) == RightOf::Roots(0)
+        {
+            spectrum.abscissa = essential_abscissa;
+            spectrum.margin = beside - essential_abscissa;
+            spectrum.certified = count.n_unstable == 0 && !count.marginal;
+            spectrum.reason = spectrum.reason.or(Some(Reason::NoRightmostRoot));
+            return spectrum;
+        }
+        let mut found = Rightmost::at(counter, tau, wanted, count);
+        // Fewer than are wanted may lie right of where they accumulate.
+        let mut fewer = wanted;
+        while found.roots.is_empty() && fewer > 1 && essential_abscissa.is_finite() {
+            fewer -= 1;
+            found = Rightmost::at(counter, tau, fewer, count);
+        }
+        spectrum.abscissa = found.roots.first().map_or(f64::NAN, |r| r.lambda.re);
+        spectrum.margin = found.margin;
+        spectrum.certified = found.certified;
+        spectrum.missing = found.missing;
+        spectrum.roots = found.roots;
+        spectrum
+    }
+}

@@ -1,0 +1,178 @@
+//! Where |P| and κ|Q| change places on a vertical line: the positive zeros of F_σ.
+//!
+//! Each is given with what is not known of it. Zeros that rounding does not tell apart come as one,
+//! which counts by the change of sign of F across all of them.
+
+use super::isolate::{Enclosed, PositiveZeros};
+use super::polynomial::{MOST_DEGREE, Polynomial};
+use super::zeros::{Set, Zeros};
+use crate::model::elementary::pow;
+
+/// A positive zero of F, or several that cannot be told apart.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Switch {
+    /// Its frequency ω = √x.
+    pub omega: f64,
+    /// A bound on the error of ω.
+    pub error: f64,
+    /// Half the change of the sign of F with growing x.
+    pub sign: i8,
+    /// It is one zero and simple.
+    pub simple: bool,
+}
+
+/// The positive zeros of F by falling frequency.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Switches {
+    /// Them.
+    pub list: Vec<Switch>,
+    /// The sign of F right of 0; none where zeros near 0 leave it open.
+    pub at_zero: Option<bool>,
+    /// Below this frequency there may be further zeros.
+    pub open_below: f64,
+}
+
+/// What is known of F near 0.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct NearZero {
+    /// The sign of F right of 0; none where zeros near 0 leave it open.
+    pub sign: Option<bool>,
+    /// Below this frequency there may be further zeros.
+    pub open_below: f64,
+}
+
+impl Switches {
+    /// Of the polynomial `f` in x = ω². F(0) is taken for 0 exactly where it may be 0.
+    ///
+    /// Returns false, and leaves nothing known, where the highest coefficient may be 0.
+    pub(super) fn find(&mut self, f: &Polynomial) -> bool {
+        let Self { list, .. } = self;
+        list.clear();
+        let found = each_switch(f, |switch| list.push(switch));
+        self.open_below = found.map_or(0.0, |near| near.open_below);
+        self.at_zero = found.and_then(|near| near.sign);
+        found.is_some()
+    }
+
+    /// What is known of F near 0.
+    pub(super) fn near_zero(&self) -> NearZero {
+        NearZero {
+            sign: self.at_zero,
+            open_below: self.open_below,
+        }
+    }
+}
+
+/// Visits the switches of the polynomial `f` in x = ω², by falling frequency. F(0) is taken for 0
+/// exactly where it may be 0. None, with no switch visited, where the highest coefficient may be 0.
+#[inline]
+pub(super) fn each_switch(f: &Polynomial, mut visit: impl FnMut(Switch)) -> Option<NearZero> {
+    if !f.leading().decided() {
+        return None;
+    }
+    if f.coefficient(0).decided() || f.degree() == 0 {
+        return Some(switches_of(f, 0.0, &mut visit));
+    }
+    // A zero at 0 itself, or so near that nothing tells it from there.
+    Some(switches_of(
+        &f.divided_by_variable(),
+        near_zero(f),
+        &mut visit,
+    ))
+}
+
+#[inline]
+fn switches_of(f: &Polynomial, open_below: f64, visit: &mut impl FnMut(Switch)) -> NearZero {
+    let Some(zeros) = PositiveZeros::of(f) else {
+        return by_discs(f, open_below, visit);
+    };
+    let mut positive = f.leading().value > 0.0;
+    for Enclosed { centre, radius } in zeros.all() {
+        let range = (centre - radius, centre + radius);
+        visit(switch(range, Some(*centre), (!positive, positive)));
+        positive = !positive;
+    }
+    NearZero {
+        sign: Some(positive),
+        open_below,
+    }
+}
+
+/// From all zeros of `f`, those that are not apart as one.
+#[cold]
+fn by_discs(f: &Polynomial, open_below: f64, visit: &mut impl FnMut(Switch)) -> NearZero {
+    let zeros = Zeros::of(f);
+    let mut sets: [Option<(f64, f64, Set)>; MOST_DEGREE] = [None; MOST_DEGREE];
+    let mut count = 0;
+    for set in zeros.sets() {
+        if let Some((from, to)) = set.on_real_axis().filter(|(_, to)| *to > 0.0) {
+            sets[count] = Some((from, to, set));
+            count += 1;
+        }
+    }
+    sets[..count].sort_by(|a, b| {
+        let middle = |s: &Option<(f64, f64, Set)>| s.map_or(0.0, |(from, to, _)| from + to);
+        middle(b).total_cmp(&middle(a))
+    });
+    let mut positive = f.leading().value > 0.0;
+    let constant = f.coefficient(0);
+    let mut near = NearZero {
+        sign: None,
+        open_below,
+    };
+    for (from, to, set) in sets[..count].iter().flatten() {
+        let odd = set.count() % 2 == 1;
+        if *from <= 0.0 {
+            // It covers 0: only the signs tell how many zeros lie right of it.
+            near.open_below = near.open_below.max(to.sqrt());
+            if !constant.decided() {
+                return near;
+            }
+            let before = constant.value > 0.0;
+            visit(switch((0.0, *to), None, (before, positive)));
+            positive = before;
+            continue;
+        }
+        let before = positive ^ odd;
+        let lone = (set.count() == 1).then(|| set.middle().re);
+        visit(switch((*from, *to), lone, (before, positive)));
+        positive = before;
+    }
+    near.sign = Some(positive);
+    near
+}
+
+/// The switch within `from` < x < `to`, at `centre` if that is known, where F changes from one sign
+/// to the other.
+fn switch((from, to): (f64, f64), centre: Option<f64>, (before, after): (bool, bool)) -> Switch {
+    let (low, high) = (from.max(0.0).sqrt(), to.sqrt());
+    let omega = centre.map_or(0.5 * (low + high), f64::sqrt);
+    let error = (high - omega).max(omega - low) + f64::EPSILON * omega;
+    Switch {
+        omega,
+        error,
+        sign: direction(before, after),
+        simple: centre.is_some(),
+    }
+}
+
+/// Half the change of the sign of F, positive or not.
+pub(super) const fn direction(before: bool, after: bool) -> i8 {
+    after as i8 - before as i8
+}
+
+/// A frequency beyond which the error of F(0) moves no zero that is near 0.
+fn near_zero(f: &Polynomial) -> f64 {
+    let constant = f.coefficient(0);
+    let most = constant.value.abs() + constant.error;
+    if most == 0.0 {
+        return 0.0;
+    }
+    // |c_k| xᵏ outweighs it from there on, for the first k of which the sign is known.
+    (1..=f.degree())
+        .map(|k| (k, f.coefficient(k)))
+        .filter(|(_, c)| c.decided())
+        .map(|(k, c)| pow(2.0 * most / (c.value.abs() - c.error), 0.5 / k as f64))
+        .fold(f64::INFINITY, f64::min)
+        .min(1e300)
+}

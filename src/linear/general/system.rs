@@ -1,0 +1,329 @@
+//! A system at one setting of its parameters, and to which class it belongs.
+
+use num_complex::Complex64;
+
+use super::parts::{Decay, Feedback, late};
+use super::polynomial::{DegreeTooLarge, Polynomial};
+use super::reason::Reason;
+use super::shifted::Shifted;
+use super::zeros::{Disc, Zeros};
+use crate::linear::characteristic::{Jet, one_minus_exp};
+use crate::linear::rounded::Rounded;
+use crate::model::elementary::{exp, ln, pow};
+
+/// D(λ) = P(λ) + Q(λ) e^(−λτ) with every parameter but the delay given.
+#[derive(Debug, Clone, Copy)]
+pub struct System {
+    /// P.
+    pub(super) p: Polynomial,
+    /// Q.
+    pub(super) q: Polynomial,
+    pub(super) feedback: Option<Feedback>,
+    class: Class,
+}
+
+/// What kind of equation it is.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Class {
+    /// deg Q < deg P: finitely many roots right of any line.
+    Retarded,
+    /// deg Q = deg P with ρ = |q_n/p_n| < 1: roots accumulate at Re λ = ln ρ/τ.
+    Neutral {
+        /// ρ.
+        ratio: f64,
+    },
+    /// ρ = 1 within rounding, with finitely many unstable roots: they accumulate at the axis.
+    NeutralLimit,
+    /// ρ > 1, or deg Q > deg P: infinitely many unstable roots at every τ > 0.
+    Infinite,
+    /// The highest coefficient is within its error of 0.
+    DegreeUnknown,
+    /// |P| = |Q| on all of the imaginary axis.
+    Refused,
+}
+
+impl Class {
+    /// What a cell of this class has to say about itself.
+    #[must_use]
+    pub fn reason(self) -> Option<Reason> {
+        match self {
+            Self::Retarded | Self::Neutral { .. } => None,
+            Self::NeutralLimit => Some(Reason::NeutralLimit),
+            Self::Infinite => Some(Reason::Infinite),
+            Self::DegreeUnknown => Some(Reason::DegreeUnknown),
+            Self::Refused => Some(Reason::Refused),
+        }
+    }
+}
+
+impl System {
+    /// From P and Q themselves.
+    #[must_use]
+    pub fn direct(p: Polynomial, q: Polynomial) -> Self {
+        Self::classified(p, q, None)
+    }
+
+    /// From the open loop B, the feedback A with deg A < deg B, the memory −1 < R < 1 and the
+    /// latency δ ≥ 0: D = B(1 − R E) − A e^(−λδ)(1 − E). Where A is 0 everywhere both are ignored:
+    /// there is nothing to remember and nothing that could be late.
+    #[must_use]
+    pub fn feedback(open: Polynomial, gain: Polynomial, memory: f64, latency: f64) -> Self {
+        if gain.is_zero() {
+            return Self::classified(open, Polynomial::ZERO, None);
+        }
+        let p = open.plus(&gain, -1.0);
+        let q = if memory == 0.0 {
+            gain
+        } else {
+            gain.plus(&open, -memory)
+        };
+        let feedback = Feedback {
+            open,
+            gain,
+            memory,
+            latency,
+        };
+        Self::classified(p, q, Some(feedback))
+    }
+
+    /// From the coefficients of P and Q, the constants first.
+    ///
+    /// # Errors
+    /// When there are too many.
+    pub fn of_coefficients(p: &[f64], q: &[f64]) -> Result<Self, DegreeTooLarge> {
+        Ok(Self::direct(Polynomial::new(p)?, Polynomial::new(q)?))
+    }
+
+    pub(super) fn classified(p: Polynomial, q: Polynomial, feedback: Option<Feedback>) -> Self {
+        let mut system = Self {
+            p,
+            q,
+            feedback,
+            class: Class::Retarded,
+        };
+        system.class = system.find_class();
+        system
+    }
+
+    fn find_class(&self) -> Class {
+        if let Some(feedback) = self.late() {
+            return feedback.late_class();
+        }
+        let (n, m) = (self.p.degree(), self.q.degree());
+        if !self.p.degree_known() || (m >= n && !self.q.degree_known()) {
+            return Class::DegreeUnknown;
+        }
+        if self.q.is_zero() {
+            return if self.p.is_zero() {
+                Class::Refused
+            } else {
+                Class::Retarded
+            };
+        }
+        if self.p.is_zero() || m > n {
+            return Class::Infinite;
+        }
+        if m < n {
+            return Class::Retarded;
+        }
+        let modulus = self.on_axis().modulus();
+        if modulus.vanishes() {
+            return Class::Refused;
+        }
+        let ratio = (self.q.leading().value / self.p.leading().value).abs();
+        let leading = modulus.coefficient(n);
+        if leading.decided() {
+            return if ratio < 1.0 {
+                Class::Neutral { ratio }
+            } else {
+                Class::Infinite
+            };
+        }
+        let highest = (0..n).rev().map(|k| modulus.coefficient(k));
+        match highest.into_iter().find(|c| c.decided()) {
+            Some(c) if c.value < 0.0 => Class::Infinite,
+            _ => Class::NeutralLimit,
+        }
+    }
+
+    /// The coefficients of λ^`degree` in P and in Q.
+    #[must_use]
+    pub(super) fn coefficients(&self, degree: usize) -> [f64; 2] {
+        [&self.p, &self.q].map(|of| of.coefficients().get(degree).copied().unwrap_or(0.0))
+    }
+
+    /// Its class.
+    #[must_use]
+    pub fn class(&self) -> Class {
+        self.class
+    }
+
+    /// No feedback at all: the delay does not matter.
+    #[must_use]
+    pub fn uncontrolled(&self) -> bool {
+        self.q.is_zero()
+    }
+
+    /// The real part at which roots accumulate at the delay `tau` > 0: ln ρ/τ, −∞ where deg Q <
+    /// deg P.
+    #[must_use]
+    pub fn essential_abscissa(&self, tau: f64) -> f64 {
+        match self.class {
+            Class::Neutral { ratio } if tau > 0.0 => ln(ratio) / tau,
+            Class::NeutralLimit if tau > 0.0 => 0.0,
+            Class::Infinite if tau > 0.0 => f64::INFINITY,
+            _ => f64::NEG_INFINITY,
+        }
+    }
+
+    /// P and Q divided by λ, where both vanish at 0 for certain or within rounding; none where they
+    /// do not.
+    pub(super) fn without_common_origin(&self) -> Option<Self> {
+        let vanish = |p: &Polynomial| !p.coefficient(0).decided();
+        if self.q.is_zero() || !(vanish(&self.p) && vanish(&self.q)) {
+            return None;
+        }
+        // Only with latency P and Q do not say it all.
+        let feedback = self.late().map(Feedback::divided_by_variable);
+        Some(Self::classified(
+            self.p.divided_by_variable(),
+            self.q.divided_by_variable(),
+            feedback,
+        ))
+    }
+
+    /// P + Q: its zeros are the roots without delay.
+    pub(super) fn without_delay(&self) -> Polynomial {
+        match &self.feedback {
+            Some(Feedback { open, memory, .. }) => open.scaled(Rounded {
+                value: 1.0 - memory,
+                error: 0.5 * f64::EPSILON,
+            }),
+            None => self.p.plus(&self.q, 1.0),
+        }
+    }
+
+    /// P and Q on the line Re λ = `line`.
+    #[inline]
+    pub(super) fn on_line(&self, line: f64, decay: Decay) -> Shifted {
+        match &self.feedback {
+            Some(Feedback {
+                open, gain, memory, ..
+            }) => Shifted::of_feedback([open, gain], *memory, line, decay),
+            None => Shifted::direct([&self.p, &self.q], line, decay),
+        }
+    }
+
+    /// P and Q on the imaginary axis.
+    #[inline]
+    pub(super) fn on_axis(&self) -> Shifted {
+        self.on_line(0.0, Decay::NONE)
+    }
+
+    /// A radius within which every root with Re λ ≥ `line` lies; infinite where κρ ≥ 1.
+    #[must_use]
+    pub fn root_bound(&self, tau: f64, line: f64) -> f64 {
+        if let Some(feedback) = self.late() {
+            return feedback.late_root_bound(tau, line);
+        }
+        let n = self.p.degree();
+        let kappa = exp(-line * tau);
+        let size = |p: &Polynomial, k: usize| {
+            let c = p.coefficient(k);
+            if k <= p.degree() {
+                c.value.abs() + c.error
+            } else {
+                0.0
+            }
+        };
+        let leading = size(&self.p, n) * (1.0 - 2.0 * f64::EPSILON) - kappa * size(&self.q, n);
+        if leading.is_nan() || leading <= 0.0 {
+            return f64::INFINITY;
+        }
+        // Rⁿ = Σ r_i Rⁱ has no positive zero beyond 2 max r_i^(1/(n − i)) (Fujiwara).
+        let radius = |i: usize| {
+            let ratio = (size(&self.p, i) + kappa * size(&self.q, i)) / leading;
+            pow(ratio, 1.0 / (n - i) as f64)
+        };
+        2.0 * (0..n).map(radius).fold(0.0, f64::max)
+    }
+
+    /// D, D′ and D″ at λ, with Q as what is fed back.
+    #[must_use]
+    pub fn jet(&self, tau: f64, lambda: Complex64) -> Jet {
+        let difference = one_minus_exp(-tau * lambda);
+        let delayed = 1.0 - difference;
+        let (kept, fed, part) = match &self.feedback {
+            // D = (1 − R) B − Q(1 − E): short delays keep their digits.
+            Some(Feedback {
+                open,
+                gain,
+                memory,
+                latency,
+            }) => {
+                let (b, a) = (open.jet(lambda), late(gain.jet(lambda), *latency, lambda));
+                let fed = [0, 1, 2].map(|i| a[i] - memory * b[i]);
+                (b.map(|b| b * (1.0 - memory)), fed, -difference)
+            }
+            None => (self.p.jet(lambda), self.q.jet(lambda), delayed),
+        };
+        let memory = fed[0] * delayed * tau;
+        Jet {
+            value: kept[0] + fed[0] * part,
+            first: kept[1] + fed[1] * part - memory,
+            second: kept[2] + fed[2] * part - 2.0 * tau * fed[1] * delayed + memory * tau,
+            delayed,
+            difference,
+            feedback: fed[0],
+        }
+    }
+
+    /// A bound on the rounding error of D at λ, to within a small factor.
+    #[must_use]
+    pub fn rounding(&self, jet: &Jet, tau: f64, lambda: Complex64) -> f64 {
+        let size = lambda.l1_norm();
+        let unit = (self.p.degree().max(self.q.degree()) as f64 + 4.0) * f64::EPSILON;
+        let part = |p: &Polynomial, by: f64| {
+            let (value, error) = p.bounds(size);
+            by * (unit * value + error)
+        };
+        let delayed = jet.delayed.l1_norm();
+        // The argument λτ is rounded as well, and with it the phase of E.
+        let turned = delayed * size * tau;
+        match &self.feedback {
+            Some(feedback) => {
+                let Feedback {
+                    open, gain, memory, ..
+                } = feedback;
+                let by = jet.difference.l1_norm() + turned;
+                part(gain, by * feedback.late_size(lambda))
+                    + part(open, 1.0 - memory + memory.abs() * by)
+            }
+            None => part(&self.p, 1.0) + part(&self.q, delayed + turned),
+        }
+    }
+
+    /// P and Q have a zero near iω in common, both within their errors on the axis.
+    pub(super) fn has_common_zero(&self, omega: f64) -> bool {
+        let on_axis = |polynomial: &Polynomial| {
+            let zeros = Zeros::of(polynomial);
+            let near = zeros.discs().iter().copied().filter(|disc| {
+                disc.centre.im > 0.0
+                    && disc.centre.re.abs() <= disc.radius
+                    && (disc.centre.im - omega).abs() <= 1e-6 * omega
+            });
+            near.min_by(|a, b| {
+                let apart = |d: &Disc| (d.centre.im - omega).abs();
+                apart(a).total_cmp(&apart(b))
+            })
+        };
+        let [p, q] = match self.late() {
+            Some(feedback) => feedback.polynomials(),
+            None => [&self.p, &self.q],
+        };
+        match (on_axis(p), on_axis(&q.without_open_leading())) {
+            (Some(p), Some(q)) => (p.centre.im - q.centre.im).abs() <= p.radius + q.radius,
+            _ => false,
+        }
+    }
+}

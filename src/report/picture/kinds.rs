@@ -1,0 +1,34 @@
+//! Boundaries that are no pair of roots on the axis: dashed, and named in the legend.
+
+use super::colour::Rgb;
+use super::legend::Swatch;
+use super::text::Rich;
+use crate::linear::curves::{CurveKind, CurvePiece};
+
+/// Dashes (length, gap) of a boundary; none where it is drawn through.
+pub(super) fn dash(kind: CurveKind) -> Option<(f64, f64)> {
+    match kind {
+        CurveKind::Pair => None,
+        CurveKind::RealRoot => Some((14.0, 5.0)),
+        CurveKind::LeadingCoefficient => Some((4.0, 5.0)),
+    }
+}
+
+/// Entries of a legend for the kinds that are there.
+pub(super) fn entries<'a>(
+    pieces: &(impl Iterator<Item = &'a CurvePiece> + Clone),
+    colour: Rgb,
+    width: f64,
+) -> Vec<(Swatch, Rich)> {
+    let of = |kind: CurveKind| {
+        let words = match kind {
+            CurveKind::Pair => return None,
+            CurveKind::RealRoot => "root at the origin",
+            CurveKind::LeadingCoefficient => "leading coefficient",
+        };
+        let there = pieces.clone().any(|piece| piece.kind == kind);
+        let swatch = Swatch::Dashed(colour, width, dash(kind)?);
+        there.then(|| (swatch, Rich::plain(words)))
+    };
+    CurveKind::ALL.into_iter().filter_map(of).collect()
+}

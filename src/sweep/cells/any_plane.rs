@@ -1,0 +1,62 @@
+//! Curves of a plane of any two parameters of any system.
+
+use super::boundaries::{DegreeCurves, joined, jumps, split};
+use crate::linear::curves::{PlaneCurves, Window};
+use crate::linear::general::curves::trace;
+use crate::linear::general::{Setting as SystemSetting, SystemPlane};
+use crate::model::ModelError;
+use crate::sweep::input::parameter::Parameter;
+use crate::sweep::input::quantity::Quantity;
+use crate::sweep::input::setting::Setting;
+
+/// Traces the curves of the plane of the two parameters `of`.
+///
+/// # Errors
+/// When a parameter is outside the model's range in a corner of the window.
+pub(super) fn trace_window(
+    setting: &Setting,
+    of: [&Quantity; 2],
+    window: &Window,
+    degrees_of_stability: &[f64],
+) -> Result<Vec<DegreeCurves>, ModelError> {
+    let system_at = |p: f64, q: f64| -> Result<SystemSetting, ModelError> {
+        let mut setting = setting.clone();
+        setting.vary(of[0], p);
+        setting.vary(of[1], q);
+        let (model, unit) = setting.linear()?;
+        Ok(SystemSetting {
+            system: model.system(),
+            tau: setting.get(Parameter::Tau),
+            unit,
+        })
+    };
+    for p in [window.p.start(), window.p.end()] {
+        for q in [window.q.start(), window.q.end()] {
+            system_at(*p, *q)?;
+        }
+    }
+    let jumps = match of[0].known() {
+        Some(parameter) => jumps(setting, parameter)?,
+        None => Vec::new(),
+    };
+    let at = |p: f64, q: f64| system_at(p, q).ok();
+    let delays = of.map(|of| *of == Parameter::Tau || *of == Parameter::Latency);
+    let own_lines = setting.system().is_none_or(|s| !s.depends_on_delay());
+    let has_lines = *of[1] == Parameter::Tau && own_lines;
+    let traced = |sigma: f64| {
+        let mut curves = Ok(PlaneCurves::default());
+        for part in split(window, &jumps) {
+            let plane = match has_lines {
+                true => SystemPlane::of_lines(&at, &part),
+                false => SystemPlane::new(&at, &part, delays),
+            };
+            curves = joined(curves, trace(&plane, sigma));
+        }
+        DegreeCurves {
+            degree_of_stability: sigma,
+            curves,
+        }
+    };
+    let degrees = degrees_of_stability.iter().copied();
+    Ok(std::iter::once(0.0).chain(degrees).map(traced).collect())
+}

@@ -1,0 +1,107 @@
+//! The linear models of one line of cells after the other.
+
+use crate::model::{Control, Groups, ModelError, Oscillator, SlidingPoint};
+use crate::sweep::input::linear_model::LinearModel;
+use crate::sweep::input::parameter::Parameter;
+use crate::sweep::input::quantity::Quantity;
+use crate::sweep::input::setting::Setting;
+use crate::sweep::input::system::Evaluation;
+use crate::sweep::plan::Plan;
+
+/// The groups of one line after the other. What does not change from line to line is not computed
+/// again.
+pub(super) struct Lines<'p> {
+    plan: &'p Plan,
+    pub(super) setting: Setting,
+    /// Index of the setting along each axis.
+    index: Vec<usize>,
+    /// Some line may be beyond the letter's own system.
+    beyond_letter: bool,
+    /// Room for the expressions of a system from a file.
+    evaluation: Evaluation,
+    /// What the gains do not change.
+    uncontrolled: Option<Result<(Oscillator, SlidingPoint), ModelError>>,
+}
+
+impl<'p> Lines<'p> {
+    pub(super) fn new(plan: &'p Plan) -> Self {
+        let index = vec![0; plan.spec.axes.len()];
+        Self {
+            plan,
+            setting: plan.setting(&index),
+            index,
+            beyond_letter: plan.spec.beyond_letter(),
+            evaluation: Evaluation::default(),
+            uncontrolled: None,
+        }
+    }
+
+    /// Goes to the line at `offset` + `inside`.
+    #[inline(always)]
+    pub(super) fn move_to(&mut self, offset: &[usize], inside: &[usize]) {
+        for (axis, known) in self.index.iter_mut().enumerate() {
+            let index = offset[axis] + inside[axis];
+            if *known != index {
+                *known = index;
+                let axis = &self.plan.spec.axes[axis];
+                self.setting.vary(&axis.parameter, axis.values[index]);
+                if !matches!(
+                    axis.parameter,
+                    Quantity::Known(Parameter::AlphaV | Parameter::AlphaN | Parameter::Tau)
+                ) {
+                    self.uncontrolled = None;
+                }
+            }
+        }
+    }
+
+    /// The linear model of the line, and its unit of time.
+    #[inline(always)]
+    pub(super) fn model(&mut self) -> Result<(LinearModel, f64), ModelError> {
+        if self.beyond_letter {
+            if let Some(system) = self.setting.own_system(&mut self.evaluation) {
+                return Ok((LinearModel::General(Box::new(system?)), 1.0));
+            }
+            let model = self.setting.linear()?;
+            if matches!(model.0, LinearModel::General(_)) {
+                // Rates of its parameters are needed all the same.
+                self.groups()?;
+                return Ok(model);
+            }
+        }
+        let (groups, time_unit) = self.groups()?;
+        Ok((LinearModel::Letter(groups), time_unit))
+    }
+
+    /// The groups of the line, and its unit of time.
+    #[inline(always)]
+    pub(super) fn groups(&mut self) -> Result<(Groups, f64), ModelError> {
+        let setting = &self.setting;
+        let uncontrolled = self
+            .uncontrolled
+            .get_or_insert_with(|| Ok((setting.oscillator()?, setting.sliding_point()?)));
+        let (oscillator, sliding) = uncontrolled.as_ref().map_err(Clone::clone)?;
+        let groups = oscillator.groups(*sliding, setting.control());
+        Ok((groups, oscillator.time_unit()))
+    }
+
+    /// How much each group grows with its parameter on the current line: b per μ_K′, a_v per α_v,
+    /// a_n per α_N.
+    pub(super) fn groups_per_parameter(&self) -> Groups {
+        match &self.uncontrolled {
+            Some(Ok((oscillator, sliding))) => {
+                // Every group is proportional to its parameter.
+                let one_each = SlidingPoint {
+                    mu_prime: 1.0,
+                    ..*sliding
+                };
+                let control = Control {
+                    alpha_v: 1.0,
+                    alpha_n: 1.0,
+                };
+                oscillator.groups(one_each, control)
+            }
+            _ => Groups::new(f64::NAN, f64::NAN, f64::NAN),
+        }
+    }
+}

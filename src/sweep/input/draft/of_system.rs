@@ -1,0 +1,32 @@
+//! A sweep of a system from a file: whether it fits together.
+
+use super::Draft;
+use crate::sweep::input::parameter::Parameter;
+use crate::sweep::input::setting::Setting;
+use crate::sweep::input::system_draft::{SystemDraft, refused};
+use crate::sweep::input::toml_reader::SpecError;
+
+impl Draft {
+    /// Everything fits together in a sweep of a system; gives the parameters that are no axes.
+    pub(super) fn check_system(&self, system: &SystemDraft) -> Result<Setting, SpecError> {
+        self.check_degrees()?;
+        let tau = Parameter::Tau;
+        if !system.given.iter().any(|(of, _)| *of == tau) {
+            return Err(SpecError {
+                span: self.axes_place.clone(),
+                ..SpecError::whole("tau is not given").help(format!(
+                    "tau: {}, {}",
+                    tau.long_name(),
+                    tau.allowed()
+                ))
+            });
+        }
+        for (field, place) in self.limit.fields() {
+            if let Some((why, help)) = refused(*field, &system.model) {
+                let message = format!("{}: {why}", field.name());
+                return Err(SpecError::at(place.clone(), message).help(help));
+            }
+        }
+        Ok(system.setting.clone())
+    }
+}

@@ -1,0 +1,255 @@
+//! A linear system with one delay from a file: P and Q, or B and A, as expressions of parameters
+//! with names of their own.
+//!
+//! ```toml
+//! title = "Turning with one mode"         # optional
+//! P = "s^2 + 2*zeta*s + 1 + width"        # D = P + Q e^(−s tau)
+//! Q = "-width"
+//! # or the feedback form, deg A < deg B: D = B(1 − R e^(−s tau)) − A e^(−s δ)(1 − e^(−s tau)),
+//! # with memory R and latency δ as parameters of every such system
+//! # B = "s^2 + b*s + 1"
+//! # A = "gain"
+//!
+//! [parameters]                            # a name for each
+//! zeta = { long_name = "damping ratio", default = 0.02, minimum = 0 }
+//! width = 0                               # or its default alone; 0 where there is none
+//!
+//! # optional: pictures over the delay have this axis, 60/tau for "rpm"
+//! [speed_axis]
+//! name = "spindle_speed"
+//! period = "tau"
+//! unit = "rpm"
+//! ```
+//!
+//! - `expression`, `part`: read them; `tape`: evaluates them; `bounded`: numbers with bounds on
+//!   their error
+//! - `file`: reads the file; `text`: writes it; [`shipped`]: systems that are part of the program
+//! - [`parameter`]: a parameter of a system's own
+
+mod bounded;
+mod expression;
+mod file;
+pub mod parameter;
+mod part;
+pub mod shipped;
+mod tape;
+mod text;
+
+use std::ops::Range;
+use std::sync::Arc;
+
+use parameter::OwnParameter;
+use tape::{Stacks, Tape};
+
+use crate::linear::general::System;
+use crate::model::ModelError;
+
+/// A system whose parameters have no values yet.
+#[derive(Debug, Clone, PartialEq)]
+pub struct SystemModel {
+    /// What it is, for pictures and maps; may be empty.
+    pub title: String,
+    form: Form,
+    /// Its own parameters, in the order of the file.
+    pub parameters: Vec<Arc<OwnParameter>>,
+    /// How pictures over its delay may show it.
+    pub speed_axis: Option<SpeedAxis>,
+}
+
+/// Two polynomials, each as it is written and as it is evaluated.
+#[derive(Debug, Clone, PartialEq)]
+enum Form {
+    /// P and Q.
+    Direct([Expression; 2]),
+    /// B and A.
+    Feedback([Expression; 2]),
+}
+
+#[derive(Debug, Clone, PartialEq)]
+struct Expression {
+    text: String,
+    tape: Tape,
+}
+
+/// A speed that goes with a delay that is a period.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct SpeedAxis {
+    /// Its name.
+    pub name: String,
+    /// Its unit.
+    pub unit: SpeedUnit,
+}
+
+/// A unit of speed, and so how it follows from the period τ.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum SpeedUnit {
+    /// Revolutions per minute, 60/τ with τ in seconds.
+    RevolutionsPerMinute,
+    /// Revolutions per unit of time, 1/τ.
+    Hertz,
+    /// Radians per unit of time, 2π/τ.
+    RadiansPerSecond,
+}
+
+impl SpeedUnit {
+    /// All of them.
+    pub const ALL: [Self; 3] = [
+        Self::RevolutionsPerMinute,
+        Self::Hertz,
+        Self::RadiansPerSecond,
+    ];
+
+    /// The name in files and pictures.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::RevolutionsPerMinute => "rpm",
+            Self::Hertz => "Hz",
+            Self::RadiansPerSecond => "rad/s",
+        }
+    }
+
+    /// The speed of which `period` > 0 is one revolution.
+    #[must_use]
+    pub fn speed(self, period: f64) -> f64 {
+        let turn = match self {
+            Self::RevolutionsPerMinute => 60.0,
+            Self::Hertz => 1.0,
+            Self::RadiansPerSecond => std::f64::consts::TAU,
+        };
+        turn / period
+    }
+}
+
+/// Values of what a system depends on, and room for its evaluation.
+#[derive(Debug, Clone, Default)]
+pub struct Evaluation {
+    /// The own parameters, in the order of [`SystemModel::parameters`].
+    pub own: Vec<f64>,
+    /// τ ≥ 0.
+    pub tau: f64,
+    /// R, −1 < R < 1; of the feedback form alone.
+    pub memory: f64,
+    /// δ ≥ 0; of the feedback form alone.
+    pub latency: f64,
+    values: Vec<f64>,
+    stacks: Stacks,
+}
+
+impl PartialEq for Evaluation {
+    fn eq(&self, other: &Self) -> bool {
+        let numbers = |e: &Self| [e.tau, e.memory, e.latency].map(f64::to_bits);
+        self.own == other.own && numbers(self) == numbers(other)
+    }
+}
+
+/// An expression has no value at a setting.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[error("{polynomial}: {what}")]
+pub struct Undefined {
+    /// The name of the polynomial.
+    pub polynomial: &'static str,
+    /// What is wrong.
+    pub what: String,
+}
+
+impl From<Undefined> for ModelError {
+    fn from(undefined: Undefined) -> Self {
+        Self {
+            parameter: undefined.polynomial,
+            value: f64::NAN,
+            allowed: "an expression that has a finite value, A of a smaller degree than B",
+        }
+    }
+}
+
+impl SystemModel {
+    /// Whether it is given as B and A, so that memory and latency are parameters.
+    #[must_use]
+    pub fn is_feedback(&self) -> bool {
+        matches!(self.form, Form::Feedback(_))
+    }
+
+    /// Whether its polynomials depend on the delay: then there is no line of delays.
+    #[must_use]
+    pub fn depends_on_delay(&self) -> bool {
+        let tau = self.parameters.len();
+        self.polynomials().any(|(_, of)| of.tape.uses(tau))
+    }
+
+    /// The parameter of that name, by its index.
+    #[must_use]
+    pub fn index_of(&self, name: &str) -> Option<usize> {
+        self.parameters.iter().position(|own| own.name == name)
+    }
+
+    /// Its polynomials as they are written, with their names.
+    pub fn expressions(&self) -> impl Iterator<Item = (&'static str, &str)> {
+        self.polynomials().map(|(name, of)| (name, &*of.text))
+    }
+
+    fn polynomials(&self) -> impl Iterator<Item = (&'static str, &Expression)> {
+        let (names, all) = match &self.form {
+            Form::Direct(all) => (["P", "Q"], all),
+            Form::Feedback(all) => (["B", "A"], all),
+        };
+        names.into_iter().zip(all)
+    }
+
+    /// Every parameter at its default, without delay, memory and latency.
+    #[must_use]
+    pub fn defaults(&self) -> Evaluation {
+        Evaluation {
+            own: self.parameters.iter().map(|own| own.default).collect(),
+            ..Evaluation::default()
+        }
+    }
+
+    /// The system at a setting.
+    ///
+    /// # Errors
+    /// Where an expression has no finite value, or A is of no smaller degree than B.
+    pub fn at(&self, at: &mut Evaluation) -> Result<System, Undefined> {
+        at.values.clone_from(&at.own);
+        at.values.push(at.tau);
+        let (values, stacks) = (&at.values, &mut at.stacks);
+        match &self.form {
+            Form::Direct([p, q]) => Ok(System::direct(
+                p.at("P", values, stacks)?,
+                q.at("Q", values, stacks)?,
+            )),
+            Form::Feedback([open, gain]) => {
+                let (open, gain) = (open.at("B", values, stacks)?, gain.at("A", values, stacks)?);
+                if !gain.is_zero() && gain.degree() >= open.degree() {
+                    let (m, n) = (gain.degree(), open.degree());
+                    let what = format!("its degree is {m} here and that of B {n}: not smaller");
+                    return Err(Undefined {
+                        polynomial: "A",
+                        what,
+                    });
+                }
+                Ok(System::feedback(open, gain, at.memory, at.latency))
+            }
+        }
+    }
+}
+
+impl Expression {
+    fn at(
+        &self,
+        polynomial: &'static str,
+        values: &[f64],
+        stacks: &mut Stacks,
+    ) -> Result<crate::linear::general::Polynomial, Undefined> {
+        self.tape.at(values, stacks).map_err(|place: Range<usize>| {
+            let part = self.text.get(place).unwrap_or(&self.text);
+            Undefined {
+                polynomial,
+                what: format!("`{part}` has no finite value at this setting"),
+            }
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,168 @@
+//! Parts of an expression, and what becomes of them under its operations.
+
+use std::ops::Range;
+
+use super::tape::Op;
+use crate::linear::general::polynomial::MOST_DEGREE;
+
+/// The largest exponent of a number.
+const LARGEST_EXPONENT: f64 = 64.0;
+
+/// Why an expression was not understood, and where in it.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Misread {
+    /// The bytes of the expression that it is about; empty at its end.
+    pub place: Range<usize>,
+    pub message: String,
+    pub help: Option<String>,
+    /// Nothing else can be meant.
+    pub certain: bool,
+}
+
+impl Misread {
+    pub(super) fn at(place: Range<usize>, message: impl Into<String>) -> Self {
+        Self {
+            place,
+            message: message.into(),
+            help: None,
+            certain: true,
+        }
+    }
+
+    pub(super) fn help(mut self, help: impl Into<String>) -> Self {
+        self.help = Some(help.into());
+        self
+    }
+}
+
+pub(super) type Read<T> = Result<T, Misread>;
+
+/// A part of an expression.
+#[derive(Debug, Clone)]
+pub(super) struct Part {
+    pub ops: Vec<(Op, Range<usize>)>,
+    /// The largest degree in s; none where no s is in it.
+    pub degree: Option<usize>,
+    pub place: Range<usize>,
+    /// Its value, where it is a number as it is written.
+    pub number: Option<f64>,
+}
+
+impl Part {
+    pub(super) fn of(op: Op, degree: Option<usize>, place: Range<usize>) -> Self {
+        Self {
+            ops: vec![(op, place.clone())],
+            degree,
+            place,
+            number: None,
+        }
+    }
+
+    /// A polynomial also where no s is in it.
+    pub(super) fn lifted(mut self) -> (Self, usize) {
+        if let Some(degree) = self.degree {
+            return (self, degree);
+        }
+        self.ops.push((Op::Lift, self.place.clone()));
+        self.degree = Some(0);
+        (self, 0)
+    }
+
+    /// This operation on two parts.
+    pub(super) fn with(mut self, other: Self, op: Op, degree: Option<usize>) -> Self {
+        self.ops.extend(other.ops);
+        self.place = self.place.start..other.place.end;
+        self.ops.push((op, self.place.clone()));
+        self.degree = degree;
+        self.number = None;
+        self
+    }
+
+    /// This operation on one part, which gives its `degree`.
+    pub(super) fn then(mut self, op: Op, degree: Option<usize>) -> Self {
+        self.ops.push((op, self.place.clone()));
+        self.degree = degree;
+        self
+    }
+}
+
+pub(super) fn sum(first: Part, second: Part, [numbers, polynomials]: [Op; 2]) -> Part {
+    if first.degree.is_none() && second.degree.is_none() {
+        return first.with(second, numbers, None);
+    }
+    let ((first, m), (second, n)) = (first.lifted(), second.lifted());
+    first.with(second, polynomials, Some(m.max(n)))
+}
+
+pub(super) fn product(first: Part, second: Part) -> Read<Part> {
+    match (first.degree, second.degree) {
+        (None, None) => Ok(first.with(second, Op::Multiply, None)),
+        (Some(n), None) | (None, Some(n)) => Ok(first.with(second, Op::Scale, Some(n))),
+        (Some(m), Some(n)) => {
+            let place = first.place.start..second.place.end;
+            check_degree(m + n, &place)?;
+            Ok(first.with(second, Op::MultiplyPolynomials, Some(m + n)))
+        }
+    }
+}
+
+pub(super) fn quotient(first: Part, second: Part) -> Read<Part> {
+    match (first.degree, second.degree) {
+        (_, Some(_)) => Err(Misread::at(second.place, "division by what has s in it")
+            .help("multiply the whole equation by it: P and Q are polynomials")),
+        (None, None) => Ok(first.with(second, Op::Divide, None)),
+        (degree, None) => Ok(first.with(second, Op::ScaleDown, degree)),
+    }
+}
+
+pub(super) fn power(base: Part, exponent: Part) -> Read<Part> {
+    let Some(n) = exponent.number.filter(|n| n.trunc() == *n) else {
+        return Err(Misread::at(
+            exponent.place,
+            "an exponent must be a whole number, as in s^2",
+        )
+        .help("other powers of numbers: exp(y*log(x)), sqrt(x)"));
+    };
+    let place = exponent.place.clone();
+    if n.abs() > LARGEST_EXPONENT {
+        let message = format!("the exponent {n} is too large: at most {LARGEST_EXPONENT}");
+        return Err(Misread::at(place, message));
+    }
+    let (whole, until) = (n as i32, exponent.place.end);
+    let mut powered = match base.degree {
+        None => base.then(Op::Power(whole), None),
+        Some(_) if n < 0.0 => {
+            return Err(Misread::at(place, "a negative power of what has s in it")
+                .help("multiply the whole equation by it: P and Q are polynomials"));
+        }
+        Some(degree) => {
+            let degree = degree * whole.unsigned_abs() as usize;
+            check_degree(degree, &(base.place.start..until))?;
+            base.then(Op::PowerOfPolynomial(whole.unsigned_abs()), Some(degree))
+        }
+    };
+    powered.place.end = until;
+    powered.number = None;
+    if let Some((_, place)) = powered.ops.last_mut() {
+        place.end = until;
+    }
+    Ok(powered)
+}
+
+fn check_degree(degree: usize, place: &Range<usize>) -> Read<()> {
+    if degree <= MOST_DEGREE {
+        return Ok(());
+    }
+    let message = format!("a polynomial of degree {degree} in s: at most {MOST_DEGREE} is allowed");
+    Err(Misread::at(place.clone(), message))
+}
+
+pub(super) fn negated(part: Part) -> Part {
+    let (op, degree, number) = match part.degree {
+        None => (Op::Negate, None, part.number.map(|n| -n)),
+        degree => (Op::NegatePolynomial, degree, None),
+    };
+    let mut part = part.then(op, degree);
+    part.number = number;
+    part
+}

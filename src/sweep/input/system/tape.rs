@@ -1,0 +1,198 @@
+//! An expression as a list of operations on two stacks, one of numbers and one of polynomials in s:
+//! evaluated at every setting, without an allocation once the stacks have grown.
+
+use std::ops::Range;
+
+use super::bounded::Bounded;
+use crate::linear::general::Polynomial;
+
+/// A function of numbers.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Function {
+    Sqrt,
+    Exp,
+    Log,
+    Sin,
+    Cos,
+}
+
+/// One operation. Operands are taken from the ends of the stacks, the result is put there.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) enum Op {
+    /// A number as it is written.
+    Number(f64),
+    /// The value of a name.
+    Value(u8),
+    Add,
+    Subtract,
+    Multiply,
+    Divide,
+    Negate,
+    Power(i32),
+    Apply(Function),
+    Smaller,
+    Larger,
+    /// s.
+    Variable,
+    /// A number as a polynomial.
+    Lift,
+    AddPolynomials,
+    SubtractPolynomials,
+    MultiplyPolynomials,
+    /// A polynomial times a number.
+    Scale,
+    /// A polynomial over a number.
+    ScaleDown,
+    NegatePolynomial,
+    PowerOfPolynomial(u32),
+}
+
+/// An expression that is a polynomial in s, with the place of every operation.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Tape {
+    ops: Vec<Op>,
+    places: Vec<Range<usize>>,
+    /// No coefficient of a higher power can differ from 0.
+    degree: usize,
+}
+
+/// The stacks of evaluations, used again.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Stacks {
+    numbers: Vec<Bounded>,
+    polynomials: Vec<Polynomial>,
+}
+
+impl Stacks {
+    fn number(&mut self) -> Bounded {
+        self.numbers.pop().unwrap_or(Bounded::exact(0.0))
+    }
+
+    fn polynomial(&mut self) -> Polynomial {
+        self.polynomials.pop().unwrap_or(Polynomial::ZERO)
+    }
+
+    fn two(&mut self, of: impl Fn(Bounded, Bounded) -> Bounded) {
+        let (second, first) = (self.number(), self.number());
+        self.numbers.push(of(first, second));
+    }
+
+    fn one(&mut self, of: impl Fn(Bounded) -> Bounded) {
+        let first = self.number();
+        self.numbers.push(of(first));
+    }
+
+    /// False where a product has too large a degree, which none has that was read.
+    fn two_polynomials(
+        &mut self,
+        of: impl Fn(&Polynomial, &Polynomial) -> Option<Polynomial>,
+    ) -> bool {
+        let (second, first) = (self.polynomial(), self.polynomial());
+        let result = of(&first, &second);
+        self.polynomials.extend(result);
+        result.is_some()
+    }
+
+    fn scale(&mut self, by: Bounded) -> bool {
+        let polynomial = self.polynomial();
+        let scaled = polynomial.times(&Polynomial::constant(by.value, by.error));
+        self.polynomials.extend(scaled.ok());
+        scaled.is_ok()
+    }
+
+    /// False where there is no such number or polynomial.
+    fn apply(&mut self, op: Op, values: &[f64]) -> bool {
+        match op {
+            Op::Number(value) => self.numbers.push(Bounded::exact(value)),
+            Op::Value(index) => self
+                .numbers
+                .push(Bounded::exact(values[usize::from(index)])),
+            Op::Add => self.two(Bounded::plus),
+            Op::Subtract => self.two(Bounded::minus),
+            Op::Multiply => self.two(Bounded::times),
+            Op::Divide => self.two(Bounded::over),
+            Op::Smaller => self.two(Bounded::smaller),
+            Op::Larger => self.two(Bounded::larger),
+            Op::Negate => self.one(Bounded::negated),
+            Op::Power(exponent) => self.one(|x| x.power(exponent)),
+            Op::Apply(function) => self.one(|x| x.function(function)),
+            Op::Variable => self.polynomials.push(Polynomial::variable()),
+            Op::Lift => {
+                let Bounded { value, error } = self.number();
+                self.polynomials.push(Polynomial::constant(value, error));
+            }
+            Op::AddPolynomials => return self.two_polynomials(|a, b| Some(a.plus(b, 1.0))),
+            Op::SubtractPolynomials => return self.two_polynomials(|a, b| Some(a.plus(b, -1.0))),
+            Op::MultiplyPolynomials => return self.two_polynomials(|a, b| a.times(b).ok()),
+            Op::Scale => {
+                let by = self.number();
+                return self.scale(by);
+            }
+            Op::ScaleDown => {
+                let by = Bounded::exact(1.0).over(self.number());
+                return by.is_known() && self.scale(by);
+            }
+            Op::NegatePolynomial => {
+                let polynomial = self.polynomial();
+                self.polynomials
+                    .push(Polynomial::ZERO.plus(&polynomial, -1.0));
+            }
+            Op::PowerOfPolynomial(exponent) => {
+                let power = self.polynomial().power(exponent);
+                self.polynomials.extend(power.ok());
+                return power.is_ok();
+            }
+        }
+        self.numbers.last().is_none_or(|number| number.is_known())
+    }
+}
+
+impl Tape {
+    /// Operations that leave one polynomial, each with its place.
+    pub(super) fn new(ops: Vec<(Op, Range<usize>)>, degree: usize) -> Self {
+        let (ops, places) = ops.into_iter().unzip();
+        Self {
+            ops,
+            places,
+            degree,
+        }
+    }
+
+    /// The largest degree that it can have.
+    pub(super) fn degree(&self) -> usize {
+        self.degree
+    }
+
+    /// Whether the value of this index stands in it.
+    pub(super) fn uses(&self, index: usize) -> bool {
+        self.ops
+            .iter()
+            .any(|op| matches!(op, Op::Value(i) if usize::from(*i) == index))
+    }
+
+    /// The polynomial at these values.
+    ///
+    /// # Errors
+    /// The place of what there is not, such as 1/0.
+    pub(super) fn at(
+        &self,
+        values: &[f64],
+        stacks: &mut Stacks,
+    ) -> Result<Polynomial, Range<usize>> {
+        stacks.numbers.clear();
+        stacks.polynomials.clear();
+        for (op, place) in self.ops.iter().zip(&self.places) {
+            if !stacks.apply(*op, values) {
+                return Err(place.clone());
+            }
+        }
+        let result = stacks.polynomial();
+        let mut numbers = result.coefficients().iter().chain(result.errors());
+        match (numbers.all(|c| c.is_finite()), self.places.as_slice()) {
+            (true, _) => Ok(result),
+            (false, []) => Err(0..0),
+            (false, [first, .., last]) => Err(first.start.min(last.start)..last.end),
+            (false, [only]) => Err(only.clone()),
+        }
+    }
+}

@@ -1,0 +1,99 @@
+//! A system as text: a file of its own, or a table on one line.
+
+use super::parameter::OwnParameter;
+use super::{SpeedAxis, SystemModel};
+
+/// A basic string of TOML.
+fn quoted(text: &str) -> String {
+    let mut quoted = String::from("\"");
+    for c in text.chars() {
+        match c {
+            '"' | '\\' => quoted.extend(['\\', c]),
+            c if c.is_control() => quoted += &format!("\\u{:04X}", u32::from(c)),
+            c => quoted.push(c),
+        }
+    }
+    quoted + "\""
+}
+
+impl OwnParameter {
+    /// All but its name as an inline table.
+    fn to_toml(&self) -> String {
+        format!(
+            "{{ long_name = {}, default = {:?}, minimum = {:?}, maximum = {:?}, unit = {} }}",
+            quoted(&self.long_name),
+            self.default,
+            self.minimum,
+            self.maximum,
+            quoted(&self.unit)
+        )
+    }
+}
+
+impl SpeedAxis {
+    fn to_toml(&self) -> String {
+        let (name, unit) = (quoted(&self.name), quoted(self.unit.name()));
+        format!("{{ name = {name}, period = \"tau\", unit = {unit} }}")
+    }
+}
+
+impl SystemModel {
+    /// What it is, with its polynomials, for people.
+    #[must_use]
+    pub fn in_one_line(&self) -> String {
+        let title = Some(&self.title).filter(|title| !title.is_empty());
+        let texts = self.expressions().map(|(name, text)| {
+            let words: Vec<&str> = text.split_whitespace().collect();
+            format!("{name} = {}", words.join(" "))
+        });
+        let texts = texts.collect::<Vec<_>>().join(", ");
+        title.map_or(texts.clone(), |title| format!("{title}: {texts}"))
+    }
+
+    /// Its keys with their values, each on a line of its own but for `between`.
+    fn pairs(&self) -> Vec<(&'static str, String)> {
+        let mut pairs = Vec::new();
+        if !self.title.is_empty() {
+            pairs.push(("title", quoted(&self.title)));
+        }
+        pairs.extend(self.expressions().map(|(name, text)| (name, quoted(text))));
+        if let Some(speed) = &self.speed_axis {
+            pairs.push(("speed_axis", speed.to_toml()));
+        }
+        pairs
+    }
+
+    /// The text of a system file that gives the same system.
+    #[must_use]
+    pub fn to_toml(&self) -> String {
+        let pairs = self.pairs().into_iter();
+        let mut text: String = pairs
+            .map(|(key, value)| format!("{key} = {value}\n"))
+            .collect();
+        if !self.parameters.is_empty() {
+            text += "\n[parameters]\n";
+        }
+        for own in &self.parameters {
+            text += &format!("{} = {}\n", own.name, own.to_toml());
+        }
+        text
+    }
+
+    /// The same on one line, as the value of a key.
+    #[must_use]
+    pub fn to_inline_table(&self) -> String {
+        let mut pairs = self.pairs();
+        let own = self.parameters.iter();
+        let own: Vec<String> = own
+            .map(|own| format!("{} = {}", own.name, own.to_toml()))
+            .collect();
+        if !own.is_empty() {
+            pairs.push(("parameters", format!("{{ {} }}", own.join(", "))));
+        }
+        let pairs: Vec<String> = pairs
+            .iter()
+            .map(|(key, value)| format!("{key} = {value}"))
+            .collect();
+        format!("{{ {} }}", pairs.join(", "))
+    }
+}

@@ -1,0 +1,374 @@
+//! Random feedback with memory and latency, degrees 1 to 8: the lines of delays and of latencies,
+//! the argument principle in closed form in both its forms, and a walk of the argument that shares
+//! nothing with them. `SLIPMAP_CASES` says how many.
+
+#[path = "common/chance.rs"]
+mod chance;
+
+use std::f64::consts::PI;
+
+use chance::{Chance, asked};
+use num_complex::Complex64;
+use slipmap::linear::general::{
+    DelayLine, Form, Polynomial, Reason, RightOf, RootCounter, Spectrum, System,
+};
+use slipmap::linear::{Direction, MarginalTolerance};
+
+fn cases(usual: u64) -> u64 {
+    asked("SLIPMAP_CASES", usual)
+}
+
+/// D = B(1 − R E) − A e^(−λδ)(1 − E).
+#[derive(Debug)]
+struct Late {
+    open: Vec<f64>,
+    gain: Vec<f64>,
+    memory: f64,
+    latency: f64,
+    tau: f64,
+}
+
+/// A polynomial of that degree from random zeros.
+fn from_zeros(chance: &mut Chance, degree: usize, leading: f64) -> Vec<f64> {
+    let mut p = vec![leading];
+    let mut times = |factor: &[f64]| {
+        let mut product = vec![0.0; p.len() + factor.len() - 1];
+        for (i, a) in p.iter().enumerate() {
+            for (j, b) in factor.iter().enumerate() {
+                product[i + j] += a * b;
+            }
+        }
+        p = product;
+    };
+    let mut left = degree;
+    while left > 0 {
+        let size = chance.log(0.2, 5.0);
+        if left >= 2 && chance.unit() < 0.7 {
+            let damping = chance.between(-0.3, 0.9);
+            times(&[size * size, 2.0 * damping * size, 1.0]);
+            left -= 2;
+        } else {
+            times(&[chance.between(-0.3, 1.0) * size, 1.0]);
+            left -= 1;
+        }
+    }
+    p
+}
+
+fn by_chance(chance: &mut Chance) -> Late {
+    let degree = 1 + chance.of(8);
+    let lower = chance.of(degree);
+    let size = chance.log(0.1, 6.0) * [-1.0, 1.0][chance.of(2)];
+    Late {
+        open: from_zeros(chance, degree, 1.0),
+        gain: from_zeros(chance, lower, size),
+        memory: [0.0, chance.between(-0.95, 0.95)][chance.of(2)],
+        latency: chance.log(0.01, 12.0),
+        tau: chance.log(0.03, 20.0),
+    }
+}
+
+fn value(p: &[f64], z: Complex64) -> Complex64 {
+    p.iter().rev().fold(Complex64::ZERO, |sum, c| sum * z + c)
+}
+
+/// Σ |c_k| size^k and the same of the derivative.
+fn bounds(p: &[f64], size: f64) -> (f64, f64) {
+    let sum = |p: &[f64]| p.iter().rev().fold(0.0, |sum, c| sum * size + c);
+    let sizes: Vec<f64> = p.iter().map(|c| c.abs()).collect();
+    let slopes: Vec<f64> = sizes
+        .iter()
+        .enumerate()
+        .skip(1)
+        .map(|(k, c)| k as f64 * c)
+        .collect();
+    (sum(&sizes), sum(&slopes))
+}
+
+impl Late {
+    fn system(&self) -> System {
+        let polynomial = |c: &[f64]| Polynomial::new(c).expect("a small degree");
+        let (open, gain) = (polynomial(&self.open), polynomial(&self.gain));
+        System::feedback(open, gain, self.memory, self.latency)
+    }
+
+    fn at(&self, z: Complex64) -> Complex64 {
+        let echo = (-z * self.tau).exp();
+        let fed = value(&self.gain, z) * (-z * self.latency).exp();
+        value(&self.open, z) * (1.0 - self.memory * echo) - fed * (1.0 - echo)
+    }
+
+    /// A bound on |D′| within `near` of `z`.
+    fn slope(&self, z: Complex64, near: f64) -> f64 {
+        let echo = (-(z.re - near) * self.tau).exp();
+        let late = (-(z.re - near) * self.latency).exp();
+        let (open, open_slope) = bounds(&self.open, z.norm() + near);
+        let (gain, gain_slope) = bounds(&self.gain, z.norm() + near);
+        let kept = 1.0 + self.memory.abs() * echo;
+        open_slope * kept
+            + open * self.memory.abs() * self.tau * echo
+            + late * (1.0 + echo) * (gain_slope + self.latency * gain)
+            + late * gain * self.tau * echo
+    }
+
+    /// A radius beyond which nothing lies right of `line`; none where there is none.
+    fn radius(&self, line: f64) -> Option<f64> {
+        let echo = (-line * self.tau).exp();
+        let kept = 1.0 - self.memory.abs() * echo;
+        let factor = (-line * self.latency).exp() * (1.0 + echo) / kept;
+        if kept <= 0.02 || factor > 1e4 {
+            return None;
+        }
+        let leading = self.open.last().expect("not empty").abs();
+        let mut radius: f64 = 1.0;
+        loop {
+            let (gain, _) = bounds(&self.gain, radius);
+            let n = self.open.len() - 1;
+            let (lower, _) = bounds(&self.open[..n], radius);
+            if leading * radius.powi(n as i32) > lower + factor * gain {
+                return Some(1.1 * radius);
+            }
+            radius *= 1.1;
+        }
+    }
+
+    /// How many roots lie right of `line`, by walking around the upper half of all that can be
+    /// there with steps within which the argument cannot turn far. None where that takes too long.
+    fn walked(&self, line: f64) -> Option<u64> {
+        let radius = self.radius(line)?;
+        let corners = [
+            Complex64::new(radius.max(line + 1.0), 0.0),
+            Complex64::new(radius.max(line + 1.0), radius),
+            Complex64::new(line, radius),
+            Complex64::new(line, 0.0),
+        ];
+        let (mut turned, mut steps) = (0.0, 0);
+        for side in corners.windows(2) {
+            let (mut z, length) = (side[0], (side[1] - side[0]).norm());
+            let direction = (side[1] - side[0]) / length;
+            let (mut gone, mut here) = (0.0, self.at(z));
+            let mut step = 0.1 * length;
+            while gone < length {
+                // |D′| step ≤ |D|/2: the argument turns by 30° at most.
+                step *= 2.0;
+                // Also where the bound overflows.
+                let near = |step| self.slope(z, step) * step <= 0.5 * here.norm();
+                while !near(step) {
+                    step *= 0.5;
+                }
+                steps += 1;
+                if steps > 200_000 || step < 1e-9 {
+                    return None;
+                }
+                gone = (gone + step).min(length);
+                z = side[0] + direction * gone;
+                let there = self.at(z);
+                turned += (there / here).arg();
+                here = there;
+            }
+        }
+        let halves = turned / PI;
+        assert!((halves - halves.round()).abs() < 1e-6, "{self:?} {halves}");
+        Some(halves.round() as u64)
+    }
+}
+
+#[test]
+fn both_forms_are_what_a_walk_counts() {
+    let mut chance = Chance(asked("SLIPMAP_SEED", 30));
+    let (mut walked, mut tried, mut undecided) = (0, 0, 0);
+    let cases = cases(2000) / 4;
+    for _ in 0..cases {
+        let late = by_chance(&mut chance);
+        let counter = RootCounter::new(&late.system());
+        for line in [0.0, chance.between(-0.5, 0.6)] {
+            let Some(expected) = late.walked(line) else {
+                continue;
+            };
+            walked += 1;
+            for form in [Form::Delay, Form::Latency] {
+                tried += 1;
+                match counter.right_of_by(form, late.tau, line) {
+                    RightOf::Roots(n) => assert_eq!(n, expected, "{late:?} {line} {form:?}"),
+                    RightOf::Undecided => undecided += 1,
+                    RightOf::Infinite => panic!("{late:?} {line}"),
+                }
+            }
+        }
+    }
+    println!(
+        "{walked} lines walked of {}, {undecided} of {tried} undecided",
+        2 * cases
+    );
+    assert!(
+        walked > cases && undecided <= tried / 500,
+        "{walked} {undecided}"
+    );
+}
+
+#[test]
+fn lines_of_delays_and_of_latencies_are_both_forms() {
+    let mut chance = Chance(asked("SLIPMAP_SEED", 31));
+    let (mut cells, mut open, mut unstable) = (0, 0, 0);
+    for _ in 0..cases(2000) {
+        let late = by_chance(&mut chance);
+        let system = late.system();
+        let counter = RootCounter::new(&system);
+        let delays = DelayLine::of(&system);
+        let latencies = DelayLine::of_latencies(&system, late.tau).expect("feedback");
+        cells += 1;
+        let by_delay = decided(&delays, late.tau);
+        let (Some(n), Some(by_latency)) = (by_delay, decided(&latencies, late.latency)) else {
+            open += 1;
+            continue;
+        };
+        assert_eq!(n, by_latency, "{late:?}");
+        unstable += u64::from(n > 0);
+        for line in [0.0, chance.between(-0.5, 0.6)] {
+            let forms = [Form::Delay, Form::Latency];
+            let found = forms.map(|form| counter.right_of_by(form, late.tau, line));
+            if found.contains(&RightOf::Undecided) {
+                open += 1;
+                continue;
+            }
+            assert_eq!(found[0], found[1], "{late:?} {line}");
+            let same = line != 0.0 || found[0] == RightOf::Roots(n);
+            assert!(same, "{late:?} {found:?} {n}");
+        }
+        // Every delay of this latency, and every latency of this delay.
+        for _ in 0..3 {
+            let (tau, latency) = (chance.log(0.03, 40.0), chance.log(0.01, 40.0));
+            let at = system.with_latency(latency).expect("feedback");
+            let right = counter.right_of(tau, 0.0);
+            compare(decided(&delays, tau), right, &(&late, tau));
+            let right = RootCounter::new(&at).right_of(late.tau, 0.0);
+            compare(decided(&latencies, latency), right, &(&late, latency));
+        }
+    }
+    println!("{cells} cells, {unstable} unstable, {open} open");
+    assert!(open <= cells / 200, "{open}");
+    assert!(
+        unstable > cells / 10 && unstable < cells * 99 / 100,
+        "{unstable}"
+    );
+}
+
+/// The count at a place of a line, none where it is marginal.
+fn decided(line: &DelayLine, at: f64) -> Option<u64> {
+    let count = line.count(at, MarginalTolerance::default());
+    (!count.marginal).then_some(count.n_unstable)
+}
+
+fn compare(counted: Option<u64>, right: RightOf, place: &dyn std::fmt::Debug) {
+    if let (Some(counted), RightOf::Roots(n)) = (counted, right) {
+        assert_eq!(counted, n, "{place:?}");
+    }
+}
+
+/// No zero of F is missed: each change of its sign on a fine grid has its crossing, and there are
+/// no others.
+#[test]
+fn crossings_are_all_changes_of_sign_of_a_fine_scan() {
+    let mut chance = Chance(asked("SLIPMAP_SEED", 32));
+    let mut zeros = 0;
+    for _ in 0..cases(2000) / 5 {
+        let late = by_chance(&mut chance);
+        let system = late.system();
+        let line = DelayLine::of(&system);
+        let of_delays = |omega: f64| {
+            let z = Complex64::new(0.0, omega);
+            let open = value(&late.open, z);
+            let fed = value(&late.gain, z) * Complex64::cis(-omega * late.latency);
+            (1.0 + late.memory) * open.norm_sqr() - 2.0 * (open.conj() * fed).re
+        };
+        let of_latencies = |omega: f64| {
+            let z = Complex64::new(0.0, omega);
+            let (open, fed) = (value(&late.open, z), value(&late.gain, z));
+            let echo = Complex64::cis(-omega * late.tau);
+            open.norm_sqr() * (1.0 - late.memory * echo).norm_sqr()
+                - fed.norm_sqr() * (1.0 - echo).norm_sqr()
+        };
+        let latencies = DelayLine::of_latencies(&system, late.tau).expect("feedback");
+        zeros += scanned(&late, &line, of_delays);
+        zeros += scanned(&late, &latencies, of_latencies);
+    }
+    println!("{zeros} zeros");
+    assert!(zeros > 500, "{zeros}");
+}
+
+fn scanned(late: &Late, line: &DelayLine, f: impl Fn(f64) -> f64) -> usize {
+    const POINTS: usize = 20_000;
+    let moving = |c: &&slipmap::linear::Crossing| c.direction != Direction::Touch;
+    let mut found: Vec<f64> = line
+        .crossings
+        .iter()
+        .filter(moving)
+        .map(|c| c.omega)
+        .collect();
+    found.sort_by(f64::total_cmp);
+    let last = late.radius(0.0).expect("|R| < 1");
+    let place = |i: usize| last * i as f64 / POINTS as f64;
+    let mut next = 0;
+    for i in 0..POINTS {
+        let (from, to) = (place(i), place(i + 1));
+        let inside = found[next..].iter().take_while(|w| **w < to).count();
+        let changes = (f(from) > 0.0) != (f(to) > 0.0);
+        assert_eq!(changes, inside % 2 == 1, "{late:?} {from} {to} {line:?}");
+        // Each crossing goes the way that F says.
+        next += inside;
+    }
+    assert_eq!(next, found.len(), "{late:?} {line:?}");
+    for crossing in line.crossings.iter().filter(moving) {
+        let near = 1e-7 * crossing.omega;
+        let rises = f(crossing.omega + near) > f(crossing.omega - near);
+        assert_eq!(
+            rises,
+            crossing.direction == Direction::Right,
+            "{late:?} {crossing:?}"
+        );
+    }
+    found.len()
+}
+
+/// The abscissa is certified, D vanishes at the root, and a walk finds nothing right of it.
+#[test]
+fn rightmost_roots_are_found_and_certified() {
+    let mut chance = Chance(asked("SLIPMAP_SEED", 33));
+    let cases = cases(2000) / 4;
+    let (mut certified, mut accumulating, mut missing, mut walked) = (0, 0, 0, 0);
+    for case in 0..cases {
+        let late = by_chance(&mut chance);
+        let system = late.system();
+        let counter = RootCounter::new(&system);
+        let line = DelayLine::of(&system);
+        let found = Spectrum::at(&counter, &line, late.tau, 1);
+        if found.reason == Some(Reason::NoRightmostRoot) {
+            accumulating += 1;
+            continue;
+        }
+        if !found.certified {
+            missing += 1;
+            continue;
+        }
+        certified += 1;
+        let root = found.roots[0];
+        let near = late.slope(root.lambda, 1e-9) * 1e-9;
+        assert!(late.at(root.lambda).norm() <= near, "{late:?} {root:?}");
+        if case % 5 == 0 {
+            let beside = 1e-4 * root.lambda.re.abs().max(1.0);
+            if let Some(n) = late.walked(root.lambda.re + beside) {
+                walked += 1;
+                assert_eq!(n, 0, "{late:?} {root:?}");
+            }
+            if let Some(n) = late.walked(root.lambda.re - beside) {
+                assert!(n >= root.count(), "{late:?} {root:?} {n}");
+            }
+        }
+    }
+    println!(
+        "{certified} of {cases} certified, {accumulating} without a rightmost root, {missing} not, \
+         {walked} walked"
+    );
+    assert!(missing <= cases / 100, "{missing}");
+    assert!(walked > 20, "{walked}");
+}
