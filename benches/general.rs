@@ -109,6 +109,12 @@ fn seconds(work: impl FnOnce()) -> f64 {
     start.elapsed().as_secs_f64()
 }
 
+/// The letter and all kinds.
+fn names() -> Vec<&'static str> {
+    let kinds = KINDS.iter().map(|(name, _)| *name);
+    std::iter::once("letter").chain(kinds).collect()
+}
+
 /// Shows the least times of all columns and their ratios to the first.
 fn show(names: &[&str], rounds: &[Vec<f64>], cells: f64, unit: (f64, &str)) {
     for (i, name) in names.iter().enumerate() {
@@ -160,10 +166,7 @@ fn counts(lines: usize, delays: usize) {
     println!(
         "counts, {lines} lines of {delays} delays, microseconds a line, ratio to the letter's"
     );
-    let names: Vec<&str> = ["letter"]
-        .into_iter()
-        .chain(KINDS.map(|(name, _)| name))
-        .collect();
+    let names = names();
     show(&names, &rounds, lines as f64, (1e6, "us"));
 }
 
@@ -259,10 +262,7 @@ fn abscissas(lines: usize, delays: usize) {
     println!(
         "certified abscissas, {lines} lines of {delays} delays, microseconds a cell, ratio to the letter's"
     );
-    let names: Vec<&str> = ["letter"]
-        .into_iter()
-        .chain(KINDS.map(|(name, _)| name))
-        .collect();
+    let names = names();
     show(&names, &rounds, cells as f64, (1e6, "us"));
     for (name, Certified { cells: sum, work }) in names.iter().zip(&found) {
         println!(

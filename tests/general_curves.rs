@@ -1,8 +1,12 @@
 //! Exact boundaries over planes of two parameters of general systems: against closed forms, the
 //! letter's own curves, and counts right beside every curve.
 
+#[path = "common/letter_system.rs"]
+mod letter_system;
+
 use std::f64::consts::TAU;
 
+use letter_system::letter;
 use slipmap::linear::Crossings;
 use slipmap::linear::curves::{
     CurveKind, CurvePiece, PlaneCurves, StableSide, Vertex, Window, trace as trace_letter,
@@ -22,13 +26,6 @@ fn setting(system: System, tau: f64) -> Option<Setting> {
         tau,
         unit: 1.0,
     })
-}
-
-/// The letter's system with memory.
-fn letter(groups: Groups, memory: f64) -> System {
-    let Groups { b, a_v, a_n } = groups;
-    let open = polynomial(&[1.0, b, 1.0]);
-    System::feedback(open, polynomial(&[a_n + a_v * b, a_v]), memory, 0.0)
 }
 
 fn turning(zeta: f64, width: f64) -> System {
@@ -199,7 +196,7 @@ fn the_letters_curves() {
             let crossings = |p: f64| Crossings::of(groups_at(p));
             let expected = trace_letter(crossings, &breakpoints, &window).unwrap();
             let name = format!("letter b = {b}, velocity {velocity}");
-            let curves = lines(&name, &window, &|p| letter(groups_at(p), 0.0));
+            let curves = lines(&name, &window, &|p| letter(groups_at(p), 0.0, 0.0));
             let near = |v: &Vertex, side: StableSide, pieces: &[CurvePiece]| {
                 let mut same = pieces.iter().filter(|p| p.stable_side == side);
                 same.any(|piece| distance(&window, v, piece) < 1e-3)
@@ -368,9 +365,9 @@ fn neutral_planes() {
         q: 0.5..=15.0,
     };
     lines("velocity, memory", &window, &|a_v| {
-        letter(Groups::new(-0.5, a_v, 0.0), 0.4)
+        letter(Groups::new(-0.5, a_v, 0.0), 0.4, 0.0)
     });
-    let at = |memory: f64, a_v: f64| setting(letter(Groups::new(-0.5, a_v, 0.0), memory), 5.0);
+    let at = |memory: f64, a_v: f64| setting(letter(Groups::new(-0.5, a_v, 0.0), memory, 0.0), 5.0);
     let window = Window {
         p: -0.95..=0.95,
         q: -2.0..=1.0,
@@ -389,7 +386,7 @@ fn degrees_of_stability() {
     let groups_at = |a_v: f64| (Groups::new(-0.1, a_v, 0.0), 1.0);
     for sigma in [0.01, 0.05, 0.2] {
         let expected = slipmap::linear::decay::trace(groups_at, sigma, &window).unwrap();
-        let at = |p: f64, tau: f64| setting(letter(groups_at(p).0, 0.0), tau);
+        let at = |p: f64, tau: f64| setting(letter(groups_at(p).0, 0.0, 0.0), tau);
         let curves = trace(&SystemPlane::of_lines(&at, &window), sigma).unwrap();
         assert!(!curves.pieces.is_empty(), "{sigma}");
         for (from, to) in [(&expected, &curves), (&curves, &expected)] {
@@ -425,7 +422,7 @@ fn degrees_of_stability_of_other_systems() {
         p: -1.6..=0.4,
         q: 0.0..=12.0,
     };
-    let at = |p: f64, tau: f64| setting(letter(Groups::new(-0.1, p, 0.0), 0.3), tau);
+    let at = |p: f64, tau: f64| setting(letter(Groups::new(-0.1, p, 0.0), 0.3, 0.0), tau);
     let of_memory = SystemPlane::of_lines(&at, &window);
     check_degree("memory", &window, &of_memory, &at, 0.1);
     // Roots accumulate at ln 0.3/τ: right of the line from τ = −ln 0.3/σ on.

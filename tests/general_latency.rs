@@ -5,9 +5,12 @@
 mod chance;
 #[path = "common/general_rows.rs"]
 mod general_rows;
+#[path = "common/letter_system.rs"]
+mod letter_system;
 
 use chance::Chance;
 use general_rows::{Row, with_latency, without_latency};
+use letter_system::letter;
 use slipmap::linear::general::{
     DelayLine, Form, Polynomial, Reason, RightOf, RootCounter, Spectrum, System,
 };
@@ -171,16 +174,6 @@ fn rightmost_roots_of_the_table() {
     println!("worst error {worst:e}");
 }
 
-/// B and A of the letter's control in dimensionless groups.
-fn letter(b: f64, a_v: f64, a_n: f64, memory: f64, latency: f64) -> System {
-    let polynomial = |c: &[f64]| Polynomial::new(c).expect("a small degree");
-    let (open, gain) = (
-        polynomial(&[1.0, b, 1.0]),
-        polynomial(&[a_n + a_v * b, a_v]),
-    );
-    System::feedback(open, gain, memory, latency)
-}
-
 /// Values of another program, four of them also by bisection on roots.
 #[test]
 fn latency_margins_are_those_of_another_program() {
@@ -201,7 +194,7 @@ fn latency_margins_are_those_of_another_program() {
         ((-0.3, 0.0, -3.65, 0.465), 0.432597049595),
         ((-0.7, -0.3174, 0.0, 4.312957), 0.009095994512),
     ] {
-        let system = letter(b, a_v, a_n, 0.0, 0.0);
+        let system = letter(Groups::new(b, a_v, a_n), 0.0, 0.0);
         let margin = system.latency_margin(tau).expect("feedback");
         assert!((margin - expected).abs() < 1e-11, "{b} {margin} {expected}");
         worst = worst.max((margin - expected).abs());
@@ -214,20 +207,20 @@ fn latency_margins_are_those_of_another_program() {
     }
     println!("worst difference {worst:e}");
     assert_eq!(
-        letter(-0.3, 0.0, 0.0, 0.4, 0.0).latency_margin(1.0),
+        letter(Groups::new(-0.3, 0.0, 0.0), 0.4, 0.0).latency_margin(1.0),
         Some(0.0)
     );
     assert_eq!(
-        letter(0.3, 0.0, 0.0, 0.4, 0.0).latency_margin(1.0),
+        letter(Groups::new(0.3, 0.0, 0.0), 0.4, 0.0).latency_margin(1.0),
         Some(f64::INFINITY)
     );
     // Gains too weak ever to reach the damping.
     assert_eq!(
-        letter(0.9, 0.0, 0.1, 0.0, 0.0).latency_margin(3.0),
+        letter(Groups::new(0.9, 0.0, 0.1), 0.0, 0.0).latency_margin(3.0),
         Some(f64::INFINITY)
     );
     assert_eq!(
-        letter(0.9, 0.0, 0.1, 0.0, 0.0).latency_margin(0.0),
+        letter(Groups::new(0.9, 0.0, 0.1), 0.0, 0.0).latency_margin(0.0),
         Some(f64::INFINITY)
     );
     let direct = System::of_coefficients(&[1.0, 0.2, 1.0], &[0.3]).expect("a small degree");
@@ -242,9 +235,9 @@ fn without_latency_nothing_changes() {
         let memory = [0.0, chance.between(-0.9, 0.9)][chance.of(2)];
         let b = chance.between(-1.0, 1.0);
         let (a_v, a_n) = (chance.between(-1.0, 1.0), chance.between(-4.0, 2.0));
-        let late = letter(b, a_v, a_n, memory, chance.log(0.01, 9.0));
+        let late = letter(Groups::new(b, a_v, a_n), memory, chance.log(0.01, 9.0));
         let (plain, back) = (
-            letter(b, a_v, a_n, memory, 0.0),
+            letter(Groups::new(b, a_v, a_n), memory, 0.0),
             late.with_latency(0.0).expect("feedback"),
         );
         assert_eq!(format!("{plain:?}"), format!("{back:?}"));
@@ -260,11 +253,11 @@ fn without_latency_nothing_changes() {
             right(&hardly, line),
             "{b} {a_v} {a_n} {tau} {line}"
         );
-        let none = letter(b, 0.0, 0.0, memory, late.latency());
+        let none = letter(Groups::new(b, 0.0, 0.0), memory, late.latency());
         assert_eq!(none.latency(), 0.0);
         assert_eq!(
             format!("{none:?}"),
-            format!("{:?}", letter(b, 0.0, 0.0, 0.0, 0.0))
+            format!("{:?}", letter(Groups::new(b, 0.0, 0.0), 0.0, 0.0))
         );
     }
 }
@@ -342,7 +335,7 @@ fn pairs_that_start_on_the_axis() {
         let memory = [0.0, chance.between(-0.9, 0.9)][chance.of(2)];
         let latency = chance.log(0.01, 9.0);
         let (a_v, a_n) = (chance.between(-1.0, 1.0), chance.between(-2.0, 2.0));
-        let system = letter(0.0, a_v, a_n, memory, latency);
+        let system = letter(Groups::new(0.0, a_v, a_n), memory, latency);
         let line = DelayLine::of(&system);
         assert!(line.marginal_at_zero && !line.always_marginal);
         let counter = RootCounter::new(&system);
@@ -413,7 +406,7 @@ fn lags_memory_and_friction_states_with_latency() {
 fn long_latencies() {
     for (memory, tau) in [(0.0, 3.0), (0.0, 40.0), (0.5, 3.0)] {
         for latency in [20.0, 100.0] {
-            let system = letter(-0.2, -0.5, -1.2, memory, latency);
+            let system = letter(Groups::new(-0.2, -0.5, -1.2), memory, latency);
             let counter = RootCounter::new(&system);
             let line = DelayLine::of(&system);
             let found = Spectrum::at(&counter, &line, tau, 4);

@@ -4,27 +4,17 @@
 
 #[path = "common/chance.rs"]
 mod chance;
+#[path = "common/letter_system.rs"]
+mod letter_system;
 
 use chance::{Chance, asked};
-use slipmap::linear::general::{
-    DelayLine, Polynomial, Reason, RightOf, RootCounter, Spectrum, System,
-};
+use letter_system::letter;
+use slipmap::linear::general::{DelayLine, Reason, RightOf, RootCounter, Spectrum, System};
 use slipmap::linear::{Crossings, MarginalTolerance};
 use slipmap::model::Groups;
 
 fn cases(usual: usize) -> usize {
     asked("SLIPMAP_CASES", usual as u64) as usize
-}
-
-/// The letter's control in dimensionless groups, written as a general system.
-fn of_letter(Groups { b, a_v, a_n }: Groups) -> System {
-    let polynomial = |c: &[f64]| Polynomial::new(c).unwrap();
-    System::feedback(
-        polynomial(&[1.0, b, 1.0]),
-        polynomial(&[b * a_v + a_n, a_v]),
-        0.0,
-        0.0,
-    )
 }
 
 /// A polynomial of a degree from random zeros, all left of `rightmost` or not, times `leading`.
@@ -241,7 +231,7 @@ fn the_letter_by_both_ways() {
             }
             None => tau,
         };
-        line.find(&of_letter(groups));
+        line.find(&letter(groups, 0.0, 0.0));
         let (one, other) = (crossings.count(tau, tolerance), line.count(tau, tolerance));
         let place = format!("{groups:?} {tau}: {one:?} {other:?}");
         assert_eq!(line.reason, None, "{place}");

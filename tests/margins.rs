@@ -379,6 +379,19 @@ fn laws() -> [FrictionLaw; 4] {
     ]
 }
 
+/// A law, its block and the gains α_v and α_N.
+fn sliding<'a>(
+    law: &'a FrictionLaw,
+    oscillator: &'a Oscillator,
+    (alpha_v, alpha_n): (f64, f64),
+) -> SlidingLaw<'a> {
+    SlidingLaw {
+        law,
+        oscillator,
+        control: Control { alpha_v, alpha_n },
+    }
+}
+
 #[test]
 fn a_friction_law_leads_from_one_velocity_to_another() {
     let mut chance = Chance(3);
@@ -391,15 +404,7 @@ fn a_friction_law_leads_from_one_velocity_to_another() {
             1 => (0.0, chance.between(-20.0, 2.0)),
             _ => (chance.between(-0.5, 0.2), chance.between(-20.0, 2.0)),
         };
-        let control = Control {
-            alpha_v: control.0,
-            alpha_n: control.1,
-        };
-        let sliding = SlidingLaw {
-            law,
-            oscillator: &oscillator,
-            control,
-        };
+        let sliding = sliding(law, &oscillator, control);
         let (v0, tau) = (chance.between(0.1, 0.9), chance.between(0.1, 6.0));
         let at = |v: f64| Setting {
             groups: sliding.groups(v),
@@ -438,15 +443,8 @@ fn limits_along_the_velocity_end_soon() {
         (stribeck(0.1257, 0.1314), (-2013.9, 0.0), 1262.97, 33.24),
         (stribeck(0.002_373, 1.0146e-5), (0.0, -45.577), 2.159, 3e6),
     ];
-    for (law, (alpha_v, alpha_n), tau, v0) in &cases {
-        let sliding = SlidingLaw {
-            law,
-            oscillator: &oscillator,
-            control: Control {
-                alpha_v: *alpha_v,
-                alpha_n: *alpha_n,
-            },
-        };
+    for (law, control, tau, v0) in &cases {
+        let sliding = sliding(law, &oscillator, *control);
         let setting = Setting {
             groups: sliding.groups(*v0),
             tau: *tau,
@@ -473,14 +471,7 @@ fn radii_of_any_setting_take_a_part_of_a_second() {
             1 => (0.0, chance.between(-20.0, 2.0)),
             _ => (chance.between(-1.0, 0.5), chance.between(-10.0, 2.0)),
         };
-        let sliding = SlidingLaw {
-            law,
-            oscillator: &oscillator,
-            control: Control {
-                alpha_v: control.0,
-                alpha_n: control.1,
-            },
-        };
+        let sliding = sliding(law, &oscillator, control);
         let tau = chance.between(1e-3_f64.ln(), 1e3_f64.ln()).exp();
         let v0 = chance.between(0.02_f64.ln(), 10_f64.ln()).exp();
         let at = |v: f64, tau: f64| Setting {

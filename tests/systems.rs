@@ -626,7 +626,7 @@ fn a_map_is_complete_without_the_file_of_its_system() {
     }
 }
 
-/// The same cells whole and in shards.
+/// A map computed whole and one merged from shards have the same cells.
 #[test]
 fn shards_of_a_system_are_merged() {
     let folder = Folder::with(&[("lobes.toml", LOBES)]);

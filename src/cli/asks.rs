@@ -17,7 +17,7 @@ impl Asks for OfSliding {
     const SEARCHES_DELAY: bool = false;
 }
 
-/// The same, at a delay that is looked for.
+/// Sliding, at a delay that is looked for.
 #[derive(Debug)]
 pub(super) struct AtAnyDelay;
 

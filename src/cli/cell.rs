@@ -1,5 +1,6 @@
 //! A cell of a map in the place of flags and case files: `--map MAP.h5 --at AXIS=VALUE`.
 
+use std::cell::OnceCell;
 use std::fmt;
 use std::path::{Path, PathBuf};
 
@@ -27,6 +28,9 @@ pub(super) struct CellArgs {
     /// With --map: the cell at the value nearest to this; once for each axis of several values
     #[arg(long, value_name = "AXIS=VALUE", value_parser = parse_at, requires = "map")]
     at: Vec<At>,
+    /// What the map says of itself, once it was read.
+    #[arg(skip)]
+    read: OnceCell<Plan>,
 }
 
 /// Where on an axis, as flags say it.
@@ -76,27 +80,36 @@ impl CellArgs {
         self.at.iter().map(|at| format!(" --at {at}")).collect()
     }
 
-    /// The setting of the cell, where the map is one of a system from a file.
-    pub(super) fn of_system(&self) -> Result<Option<Setting>, Failure> {
+    /// The plan of the map, read once; none where no map is given.
+    fn plan(&self) -> Result<Option<&Plan>, Failure> {
         let Some(path) = &self.map else {
             return Ok(None);
         };
-        let plan = plan_of(path)?;
+        if self.read.get().is_none() {
+            let _ = self.read.set(plan_of(path)?);
+        }
+        Ok(self.read.get())
+    }
+
+    /// The setting of the cell, where the map is one of a system from a file.
+    pub(super) fn of_system(&self) -> Result<Option<Setting>, Failure> {
+        let Some(plan) = self.plan()? else {
+            return Ok(None);
+        };
         match plan.spec.fixed.system() {
-            Some(_) => Ok(Some(plan.setting(&self.index(&plan)?))),
+            Some(_) => Ok(Some(plan.setting(&self.index(plan)?))),
             None => Ok(None),
         }
     }
 
     /// What can be asked at the cell, and its setting; none where no map is given.
     fn texts(&self) -> Result<Option<(CellTexts, Setting)>, Failure> {
-        let Some(path) = &self.map else {
+        let Some(plan) = self.plan()? else {
             return Ok(None);
         };
-        let plan = plan_of(path)?;
-        let index = self.index(&plan)?;
+        let index = self.index(plan)?;
         let setting = plan.setting(&index);
-        Ok(Some((CellTexts::of(&plan, &index), setting)))
+        Ok(Some((CellTexts::of(plan, &index), setting)))
     }
 
     /// Where the cell is along every axis. Says which cell it is.
@@ -133,11 +146,10 @@ impl CellArgs {
     /// Of which starts the shares of the map are, and how these are followed; none where no map is
     /// given or it has no shares.
     pub(super) fn basin(&self) -> Result<Option<(Basin, Simulation)>, Failure> {
-        let Some(path) = &self.map else {
+        let Some(Plan { spec, .. }) = self.plan()? else {
             return Ok(None);
         };
-        let spec = plan_of(path)?.spec;
-        Ok(spec.basin.map(|basin| (basin, spec.simulation)))
+        Ok(spec.basin.map(|basin| (basin, spec.simulation.clone())))
     }
 
     /// The case of the motion at the cell.

@@ -207,7 +207,7 @@ impl Claim {
         self
     }
 
-    /// The same with a command, if there is one.
+    /// Adds the command that repeats it, if there is one.
     pub(super) fn repeat_some(mut self, command: Option<String>) -> Self {
         self.commands.extend(command);
         self

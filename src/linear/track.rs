@@ -345,12 +345,7 @@ impl RootTracker {
                 return Err(Doubt::Undecided);
             }
             let unit = root.lambda.re.abs().max(1.0);
-            let least = if E::KEEPS_MARGINS {
-                kept.margin
-            } else {
-                MARGIN
-            };
-            let first = least.max(16.0 * root.error / unit);
+            let first = kept.margin.max(16.0 * root.error / unit);
             let mut margin = first;
             let line = loop {
                 let line = root.lambda.re + margin * unit;

@@ -25,6 +25,14 @@ pub struct MapCurve {
     pub piece: CurvePiece,
 }
 
+impl MapCurve {
+    /// It bounds the region where sliding is stable.
+    #[must_use]
+    pub fn bounds_stability(&self) -> bool {
+        self.degree_of_stability == 0.0 && self.piece.stable_side != StableSide::Neither
+    }
+}
+
 /// About so many curves, and vertices of them, are read at once.
 const CURVES_AT_ONCE: usize = 1 << 12;
 const VERTICES_AT_ONCE: usize = 1 << 17;

@@ -64,14 +64,13 @@ impl FieldSummary {
 
     /// Of so many kinds.
     fn of_kinds(cells: &[u8], kinds: usize) -> Self {
-        // Many are of one kind in a whole tile.
-        let same = cells.iter().all(|cell| *cell == cells[0]);
-        let of = |kind: usize| match (same, cells.first()) {
-            (true, first) => {
-                let all = first.is_some_and(|first| usize::from(*first) == kind);
-                u64::from(all) * cells.len() as u64
-            }
-            _ => count(cells, |cell| usize::from(cell) == kind),
+        // Many tiles are all of one kind.
+        let first = cells.first().copied();
+        let only = first.filter(|first| cells.iter().all(|cell| cell == first));
+        let of = |kind: usize| match only {
+            Some(only) if usize::from(only) == kind => cells.len() as u64,
+            Some(_) => 0,
+            None => count(cells, |cell| usize::from(cell) == kind),
         };
         let kinds: Vec<u64> = (0..kinds).map(of).collect();
         Self {

@@ -5,8 +5,9 @@ use std::f64::consts::PI;
 use num_complex::Complex64;
 
 use super::polynomial::Polynomial;
-use super::right_of::{RootCounter, Turning};
+use super::right_of::RootCounter;
 use super::system::System;
+use super::turning::Turning;
 use super::zeros::Zeros;
 use crate::linear::characteristic::Jet;
 use crate::linear::collocation::eigenvalues;

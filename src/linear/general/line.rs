@@ -16,10 +16,11 @@ use std::f64::consts::{PI, TAU};
 
 use super::parts::Angle;
 use super::reason::Reason;
-use super::right_of::{RootCounter, Turning};
+use super::right_of::RootCounter;
 use super::routh::zeros_on_the_right;
 use super::switches::{NearZero, Switch, Switches, each_switch};
 use super::system::{Class, System};
+use super::turning::Turning;
 use super::zeros::Zeros;
 use crate::linear::count::MarginalTolerance;
 use crate::linear::crossing::{Crossing, Direction};

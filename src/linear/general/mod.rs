@@ -5,6 +5,7 @@
 //! - `system`: one setting, its class, and |P|² − |Q|² and D on a vertical line
 //! - `switches`: where |P| and |Q| change places on such a line
 //! - `right_of`: how many roots lie right of a line, in closed form
+//! - `turning`: the whole turns that the count is made of
 //! - `equation`: a system as what finds and follows roots takes it
 //! - `rightmost`: the rightmost roots, or where roots accumulate
 //! - `line`: all delays of a setting: crossings and counts
@@ -48,6 +49,7 @@ pub mod stable;
 mod starts;
 mod switches;
 pub mod system;
+mod turning;
 pub mod zeros;
 
 pub use latency::Form;
@@ -55,6 +57,7 @@ pub use line::DelayLine;
 pub use plane::{Setting, SystemPlane};
 pub use polynomial::Polynomial;
 pub use reason::Reason;
-pub use right_of::{RightOf, RootCounter};
+pub use right_of::RootCounter;
 pub use rightmost::Spectrum;
 pub use system::{Class, System};
+pub use turning::RightOf;

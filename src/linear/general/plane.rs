@@ -6,8 +6,9 @@ use std::f64::consts::PI;
 use num_complex::Complex64;
 
 use super::line::DelayLine;
-use super::right_of::{RightOf, RootCounter};
+use super::right_of::RootCounter;
 use super::system::System;
+use super::turning::RightOf;
 use crate::linear::curves::{Vertex, Window};
 use crate::linear::plane::{Band, Local, Plane, Value};
 

@@ -55,8 +55,8 @@ impl Polynomial {
         })
     }
 
-    /// Re s^… of the product with the conjugate of `other` on the imaginary axis: a polynomial in
-    /// x = ω² with Re[self(iω) other(iω)*] as its value.
+    /// The real part of the product with the conjugate of `other` on the imaginary axis: a
+    /// polynomial in x = ω² with Re[self(iω) other(iω)*] as its value.
     #[must_use]
     pub(super) fn real_product(&self, other: &Self) -> Self {
         let degree = usize::midpoint(self.degree(), other.degree());
@@ -74,8 +74,8 @@ impl Polynomial {
         })
     }
 
-    /// As [`Polynomial::real_product`], the imaginary part: a polynomial in x = ω² with
-    /// Im[self(iω) other(iω)*]/ω as its value.
+    /// The imaginary part of the product with the conjugate of `other` on the imaginary axis: a
+    /// polynomial in x = ω² with Im[self(iω) other(iω)*]/ω as its value.
     #[must_use]
     pub(super) fn imaginary_product(&self, other: &Self) -> Self {
         let Some(degree) = (self.degree() + other.degree()).checked_sub(1) else {

@@ -25,33 +25,12 @@ use super::polynomial::{MOST_DEGREE, Polynomial};
 use super::shifted::Shifted;
 use super::switches::{Switch, Switches, each_switch};
 use super::system::{Class, System};
+use super::turning::{NoNumber, RightOf, Turn, Turning, WholeTurns};
 use super::zeros::Zeros;
 use crate::model::elementary::atan2;
 
 /// How far the two ways to an argument may differ before neither is trusted.
 pub(super) const SAME_TURN: f64 = 1.0;
-
-/// The number of roots right of a line.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum RightOf {
-    /// So many.
-    Roots(u64),
-    /// Infinitely many: the line lies left of the one at which they accumulate.
-    Infinite,
-    /// A root lies within rounding of the line.
-    Undecided,
-}
-
-impl RightOf {
-    /// The number, where it is finite and known.
-    #[must_use]
-    pub fn finite(self) -> Option<u64> {
-        match self {
-            Self::Roots(n) => Some(n),
-            Self::Infinite | Self::Undecided => None,
-        }
-    }
-}
 
 /// Counts roots of one system at any delay right of any line.
 #[derive(Debug, Clone)]
@@ -157,60 +136,6 @@ impl Turned {
     }
 }
 
-/// A frequency at which one of (7)'s turns is counted.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Turn {
-    pub omega: f64,
-    pub omega_error: f64,
-    pub sign: f64,
-    /// φ − ψ and a bound on its error.
-    pub phase: f64,
-    pub phase_error: f64,
-}
-
-impl Turn {
-    /// m of (7), or none where it might round either way.
-    #[inline]
-    pub(super) fn turns(&self, tau: f64) -> Option<f64> {
-        let angle = self.omega * tau;
-        let turns = (self.phase + angle) / TAU;
-        let error = self.phase_error
-            + self.omega_error * tau
-            + 4.0 * f64::EPSILON * (angle + self.phase.abs());
-        let whole = (turns + 0.5).floor();
-        let left = 0.5 - (turns - whole).abs();
-        (left * TAU > error).then_some(whole)
-    }
-}
-
-/// Equation (7) on one line, with everything in it that does not depend on the delay.
-#[derive(Debug, Clone, Default)]
-pub struct Turning {
-    /// n_P + ν₀.
-    pub(super) without_turns: i64,
-    pub(super) turns: Vec<Turn>,
-}
-
-impl Turning {
-    /// The number of roots right of the line at the delay `tau`, the one it was made for; any where
-    /// the line is the imaginary axis. None where a root is too near to the line.
-    #[must_use]
-    pub fn at(&self, tau: f64) -> Option<u64> {
-        let mut sum = 0.0;
-        for turn in &self.turns {
-            sum += turn.sign * turn.turns(tau)?;
-        }
-        u64::try_from(self.without_turns + 2 * sum as i64).ok()
-    }
-}
-
-/// Why (7) gives no number on a line.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum NoNumber {
-    Infinite,
-    Undecided,
-}
-
 impl RootCounter {
     /// For `system`, which is not one of unknown degree.
     #[must_use]
@@ -237,19 +162,9 @@ impl RootCounter {
         if let Some(feedback) = self.system.late() {
             return self.late(feedback, tau, line);
         }
-        let mut sum = 0.0;
-        let without_turns = self.on_line(tau, line, |turn| {
-            turn.turns(tau).is_some_and(|turns| {
-                sum += turn.sign * turns;
-                true
-            })
-        });
-        match without_turns {
-            Ok(without_turns) => u64::try_from(without_turns + 2 * sum as i64)
-                .map_or(RightOf::Undecided, RightOf::Roots),
-            Err(NoNumber::Infinite) => RightOf::Infinite,
-            Err(NoNumber::Undecided) => RightOf::Undecided,
-        }
+        let mut turned = WholeTurns::at(tau);
+        let without_turns = self.on_line(tau, line, |turn| turned.add(&turn));
+        turned.right_of(without_turns)
     }
 
     /// Equation (7) on the imaginary axis, for every delay τ > 0; none where it cannot be had at

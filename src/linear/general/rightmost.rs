@@ -3,8 +3,9 @@
 
 use super::line::DelayLine;
 use super::reason::Reason;
-use super::right_of::{RightOf, RootCounter};
+use super::right_of::RootCounter;
 use super::system::System;
+use super::turning::RightOf;
 use crate::linear::count::{Count, MarginalTolerance};
 use crate::linear::newton::Root;
 use crate::linear::rightmost::Rightmost;

@@ -3,7 +3,7 @@
 
 use super::level::Level;
 use super::plane::SystemPlane;
-use super::right_of::RightOf;
+use super::turning::RightOf;
 use crate::linear::Direction;
 use crate::linear::curves::{CurveKind, CurvePiece, StableSide, Vertex};
 use crate::linear::plane::Plane;

@@ -3,7 +3,7 @@
 use num_complex::Complex64;
 
 use super::plane::SystemPlane;
-use super::right_of::RightOf;
+use super::turning::RightOf;
 use crate::linear::crossing::Direction;
 use crate::linear::curves::{MOST_ARCS, TooManyCurves, Vertex};
 use crate::linear::decay::{Across, COLUMNS, Start, on_line};

@@ -20,7 +20,7 @@ use crate::model::elementary::norm;
 /// The delays (2) that are nearest to the one of a setting.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Near<const V: usize> {
-    /// None of them is nearer than this.
+    /// No such delay is nearer than this.
     pub distance: f64,
     /// One of them, in the middle of the box.
     pub tau: f64,

@@ -67,11 +67,11 @@ pub(super) fn draw(
     let headings = view.panels.iter().map(|p| view.heading(map, p)).collect();
     let words = Words::of(speed::title(map, x_axis), axis_title(y_axis), headings);
     let panels = Panels::new(scene, body, scales, words);
+    let turned = view.is_turned(map);
     let parts = panels.list.iter().zip(planes).zip(&view.panels);
     for (((panel, plane), index), symbols) in parts.zip(&symbols) {
         let outer = view.outer_values(map, index);
         let here: Vec<&MapCurve> = curves.iter().filter(|c| c.outer == outer).collect();
-        let turned = view.is_turned(map);
         let plane = match changes_at_boundary(field) && !turned {
             true => cut(map, (view.x, y), index, panel, plane, &here, u)?,
             false => plane,
@@ -101,9 +101,8 @@ pub(super) fn draw(
 
 /// The curves that bound the stable region.
 fn bounding(curves: &[MapCurve]) -> impl Iterator<Item = &CurvePiece> + Clone {
-    let bounds =
-        |c: &&MapCurve| c.degree_of_stability == 0.0 && c.piece.stable_side != StableSide::Neither;
-    curves.iter().filter(bounds).map(|curve| &curve.piece)
+    let bounding = curves.iter().filter(|curve| curve.bounds_stability());
+    bounding.map(|curve| &curve.piece)
 }
 
 /// Whether the field is another one on the other side of the boundary of stability.
@@ -121,9 +120,8 @@ fn cut(
     curves: &[&MapCurve],
     u: f64,
 ) -> Result<Known, PictureError> {
-    let bounds =
-        |c: &&&MapCurve| c.degree_of_stability == 0.0 && c.piece.stable_side != StableSide::Neither;
-    let pieces: Vec<_> = curves.iter().filter(bounds).map(|c| &c.piece).collect();
+    let bounding = curves.iter().filter(|curve| curve.bounds_stability());
+    let pieces: Vec<_> = bounding.map(|curve| &curve.piece).collect();
     let Some(field) = map.stability_field().filter(|_| !pieces.is_empty()) else {
         return Ok(known);
     };

@@ -198,18 +198,17 @@ fn compose(map: &MapFile, options: &PictureOptions, most: usize) -> Result<Scene
         line::draw(map, &view, &fields, (options, most), &mut scene)?;
         return Ok(scene);
     };
-    let in_plane = view.is_boundary_plane(map);
+    let (in_plane, turned) = (view.is_boundary_plane(map), view.is_turned(map));
     let curves = match in_plane {
         true => map.curves_where(|outer| view.shows(map, outer))?,
         false => Vec::new(),
     };
     let fits = view.along.is_some() && view.of <= MOST_PANELS && view.outer_axes(map) == 1;
-    let by_default =
-        fits && !view.is_turned(map) && choice.leaves_curves(map) && !curves.is_empty();
+    let by_default = fits && !turned && choice.leaves_curves(map) && !curves.is_empty();
     match options.kind {
-        Some(PictureKind::Boundaries) if !in_plane || view.is_turned(map) => {
+        Some(PictureKind::Boundaries) if !in_plane || turned => {
             return Err(no_curves(match map.boundary_plane() {
-                _ if view.is_turned(map) => "over a speed they are drawn over the cells alone",
+                _ if turned => "over a speed they are drawn over the cells alone",
                 None => "its sweep traced none",
                 Some(_) => "they lie in another plane, of whose axes one is held",
             }));

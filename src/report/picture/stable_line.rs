@@ -6,9 +6,8 @@ use super::error::PictureError;
 use super::panels::Panel;
 use super::scene::Scene;
 use super::view::View;
-use crate::linear::curves::{CurvePiece, StableSide, Vertex};
+use crate::linear::curves::{CurvePiece, Vertex};
 use crate::report::known::{Gap, Known};
-use crate::store::map_file::MapCurve;
 use crate::store::{MapFile, StoreError};
 
 /// So near to the end of an axis, as a part of it, curves are read: they end at its last value.
@@ -129,10 +128,11 @@ pub(super) fn crossings(map: &MapFile, x: usize, index: &[usize]) -> Result<Vec<
     let from = values.iter().copied().fold(f64::INFINITY, f64::min);
     let to = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
     let held_at = values[index[held]].clamp(from, to - END * (to - from));
-    let bounds =
-        |c: &&MapCurve| c.degree_of_stability == 0.0 && c.piece.stable_side != StableSide::Neither;
     let curves = map.curves_where(|outer| outer == outside)?;
-    let pieces = curves.iter().filter(bounds).map(|curve| &curve.piece);
+    let pieces = curves
+        .iter()
+        .filter(|c| c.bounds_stability())
+        .map(|curve| &curve.piece);
     Ok(pieces
         .flat_map(|piece| crossed(piece, held_at, x == tau))
         .collect())

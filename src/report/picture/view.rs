@@ -93,10 +93,8 @@ impl View {
 
     /// True if this is the plane of the map's crossing curves.
     pub(super) fn is_boundary_plane(&self, map: &MapFile) -> bool {
-        let upright = self
-            .y
-            .is_some_and(|y| map.boundary_plane() == Some((self.x, y)));
-        upright || self.is_turned(map)
+        let upright = |y: usize| map.boundary_plane() == Some((self.x, y));
+        self.y.is_some_and(upright) || self.is_turned(map)
     }
 
     /// True if this is the plane of the curves with their second parameter from left to right.

@@ -4,7 +4,7 @@ import { RANGES, SHOWN, UNITS, withoutZero } from "./catalogue.js";
 import { element, make } from "./dom.js";
 import { drawLaw } from "./plots.js";
 import { told, unitOf, withUnit } from "./scale.js";
-import { FEEDBACK, MODEL, highestOf, parametersOf, pointTexts } from "./sweep.js";
+import { FEEDBACK, FOLDED, MODEL, highestOf, parametersOf, pointTexts } from "./sweep.js";
 
 const STEPS = 1000;
 
@@ -90,8 +90,7 @@ export class Controls {
     const names = parametersOf(state, this.catalogue);
     const free = names.filter((name) => name !== state.x.name && name !== state.y.name);
     const sliders = (list) => list.map((name) => this.#slider(name));
-    const others = [...FEEDBACK, ...MODEL, "mu_k"];
-    const first = free.filter((name) => !others.includes(name));
+    const first = free.filter((name) => !FOLDED.includes(name));
     element("sliders").replaceChildren(...sliders(first));
     for (const [id, list] of [
       ["feedback-sliders", FEEDBACK],

@@ -8,6 +8,9 @@ export const MODEL = ["mass", "stiffness", "normal_load"];
 /** Parameters of the feedback beyond the letter's. */
 export const FEEDBACK = ["memory", "latency", "load_lag", "velocity_lag", "sensor_lag"];
 
+/** Parameters that are most often as if not given: they stand behind folds, and are left out then. */
+export const FOLDED = [...FEEDBACK, ...MODEL, "mu_k"];
+
 /** The parameters on which what is shown depends, in the order in which they are set. */
 export function parametersOf(state, catalogue) {
   // Of three that say the same, the page sets two.
@@ -99,7 +102,7 @@ function tablesOf(state, catalogue, names) {
 function fixedOf(state, catalogue, names) {
   const value = (name) => catalogue.value(state, name);
   const usual = (name) =>
-    [...FEEDBACK, ...MODEL, "mu_k"].includes(name) && value(name) === catalogue.about(name).default;
+    FOLDED.includes(name) && value(name) === catalogue.about(name).default;
   const kept = names.filter((name) => !ofLaw(name) && !usual(name));
   return kept.map((name) => line(name, value(name))).join("");
 }

@@ -39,7 +39,7 @@ pub const MOST_TILES: usize = 1 << 21;
 const MOST_PLANES: u64 = 1_000_000;
 /// Planes up to which crossing curves are traced without being asked for.
 const PLANES_TRACED_UNASKED: u64 = 1000;
-/// And where every curve is followed step by step.
+/// Planes up to which that holds where every curve is followed step by step.
 const PLANES_WALKED_UNASKED: u64 = 100;
 
 /// A sweep ready to run.

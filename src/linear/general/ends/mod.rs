@@ -24,8 +24,9 @@ use num_complex::Complex64;
 use small::{MOST, Values, differences, solve};
 
 use super::polynomial::Polynomial;
-use super::right_of::{RightOf, RootCounter};
+use super::right_of::RootCounter;
 use super::system::System;
+use super::turning::RightOf;
 use crate::linear::characteristic::one_minus_exp;
 use crate::linear::lobes::LobeControl;
 

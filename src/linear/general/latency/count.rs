@@ -8,9 +8,10 @@
 use std::f64::consts::{PI, TAU};
 
 use super::super::parts::{Angle, Feedback};
-use super::super::right_of::{Factors, RightOf, RootCounter, SAME_TURN, Turn, Turning};
+use super::super::right_of::{Factors, RootCounter, SAME_TURN};
 use super::super::switches::{Switch, Switches};
 use super::super::system::Class;
+use super::super::turning::{NoNumber, RightOf, Turn, Turning, WholeTurns};
 use super::on_line::{Form, OnLine};
 use super::sum::Sum;
 use super::wave::TooMany;
@@ -25,13 +26,6 @@ const ROUGH: f64 = 1e-3;
 /// Turns of the delay over the range of frequencies, less those of the latency, up to which the
 /// form with the latency costs less: it needs no arguments of sums.
 const CHEAPER: f64 = 12.0;
-
-/// Why a line has no count.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum NoCount {
-    Infinite,
-    Undecided,
-}
 
 /// The arguments of B and A, continuous in ω ≥ 0.
 struct Arguments<'f> {
@@ -163,8 +157,8 @@ impl<'f> Way<'f> {
         &self,
         (window, precision): (Window, f64),
         mut each: impl FnMut(Turn) -> bool,
-    ) -> Result<i64, NoCount> {
-        let undecided = |_: TooMany| NoCount::Undecided;
+    ) -> Result<i64, NoNumber> {
+        let undecided = |_: TooMany| NoNumber::Undecided;
         let wave = self.on_line.wave(self.form);
         let start = wave
             .zeros(window, precision, |switch| {
@@ -173,7 +167,7 @@ impl<'f> Way<'f> {
             .map_err(undecided)?;
         let longest = self.on_line.tau + self.on_line.latency;
         if start.open_below * longest > NO_TURN {
-            return Err(NoCount::Undecided);
+            return Err(NoNumber::Undecided);
         }
         let constant = wave.parts[0].coefficient(0);
         let mut without_turns = self.zeros;
@@ -236,18 +230,9 @@ impl RootCounter {
             Form::Delay => on_line.tau,
             Form::Latency => on_line.latency,
         };
-        let mut sum = 0.0;
-        let found = self.turns_of(on_line, form, to, |turn| {
-            turn.turns(turn_by).is_some_and(|turns| {
-                sum += turn.sign * turns;
-                true
-            })
-        });
-        match found {
-            Ok(without_turns) => u64::try_from(without_turns + 2 * sum as i64)
-                .map_or(RightOf::Undecided, RightOf::Roots),
-            Err(why) => why.into(),
-        }
+        let mut turned = WholeTurns::at(turn_by);
+        let without_turns = self.turns_of(on_line, form, to, |turn| turned.add(&turn));
+        turned.right_of(without_turns)
     }
 
     /// Equation (7) on the imaginary axis with latency: for every delay, or with a given delay for
@@ -266,16 +251,16 @@ impl RootCounter {
         })
     }
 
-    fn late_line(&self, feedback: &Feedback, tau: f64, line: f64) -> Result<OnLine, NoCount> {
-        let open = NoCount::Undecided;
+    fn late_line(&self, feedback: &Feedback, tau: f64, line: f64) -> Result<OnLine, NoNumber> {
+        let open = NoNumber::Undecided;
         match self.system().class() {
             Class::DegreeUnknown | Class::Refused => return Err(open),
-            Class::Infinite => return Err(NoCount::Infinite),
+            Class::Infinite => return Err(NoNumber::Infinite),
             _ => {}
         }
         let on_line = OnLine::new(feedback, tau, line).ok_or(open)?;
         if !on_line.right_of_essential().ok_or(open)? {
-            return Err(NoCount::Infinite);
+            return Err(NoNumber::Infinite);
         }
         if !on_line.on_real_axis().decided() {
             return Err(open);
@@ -289,19 +274,10 @@ impl RootCounter {
         form: Form,
         to: (Window, f64),
         each: impl FnMut(Turn) -> bool,
-    ) -> Result<i64, NoCount> {
+    ) -> Result<i64, NoNumber> {
         let mut switches = Switches::default();
         Way::new(on_line, form, self.late_factors(), &mut switches)
-            .ok_or(NoCount::Undecided)?
+            .ok_or(NoNumber::Undecided)?
             .turns(to, each)
-    }
-}
-
-impl From<NoCount> for RightOf {
-    fn from(why: NoCount) -> Self {
-        match why {
-            NoCount::Infinite => Self::Infinite,
-            NoCount::Undecided => Self::Undecided,
-        }
     }
 }
