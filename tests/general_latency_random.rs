@@ -4,8 +4,8 @@
 
 #[path = "common/chance.rs"]
 mod chance;
-
-use std::f64::consts::PI;
+#[path = "common/walk.rs"]
+mod walk;
 
 use chance::{Chance, asked};
 use num_complex::Complex64;
@@ -13,6 +13,7 @@ use slipmap::linear::general::{
     DelayLine, Form, Polynomial, Reason, RightOf, RootCounter, Spectrum, System,
 };
 use slipmap::linear::{Direction, MarginalTolerance};
+use walk::Walk;
 
 fn cases(usual: u64) -> u64 {
     asked("SLIPMAP_CASES", usual)
@@ -72,19 +73,6 @@ fn value(p: &[f64], z: Complex64) -> Complex64 {
     p.iter().rev().fold(Complex64::ZERO, |sum, c| sum * z + c)
 }
 
-/// Σ |c_k| size^k and the same of the derivative.
-fn bounds(p: &[f64], size: f64) -> (f64, f64) {
-    let sum = |p: &[f64]| p.iter().rev().fold(0.0, |sum, c| sum * size + c);
-    let sizes: Vec<f64> = p.iter().map(|c| c.abs()).collect();
-    let slopes: Vec<f64> = sizes
-        .iter()
-        .enumerate()
-        .skip(1)
-        .map(|(k, c)| k as f64 * c)
-        .collect();
-    (sum(&sizes), sum(&slopes))
-}
-
 impl Late {
     fn system(&self) -> System {
         let polynomial = |c: &[f64]| Polynomial::new(c).expect("a small degree");
@@ -98,78 +86,27 @@ impl Late {
         value(&self.open, z) * (1.0 - self.memory * echo) - fed * (1.0 - echo)
     }
 
-    /// A bound on |D′| within `near` of `z`.
-    fn slope(&self, z: Complex64, near: f64) -> f64 {
-        let echo = (-(z.re - near) * self.tau).exp();
-        let late = (-(z.re - near) * self.latency).exp();
-        let (open, open_slope) = bounds(&self.open, z.norm() + near);
-        let (gain, gain_slope) = bounds(&self.gain, z.norm() + near);
-        let kept = 1.0 + self.memory.abs() * echo;
-        open_slope * kept
-            + open * self.memory.abs() * self.tau * echo
-            + late * (1.0 + echo) * (gain_slope + self.latency * gain)
-            + late * gain * self.tau * echo
-    }
-
-    /// A radius beyond which nothing lies right of `line`; none where there is none.
-    fn radius(&self, line: f64) -> Option<f64> {
+    /// How many roots lie right of `line`; none where they accumulate near it, and where a walk
+    /// takes too long.
+    fn walked(&self, line: f64) -> Option<u64> {
         let echo = (-line * self.tau).exp();
-        let kept = 1.0 - self.memory.abs() * echo;
-        let factor = (-line * self.latency).exp() * (1.0 + echo) / kept;
-        if kept <= 0.02 || factor > 1e4 {
+        if self.memory.abs() * echo >= 0.98 {
             return None;
         }
-        let leading = self.open.last().expect("not empty").abs();
-        let mut radius: f64 = 1.0;
-        loop {
-            let (gain, _) = bounds(&self.gain, radius);
-            let n = self.open.len() - 1;
-            let (lower, _) = bounds(&self.open[..n], radius);
-            if leading * radius.powi(n as i32) > lower + factor * gain {
-                return Some(1.1 * radius);
-            }
-            radius *= 1.1;
-        }
+        self.walk().right_of(line)
     }
 
-    /// How many roots lie right of `line`, by walking around the upper half of all that can be
-    /// there with steps within which the argument cannot turn far. None where that takes too long.
-    fn walked(&self, line: f64) -> Option<u64> {
-        let radius = self.radius(line)?;
-        let corners = [
-            Complex64::new(radius.max(line + 1.0), 0.0),
-            Complex64::new(radius.max(line + 1.0), radius),
-            Complex64::new(line, radius),
-            Complex64::new(line, 0.0),
-        ];
-        let (mut turned, mut steps) = (0.0, 0);
-        for side in corners.windows(2) {
-            let (mut z, length) = (side[0], (side[1] - side[0]).norm());
-            let direction = (side[1] - side[0]) / length;
-            let (mut gone, mut here) = (0.0, self.at(z));
-            let mut step = 0.1 * length;
-            while gone < length {
-                // |D′| step ≤ |D|/2: the argument turns by 30° at most.
-                step *= 2.0;
-                // Also where the bound overflows.
-                let near = |step| self.slope(z, step) * step <= 0.5 * here.norm();
-                while !near(step) {
-                    step *= 0.5;
-                }
-                steps += 1;
-                if steps > 200_000 || step < 1e-9 {
-                    return None;
-                }
-                gone = (gone + step).min(length);
-                z = side[0] + direction * gone;
-                let there = self.at(z);
-                turned += (there / here).arg();
-                here = there;
-            }
+    /// Its terms, written out.
+    fn walk(&self) -> Walk {
+        let times = |p: &[f64], by: f64| p.iter().map(|c| by * c).collect();
+        Walk {
+            terms: vec![
+                (self.open.clone(), 0.0),
+                (times(&self.open, -self.memory), self.tau),
+                (times(&self.gain, -1.0), self.latency),
+                (self.gain.clone(), self.latency + self.tau),
+            ],
         }
-        let halves = turned / PI;
-        assert!((halves - halves.round()).abs() < 1e-6, "{self:?} {halves}");
-        Some(halves.round() as u64)
     }
 }
 
@@ -306,7 +243,7 @@ fn scanned(late: &Late, line: &DelayLine, f: impl Fn(f64) -> f64) -> usize {
         .map(|c| c.omega)
         .collect();
     found.sort_by(f64::total_cmp);
-    let last = late.radius(0.0).expect("|R| < 1");
+    let last = late.walk().radius(0.0).expect("|R| < 1");
     let place = |i: usize| last * i as f64 / POINTS as f64;
     let mut next = 0;
     for i in 0..POINTS {
@@ -352,7 +289,7 @@ fn rightmost_roots_are_found_and_certified() {
         }
         certified += 1;
         let root = found.roots[0];
-        let near = late.slope(root.lambda, 1e-9) * 1e-9;
+        let near = late.walk().slope(root.lambda, 1e-9) * 1e-9;
         assert!(late.at(root.lambda).norm() <= near, "{late:?} {root:?}");
         if case % 5 == 0 {
             let beside = 1e-4 * root.lambda.re.abs().max(1.0);

@@ -6,12 +6,15 @@
 mod chance;
 #[path = "common/letter_system.rs"]
 mod letter_system;
+#[path = "common/walk.rs"]
+mod walk;
 
 use chance::{Chance, asked};
 use letter_system::letter;
 use slipmap::linear::general::{DelayLine, Reason, RightOf, RootCounter, Spectrum, System};
 use slipmap::linear::{Crossings, MarginalTolerance};
 use slipmap::model::Groups;
+use walk::Walk;
 
 fn cases(usual: usize) -> usize {
     asked("SLIPMAP_CASES", usual as u64) as usize
@@ -46,6 +49,14 @@ fn from_zeros(chance: &mut Chance, degree: usize, leading: f64) -> Vec<f64> {
 
 /// A system of degree 1 to 8, a third of them neutral, and a delay.
 fn system(chance: &mut Chance) -> (System, f64, String) {
+    let (p, q, tau) = pair(chance);
+    let text = format!("{p:?} {q:?} {tau}");
+    let system = System::of_coefficients(&p, &q).expect("a small degree");
+    (system, tau, text)
+}
+
+/// P, Q and a delay, as [`system`] has them.
+fn pair(chance: &mut Chance) -> (Vec<f64>, Vec<f64>, f64) {
     let n = 1 + (chance.between(0.0, 8.0) as usize).min(7);
     let neutral = chance.between(0.0, 1.0) < 1.0 / 3.0;
     let m = if neutral {
@@ -66,12 +77,7 @@ fn system(chance: &mut Chance) -> (System, f64, String) {
     };
     let q = from_zeros(chance, m, leading * ratio);
     let tau = chance.log(0.03, 50.0);
-    let text = format!("{p:?} {q:?} {tau}");
-    (
-        System::of_coefficients(&p, &q).expect("a small degree"),
-        tau,
-        text,
-    )
+    (p, q, tau)
 }
 
 #[test]
@@ -104,6 +110,44 @@ fn both_counts_agree() {
         "{undecided} undecided, {marginal} marginal"
     );
     assert!(unstable > cases / 10 && unstable < cases * 9 / 10);
+}
+
+/// Right of the axis and of other lines, against a walk that shares nothing with the crate.
+#[test]
+fn counts_are_what_a_walk_counts() {
+    let cases = cases(20_000) / 20;
+    let mut chance = Chance(asked("SLIPMAP_SEED", 23));
+    let (mut walked, mut undecided) = (0, 0);
+    for _ in 0..cases {
+        let (p, q, tau) = pair(&mut chance);
+        let system = System::of_coefficients(&p, &q).expect("a small degree");
+        let counter = RootCounter::new(&system);
+        let count = DelayLine::of(&system).count(tau, MarginalTolerance::default());
+        let walk = Walk {
+            terms: vec![(p, 0.0), (q, tau)],
+        };
+        for line in [0.0, chance.between(-0.4, 0.6)] {
+            let Some(expected) = walk.right_of(line) else {
+                continue;
+            };
+            walked += 1;
+            match counter.right_of(tau, line) {
+                RightOf::Roots(n) => assert_eq!(n, expected, "{walk:?} {line}"),
+                _ => undecided += 1,
+            }
+            if line == 0.0 && !count.marginal {
+                assert_eq!(count.n_unstable, expected, "{walk:?}");
+            }
+        }
+    }
+    println!(
+        "{walked} lines walked of {}, {undecided} undecided",
+        2 * cases
+    );
+    assert!(
+        walked > cases && undecided <= walked / 500 + 1,
+        "{walked} {undecided}"
+    );
 }
 
 /// Beside a root: the count changes by one root or one pair, or says that it does not know.

@@ -1,6 +1,8 @@
 //! `best --robust` against many places of its box, and against a grid of other settings.
 
-use slipmap::linear::best::{Best, Robust, Search, SearchedGain, best, robust, worst_around};
+use slipmap::linear::best::{
+    Best, Letter, Robust, Search, SearchedGain, best, robust, worst_around,
+};
 use slipmap::linear::spectrum::RootFinder;
 use slipmap::model::Groups;
 
@@ -8,7 +10,7 @@ use slipmap::model::Groups;
 mod program;
 
 /// Problems of load and velocity control with slopes and spreads of their own.
-fn problems(number: u32) -> impl Iterator<Item = (Search, f64)> {
+fn problems(number: u32) -> impl Iterator<Item = (Search<Letter>, f64)> {
     (0..number).map(move |i| {
         let part = f64::from(i) / f64::from(number);
         let load = i % 2 == 0;
@@ -22,8 +24,10 @@ fn problems(number: u32) -> impl Iterator<Item = (Search, f64)> {
             false => (SearchedGain::Velocity, (-1.0, 0.5)),
         };
         let search = Search {
-            fixed: Groups::new(b, 0.0, 0.0),
-            gain,
+            family: Letter {
+                fixed: Groups::new(b, 0.0, 0.0),
+                gain,
+            },
             gains,
             delays: (0.05, 10.0),
         };
@@ -34,16 +38,22 @@ fn problems(number: u32) -> impl Iterator<Item = (Search, f64)> {
 struct Abscissas(RootFinder);
 
 impl Abscissas {
-    fn at(&mut self, search: &Search, (gain, tau): (f64, f64), changes: [f64; 3]) -> f64 {
+    fn at(&mut self, search: &Search<Letter>, (gain, tau): (f64, f64), changes: [f64; 3]) -> f64 {
         let [k, delay, slope] = changes.map(|d| 1.0 + d);
-        let Groups { b, a_v, a_n } = search.groups(gain);
+        let Groups { b, a_v, a_n } = search.family.groups(gain);
         let groups = Groups::new(b * slope, a_v * k, a_n * k);
         let roots = self.0.rightmost(groups, tau * delay, 1, f64::NEG_INFINITY);
         roots.unwrap()[0].lambda.re
     }
 
     /// The largest on a grid of a box, once above `bound` anything above that.
-    fn worst(&mut self, search: &Search, place: (f64, f64), spread: f64, bound: f64) -> f64 {
+    fn worst(
+        &mut self,
+        search: &Search<Letter>,
+        place: (f64, f64),
+        spread: f64,
+        bound: f64,
+    ) -> f64 {
         let mut worst = f64::NEG_INFINITY;
         for i in 0..27 {
             let changes = [i / 9, i / 3 % 3, i % 3].map(|n| spread * (f64::from(n) - 1.0));
@@ -67,7 +77,7 @@ fn places(number: u32, spread: f64) -> impl Iterator<Item = [f64; 3]> {
         .map(move |i| STEPS.map(|step| spread * (2.0 * (0.5 + f64::from(i) * step).fract() - 1.0)))
 }
 
-fn check_box(search: &Search, spread: f64, found: &Robust) {
+fn check_box(search: &Search<Letter>, spread: f64, found: &Robust) {
     let mut abscissas = Abscissas(RootFinder::default());
     let place = (found.gain, found.tau);
     let at = |abscissas: &mut Abscissas, changes| abscissas.at(search, place, changes);
@@ -89,7 +99,7 @@ fn check_box(search: &Search, spread: f64, found: &Robust) {
 }
 
 /// No setting of a grid of 40 × 40 is better.
-fn check_grid(search: &Search, spread: f64, found: Option<&Robust>) {
+fn check_grid(search: &Search<Letter>, spread: f64, found: Option<&Robust>) {
     let mut abscissas = Abscissas(RootFinder::default());
     let lowest = found.map_or(0.0, |f| f.worst_abscissa);
     let along = |(from, to): (f64, f64), i: u32| from + (to - from) * f64::from(i) / 39.0;

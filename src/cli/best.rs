@@ -2,16 +2,19 @@
 
 use std::path::PathBuf;
 
-use slipmap::explore::margins::Margins;
+use slipmap::explore::point::Point;
+use slipmap::explore::stability::Wanted;
 use slipmap::explore::vc::CriticalVelocity;
 use slipmap::linear::best::SearchedGain;
 use slipmap::slip::stop::Stop;
 use slipmap::sweep::cells::best::{Ranges, best_settings, default_ranges, robust_setting};
 use slipmap::sweep::input::search::Protocol;
+use slipmap::sweep::input::simulation::NOT_IN_MOTIONS;
 use slipmap::sweep::{Parameter, Setting};
 
 use super::asks::AtAnyDelay;
 use super::best_answer::BestAnswer;
+use super::best_system::{self, SystemBest};
 use super::best_text;
 use super::failure::Failure;
 use super::json::{self, AnswerSchema, Inputs};
@@ -19,6 +22,13 @@ use super::parameters::ParameterArgs;
 use super::recommended::{Control, Recommended};
 use super::say;
 use super::setting;
+use super::system_args::SystemArgs;
+
+/// All that the margins of a setting need to be asked with.
+const WANTED: Wanted = Wanted {
+    roots: 1,
+    line: None,
+};
 
 #[derive(Debug, clap::Args)]
 #[command(after_help = "Example: slipmap best --mu-prime -0.3 --control velocity
@@ -30,33 +40,48 @@ control from 4(1 + |b|) κ/μ_K below the weakest negative one that
 stabilises, -(|b| + b²/2) κ/μ_K, to 4(1 + |b|) κ/μ_K.")]
 pub(super) struct Args {
     #[command(flatten)]
-    parameters: ParameterArgs<AtAnyDelay>,
-    /// The gain that is searched; the other one is given as usual
-    #[arg(long, value_enum, default_value_t = Control::Velocity)]
-    control: Control,
-    /// Smallest gain to search
-    #[arg(long, allow_hyphen_values = true, value_name = "A")]
-    alpha_from: Option<f64>,
-    /// Largest gain to search
-    #[arg(long, allow_hyphen_values = true, value_name = "A")]
-    alpha_to: Option<f64>,
+    pub(super) parameters: ParameterArgs<AtAnyDelay>,
+    #[command(flatten)]
+    pub(super) system: SystemArgs,
+    /// With --system: the parameter of it that is searched beside the delay
+    #[arg(long, value_name = "NAME", requires = "system")]
+    pub(super) search: Option<String>,
+    /// The gain that is searched; the other one is given as usual [default: velocity]
+    #[arg(long, value_enum)]
+    pub(super) control: Option<Control>,
+    /// Smallest gain to search, or smallest value of --search
+    #[arg(
+        long,
+        visible_alias = "search-from",
+        allow_hyphen_values = true,
+        value_name = "A"
+    )]
+    pub(super) alpha_from: Option<f64>,
+    /// Largest gain to search, or largest value of --search
+    #[arg(
+        long,
+        visible_alias = "search-to",
+        allow_hyphen_values = true,
+        value_name = "A"
+    )]
+    pub(super) alpha_to: Option<f64>,
     /// Shortest delay to search
     #[arg(long, allow_hyphen_values = true, value_name = "T")]
-    tau_from: Option<f64>,
+    pub(super) tau_from: Option<f64>,
     /// Longest delay to search
     #[arg(long, allow_hyphen_values = true, value_name = "T")]
-    tau_to: Option<f64>,
+    pub(super) tau_to: Option<f64>,
     /// Also find the setting whose slowest decay is fastest when gain, delay and μ′ may all be off
     /// by this part of them, such as 0.05
     #[arg(long, value_name = "SPREAD", allow_hyphen_values = true, value_parser = parse_spread)]
-    robust: Option<f64>,
+    pub(super) robust: Option<f64>,
     /// Write the best setting, with --robust that one, if one is stable, to a file that point takes
     /// with --setting and, with a friction law, vc too, and simulate as a case file
     #[arg(long, value_name = "SETTING.toml")]
-    save: Option<PathBuf>,
+    pub(super) save: Option<PathBuf>,
     /// One JSON object on standard output
     #[arg(long)]
-    json: bool,
+    pub(super) json: bool,
 }
 
 fn parse_spread(text: &str) -> Result<f64, String> {
@@ -66,15 +91,18 @@ fn parse_spread(text: &str) -> Result<f64, String> {
 }
 
 pub(super) fn main(args: &Args) -> Result<(), Failure> {
+    if args.system.system.is_some() {
+        return best_system::main(args);
+    }
     if let Some(path) = &args.save {
         setting::check_save(path)?;
     }
-    let gain = args.control.searched();
+    let gain = args.control().searched();
     let help = "leave it out; --alpha-from, --alpha-to, --tau-from and --tau-to are the ranges of \
         the search";
     let setting = args
         .parameters
-        .setting_but(&[args.control.parameter(), Parameter::Tau], help)?;
+        .setting_but(&[args.control().parameter(), Parameter::Tau], help)?;
     setting.sliding_point()?;
     let ranges = ranges(args, &default_ranges(&setting, gain)?)?;
     let told = args.recommend(&setting, gain, &ranges)?;
@@ -102,15 +130,21 @@ pub(super) fn main(args: &Args) -> Result<(), Failure> {
 
 /// What its JSON looks like.
 pub(super) fn described() -> AnswerSchema {
-    AnswerSchema::of("best").or::<BestAnswer>()
+    AnswerSchema::of("best")
+        .or::<BestAnswer>()
+        .or::<SystemBest>()
 }
 
 impl Args {
+    fn control(&self) -> Control {
+        self.control.unwrap_or(Control::Velocity)
+    }
+
     fn inputs(&self, setting: &Setting, ranges: &Ranges) -> Inputs {
-        let searched = [self.control.parameter(), Parameter::Tau];
+        let searched = [self.control().parameter(), Parameter::Tau];
         let given = |parameter| !searched.contains(&parameter);
         let inputs = Inputs::of_setting(setting, &self.parameters.units(), given);
-        let inputs = inputs.and("control", self.control);
+        let inputs = inputs.and("control", self.control());
         let inputs = inputs.and("alpha_from", ranges.gain.0);
         let inputs = inputs.and("alpha_to", ranges.gain.1);
         let inputs = inputs.and("tau_from", ranges.tau.0);
@@ -133,9 +167,10 @@ impl Args {
             None => (found.overall.gain, found.overall.tau),
         };
         let mut best = setting.clone();
-        best.set(self.control.parameter(), gain);
+        best.set(self.control().parameter(), gain);
         best.set(Parameter::Tau, tau);
-        let vc = match best.law() {
+        let motions = !best.has_state() && best.beyond_letter(NOT_IN_MOTIONS).is_none();
+        let vc = match best.law().filter(|_| motions) {
             Some(_) => Some(CriticalVelocity::of(
                 &best,
                 Protocol::Follow,
@@ -144,12 +179,12 @@ impl Args {
             None => None,
         };
         Ok(Recommended {
-            control: self.control,
+            control: self.control(),
             ranges: *ranges,
             spread: self.robust,
             found,
             robust,
-            margins: Margins::at(&best, 0.0)?,
+            margins: Point::at(&best, WANTED)?.margins,
             vc,
             setting: best,
         })
@@ -158,7 +193,7 @@ impl Args {
 
 /// The ranges that the flags give, over those searched by default.
 fn ranges(args: &Args, default: &Ranges) -> Result<Ranges, Failure> {
-    let gain = args.control.parameter();
+    let gain = args.control().parameter();
     Ok(Ranges {
         gain: range(
             gain,

@@ -87,6 +87,13 @@ struct RegionOut {
 #[derive(Debug, Serialize, ToSchema)]
 struct OptimumOut {
     alpha: f64,
+    #[serde(flatten)]
+    numbers: OptimumNumbers,
+}
+
+/// What is told of a best setting besides the value of what is searched.
+#[derive(Debug, Serialize, ToSchema)]
+pub(super) struct OptimumNumbers {
     tau: f64,
     abscissa: f64,
     frequency: f64,
@@ -111,6 +118,14 @@ impl From<&Optimum> for OptimumOut {
     fn from(found: &Optimum) -> Self {
         Self {
             alpha: found.gain,
+            numbers: found.into(),
+        }
+    }
+}
+
+impl From<&Optimum> for OptimumNumbers {
+    fn from(found: &Optimum) -> Self {
+        Self {
             tau: found.tau,
             abscissa: found.abscissa,
             frequency: found.frequency(),

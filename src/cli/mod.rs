@@ -5,6 +5,7 @@
 //! - `basin`: `basin`: which starts, what is told of them
 //! - `best`: `slipmap best`
 //! - `best_answer`: what `slipmap best` prints with `--json`
+//! - `best_system`: `slipmap best --system`
 //! - `best_text`: what `slipmap best` prints for people
 //! - `case_facts`: what is told of a case, before it is simulated and of its trace
 //! - `cell`: a cell of a map in the place of flags and case files
@@ -58,6 +59,7 @@ mod axis_facts;
 mod basin;
 mod best;
 mod best_answer;
+mod best_system;
 mod best_text;
 mod case_facts;
 mod cell;

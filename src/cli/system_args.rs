@@ -67,6 +67,29 @@ impl SystemArgs {
         &self,
         flag: impl Fn(Parameter) -> Option<f64>,
     ) -> Result<Option<(SystemModel, Evaluation)>, Failure> {
+        match self.read_but_delay(flag)? {
+            Some((_, _, false)) => Err(Failure::bad_input_with_help(
+                "--tau is not given",
+                format!(
+                    "--tau: {}, {}",
+                    Parameter::Tau.long_name(),
+                    Parameter::Tau.allowed()
+                ),
+            )),
+            found => Ok(found.map(|(model, at, _)| (model, at))),
+        }
+    }
+
+    /// Whether `--set` gives a parameter of that name.
+    pub(super) fn sets(&self, name: &str) -> bool {
+        self.set.iter().any(|set| set.name == name)
+    }
+
+    /// As [`SystemArgs::read`], and whether a delay is given; it need not be.
+    pub(super) fn read_but_delay(
+        &self,
+        flag: impl Fn(Parameter) -> Option<f64>,
+    ) -> Result<Option<(SystemModel, Evaluation, bool)>, Failure> {
         let Some(named) = &self.system else {
             return Ok(None);
         };
@@ -110,17 +133,7 @@ impl SystemArgs {
                 _ => at.tau = value,
             }
         }
-        match others[0] {
-            Some(_) => Ok(Some((model, at))),
-            None => Err(Failure::bad_input_with_help(
-                "--tau is not given",
-                format!(
-                    "--tau: {}, {}",
-                    Parameter::Tau.long_name(),
-                    Parameter::Tau.allowed()
-                ),
-            )),
-        }
+        Ok(Some((model, at, others[0].is_some())))
     }
 }
 

@@ -1,6 +1,6 @@
 //! A local minimum of a function with kinks: direct search along ever new directions.
 
-use super::search::{Evaluator, Place, Search};
+use super::search::{Evaluator, Family, Place, Search};
 use crate::model::elementary::{hypot, sincos};
 
 /// Directions tried at a time, evenly over the circle and turned by the golden angle from one try
@@ -47,7 +47,7 @@ impl Frame {
 /// second argument, anything above it does.
 pub(super) fn descend(
     mut of: impl FnMut(Place, f64) -> f64,
-    search: &Search,
+    search: &Search<impl Family>,
     start: Place,
     frame: &Frame,
     (largest, smallest): (f64, f64),
@@ -91,7 +91,7 @@ const MOST_STEPS: u32 = 120;
 /// gets stuck.
 pub(super) fn follow_valley(
     evaluator: &mut Evaluator,
-    search: &Search,
+    search: &Search<impl Family>,
     start: Place,
     frame: &Frame,
 ) -> (Place, f64) {
@@ -120,7 +120,12 @@ pub(super) fn follow_valley(
 }
 
 /// The best delay near that of `place` at its gain, by golden-section search.
-fn floor(evaluator: &mut Evaluator, search: &Search, place: Place, frame: &Frame) -> (Place, f64) {
+fn floor(
+    evaluator: &mut Evaluator,
+    search: &Search<impl Family>,
+    place: Place,
+    frame: &Frame,
+) -> (Place, f64) {
     let golden = 0.5 * (5.0_f64.sqrt() - 1.0);
     let mut at = |tau: f64| {
         let there = search.clamp(Place { tau, ..place });

@@ -18,6 +18,8 @@
 //!
 //! - `condition`: what holds at an optimum: multiple roots, ties, vanishing gradients
 //! - `descend`: direct search on a function with kinks and cusps
+//! - `general`: any system with one delay over a plane of one of its parameters and the delay
+//! - `letter`: the controlled oscillator over a plane of one of its gains and the delay
 //! - `polish`: Newton's method on those conditions, and the certificate
 //! - `regions`: the stable regions of a box: lobes
 //! - `robust`: the setting whose slowest decay over a box of changes is fastest
@@ -25,19 +27,24 @@
 
 mod condition;
 mod descend;
+mod general;
+mod letter;
 mod polish;
 mod regions;
 mod robust;
 mod search;
 
+pub use general::General;
+pub use letter::{Letter, SearchedGain};
+pub use regions::{Bound, Stretch};
 pub use robust::{Robust, robust, worst_around};
-pub use search::{Search, SearchedGain};
+pub use search::{ByParameters, Family, Place, Search};
 
 use condition::along_double_roots;
 use descend::{Frame, descend, follow_valley};
 use polish::{polished, unpolished};
 use regions::{Stretches, stable_regions};
-use search::{Evaluator, Place};
+use search::Evaluator;
 
 /// Regions whose optimum is looked for; the others are counted.
 pub const MOST_REGIONS: usize = 64;
@@ -183,7 +190,7 @@ pub struct Best {
 ///
 /// The box must be finite, its ranges ordered and the delays not negative.
 #[must_use]
-pub fn best(search: &Search) -> Best {
+pub fn best(search: &Search<impl Family>) -> Best {
     let mut evaluator = Evaluator::default();
     let mut found = stable_regions(search);
     let regions_left_out = found.len().saturating_sub(MOST_REGIONS);
@@ -208,7 +215,11 @@ pub fn best(search: &Search) -> Best {
 /// A place from which to go down, the abscissa there and the length scales around it.
 type Start = (f64, Place, Frame);
 
-fn region(evaluator: &mut Evaluator, search: &Search, stretches: &Stretches) -> Region {
+fn region(
+    evaluator: &mut Evaluator,
+    search: &Search<impl Family>,
+    stretches: &Stretches,
+) -> Region {
     let hull = |values: &dyn Fn(usize) -> (f64, f64)| {
         (0..stretches.len()).map(values).fold(
             (f64::INFINITY, f64::NEG_INFINITY),
@@ -311,7 +322,7 @@ fn far_apart(mut starts: Vec<Start>) -> Vec<Start> {
 }
 
 /// The lowest place to which descents from the best of `starts` lead.
-fn lowest(evaluator: &mut Evaluator, search: &Search, starts: Vec<Start>) -> Optimum {
+fn lowest(evaluator: &mut Evaluator, search: &Search<impl Family>, starts: Vec<Start>) -> Optimum {
     let mut best: Option<Optimum> = None;
     for (_, place, frame) in far_apart(starts) {
         let found = optimum_near(evaluator, search, place, &frame);
@@ -326,7 +337,7 @@ fn lowest(evaluator: &mut Evaluator, search: &Search, starts: Vec<Start>) -> Opt
 /// it.
 fn optimum_near(
     evaluator: &mut Evaluator,
-    search: &Search,
+    search: &Search<impl Family>,
     mut start: Place,
     frame: &Frame,
 ) -> Optimum {
@@ -360,7 +371,7 @@ fn optimum_near(
 
 fn better_nearby(
     evaluator: &mut Evaluator,
-    search: &Search,
+    search: &Search<impl Family>,
     found: &Optimum,
     frame: &Frame,
 ) -> Option<Place> {
@@ -396,7 +407,7 @@ fn better_nearby(
 }
 
 /// The setting of slowest growth in a box without stable ones.
-fn least_unstable(evaluator: &mut Evaluator, search: &Search) -> Optimum {
+fn least_unstable(evaluator: &mut Evaluator, search: &Search<impl Family>) -> Optimum {
     let spread = |(from, to): (f64, f64), i: usize| from + (to - from) * (i as f64 / GRID as f64);
     let frame = Frame {
         gain: positive(

@@ -3,9 +3,9 @@
 
 use super::condition::{Condition, Followed};
 use super::descend::Frame;
-use super::search::{Evaluator, Place, Search};
+use super::search::{Evaluator, Family, Place, Search};
 use super::{Kind, Optimum};
-use crate::linear::certificate::roots_right_of;
+use crate::linear::equation::Equation;
 use crate::linear::newton::Root;
 use crate::model::elementary::{hypot, power};
 
@@ -29,7 +29,7 @@ const DESCENT_ERROR: f64 = 1e-8;
 /// satisfied there with an abscissa that is certified and no worse.
 pub(super) fn polished(
     evaluator: &mut Evaluator,
-    search: &Search,
+    search: &Search<impl Family>,
     (place, abscissa): (Place, f64),
     frame: &Frame,
 ) -> Option<Optimum> {
@@ -44,7 +44,7 @@ pub(super) fn polished(
 /// What the descent found, with as much certainty as that has.
 pub(super) fn unpolished(
     evaluator: &mut Evaluator,
-    search: &Search,
+    search: &Search<impl Family>,
     (place, abscissa): (Place, f64),
 ) -> Optimum {
     let rightmost = evaluator.roots(search, place, 1).first();
@@ -66,28 +66,35 @@ pub(super) fn unpolished(
 
 /// The number of roots right of `abscissa` + distance times `side`, at growing distances until one
 /// decides: those at which it is `expected`. The smallest such distance.
-fn decided(
-    search: &Search,
+fn decided<F: Family>(
+    search: &Search<F>,
     place: Place,
     abscissa: f64,
     blur: f64,
     (side, expected): (f64, u64),
 ) -> Option<f64> {
-    let groups = search.groups(place.gain);
+    let setting = search.family.setting(place)?;
+    let right_of = |line| F::equation(&setting).right_of(place.tau, line);
     let least = blur + 1e-13 * (1.0 + abscissa.abs());
     (1..=DISTANCES)
         .map(|i| least * power(4.0, i))
-        .find(|d| roots_right_of(groups, place.tau, abscissa + side * d) == Some(expected))
+        .find(|d| right_of(abscissa + side * d) == Some(expected))
 }
 
-fn optimum(condition: &Condition, search: &Search, place: Place, edge: (bool, bool)) -> Optimum {
+fn optimum<F: Family>(
+    condition: &Condition,
+    search: &Search<F>,
+    place: Place,
+    edge: (bool, bool),
+) -> Optimum {
     let abscissa = condition.abscissa();
     let imaginary = condition.followed.iter().map(|f| f.lambda().im.abs());
     let mut frequencies: Vec<f64> = imaginary.collect();
     frequencies.sort_by(f64::total_cmp);
     // All roots right of a line to the left are those that are followed: none of them lies farther
     // right than rounding puts it.
-    let blur = condition.blur(search, place);
+    let setting = search.family.setting(place);
+    let blur = setting.map_or(f64::NAN, |setting| condition.blur::<F>(&setting, place.tau));
     let alone = decided(search, place, abscissa, blur, (-1.0, condition.roots()));
     Optimum {
         gain: place.gain,
@@ -153,7 +160,7 @@ fn conditions(roots: &[Root], edge: (bool, bool)) -> Vec<Condition> {
 /// The place where `condition` holds, and what is followed there.
 fn solve(
     condition: &Condition,
-    search: &Search,
+    search: &Search<impl Family>,
     start: Place,
     frame: &Frame,
     edge: (bool, bool),
@@ -200,7 +207,7 @@ fn solve(
 /// holds.
 fn newton_step(
     state: &Condition,
-    search: &Search,
+    search: &Search<impl Family>,
     place: Place,
     frame: &Frame,
     edge: (bool, bool),

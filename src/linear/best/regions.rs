@@ -1,12 +1,11 @@
 //! The stable regions of a box in the plane of gain and delay: lobes.
 //!
-//! The stable delays of a gain are known in closed form ([`Crossings::stable_delays`]), so only the
-//! gain is sampled: evenly, and ever more densely towards each gain at which the crossings change
+//! The stable delays of a gain are known, in closed form where they can be, so only the gain is
+//! sampled: evenly, and ever more densely towards each gain at which the crossings change
 //! their number, where lobes end in a point. Stretches of neighbouring gains belong to the same
 //! region where they overlap or lie between the same two crossing curves.
 
-use super::search::{Place, Search};
-use crate::linear::Crossings;
+use super::search::{Family, Place, Search};
 use crate::model::elementary::power;
 
 /// Gains sampled evenly over the box.
@@ -14,22 +13,46 @@ const EVEN_LINES: usize = 192;
 /// Gains on either side of a breakpoint, each nearer to it than the one before by `CLOSER`.
 const LINES_AT_BREAKPOINT: i32 = 72;
 const CLOSER: f64 = 0.6;
-/// Stable intervals looked at on one line.
 /// The width of the narrowest stretch, relative: rounding is below it.
 const NARROWEST: f64 = 1e-12;
-const MOST_STRETCHES: usize = 1024;
+/// Stable intervals looked at on one line.
+pub(super) const MOST_STRETCHES: usize = 1024;
 
 /// Stable delays of one sampled gain, cut at the edges of the box.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Stretch {
+pub struct Stretch {
+    /// The gain.
     pub gain: f64,
+    /// The shortest delay.
     pub from: f64,
+    /// The longest delay.
     pub to: f64,
-    /// Branches of the two crossings that bound the interval, none where it is open.
-    bounds: (Option<u64>, Option<u64>),
+    /// The crossings that bound the interval; none where it is open, or where that is not known.
+    pub bounds: (Option<Bound>, Option<Bound>),
 }
 
+/// A crossing of a line by the number of its frequency and its branch.
+pub type Bound = (usize, u64);
+
 impl Stretch {
+    /// The stretch between two delays, cut at the edges of `delays`; none where the box only
+    /// touches it, but for a box that is a line itself.
+    pub(super) fn cut(
+        gain: f64,
+        (from, to): (f64, f64),
+        (shortest, longest): (f64, f64),
+        bounds: (Option<Bound>, Option<Bound>),
+    ) -> Option<Self> {
+        let stretch = Self {
+            gain,
+            from: from.max(shortest),
+            to: to.min(longest),
+            bounds,
+        };
+        let wide = stretch.to - stretch.from > NARROWEST * (1.0 + stretch.to);
+        (shortest == longest || wide).then_some(stretch)
+    }
+
     fn touches(&self, other: &Self) -> bool {
         let overlap = self.from < other.to && other.from < self.to;
         overlap || (self.bounds == other.bounds && self.bounds.0.is_some())
@@ -48,10 +71,10 @@ impl Stretch {
 pub(super) type Stretches = Vec<Stretch>;
 
 /// All regions of the box that a sampled gain crosses, by their shortest delay.
-pub(super) fn stable_regions(search: &Search) -> Vec<Stretches> {
+pub(super) fn stable_regions(search: &Search<impl Family>) -> Vec<Stretches> {
     let lines: Vec<Stretches> = sampled_gains(search)
         .into_iter()
-        .map(|gain| stretches_of_line(search, gain))
+        .map(|gain| search.family.stretches(gain, search.delays))
         .collect();
     let offsets: Vec<usize> = lines
         .iter()
@@ -85,7 +108,7 @@ pub(super) fn stable_regions(search: &Search) -> Vec<Stretches> {
 }
 
 /// The gains at which stable delays are asked for, rising.
-fn sampled_gains(search: &Search) -> Vec<f64> {
+fn sampled_gains(search: &Search<impl Family>) -> Vec<f64> {
     let (from, to) = search.gains;
     let width = to - from;
     if width == 0.0 {
@@ -94,7 +117,7 @@ fn sampled_gains(search: &Search) -> Vec<f64> {
     let mut gains: Vec<f64> = (0..=EVEN_LINES)
         .map(|i| from + width * (i as f64 / EVEN_LINES as f64))
         .collect();
-    for breakpoint in search.breakpoints() {
+    for breakpoint in search.family.breakpoints(&gains) {
         for step in 1..=LINES_AT_BREAKPOINT {
             let by = width * power(CLOSER, step);
             gains.extend([breakpoint - by, breakpoint + by]);
@@ -104,30 +127,6 @@ fn sampled_gains(search: &Search) -> Vec<f64> {
     gains.sort_by(f64::total_cmp);
     gains.dedup();
     gains
-}
-
-fn stretches_of_line(search: &Search, gain: f64) -> Stretches {
-    let crossings = Crossings::of(search.groups(gain));
-    let (shortest, longest) = search.delays;
-    crossings
-        .stable_delays()
-        .take_while(|interval| interval.from <= longest)
-        .take(MOST_STRETCHES)
-        .filter(|interval| interval.to >= shortest)
-        .map(|interval| Stretch {
-            gain,
-            from: interval.from.max(shortest),
-            to: interval.to.min(longest),
-            bounds: (
-                crossings.lower.map(|c| c.branch_at(interval.from)),
-                crossings.upper.map(|c| c.branch_at(interval.to)),
-            ),
-        })
-        // What the box only touches is no part of it, but for a box that is a line itself.
-        .filter(|stretch| {
-            shortest == longest || stretch.to - stretch.from > NARROWEST * (1.0 + stretch.to)
-        })
-        .collect()
 }
 
 /// Sets that are joined one by one.

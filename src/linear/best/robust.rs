@@ -10,6 +10,7 @@
 //! spread, or names a place in the box that decays more slowly, and the search goes on with it.
 
 use super::descend::descend;
+use super::letter::Letter;
 use super::regions::stable_regions;
 use super::search::{Place, Search};
 use super::{Best, Start, far_apart, lattice};
@@ -45,14 +46,14 @@ pub struct Robust {
 /// The abscissa over a box around a place.
 struct Worst<'s> {
     finder: RootFinder,
-    search: &'s Search,
+    search: &'s Search<Letter>,
     spread: f64,
     /// Where it is looked at, in units of the spread; the worst one last time first.
     places: Vec<Changes>,
 }
 
 impl<'s> Worst<'s> {
-    fn new(search: &'s Search, spread: f64) -> Self {
+    fn new(search: &'s Search<Letter>, spread: f64) -> Self {
         let places = (0..27).map(|i| [i / 9, i / 3 % 3, i % 3].map(|n| f64::from(n) - 1.0));
         Self {
             finder: RootFinder::default(),
@@ -84,7 +85,7 @@ impl<'s> Worst<'s> {
 
     fn changed(&self, place: Place, changes: Changes) -> (Groups, f64) {
         let [k, delay, slope] = changes.map(|d| 1.0 + self.spread * d);
-        let Groups { b, a_v, a_n } = self.search.groups(place.gain);
+        let Groups { b, a_v, a_n } = self.search.family.groups(place.gain);
         (Groups::new(b * slope, a_v * k, a_n * k), place.tau * delay)
     }
 
@@ -101,7 +102,7 @@ impl<'s> Worst<'s> {
         for slack in SLACK.into_iter().filter(|_| worst < 0.0) {
             let line = worst * (1.0 - slack);
             let setting = Setting {
-                groups: self.search.groups(place.gain),
+                groups: self.search.family.groups(place.gain),
                 tau: place.tau,
                 decay: -line,
             };
@@ -119,7 +120,7 @@ impl<'s> Worst<'s> {
 
 /// The largest abscissa over the box of changes around a setting, and whether that is proved.
 #[must_use]
-pub fn worst_around(search: &Search, gain: f64, tau: f64, spread: f64) -> (f64, bool) {
+pub fn worst_around(search: &Search<Letter>, gain: f64, tau: f64, spread: f64) -> (f64, bool) {
     let mut worst = Worst::new(search, spread);
     let place = Place { gain, tau };
     for _ in 0..MOST_PLACES {
@@ -135,7 +136,7 @@ pub fn worst_around(search: &Search, gain: f64, tau: f64, spread: f64) -> (f64, 
 /// The most robust setting of the box of `search`, of those in the stable regions that `best` lists
 /// for it; none where no setting stays stable. 0 ≤ `spread` < 1.
 #[must_use]
-pub fn robust(search: &Search, best: &Best, spread: f64) -> Option<Robust> {
+pub fn robust(search: &Search<Letter>, best: &Best, spread: f64) -> Option<Robust> {
     let mut worst = Worst::new(search, spread);
     // No setting of a region is better than its best one.
     let stretches = stable_regions(search);
@@ -178,7 +179,7 @@ impl Worst<'_> {
         }
         let place = start.1;
         let (value, worst_at) = self.at(place, f64::INFINITY);
-        let groups = self.search.groups(place.gain);
+        let groups = self.search.family.groups(place.gain);
         let roots = self
             .finder
             .rightmost(groups, place.tau, 1, f64::NEG_INFINITY);

@@ -1,69 +1,97 @@
-//! What is searched: one gain and the delay within a box, everything else fixed.
+//! What is searched: an equation over a box of one gain and the delay, everything else fixed.
 
-use crate::linear::gains::{load_gain_breakpoints, velocity_gain_breakpoints};
+use num_complex::Complex64;
+
+use super::regions::Stretch;
+use crate::linear::equation::Equation;
 use crate::linear::newton::Root;
 use crate::linear::spectrum::RootFinder;
-use crate::model::Groups;
 
-/// The gain that is searched; the other one stays as it is.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum SearchedGain {
-    /// a_v, velocity control.
-    Velocity,
-    /// a_n, load control.
-    Load,
+/// A characteristic equation over the plane of a gain and the delay.
+///
+/// The gain is any parameter that the equation depends on smoothly.
+pub trait Family {
+    /// The equation at one place, but for the delay.
+    type Setting;
+
+    /// The equation at a place; none where it has none.
+    fn setting(&self, place: Place) -> Option<Self::Setting>;
+
+    /// What roots are found of.
+    fn equation(setting: &Self::Setting) -> impl Equation;
+
+    /// D, D′, D″ and D‴.
+    fn derivatives(setting: &Self::Setting, tau: f64, lambda: Complex64) -> [Complex64; 4];
+
+    /// How D and D′ change with the gain and the delay.
+    fn by_parameters(&self, place: Place, lambda: Complex64) -> Option<ByParameters>;
+
+    /// ∂Re λ/∂gain and ∂Re λ/∂τ at a simple root λ.
+    fn gradient(&self, place: Place, lambda: Complex64) -> Option<[f64; 2]>;
+
+    /// The spectral abscissa at a place, or its supremum where roots accumulate; infinite where it
+    /// is not known.
+    fn abscissa(&self, finder: &mut RootFinder, place: Place) -> f64 {
+        let setting = self.setting(place);
+        setting.map_or(f64::INFINITY, |setting| {
+            rightmost_abscissa(Self::equation(&setting), finder, place.tau)
+        })
+    }
+
+    /// The gains at which the stable delays may begin or end all at once. In no order, not all of
+    /// them between those of `gains`.
+    fn breakpoints(&self, gains: &[f64]) -> Vec<f64>;
+
+    /// The stable delays of a gain between the shortest and the longest of `delays`, by growing
+    /// delay, without what the box only touches.
+    fn stretches(&self, gain: f64, delays: (f64, f64)) -> Vec<Stretch>;
 }
 
-/// A search for the settings of fastest decay; all numbers dimensionless.
+/// The real part of the rightmost root; infinite where it was not found.
+pub(super) fn rightmost_abscissa(
+    equation: impl Equation,
+    finder: &mut RootFinder,
+    tau: f64,
+) -> f64 {
+    let roots = finder.rightmost(equation, tau, 1, f64::NEG_INFINITY);
+    let first = roots.ok().and_then(|roots| roots.first());
+    first.map_or(f64::INFINITY, |r| r.lambda.re)
+}
+
+/// Derivatives of D and D′ with respect to the gain and the delay, at fixed λ.
+#[derive(Debug, Clone, Copy)]
+pub struct ByParameters {
+    /// ∂D/∂gain.
+    pub gain: Complex64,
+    /// ∂D/∂τ.
+    pub tau: Complex64,
+    /// ∂D′/∂gain.
+    pub slope_gain: Complex64,
+    /// ∂D′/∂τ.
+    pub slope_tau: Complex64,
+}
+
+/// A search for the settings of fastest decay; delays in the unit of time of the family.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Search {
-    /// b and the gain that stays fixed; the searched gain in it is not looked at.
-    pub fixed: Groups,
-    /// Which gain is searched.
-    pub gain: SearchedGain,
+pub struct Search<F> {
+    /// The equation.
+    pub family: F,
     /// The gains to search, from ≤ to.
     pub gains: (f64, f64),
-    /// The delays to search, 0 ≤ from ≤ to, in units of √(M/κ).
+    /// The delays to search, 0 ≤ from ≤ to.
     pub delays: (f64, f64),
 }
 
 /// A place in the box.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Place {
+pub struct Place {
+    /// The searched gain.
     pub gain: f64,
+    /// The delay.
     pub tau: f64,
 }
 
-impl Search {
-    /// The groups at a value of the searched gain.
-    #[must_use]
-    pub fn groups(&self, gain: f64) -> Groups {
-        match self.gain {
-            SearchedGain::Velocity => Groups {
-                a_v: gain,
-                ..self.fixed
-            },
-            SearchedGain::Load => Groups {
-                a_n: gain,
-                ..self.fixed
-            },
-        }
-    }
-
-    /// The gains at which crossings change their number, and 0, where control may vanish; see
-    /// [`crate::linear::gains`]. In no order, not all of them in the box.
-    #[must_use]
-    pub fn breakpoints(&self) -> Vec<f64> {
-        let Groups { b, a_v, a_n } = self.fixed;
-        let mut points = match self.gain {
-            SearchedGain::Velocity => velocity_gain_breakpoints(b, a_n),
-            SearchedGain::Load => load_gain_breakpoints(b, a_v),
-        };
-        points.push(0.0);
-        points.retain(|p| p.is_finite());
-        points
-    }
-
+impl<F> Search<F> {
     /// The nearest place of the box.
     pub(super) fn clamp(&self, place: Place) -> Place {
         Place {
@@ -101,17 +129,23 @@ pub(super) struct Evaluator {
 impl Evaluator {
     /// The largest real part of a root, right of which none is missed; infinite where roots could
     /// not be found, so that no search goes there.
-    pub(super) fn abscissa(&mut self, search: &Search, place: Place) -> f64 {
-        let roots = self.roots(search, place, 1);
-        roots.first().map_or(f64::INFINITY, |r| r.lambda.re)
+    pub(super) fn abscissa(&mut self, search: &Search<impl Family>, place: Place) -> f64 {
+        search.family.abscissa(&mut self.finder, place)
     }
 
     /// The rightmost roots, at least `wanted` counted with their pairs where there are so many;
     /// empty where they could not be found.
-    pub(super) fn roots(&mut self, search: &Search, place: Place, wanted: u64) -> &[Root] {
-        let groups = search.groups(place.gain);
+    pub(super) fn roots<F: Family>(
+        &mut self,
+        search: &Search<F>,
+        place: Place,
+        wanted: u64,
+    ) -> &[Root] {
+        let Some(setting) = search.family.setting(place) else {
+            return &[];
+        };
         self.finder
-            .rightmost(groups, place.tau, wanted, f64::NEG_INFINITY)
+            .rightmost(F::equation(&setting), place.tau, wanted, f64::NEG_INFINITY)
             .unwrap_or_default()
     }
 }

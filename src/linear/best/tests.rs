@@ -7,28 +7,34 @@ use num_complex::Complex64;
 
 const SLOPES: [f64; 5] = [-0.05, -0.1, -0.3, -0.5, -0.7];
 
-fn velocity(b: f64) -> Search {
+fn velocity(b: f64) -> Search<Letter> {
     Search {
-        fixed: Groups::new(b, 0.0, 0.0),
-        gain: SearchedGain::Velocity,
+        family: Letter {
+            fixed: Groups::new(b, 0.0, 0.0),
+            gain: SearchedGain::Velocity,
+        },
         gains: (-2.0, 1.0),
         delays: (0.0, 25.0),
     }
 }
 
-fn load(b: f64) -> Search {
+fn load(b: f64) -> Search<Letter> {
+    let of = velocity(b);
     Search {
-        gain: SearchedGain::Load,
+        family: Letter {
+            gain: SearchedGain::Load,
+            ..of.family
+        },
         gains: (-8.0, 1.0),
-        ..velocity(b)
+        ..of
     }
 }
 
-fn searches() -> impl Iterator<Item = Search> {
+fn searches() -> impl Iterator<Item = Search<Letter>> {
     SLOPES.into_iter().flat_map(|b| [velocity(b), load(b)])
 }
 
-fn value(search: &Search, gain: f64, tau: f64) -> f64 {
+fn value(search: &Search<Letter>, gain: f64, tau: f64) -> f64 {
     Evaluator::default().abscissa(search, Place { gain, tau })
 }
 
@@ -64,7 +70,7 @@ fn nothing_around_an_optimum_is_better() {
 }
 
 /// A grid that is zoomed in around its best cell, on the box of a region alone.
-fn zoomed(search: &Search, region: &Region) -> (f64, f64, f64) {
+fn zoomed(search: &Search<Letter>, region: &Region) -> (f64, f64, f64) {
     const CELLS: i32 = 40;
     let mut centre = (f64::NAN, f64::NAN, f64::INFINITY);
     let (mut from, mut size) = (
@@ -121,7 +127,11 @@ fn optima_agree_with_a_zoom_by_brute_force() {
 fn optima_are_at_least_as_good_as_a_fine_grid() {
     for search in searches() {
         let found = best(&search).overall;
-        let points = if search.fixed.b == -0.3 { 400 } else { 100 };
+        let points = if search.family.fixed.b == -0.3 {
+            400
+        } else {
+            100
+        };
         let on = |(from, to): (f64, f64), i: i32| {
             from + (to - from) * f64::from(i) / f64::from(points - 1)
         };
@@ -144,7 +154,7 @@ fn optima_are_at_least_as_good_as_a_fine_grid() {
 fn kinds_are_what_they_say() {
     for search in searches() {
         for Region { best, .. } in best(&search).regions {
-            let groups = search.groups(best.gain);
+            let groups = search.family.groups(best.gain);
             let lambda = Complex64::new(best.abscissa, best.frequency());
             let jet = Jet::at(groups, best.tau, lambda);
             let rounding = 64.0 * jet.rounding(groups, best.tau, lambda);
@@ -323,7 +333,7 @@ fn friction_that_does_not_weaken() {
             matches!(overall.kind, Kind::DoublePair | Kind::TripleReal),
             "{overall:?}"
         );
-        assert!(overall.abscissa < -0.5 * search.fixed.b && overall.certified);
+        assert!(overall.abscissa < -0.5 * search.family.fixed.b && overall.certified);
     }
 }
 
@@ -336,8 +346,7 @@ fn the_other_gain_may_act_too() {
         (Groups::new(-0.2, 0.5, 0.0), SearchedGain::Load),
     ] {
         let search = Search {
-            fixed,
-            gain,
+            family: Letter { fixed, gain },
             gains: (-3.0, 3.0),
             delays: (0.0, 15.0),
         };
@@ -354,8 +363,10 @@ fn the_other_gain_may_act_too() {
 #[test]
 fn a_valley_of_double_roots_is_followed_to_the_edge() {
     let search = Search {
-        fixed: Groups::new(0.173_932_752, -0.915_096_374, 0.0),
-        gain: SearchedGain::Load,
+        family: Letter {
+            fixed: Groups::new(0.173_932_752, -0.915_096_374, 0.0),
+            gain: SearchedGain::Load,
+        },
         gains: (-10.0, 5.0),
         delays: (0.0, 25.0),
     };
@@ -370,7 +381,7 @@ fn a_valley_of_double_roots_is_followed_to_the_edge() {
 /// The smallest abscissa of a box by two nested searches in one dimension each: over the delay,
 /// from every lowest place among many, and over the gain. Walls of valleys are crossed, not
 /// followed, so it does not matter what makes an optimum.
-fn nested(search: &Search, gains: usize, delays: usize) -> (f64, f64, f64) {
+fn nested(search: &Search<Letter>, gains: usize, delays: usize) -> (f64, f64, f64) {
     let spread =
         |(from, to): (f64, f64), i: usize, n: usize| from + (to - from) * (i as f64 / n as f64);
     let mut evaluator = Evaluator::default();
@@ -458,7 +469,7 @@ fn golden(mut from: f64, mut to: f64, at: &mut impl FnMut(f64) -> f64) -> (f64, 
 }
 
 /// A box by chance: all signs of b, the other gain acting, edges anywhere.
-fn by_chance(number: u64) -> Search {
+fn by_chance(number: u64) -> Search<Letter> {
     let mut state = number.wrapping_mul(0x9e37_79b9_7f4a_7c15) ^ 0x5851_f42d_4c95_7f2d;
     let mut chance = move |from: f64, to: f64| {
         state ^= state << 13;
@@ -490,11 +501,13 @@ fn by_chance(number: u64) -> Search {
         SearchedGain::Load => (chance(-8.0, 0.0), chance(-2.0, 3.0)),
     };
     Search {
-        fixed: match gain {
-            SearchedGain::Velocity => Groups::new(b, 0.0, other),
-            SearchedGain::Load => Groups::new(b, other, 0.0),
+        family: Letter {
+            fixed: match gain {
+                SearchedGain::Velocity => Groups::new(b, 0.0, other),
+                SearchedGain::Load => Groups::new(b, other, 0.0),
+            },
+            gain,
         },
-        gain,
         gains: (low.min(high), low.max(high)),
         delays: (0.0, chance(0.5, 15.0)),
     }
@@ -519,8 +532,10 @@ fn optima_of_boxes_by_chance_agree_with_nested_searches() {
 #[test]
 fn a_place_at_rest_is_no_optimum_where_the_valley_falls_from_it() {
     let search = Search {
-        fixed: Groups::new(-1.085_950_199_932_85, -0.562_008_325_737_243_9, 0.0),
-        gain: SearchedGain::Load,
+        family: Letter {
+            fixed: Groups::new(-1.085_950_199_932_85, -0.562_008_325_737_243_9, 0.0),
+            gain: SearchedGain::Load,
+        },
         gains: (-5.307_106_585_327_528, -1.353_852_600_002_571),
         delays: (0.0, 12.481_464_154_198_896),
     };

@@ -203,6 +203,14 @@ impl System {
         }
     }
 
+    /// The frequencies |Im λ| > 0 of its roots without delay, in no order.
+    #[must_use]
+    pub fn frequencies_without_delay(&self) -> Vec<f64> {
+        let zeros = Zeros::of(&self.without_delay().without_open_leading());
+        let above = zeros.discs().iter().map(|disc| disc.centre.im);
+        above.filter(|&omega| omega > 0.0).collect()
+    }
+
     /// P and Q on the line Re λ = `line`.
     #[inline]
     pub(super) fn on_line(&self, line: f64, decay: Decay) -> Shifted {

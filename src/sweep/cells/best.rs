@@ -1,11 +1,16 @@
 //! Settings of fastest decay in physical units, for a point of parameter space and for the planes
 //! of a sweep.
 
+use std::cell::RefCell;
+
 use super::boundaries::plane_spanned;
-use crate::linear::best::{self, Best, Optimum, Region, Robust, Search, SearchedGain};
+use crate::linear::best::{
+    self, Best, General, Letter, Optimum, Region, Robust, Search, SearchedGain,
+};
 use crate::linear::lobes::minimal_negative_load_gain;
 use crate::model::{Groups, ModelError};
-use crate::sweep::input::best_plane::searched_gain;
+use crate::sweep::input::best_plane::{parameter_of, searched_gain};
+use crate::sweep::input::parameter::Parameter;
 use crate::sweep::input::setting::Setting;
 use crate::sweep::plan::Plan;
 
@@ -115,8 +120,9 @@ pub fn default_ranges(setting: &Setting, gain: SearchedGain) -> Result<Ranges, M
 /// The groups of `setting`, if |b| is not so large that its optima lie at delays which no search
 /// resolves.
 fn moderate_slope(setting: &Setting) -> Result<Groups, ModelError> {
-    let (groups, _) = setting.groups()?;
-    let mu_prime = setting.sliding_point()?.mu_prime;
+    let sliding = setting.sliding_point()?;
+    let groups = setting.oscillator()?.groups(sliding, setting.control());
+    let mu_prime = sliding.mu_prime;
     ModelError::check(
         "mu_prime",
         mu_prime,
@@ -137,8 +143,20 @@ pub fn best_settings(
     ranges: &Ranges,
 ) -> Result<BestSettings, ModelError> {
     let scales = Scales::of(setting, gain)?;
-    let found = best::best(&scales.search(setting, gain, ranges)?);
+    let search = scales.search(setting, gain, ranges)?;
+    let found = if of_letter(setting) {
+        best::best(&search)
+    } else {
+        scales.beyond_letter(setting, &search)?
+    };
     Ok(scales.settings(&found, ranges))
+}
+
+/// Whether the feedback has no memory, no latency and no lags, and friction no state, whatever the
+/// gains are.
+fn of_letter(setting: &Setting) -> bool {
+    let beyond = |&parameter: &Parameter| setting.get(parameter) != 0.0;
+    !setting.has_state() && !Parameter::BEYOND_LETTER.iter().any(beyond)
 }
 
 /// A setting that is best where gain, delay and μ′ may be off together.
@@ -158,7 +176,8 @@ pub struct RobustSetting {
 /// stable.
 ///
 /// # Errors
-/// When a parameter of `setting` is outside the model's range.
+/// When a parameter of `setting` is outside the model's range, or beyond the letter: there W is not
+/// proved.
 pub fn robust_setting(
     setting: &Setting,
     gain: SearchedGain,
@@ -166,6 +185,10 @@ pub fn robust_setting(
     spread: f64,
 ) -> Result<(BestSettings, Option<RobustSetting>), ModelError> {
     let scales = Scales::of(setting, gain)?;
+    setting.check_of_letter(
+        &Parameter::BEYOND_LETTER,
+        "0 where a robust setting is looked for",
+    )?;
     let search = scales.search(setting, gain, ranges)?;
     let found = best::best(&search);
     let robust = best::robust(&search, &found, spread).map(|robust| {
@@ -192,13 +215,42 @@ impl Scales {
         setting: &Setting,
         gain: SearchedGain,
         ranges: &Ranges,
-    ) -> Result<Search, ModelError> {
+    ) -> Result<Search<Letter>, ModelError> {
         Ok(Search {
-            fixed: moderate_slope(setting)?,
-            gain,
+            family: Letter {
+                fixed: moderate_slope(setting)?,
+                gain,
+            },
             gains: scaled(ranges.gain, 1.0 / self.gain),
             delays: scaled(ranges.tau, 1.0 / self.time),
         })
+    }
+
+    /// The search with all that `setting` has beyond the letter.
+    fn beyond_letter(
+        &self,
+        setting: &Setting,
+        search: &Search<Letter>,
+    ) -> Result<Best, ModelError> {
+        let gain = parameter_of(search.family.gain);
+        // What is wrong with the setting is wrong at every gain.
+        setting.linear()?;
+        let moved = RefCell::new(setting.clone());
+        let system_at = |value: f64, _tau: f64| {
+            let mut moved = moved.borrow_mut();
+            moved.set(gain, value * self.gain);
+            let (model, _) = moved.linear().ok()?;
+            Some(model.system())
+        };
+        Ok(best::best(&Search {
+            family: General {
+                system_at: &system_at,
+                lines: true,
+                width: search.gains.1 - search.gains.0,
+            },
+            gains: search.gains,
+            delays: search.delays,
+        }))
     }
 
     fn settings(&self, found: &Best, ranges: &Ranges) -> BestSettings {

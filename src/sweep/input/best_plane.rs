@@ -14,6 +14,15 @@ pub fn searched_gain(parameter: Parameter) -> Option<SearchedGain> {
     }
 }
 
+/// The parameter that a gain is.
+#[must_use]
+pub const fn parameter_of(gain: SearchedGain) -> Parameter {
+    match gain {
+        SearchedGain::Velocity => Parameter::AlphaV,
+        SearchedGain::Load => Parameter::AlphaN,
+    }
+}
+
 /// The axes (gain, delay) of the planes whose best settings are looked for: the last gain axis and
 /// the delay, if both have more points than one.
 #[must_use]

@@ -21,7 +21,7 @@ const MOST_STEPS: u64 = 1_000_000_000;
 pub(super) const POSITIVE: RangeInclusive<f64> = 1.0 / LARGEST..=LARGEST;
 
 /// What motions do not know.
-pub(crate) const NOT_IN_MOTIONS: &[Parameter] = &[
+pub const NOT_IN_MOTIONS: &[Parameter] = &[
     Parameter::LoadLag,
     Parameter::VelocityLag,
     Parameter::SensorLag,

@@ -14,8 +14,7 @@ use crate::sweep::input::toml_reader::SpecError;
 const LINEAR: &str = "fields of linear stability take it: n_unstable, abscissa and others";
 
 impl Draft {
-    /// Motions, margins and best settings know memory, latency, lags and a state of
-    /// friction as far as they do.
+    /// Motions and margins know memory, latency, lags and a state of friction as far as they do.
     pub(super) fn check_beyond_letter(&self, fixed: &Setting) -> Result<(), SpecError> {
         self.check_motions_are_known(fixed)?;
         let law = fixed.law().filter(|law| law.has_state());
@@ -63,11 +62,8 @@ impl Draft {
         let margins = self
             .limit
             .first_field(|f| f.of_margins() && f != Field::LatencyMargin);
-        let margin = margins
-            .or(slope)
-            .map(|(field, place)| (field.name(), place.clone()));
-        let best = self.best.as_ref().map(|place| ("best", place.clone()));
-        margin.or(best)
+        let asked = margins.or(slope);
+        asked.map(|(field, place)| (field.name(), place.clone()))
     }
 
     /// The ratio of stiffnesses is that of one law.

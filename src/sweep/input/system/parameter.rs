@@ -36,6 +36,13 @@ impl OwnParameter {
         }
     }
 
+    /// The ends of its range, as far as it has any.
+    #[must_use]
+    pub fn ends(&self) -> (Option<f64>, Option<f64>) {
+        let end = |end: f64| (end.abs() < LARGEST).then_some(end);
+        (end(self.minimum), end(self.maximum))
+    }
+
     /// `value` if it is in range.
     ///
     /// # Errors

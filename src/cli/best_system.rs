@@ -1,0 +1,385 @@
+//! `slipmap best --system`: the settings of fastest decay of a system from a file.
+
+use std::io::Write;
+
+use serde::Serialize;
+use slipmap::explore::stability::Wanted;
+use slipmap::explore::system_point::SystemPoint;
+use slipmap::linear::best::{Best, Optimum, Region};
+use slipmap::report::numbers::rounded;
+use slipmap::sweep::Parameter;
+use slipmap::sweep::cells::best::Ranges;
+use slipmap::sweep::cells::best_of_system::{
+    Searched, best_of_system, default_ranges, searched_of,
+};
+use slipmap::sweep::input::nearest::did_you_mean;
+use slipmap::sweep::input::system::{Evaluation, SystemModel};
+use utoipa::ToSchema;
+
+use super::best::Args;
+use super::best_answer::OptimumNumbers;
+use super::cell::alone;
+use super::failure::Failure;
+use super::json::{self, Inputs};
+use super::system_args::OTHERS;
+
+/// The JSON of a search of a system from a file.
+#[derive(Debug, Serialize, ToSchema)]
+pub(super) struct SystemBest {
+    /// The parameter that is searched beside the delay.
+    search: String,
+    searched: RangesOut,
+    best: OptimumOut,
+    regions: Vec<RegionOut>,
+    regions_left_out: usize,
+    /// All about the best setting.
+    point: SystemPoint,
+}
+
+#[derive(Debug, Serialize, ToSchema)]
+struct RangesOut {
+    /// Of the parameter that is searched.
+    #[schema(value_type = [f64; 2])]
+    value: (f64, f64),
+    #[schema(value_type = [f64; 2])]
+    tau: (f64, f64),
+}
+
+#[derive(Debug, Serialize, ToSchema)]
+struct RegionOut {
+    region: RangesOut,
+    #[serde(flatten)]
+    best: OptimumOut,
+}
+
+#[derive(Debug, Serialize, ToSchema)]
+struct OptimumOut {
+    /// Of the parameter that is searched.
+    value: f64,
+    #[serde(flatten)]
+    numbers: OptimumNumbers,
+}
+
+impl From<&Optimum> for OptimumOut {
+    fn from(found: &Optimum) -> Self {
+        Self {
+            value: found.gain,
+            numbers: found.into(),
+        }
+    }
+}
+
+impl From<&Region> for RegionOut {
+    fn from(region: &Region) -> Self {
+        Self {
+            region: RangesOut {
+                value: region.gains,
+                tau: region.delays,
+            },
+            best: (&region.best).into(),
+        }
+    }
+}
+
+/// What is searched, and within which ranges.
+struct Asked {
+    model: SystemModel,
+    at: Evaluation,
+    name: String,
+    searched: Searched,
+    ranges: Ranges,
+}
+
+pub(super) fn main(args: &Args) -> Result<(), Failure> {
+    let asked = args.asked_of_system()?;
+    let found = best_of_system(&asked.model, &asked.at, asked.searched, &asked.ranges);
+    let found = found.map_err(|why| Failure::bad_input(why.to_string()))?;
+    let point = asked.point(&found.overall)?;
+    if args.json {
+        let answer = SystemBest {
+            search: asked.name.clone(),
+            searched: RangesOut {
+                value: asked.ranges.gain,
+                tau: asked.ranges.tau,
+            },
+            best: (&found.overall).into(),
+            regions: found.regions.iter().map(Into::into).collect(),
+            regions_left_out: found.regions_left_out,
+            point,
+        };
+        return json::print(&asked.inputs(args, &answer.point), &answer);
+    }
+    let out = &mut std::io::stdout().lock();
+    Ok(asked.print(out, &found, &point)?)
+}
+
+impl Args {
+    fn asked_of_system(&self) -> Result<Asked, Failure> {
+        let flags = self.parameters.any_but(&OTHERS);
+        alone("--system", flags || self.control.is_some())?;
+        for (flag, given) in [
+            ("--robust", self.robust.is_some()),
+            ("--save", self.save.is_some()),
+        ] {
+            if given {
+                return Err(Failure::bad_input_with_help(
+                    format!("{flag} is not known of a system from a file"),
+                    "leave it out: it is for a block on its spring",
+                ));
+            }
+        }
+        let flag = |parameter| self.parameters.given(parameter);
+        let Some((model, at, delay)) = self.system.read_but_delay(flag)? else {
+            return Err(Failure::bad_input("--system is not given"));
+        };
+        let (name, searched) = self.searched(&model)?;
+        let known = Parameter::from_name(&name).and_then(flag).is_some();
+        let fixed = [(delay, "tau"), (known || self.system.sets(&name), &*name)];
+        if let Some((_, fixed)) = fixed.into_iter().find(|(given, _)| *given) {
+            return Err(Failure::bad_input_with_help(
+                format!("a value of {fixed} is given, which is searched"),
+                "leave it out; --search-from, --search-to, --tau-from and --tau-to are the \
+                 ranges of the search",
+            ));
+        }
+        let ranges = self.ranges_of(&model, searched, &default_ranges(&model, &at, searched))?;
+        Ok(Asked {
+            model,
+            at,
+            name,
+            searched,
+            ranges,
+        })
+    }
+
+    /// The parameter that `--search` names; where the system has one alone, that one.
+    fn searched(&self, model: &SystemModel) -> Result<(String, Searched), Failure> {
+        let own = model.parameters.iter().map(|own| &*own.name);
+        let others: &[&str] = match model.is_feedback() {
+            true => &["memory", "latency"],
+            false => &[],
+        };
+        let all: Vec<&str> = own.chain(others.iter().copied()).collect();
+        let name = match (&self.search, &*all) {
+            (Some(name), _) => &**name,
+            (None, [alone]) => *alone,
+            (None, _) => {
+                return Err(Failure::bad_input_with_help(
+                    "--search is not given: which parameter is searched beside the delay",
+                    format!("parameters of the system: {}", all.join(", ")),
+                ));
+            }
+        };
+        match searched_of(model, name) {
+            Some(searched) => Ok((name.to_owned(), searched)),
+            None => Err(Failure::bad_input_with_help(
+                format!("--search: the system has no parameter {name}"),
+                format!(
+                    "{}its parameters: {}",
+                    did_you_mean(name, all.iter().copied()),
+                    all.join(", ")
+                ),
+            )),
+        }
+    }
+
+    /// The ranges that the flags give, over those searched by default.
+    fn ranges_of(
+        &self,
+        model: &SystemModel,
+        searched: Searched,
+        default: &Ranges,
+    ) -> Result<Ranges, Failure> {
+        let other = |parameter: Parameter| {
+            move |value: f64| {
+                let checked = parameter.check(value);
+                checked.map_err(|error| error.to_string())
+            }
+        };
+        let check = |value: f64| match searched {
+            Searched::Own(index) => model.parameters[index].check(value),
+            Searched::Memory => other(Parameter::Memory)(value),
+            Searched::Latency => other(Parameter::Latency)(value),
+        };
+        Ok(Ranges {
+            gain: range(
+                [
+                    ("--search-from", self.alpha_from),
+                    ("--search-to", self.alpha_to),
+                ],
+                default.gain,
+                check,
+            )?,
+            tau: range(
+                [("--tau-from", self.tau_from), ("--tau-to", self.tau_to)],
+                default.tau,
+                other(Parameter::Tau),
+            )?,
+        })
+    }
+}
+
+/// A range of two flags over its default. Where one end alone is given and the other's default is
+/// on its wrong side, the other end is the given one as well.
+fn range(
+    [(from_flag, from), (to_flag, to)]: [(&str, Option<f64>); 2],
+    default: (f64, f64),
+    check: impl Fn(f64) -> Result<f64, String>,
+) -> Result<(f64, f64), Failure> {
+    for (flag, value) in [(from_flag, from), (to_flag, to)] {
+        if let Some(Err(why)) = value.map(&check) {
+            return Err(Failure::bad_input(format!("{flag}: {why}")));
+        }
+    }
+    let (low, high) = (from.unwrap_or(default.0), to.unwrap_or(default.1));
+    if low <= high {
+        return Ok((low, high));
+    }
+    let origin = |given: Option<f64>| given.map_or(", its default", |_| "");
+    Err(Failure::bad_input_with_help(
+        format!(
+            "{from_flag} {low}{} is above {to_flag} {high}{}",
+            origin(from),
+            origin(to)
+        ),
+        format!("{from_flag} must be at most {to_flag}"),
+    ))
+}
+
+impl Asked {
+    /// All about the best setting.
+    fn point(&self, best: &Optimum) -> Result<SystemPoint, Failure> {
+        let mut at = self.at.clone();
+        self.searched.set(&mut at, best.gain);
+        at.tau = best.tau;
+        let wanted = Wanted {
+            roots: 4,
+            line: None,
+        };
+        let point = SystemPoint::at(&self.model, &mut at, wanted);
+        point.map_err(|why| Failure::bad_input(why.to_string()))
+    }
+
+    fn inputs(&self, args: &Args, point: &SystemPoint) -> Inputs {
+        let Ranges { gain, tau } = self.ranges;
+        let mut set = point.parameters.clone();
+        set.remove(&self.name);
+        let mut inputs = Inputs::default()
+            .and("system", &args.system.system)
+            .and("set", set)
+            .and("search", &self.name)
+            .and("search_from", gain.0)
+            .and("search_to", gain.1)
+            .and("tau_from", tau.0)
+            .and("tau_to", tau.1);
+        let others = [
+            (Searched::Memory, "memory", point.memory),
+            (Searched::Latency, "latency", point.latency),
+        ];
+        for (of, name, value) in others {
+            if let Some(value) = value.filter(|_| self.searched != of) {
+                inputs = inputs.and(name, value);
+            }
+        }
+        inputs
+    }
+
+    /// Prints what was found for people.
+    fn print(
+        &self,
+        out: &mut impl Write,
+        found: &Best,
+        point: &SystemPoint,
+    ) -> std::io::Result<()> {
+        let short = |value: f64| rounded(value, 8);
+        let best = &found.overall;
+        let title = match &*self.model.title {
+            "" => "the system",
+            title => title,
+        };
+        match best.relaxation_time() {
+            Some(time) => writeln!(
+                out,
+                "{title} relaxes fastest, with the relaxation time {}, at",
+                short(time)
+            )?,
+            None => writeln!(
+                out,
+                "{title} has no stable setting in the ranges; the least unstable one is"
+            )?,
+        }
+        let mut row = |name: &str, value: String| writeln!(out, "  {name:<16} {value}");
+        row(&self.name, short(best.gain))?;
+        row("tau", short(best.tau))?;
+        row("abscissa", short(best.abscissa))?;
+        row("frequency", short(best.frequency()))?;
+        row("kind", best.kind.name().into())?;
+        let certified = if best.certified { "yes" } else { "no" };
+        row("certified", certified.into())?;
+        for (name, &value) in &point.parameters {
+            if *name != self.name {
+                row(name, short(value))?;
+            }
+        }
+        for (name, value) in [("memory", point.memory), ("latency", point.latency)] {
+            if let Some(value) = value.filter(|_| name != self.name) {
+                row(name, short(value))?;
+            }
+        }
+        if let Some(margin) = point.stability.delay_margin {
+            row("delay_margin", short(margin))?;
+        }
+        if point.memory.is_some() {
+            let margin = point.latency_margin.map(short);
+            let margin = margin.unwrap_or_else(|| "infinite, or not known".into());
+            row("latency_margin", margin)?;
+        }
+        let Ranges { gain, tau } = self.ranges;
+        let searched = [(&*self.name, gain), ("tau", tau)]
+            .map(|(name, (from, to))| format!("{name} {} to {}", short(from), short(to)));
+        row("searched", searched.join(", "))?;
+        self.print_regions(out, found)
+    }
+
+    /// One line for each stable region.
+    fn print_regions(&self, out: &mut impl Write, found: &Best) -> std::io::Result<()> {
+        if found.regions.is_empty() {
+            return Ok(());
+        }
+        writeln!(out, "the best setting of every stable region, by delay")?;
+        let mut line = |cells: [&str; 6]| {
+            let [value, tau, time, frequency, certified, kind] = cells;
+            writeln!(
+                out,
+                "  {value:>14} {tau:>14} {time:>15} {frequency:>14} {certified:>9}  {kind}"
+            )
+        };
+        line([
+            &self.name,
+            "tau",
+            "relaxation_time",
+            "frequency",
+            "certified",
+            "kind",
+        ])?;
+        for Region { best, .. } in &found.regions {
+            let short = |value: f64| rounded(value, 8);
+            let time = best.relaxation_time().map_or("none".into(), short);
+            line([
+                &short(best.gain),
+                &short(best.tau),
+                &time,
+                &short(best.frequency()),
+                if best.certified { "yes" } else { "no" },
+                best.kind.name(),
+            ])?;
+        }
+        match found.regions_left_out {
+            0 => Ok(()),
+            more => writeln!(
+                out,
+                "  and {more} regions at longer delays, which were not searched"
+            ),
+        }
+    }
+}

@@ -1,0 +1,314 @@
+//! Settings of fastest decay of general systems: the letter's own by both ways, systems by chance
+//! against a walk of the argument that shares nothing with the crate, the command line.
+//! `SLIPMAP_CASES` says how many.
+
+#[path = "common/chance.rs"]
+mod chance;
+#[path = "common/letter_system.rs"]
+mod letter_system;
+#[path = "common/program.rs"]
+mod program;
+#[path = "common/walk.rs"]
+mod walk;
+
+use chance::{Chance, asked};
+use letter_system::letter;
+use program::{Folder, err, out};
+use serde_json::Value;
+use slipmap::linear::best::{Best, General, Letter, Optimum, Search, SearchedGain, best};
+use slipmap::linear::general::{Polynomial, System};
+use slipmap::model::Groups;
+use walk::Walk;
+
+/// The letter's own system is searched by its closed form and as any other: the same regions, the
+/// same optima.
+#[test]
+fn the_letter_by_both_ways() {
+    for (b, gain) in [
+        (-0.1, SearchedGain::Velocity),
+        (-0.5, SearchedGain::Velocity),
+        (-0.3, SearchedGain::Load),
+        (-0.7, SearchedGain::Load),
+        (0.2, SearchedGain::Load),
+    ] {
+        let family = Letter {
+            fixed: Groups::new(b, 0.0, 0.0),
+            gain,
+        };
+        let (gains, delays) = match gain {
+            SearchedGain::Velocity => ((-2.0, 1.0), (0.0, 25.0)),
+            SearchedGain::Load => ((-6.0, 1.0), (0.0, 25.0)),
+        };
+        let one = best(&Search {
+            family,
+            gains,
+            delays,
+        });
+        let system_at = |value: f64, _tau: f64| Some(letter(family.groups(value), 0.0, 0.0));
+        let other = best(&Search {
+            family: General {
+                system_at: &system_at,
+                lines: true,
+                width: gains.1 - gains.0,
+            },
+            gains,
+            delays,
+        });
+        assert_eq!(one.regions.len(), other.regions.len(), "{b} {gain:?}");
+        let pairs = one.regions.iter().zip(&other.regions);
+        for (p, q) in pairs.map(|(p, q)| (&p.best, &q.best)) {
+            let apart = (p.abscissa - q.abscissa).abs();
+            assert!(apart <= p.margin + q.margin + 1e-9, "{p:?} {q:?}");
+            assert_eq!((p.kind, p.certified), (q.kind, q.certified), "{p:?} {q:?}");
+        }
+    }
+}
+
+/// B and A with R and δ, where one coefficient of A is a gain that is searched.
+#[derive(Debug)]
+struct Problem {
+    open: Vec<f64>,
+    fed: Vec<f64>,
+    memory: f64,
+    latency: f64,
+    gains: (f64, f64),
+    delays: (f64, f64),
+}
+
+impl Problem {
+    fn by_chance(chance: &mut Chance) -> Self {
+        let damping = chance.between(-0.6, 0.6);
+        let lag = [0.0, chance.log(0.05, 1.0)][chance.of(2)];
+        // (s² + damping s + 1)(1 + lag s).
+        let mut open = vec![1.0, damping + lag, 1.0 + damping * lag, lag];
+        if lag == 0.0 {
+            open.pop();
+        }
+        Self {
+            open,
+            fed: vec![chance.between(-1.0, 1.0), chance.between(-1.0, 1.0)],
+            memory: [0.0, chance.between(-0.7, 0.7)][chance.of(2)],
+            latency: [0.0, chance.log(0.02, 0.5)][chance.of(2)],
+            gains: (-2.0, 2.0),
+            delays: (0.05, chance.between(3.0, 8.0)),
+        }
+    }
+
+    fn fed(&self, gain: f64) -> Vec<f64> {
+        self.fed.iter().map(|c| gain * c).collect()
+    }
+
+    fn system(&self, gain: f64) -> System {
+        let polynomial = |c: &[f64]| Polynomial::new(c).expect("a small degree");
+        let (open, fed) = (polynomial(&self.open), polynomial(&self.fed(gain)));
+        System::feedback(open, fed, self.memory, self.latency)
+    }
+
+    fn walk(&self, gain: f64, tau: f64) -> Walk {
+        let times = |p: &[f64], by: f64| p.iter().map(|c| by * c).collect();
+        let fed = self.fed(gain);
+        Walk {
+            terms: vec![
+                (self.open.clone(), 0.0),
+                (times(&self.open, -self.memory), tau),
+                (times(&fed, -1.0), self.latency),
+                (fed, self.latency + tau),
+            ],
+        }
+    }
+
+    fn best(&self) -> Best {
+        let system_at = |gain: f64, _tau: f64| Some(self.system(gain));
+        best(&Search {
+            family: General {
+                system_at: &system_at,
+                lines: true,
+                width: self.gains.1 - self.gains.0,
+            },
+            gains: self.gains,
+            delays: self.delays,
+        })
+    }
+}
+
+/// No root lies right of a certified optimum, and nowhere in the box are all roots farther left.
+#[test]
+fn nothing_is_better_by_a_walk() {
+    let mut chance = Chance(asked("SLIPMAP_SEED", 41));
+    let cases = asked("SLIPMAP_CASES", 24);
+    let (mut certified, mut places, mut stable) = (0, 0, 0);
+    for _ in 0..cases {
+        let problem = Problem::by_chance(&mut chance);
+        let found = problem.best().overall;
+        let Optimum {
+            gain,
+            tau,
+            abscissa,
+            margin,
+            ..
+        } = found;
+        let beside = margin + 1e-6 * (1.0 + abscissa.abs());
+        certified += u64::from(found.certified);
+        stable += u64::from(abscissa < 0.0);
+        if let Some(right) = problem.walk(gain, tau).right_of(abscissa + beside) {
+            assert_eq!(right, 0, "{problem:?} {found:?}");
+        }
+        for i in 0..120 {
+            // Everywhere, and nearer and nearer to the optimum.
+            let size = 0.1_f64.powi(i % 6);
+            let (from, to) = (problem.gains, problem.delays);
+            let near = |at: f64, (low, high): (f64, f64), part: f64| {
+                (at + size * (high - low) * part).clamp(low, high)
+            };
+            let gain = near(gain, from, chance.between(-1.0, 1.0));
+            let tau = near(tau, to, chance.between(-1.0, 1.0));
+            let Some(right) = problem.walk(gain, tau).right_of(abscissa - beside) else {
+                continue;
+            };
+            places += 1;
+            assert!(right > 0, "{problem:?} {found:?}: {gain} {tau} is better");
+        }
+    }
+    println!("{cases} problems: {certified} certified, {stable} stable, {places} places walked");
+    assert!(
+        certified * 10 >= cases * 8 && places >= 30 * cases,
+        "{certified} {places}"
+    );
+}
+
+fn json(folder: &Folder, args: &[&str]) -> Value {
+    let output = folder.run(args);
+    assert_eq!(output.status.code(), Some(0), "{args:?}: {}", err(&output));
+    serde_json::from_str(&out(&output)).expect("JSON")
+}
+
+fn number(value: &Value) -> f64 {
+    value.as_f64().expect("a number")
+}
+
+/// The proportional gain and the delay of an upright pendulum: what `point` says there is what
+/// `best` says, and beside it nothing is better.
+#[test]
+fn the_program_searches_systems() {
+    let folder = Folder::new();
+    let args = [
+        "best",
+        "--system",
+        "pd",
+        "--set",
+        "stiffness=-1",
+        "--set",
+        "k_d=1.5",
+        "--search",
+        "k_p",
+        "--search-from",
+        "0.5",
+        "--search-to",
+        "4",
+        "--tau-from",
+        "0.05",
+        "--tau-to",
+        "1",
+        "--json",
+    ];
+    let found = json(&folder, &args);
+    let best = &found["best"];
+    let (value, tau) = (number(&best["value"]), number(&best["tau"]));
+    assert!(
+        number(&best["abscissa"]) < 0.0 && best["certified"] == true,
+        "{best}"
+    );
+    let abscissa = |value: f64, tau: f64| {
+        let (value, tau) = (format!("k_p={value:?}"), format!("{tau:?}"));
+        let args = [
+            "point",
+            "--system",
+            "pd",
+            "--set",
+            "stiffness=-1",
+            "--set",
+            "k_d=1.5",
+            "--set",
+            &value,
+            "--tau",
+            &tau,
+            "--json",
+        ];
+        number(&json(&folder, &args)["abscissa"])
+    };
+    let here = abscissa(value, tau);
+    let margin = number(&best["margin"]);
+    assert!((here - number(&best["abscissa"])).abs() <= margin + 1e-9);
+    for (by, along) in [(1e-3, 0.0), (-1e-3, 0.0), (0.0, 1e-3), (0.0, -1e-3)] {
+        let there = abscissa(value + by, (tau + along).max(0.05));
+        assert!(there >= here - margin, "{there} {here}");
+    }
+    assert_eq!(found["inputs"]["search"], "k_p");
+    assert_eq!(found["point"]["parameters"]["k_p"], best["value"]);
+}
+
+/// The letter's control with memory: where none is remembered it is the letter's own optimum, and
+/// with some the lobe goes on where velocity control ends without.
+#[test]
+fn the_program_searches_control_with_memory() {
+    let folder = Folder::new();
+    let of = |args: &str| {
+        let args: Vec<&str> = args.split(' ').collect();
+        json(&folder, &args)
+    };
+    let plain = of("best --mu-prime -0.3 --json");
+    let none = of("best --mu-prime -0.3 --memory 0 --json");
+    assert_eq!(plain["best"], none["best"]);
+    // -0.7256 is the end without memory, -0.8373 that at R = 0.6.
+    let beyond = of("best --mu-prime -0.75 --json");
+    assert_eq!(beyond["best"]["relaxation_time"], Value::Null);
+    let late = of("best --mu-prime -0.75 --memory 0.6 --json");
+    assert!(number(&late["best"]["abscissa"]) < 0.0, "{late}");
+    assert_eq!(late["best"]["certified"], true);
+    let lags = of("best --mu-prime -0.3 --control load --load-lag 0.2 --latency 0.1 --json");
+    assert!(number(&lags["best"]["abscissa"]) < 0.0, "{lags}");
+}
+
+#[test]
+fn what_is_wrong_with_a_search_is_told() {
+    let folder = Folder::new();
+    for (args, told) in [
+        ("best --system pd", "--search is not given"),
+        ("best --system pd --search kp", "did you mean k_p"),
+        (
+            "best --system pd --search k_p --set k_p=1",
+            "k_p is given, which is searched",
+        ),
+        (
+            "best --system pd --search k_p --tau 1",
+            "tau is given, which is searched",
+        ),
+        (
+            "best --system pd --search k_p --mu-prime 1",
+            "--system is given with other flags",
+        ),
+        (
+            "best --system pd --search k_p --control load",
+            "--system is given with other flags",
+        ),
+        ("best --system pd --search memory", "no parameter memory"),
+        (
+            "best --system pd --search k_p --robust 0.1",
+            "--robust is not known",
+        ),
+        (
+            "best --system pd --search k_p --search-from 2 --search-to 1",
+            "--search-from 2 is above",
+        ),
+        (
+            "best --system turning --search zeta --search-from -1",
+            "--search-from: zeta = -1",
+        ),
+        ("best --search k_p --mu-prime -0.1", "--system"),
+        ("best --mu-prime -0.1 --memory 0.3 --robust 0.1", "memory"),
+    ] {
+        let output = folder.run(&args.split(' ').collect::<Vec<_>>());
+        assert_eq!(output.status.code(), Some(2), "{args}");
+        assert!(err(&output).contains(told), "{args}: {}", err(&output));
+    }
+}
