@@ -174,7 +174,7 @@ impl Table {
     /// The index of the point at `speed`.
     ///
     /// # Errors
-    /// If no point is at `speed`: the region that holds it, for [`Table::piece`]. It is the number of
+    /// If no point is at `speed`: the region that holds it, for [`Table::piece`], as the number of
     /// points below.
     pub fn region(&self, speed: f64) -> Result<usize, usize> {
         self.0.speeds.binary_search_by(|at| at.total_cmp(&speed))
