@@ -3,10 +3,10 @@
 //! Such a continuation may follow a branch of ends that stick-slip never reaches when v0 is raised
 //! from low velocities. So the cells at both ends of a segment are searched from scratch, and the
 //! continuation from one has to meet the other; else the segment is halved. It is also halved where
-//! stick-slip passes other kinds on its way from low velocities at one end than at the other: an
-//! event that it passes at both may be its end in between. A segment ends where a kind of
-//! stick-slip ends. Where ends change fast, more cells are searched from scratch. A line is cut
-//! into blocks, so that the answer in a cell depends on its block alone.
+//! the kinds of stick-slip on the way from low velocities differ between its two ends. An event
+//! that is passed at both ends may then be the end of stick-slip in between. A segment ends where a
+//! kind of stick-slip ends. Where ends change fast, more cells are searched from scratch. A line is
+//! cut into blocks, so that the answer in a cell depends on its block alone.
 
 use super::delay_step::Neighbour;
 use super::follow::from_scratch;
@@ -17,8 +17,8 @@ use super::problem::{CriticalVelocity, Method, Problem};
 pub const BLOCK: usize = 128;
 
 /// The critical velocities of a block of a line: `problems` differ by their delay alone, which
-/// increases. `stopped` is asked before every visit to a cell. If it says true, some answers are
-/// None and the others must not be used.
+/// increases. `stopped` is called before every visit to a cell. Once it returns true, some answers
+/// are None and the others must not be used.
 #[must_use]
 pub fn critical_velocities(
     problems: &[Problem],
@@ -154,8 +154,8 @@ impl<'p> Block<'p> {
         }
     }
 
-    /// Finds by halving up to where a continuation that does not meet its last cell is right, and
-    /// fills the rest.
+    /// Finds by halving up to which cell a continuation is right that does not meet the `last` one.
+    /// Fills the rest.
     fn halve(&mut self, first: usize, last: usize) {
         let middle = usize::midpoint(first, last);
         if middle == first {

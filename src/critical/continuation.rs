@@ -108,8 +108,8 @@ impl Point {
         near && (end / self.predicted - 1.0).abs() < options.agreement
     }
 
-    /// Whether the slopes are good enough to locate the event: they are own ones, or it is very
-    /// near.
+    /// Whether the slopes are good enough to locate the event: they are of this problem, or the
+    /// event is very near.
     fn tells(&self, options: &ContinuationOptions) -> bool {
         let end = self.end();
         let as_predicted = (end / self.predicted - 1.0).abs() < options.borrowed;

@@ -192,8 +192,7 @@ impl<'o> Neighbour<'o> {
         }
         let mut near = (2.0 * self.off).max(self.near).min(options.farthest);
         if self.before.is_none() {
-            // Without a second past there is no extrapolation, and a changed orbit starts with a
-            // larger transient.
+            // Without a second past a changed orbit starts with a larger transient.
             let change = (predicted / last.1 - 1.0).abs();
             near = (options.off_by_change * change).clamp(near, options.farthest);
         }
@@ -235,9 +234,8 @@ impl<'o> Neighbour<'o> {
         seen
     }
 
-    /// Whether the next end, at `tau`, may be taken as the end of stick-slip without following the
-    /// motion beyond it. The motions beyond the ends before were clear, and change smoothly along a
-    /// line.
+    /// Whether the next end, at `tau`, may be accepted without following the motion beyond it.
+    /// Motions beyond the ends before were clear of a stop, and change smoothly along a line.
     fn may_be_unseen(&self, tau: f64) -> bool {
         let options = self.options;
         if self.unseen == options.most_unseen {

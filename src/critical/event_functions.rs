@@ -12,9 +12,9 @@
 //! dip            the lowest minimum of ẋ before a stop      g = 0: a new stop              (E5)
 //! ```
 //!
-//! (E1) is smooth in v0 up to its zero, where the slip time has a square root: the Taylor
-//! polynomial of the last step of a slip goes on beyond the stop as if friction had not changed its
-//! sign there.
+//! (E1) is smooth in v0 up to its zero, where the slip time has a square root. For it the Taylor
+//! polynomial of the last step of a slip is continued beyond the stop as if friction had not
+//! changed its sign there.
 //!
 //! A new event function needs a variant and a field here, and its value in each cycle and period
 //! (`return_map`). It needs a rule for a branch at its zero (`continuation`, `end_of_branch`,

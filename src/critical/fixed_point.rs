@@ -12,7 +12,7 @@ impl Iterates {
     /// Before the first period.
     pub(super) const NONE: Self = Self([EventFunctions::UNKNOWN; 3]);
 
-    /// Whether there is none yet.
+    /// Whether no period was added yet.
     pub(super) fn none_yet(&self) -> bool {
         self.0[2].load.is_nan()
     }

@@ -145,7 +145,7 @@ mod tests {
     use super::*;
     use crate::model::FrictionLaw;
 
-    /// The letter's Fig. 4: with the delay the graze comes to the closed form.
+    /// The letter's Fig. 4: as the delay falls the graze tends to the closed form.
     #[test]
     fn a_short_delay_grazes_where_the_closed_form_says() {
         for gamma in [0.1, 0.3, 0.6] {

@@ -41,7 +41,7 @@
 //!
 //! **Event functions.** Along a branch of orbits five numbers are positive. As v0 grows, the branch
 //! goes on until one of them vanishes (`event_functions`, E1 to E5). They are smooth in v0, so a
-//! secant of the last two orbits predicts where (`continuation`):
+//! secant of the last two orbits predicts the zero (`continuation`):
 //!
 //! ```text
 //! v0* = v0 − g(v0)/g′,   g′ = (g(v0) − g(v0 − h))/h,   the smallest v0* ≥ v0 of all g    (6)

@@ -27,8 +27,8 @@ pub(super) fn from_low_velocity(
         if ramped.last.is_some() {
             return Ok(search);
         }
-        // Stick-slip lost at a lower start bounds lift-off: at a larger start that is of the start
-        // alone.
+        // If a lower start lost stick-slip in another way, lift-off at a larger one is due to that
+        // start alone.
         let lowest = lost.as_ref().map_or(f64::INFINITY, |lost| lost.v0);
         let lifts_off = |now: &Response| now.regime == Regime::LiftOff;
         let lower = |now: &Response| lifts_off(now) && now.v0 < lowest;
@@ -120,8 +120,8 @@ struct Ramp<'o, F> {
     /// The smallest v0 above `last` at which stick-slip was lost, and the relative step that lost
     /// it.
     lost: Option<(Response, f64)>,
-    /// The smallest v0 above `last` to which a step led to another kind of stick-slip, and was too
-    /// large.
+    /// The smallest v0 above `last` to which a step was too large: it led to another kind of
+    /// stick-slip.
     jump: Option<f64>,
     control: StepControl<'o>,
     /// The share of the way to the predicted end of stick-slip that is taken at once.
@@ -197,7 +197,7 @@ impl<F: Followed> Ramp<'_, F> {
             false => (from, times + 1),
         };
         self.lost = None;
-        // With retries by chance the search would creep on.
+        // Where chance decides, retries would make the search creep on.
         let retry = Retry::Same(self.options.nearby);
         self.control.retry = Some(retry).filter(|_| !self.by_chance());
     }

@@ -10,8 +10,8 @@ use crate::slip::motion::{Accuracy, Event, Mode, Motion, Stretch};
 /// One slip and the stick after it. Times in √(M/κ), velocities in N0/√(κM), forces in N0.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Cycle {
-    /// How far below 0 the slip would have gone beyond its stop, ≥ 0 (above 0, if it came to its
-    /// stop backwards); 0 where the stop is a graze.
+    /// The depth of the stop, ≥ 0: how far below 0 the minimum of ẋ lies that it cut off, or above
+    /// 0 the maximum of a slip backwards. 0 where the stop is a graze.
     pub depth: f64,
     /// Time from the stop to that minimum.
     pub to_minimum: f64,
@@ -299,8 +299,8 @@ impl ReturnMap for Motion {
     }
 }
 
-/// Whether the last step of a slip, which begins `since` its release, shows that the `expected`
-/// stop is missed.
+/// Whether the last step of a slip shows that the `expected` stop is missed. The step begins a time
+/// `since` after the release.
 fn misses(motion: &Motion, since: f64, expected: Stop, options: &ContinuationOptions) -> bool {
     let step = motion.last_step();
     let slip = expected.slip;

@@ -161,7 +161,7 @@ pub(super) fn slow_starts(groups: Groups, tau: f64) -> impl Iterator<Item = Comp
         .map(|z| Complex64::new(z.re, z.im.abs()))
 }
 
-/// Halvings of such a part: Newton's method does the rest.
+/// Halvings of a part of the real axis: Newton's method does the rest.
 const HALVINGS: u32 = 8;
 
 /// A start in each part of the real axis right of `line` in which D changes its sign.

@@ -68,7 +68,7 @@ pub struct Crossing {
     pub theta: f64,
     /// The first branch k that is a crossing: 1 where θ = 0 exactly (b = 0), else 0.
     pub first_branch: u64,
-    /// What the pair does there.
+    /// How the pair moves there.
     pub direction: Direction,
     /// θ/ω.
     first_delay: f64,
@@ -368,7 +368,7 @@ fn roots((c, c_error): (f64, f64), d: f64, root: f64, discriminant_error: f64) -
     }
 }
 
-/// What two crossings are made of, computed side by side: the arms ω₊ and ω₋ need the same
+/// The numbers of two crossings, computed side by side: the arms ω₊ and ω₋ need the same
 /// operations.
 struct Arms {
     x: [f64; 2],

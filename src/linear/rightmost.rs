@@ -18,7 +18,7 @@ pub struct Rightmost {
     pub margin: f64,
     /// Whether the argument principle confirms that, and the number of unstable roots.
     pub certified: bool,
-    /// What was not found, if anything.
+    /// The line right of which roots are missing, if any are.
     pub missing: Option<Incomplete>,
 }
 

@@ -34,14 +34,14 @@ const MOST_EVALUATIONS: u32 = 4;
 const CELLS_WITH_A_MARGIN: u8 = 6;
 /// How far the margin may be widened where a root is nearly multiple.
 const WIDEST_MARGIN: f64 = 0.03;
-/// What a step may leave of the error, relative.
+/// The relative error that a step may leave.
 const SETTLED: f64 = 2e-16;
 /// Steps longer than this part of the distance at which D bends are not trusted.
 const FARTHEST_STEP: f64 = 0.3;
 /// A root with an imaginary part below this (relative) is real, or nearly double.
 const NEARLY_REAL: f64 = 1e-9;
 
-/// What was found in one cell.
+/// The roots found in one cell.
 #[derive(Debug, Clone, Copy)]
 pub struct Cell<'t> {
     /// The rightmost roots by falling real part, as many as the tracker was asked for. There are
@@ -129,7 +129,7 @@ pub struct RootTracker {
     /// The delay at which `tracks` stand, and the step that led there.
     tau: f64,
     step: f64,
-    /// What was done since the tracker was made.
+    /// Work done since the tracker was made.
     pub work: Work,
 }
 

@@ -2,7 +2,7 @@
 //! by Picard's iteration.
 //!
 //! A second method for [`super::motion`], to check the first one. It shares the equations and the
-//! events with Taylor's method, and nothing of how a step is made: it uses no coefficients of the
+//! events with Taylor's method, and nothing of how a step is made. It uses no coefficients of the
 //! law and no radius of convergence, and its steps follow the law's own scale of speed. It is some
 //! ten times slower.
 //!

@@ -164,9 +164,9 @@ impl Stribeck {
     ///
     /// Coefficient k of the Gaussian about z = ẋ/v_s is a Hermite function. Up to z² = 2k these
     /// functions oscillate, and show how large those of higher order are. Beyond that the first
-    /// ones are as small as exp(−z²) whatever the later ones are, so Cauchy's estimate is used: on
-    /// a disc of radius ρ the rest of a series of order N is at most M(ρ) (s/ρ)^N/(1 − s/ρ), where
-    /// M is the largest absolute value on that disc.
+    /// ones are as small as exp(−z²) whatever the later ones are. There Cauchy's estimate is used:
+    /// on a disc of radius ρ the rest of a series of order N is at most M(ρ) (s/ρ)^N/(1 − s/ρ),
+    /// where M is the largest absolute value on that disc.
     fn resolved(&self, speed: &[f64], length: f64, error: f64) -> f64 {
         let order = (speed.len() - 1) as f64;
         let centre = self.scaled[0].abs();

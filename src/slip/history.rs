@@ -99,7 +99,7 @@ impl History {
     }
 
     /// Sets how far polynomials are used beyond their steps. The last one is used as far as its
-    /// error, times a `gain`, stays within the tolerance; the error is its last term, of this
+    /// error, times a `gain`, stays within the tolerance. The error is its last term, of this
     /// `order`, which reaches the tolerance at the end of its radius. A polynomial replaces its
     /// neighbours where it agrees with them to some times the `tolerance`: its last terms do not
     /// show errors of the middle ones.

@@ -20,7 +20,7 @@
 //! delayed polynomial ends, if it differs from the next one by more than the tolerance. So steps
 //! end on kinks, one delay after the other, until these are too smooth to matter.
 //!
-//! - `advance`: one step after the other: how long, and what ends it
+//! - `advance`: one step after the other: its length and its end
 //! - `collocated`: steps by collocation: how long they are, the rates there
 //! - `events`: zeros of a step's polynomials, told apart from rounding
 //! - `parameters`: what a motion is given: parameters, integrator, accuracy

@@ -67,7 +67,7 @@ pub struct Limits {
 /// A motion that was followed to its outcome. Times, lengths and forces as in [`super::motion`].
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Summary {
-    /// What became of it.
+    /// The outcome.
     pub outcome: Outcome,
     /// When that was known.
     pub decided: f64,

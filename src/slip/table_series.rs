@@ -4,9 +4,9 @@
 //! At a point of the table the second derivative of μ_K jumps, and with it the fourth derivative of
 //! the elongation. At the first and the last point the slope of μ_K jumps, and with it the third
 //! derivative. Steps end there. A cubic stays in use until the speed is beyond its end by a little
-//! more than noise. So a motion that rests on a point, or grazes it, does not go back and forth
-//! between two cubics: after each crossing the speed has to come back by more than rounding before
-//! the next one. Near their common end two cubics differ by less than the tolerance.
+//! more than noise. So a motion that rests on a point, or grazes it, does not switch back and forth
+//! between two cubics: the speed has to come back by more than rounding before the next crossing.
+//! The cubics differ by less than the tolerance so near their common end.
 
 use super::friction_series::Series;
 use super::series::{Coefficients, MOST_ORDER, first_zero, product};

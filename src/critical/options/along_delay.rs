@@ -46,7 +46,7 @@ options! {
         farther: [f64; 2] = [4.0, 30.0], in 1.0..=1_000.0;
         /// Where that does not help, it is moved off by this many times [`Self::farthest`].
         farthest_of_all: f64 = 2.0, in 1.0..=9.0;
-        /// A cell starts below its end by this many times what the transient of the cell before
+        /// A cell starts this many times as far below its end as the transient of the cell before
         /// needed.
         room: f64 = 1.5, in 1.0..=100.0;
         /// Each cell starts at most this many times as far below its end as the cell before.
@@ -63,7 +63,8 @@ options! {
         /// How much the time in slip of such a cell may differ from that of the last cell that was
         /// followed beyond its end.
         same_slip: f64 = 0.02, in 1e-9..=0.5;
-        /// How clearly stick-slip has to end there: the least lowest minimum of ẋ beyond, over v0.
+        /// How clearly stick-slip has to end there: a lower bound of the minima of ẋ beyond, over
+        /// v0.
         clear: f64 = 2e-3, in 1e-9..=1.0;
         /// That minimum has to exceed its own change since then by this factor.
         caution: f64 = 6.0, in 1.0..=1_000.0;

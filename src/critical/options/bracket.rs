@@ -19,9 +19,8 @@ options! {
         phases: u32 = 6, in 1..=1_000;
         /// The most steps of the integrator from one phase to the next.
         steps_of_cycle: u32 = 20_000, in 10..=10_000_000;
-        /// Where velocity control makes sticks longer by this factor, an end that simulation found
-        /// has to be found by a slow search as well: the memory is so long that faster ones may
-        /// pass an end.
+        /// Where velocity control makes sticks longer by this factor, a slow search has to find the
+        /// same end as simulation. The memory is then so long that faster searches may pass an end.
         long_sticks: f64 = 2.0, in 1.0..=1e6;
         /// With sticks shorter than this such an end is not known: ramps by other programs go on
         /// with still shorter ones.

@@ -61,7 +61,7 @@ options! {
         careful: f64 = 0.02, in 1e-6..=1.0;
         /// How well cycles have to repeat after larger ones.
         roughly: f64 = 1e-4, in 1e-12..=1e-2;
-        /// Steps no larger than this are near an end: irregular stick-slip is held for long.
+        /// After a step no larger than this an end is near: irregular stick-slip is held for long.
         final_step: f64 = 2e-3, in 1e-9..=1.0;
         /// Sticks that shorten count as vanishing if they are predicted to vanish within this step.
         soon: f64 = 1e-2, in 1e-9..=1.0;

@@ -1,8 +1,8 @@
 //! Options of what follows an event.
 
 options! {
-    /// How the end of a branch of orbits is checked, and what follows is found. Distances in v0 are
-    /// relative, times in units of √(M/κ).
+    /// How the end of a branch of orbits is checked, and how its sequel is found. Distances in v0
+    /// are relative, times in units of √(M/κ).
     TransitionOptions {
         /// The last orbits are this far below and above an event.
         precision: f64 = 1e-5, in 1e-9..=1e-3;
@@ -18,9 +18,9 @@ options! {
         /// Lift-off is checked this far below and above its velocity.
         lift_off: f64 = 1e-4, in 1e-9..=1e-2;
 
-        /// A graze ends stick-slip if its orbit attracts this far below it. Nearer to the graze no
-        /// orbit need attract: the effect of a delayed slip on the next one grows without bounds
-        /// there.
+        /// A graze ends stick-slip if its orbit attracts this far below it. Nearer to it even that
+        /// orbit need not attract: the effect of a delayed slip on the next one grows without
+        /// bounds at a graze.
         below_graze: f64 = 1e-4, in 1e-9..=1e-2;
         /// By how much v0 is lowered there in one period. Disturbed by more the block would be
         /// thrown over the graze.
@@ -39,7 +39,7 @@ options! {
         back_at_last: f64 = 0.5, in 1e-6..=0.99;
         /// Distances of sticks below this are rounding.
         stick_noise: f64 = 1e-7, in 1e-15..=1e-2;
-        /// Distances below this share of the last stick are rounding, if that is smaller.
+        /// The same as a share of the last stick, if that is smaller.
         stick_left: f64 = 0.3, in 1e-3..=0.9;
 
         /// The block is released this far past a graze if it still stops at [`Self::precision`].

@@ -12,7 +12,7 @@ const LONGEST: f64 = 1.0 / 64.0;
 const SHORTEST: f64 = 1e-9;
 /// Largest angle between the tangents at both ends of a step.
 const MOST_BEND: f64 = 0.25;
-/// A corrected point is at most this part of the step away from where it was looked for.
+/// A corrected point is at most this part of the step away from its prediction.
 const MOST_CORRECTION: f64 = 0.25;
 /// A whole curve ends below this part of the scale of frequencies: at 0 it is its own mirror image.
 const SLOWEST: f64 = 1e-6;

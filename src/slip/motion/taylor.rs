@@ -8,8 +8,8 @@ use crate::slip::history::SMOOTH;
 /// Speeds below this, in units of N0/√(κM), need no relative accuracy.
 const SLOWEST: f64 = 1e-3;
 
-/// Steps shorter than this part of what their series allow get fewer terms; and how many more terms
-/// they get than they seem to need.
+/// Steps shorter than this part of the length that their series allow get fewer terms, with some
+/// terms to spare.
 const SHORT: f64 = 0.5;
 const SPARE_TERMS: usize = 2;
 
