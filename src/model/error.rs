@@ -48,7 +48,7 @@ impl ModelError {
             allowed,
         } = self;
         match *parameter {
-            // This error has no value.
+            // An error of the law has no value.
             "friction" => format!("friction: {allowed} is needed"),
             _ => format!(
                 "{parameter} = {} is outside its range: {allowed}",

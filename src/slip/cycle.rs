@@ -69,8 +69,8 @@ pub enum NoCycle {
 /// on, or never where both gains are 0; `phase` ≥ 0 is taken modulo the period.
 /// `parameters.switch_on` is ignored.
 ///
-/// At phase 0 control acts on a block that already slips. The jump of v could hold a block that
-/// still stuck.
+/// At phase 0 control acts on a block that already slips. Were it still stuck, the jump of v could
+/// hold it.
 ///
 /// # Errors
 /// See [`NoCycle`].

@@ -13,7 +13,7 @@ impl Step {
     pub fn speed_minimum(&self) -> Option<(f64, f64)> {
         let slope = derivative(Self::range(&self.u, self.order), 1.0);
         let slope = &slope[..self.order];
-        // A step has at most one minimum, and the slopes at its ends show whether it has one.
+        // A step is taken to have at most one minimum; the slopes at its ends show whether it does.
         if slope[0] > 0.0 || value(slope, self.length) < 0.0 {
             return None;
         }

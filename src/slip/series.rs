@@ -93,8 +93,8 @@ pub fn shifted(c: &[f64], by: f64) -> Coefficients {
     about
 }
 
-/// Writes the coefficients about s = `by` of the polynomial `c` to `about`: Σ_m (j + m over j)
-/// c_{j+m} by^m, and zero beyond.
+/// Writes the coefficients about s = `by` of the polynomial `c` to `about`:
+/// Σ_m (j + m over j) c_{j+m} by^m, and zero beyond.
 ///
 /// Horner's scheme takes as many operations, but each waits for the one before.
 #[inline]

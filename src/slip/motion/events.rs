@@ -54,8 +54,8 @@ impl Motion {
         Some(crossing)
     }
 
-    /// The force that holds a stuck block against a pull in `direction` = ±1: μ_S n − direction ·
-    /// a.
+    /// The force that holds a stuck block against a pull in `direction` = ±1:
+    /// μ_S n − direction · a.
     pub(super) fn hold(&self, direction: f64) -> Coefficients {
         let mu_s = self.parameters.law.mu_s();
         let mut hold = [0.0; MOST_ORDER + 1];
