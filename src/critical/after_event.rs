@@ -1,4 +1,4 @@
-//! What becomes of a block just beyond an event, seen by simulation.
+//! What a block does just beyond an event, by simulation.
 
 use super::continuation::Releases;
 use super::observers::{Stops, Waiting};
@@ -15,7 +15,7 @@ struct Lowest {
     since: f64,
 }
 
-/// What becomes of a motion in the end.
+/// What a motion does in the end, followed for as long as at the end of a search.
 pub(super) fn sequel(problem: &Problem, motion: &mut Motion) -> Sequel {
     let response = response_at_length(problem, motion);
     match response.regime {
@@ -26,9 +26,9 @@ pub(super) fn sequel(problem: &Problem, motion: &mut Motion) -> Sequel {
     }
 }
 
-/// What becomes, just beyond the graze at `v0` of a slip that took `slip`, of the block that
-/// `branch` releases for that slip. Where the block comes near another stop and releases farther
-/// and nearer lead to different ends, that is not known.
+/// What follows just beyond the graze at `v0` of a slip that took `slip`: `branch` releases a block
+/// for that slip, and the block is followed. Where it comes near another stop, it is released again
+/// farther and nearer beyond the graze; if the ends then differ, the answer is undetermined.
 pub(super) fn after_graze(
     problem: &Problem,
     (v0, slip): (f64, f64),
@@ -52,7 +52,7 @@ pub(super) fn after_graze(
     }
     let ends = |beyond: &f64| {
         let motion = branch.release_at(v0 * (1.0 + beyond));
-        // Else the graze is not known to that.
+        // A block that still stops before the graze does not count.
         !passes(problem, motion, slip)
             || !stops_within(motion, lowest.since + options.after_minimum)
             || matches!(sequel(problem, motion), Sequel::Ends(_))
@@ -63,7 +63,7 @@ pub(super) fn after_graze(
     }
 }
 
-/// What becomes of stick-slip where its stick has just vanished at `v0`.
+/// What follows stick-slip whose stick has just vanished at `v0`.
 pub(super) fn after_stick(
     problem: &Problem,
     v0: f64,
@@ -83,8 +83,8 @@ pub(super) fn after_stick(
     Sequel::Ends(1.0)
 }
 
-/// Follows a block that was just released past the minimum of ẋ that ended its `slip` before; false
-/// where it stops there.
+/// Follows a block that was just released past the minimum of ẋ that its stop after `slip` cut off
+/// before. False where it still stops there.
 fn passes(problem: &Problem, motion: &mut Motion, slip: f64) -> bool {
     let options = &problem.options.transition;
     let start = motion.t;
@@ -100,9 +100,9 @@ fn passes(problem: &Problem, motion: &mut Motion, slip: f64) -> bool {
     false
 }
 
-/// The lowest minimum of ẋ beyond a graze, of a block that slips on: its velocity's minima do not
-/// fall for long; or, where sliding is stable, rise nearly to v0, for at least the time `least`.
-/// None where it stops again.
+/// The lowest minimum of ẋ beyond a graze, of a block that slips on: its minima do not fall for
+/// long. Where sliding is stable it is enough that they rise nearly to v0, after at least the time
+/// `least`. None where the block stops again.
 fn slips_on(problem: &Problem, motion: &mut Motion, least: f64) -> Option<Lowest> {
     let options = &problem.options.transition;
     let v0 = motion.parameters().v0;
@@ -127,7 +127,7 @@ fn slips_on(problem: &Problem, motion: &mut Motion, least: f64) -> Option<Lowest
                 let since = motion.t - start;
                 lowest = Lowest { u, since };
             }
-            // Beats: what comes after the lowest one counts.
+            // Minima beat: only rises after the last fall count.
             risen = if u < last { 0 } else { risen + 1 };
             last = u;
             let slides = u > options.sliding * v0 && motion.t - start > least;
@@ -167,7 +167,7 @@ mod tests {
         assert_eq!(at(0.5), Sequel::Ends(0.0));
     }
 
-    /// Released below the graze it stops where it did, above it slips on for good.
+    /// Released below the graze the block stops as before; released above it, it slips on for good.
     #[test]
     fn a_block_slips_on_beyond_its_graze() {
         let problem = letters(-0.33, 0.0, 4.15);

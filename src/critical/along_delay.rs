@@ -1,12 +1,12 @@
-//! Continuation along a line of delays: the search at each starts from its neighbour's orbit.
+//! Continuation along a line of delays: each search starts from the orbit of its neighbour.
 //!
 //! Such a continuation may follow a branch of ends that stick-slip never reaches when v0 is raised
 //! from low velocities. So the cells at both ends of a segment are searched from scratch, and the
 //! continuation from one has to meet the other; else the segment is halved. It is also halved where
-//! stick-slip on its way from low velocities is of other kinds at one end than at the other: what
-//! it passes at both may be its end in between. A segment ends where a kind of stick-slip ends.
-//! Where ends change fast, more cells are searched from scratch. A line is cut into blocks, so that
-//! the answer in a cell depends on its block alone.
+//! the kinds of stick-slip on the way from low velocities differ between its two ends. An event
+//! that is passed at both ends may then be the end of stick-slip in between. A segment ends where a
+//! kind of stick-slip ends. Where ends change fast, more cells are searched from scratch. A line is
+//! cut into blocks, so that the answer in a cell depends on its block alone.
 
 use super::delay_step::Neighbour;
 use super::follow::from_scratch;
@@ -16,9 +16,9 @@ use super::problem::{CriticalVelocity, Method, Problem};
 /// Cells of a block; blocks start at multiples of it.
 pub const BLOCK: usize = 128;
 
-/// The critical velocities of a block of a line: problems that differ by their delay alone, which
-/// increases. `stopped` is asked before every visit to a cell; where it came first, some are none
-/// and the others are not to be used.
+/// The critical velocities of a block of a line: `problems` differ by their delay alone, which
+/// increases. `stopped` is called before every visit to a cell. Once it returns true, some answers
+/// are None and the others must not be used.
 #[must_use]
 pub fn critical_velocities(
     problems: &[Problem],
@@ -45,21 +45,21 @@ pub fn critical_velocities(
 struct Block<'p> {
     problems: &'p [Problem],
     found: Vec<Option<CriticalVelocity>>,
-    /// Which cells were looked for from scratch.
+    /// Which cells were searched from scratch.
     scratch: Vec<bool>,
-    /// The kinds of stick-slip on the way to its end, where a cell was found from scratch and leads
-    /// on to others.
+    /// The kinds of stick-slip on the way to the end, for cells that were searched from scratch and
+    /// from which continuation can start.
     ways: Vec<Option<Vec<usize>>>,
     stopped: &'p dyn Fn() -> bool,
 }
 
 impl<'p> Block<'p> {
-    /// The options of its first problem count for all.
+    /// The options of the first problem, which hold for all.
     fn options(&self) -> &'p AlongDelayOptions {
         &self.problems[0].options.along_delay
     }
 
-    /// Looks for a cell from scratch.
+    /// Searches a cell from scratch.
     fn start(&mut self, cell: usize) -> Option<Neighbour<'p>> {
         if (self.stopped)() {
             return None;
@@ -82,7 +82,7 @@ impl<'p> Block<'p> {
         neighbour
     }
 
-    /// Looks from scratch for the cells that were continued to and stayed in doubt.
+    /// Searches from scratch the cells that were reached by continuation and are not decided.
     fn settle(&mut self) {
         for cell in 0..self.found.len() {
             let open = self.found[cell].is_some_and(|found| !found.decided);
@@ -92,8 +92,9 @@ impl<'p> Block<'p> {
         }
     }
 
-    /// Fills the cells between two that were found from scratch; with what leads on from the first
-    /// one, and then what led to the last one if something did.
+    /// Fills the cells between two that were searched from scratch, by continuation from
+    /// `neighbour` at the first one. Returns the neighbour at the last one, if continuation led
+    /// there.
     fn fill(
         &mut self,
         mut first: usize,
@@ -105,7 +106,7 @@ impl<'p> Block<'p> {
             if next < last {
                 let there = self.start(next);
                 neighbour = match (self.fill(first, next, neighbour), there) {
-                    // It goes on where it is well on its way.
+                    // Continuation goes on from the neighbour that already knows the ends before.
                     (Some(led), Some(there)) => Some(led.like(&there)),
                     (_, there) => there,
                 };
@@ -130,7 +131,7 @@ impl<'p> Block<'p> {
                 }
                 self.doubt(first, reached);
             }
-            // Its kind of stick-slip ends there, or leads no further.
+            // Its kind of stick-slip ends there, or continuation fails.
             first = reached + 1;
             if first < last {
                 neighbour = self.start(first);
@@ -148,13 +149,13 @@ impl<'p> Block<'p> {
         };
         match self.ways[first] == self.ways[last] {
             true => longest,
-            // Somewhere between them it changes, and ends may open or close there.
+            // The kinds change somewhere in between, and ends may appear or vanish there.
             false => longest.min((last - first).div_ceil(2)),
         }
     }
 
-    /// Looks where a continuation that led from one cell to another, but does not meet it, meets
-    /// cells in between, and fills what is left.
+    /// Finds by halving up to which cell a continuation is right that does not meet the `last` one.
+    /// Fills the rest.
     fn halve(&mut self, first: usize, last: usize) {
         let middle = usize::midpoint(first, last);
         if middle == first {
@@ -168,7 +169,7 @@ impl<'p> Block<'p> {
         self.fill(middle, last, there);
     }
 
-    /// What is in doubt at the `last` cell is so on the way to it.
+    /// Cells on the way to the `last` one are not decided where that one is not.
     fn doubt(&mut self, first: usize, last: usize) {
         let decided = self.found[last].is_some_and(|there| there.decided);
         for between in self.found[first + 1..last].iter_mut().flatten() {
@@ -176,7 +177,8 @@ impl<'p> Block<'p> {
         }
     }
 
-    /// Looks for a cell from scratch that was continued to: whether that meets, and its neighbour.
+    /// Searches a cell from scratch that was reached by continuation. Returns whether the two
+    /// answers meet, and the neighbour from there.
     fn meet(&mut self, cell: usize) -> (bool, Option<Neighbour<'p>>) {
         let continued = self.found[cell];
         let neighbour = self.start(cell);
@@ -187,8 +189,8 @@ impl<'p> Block<'p> {
         )
     }
 
-    /// Continues from `first` on. Gives the last cell that is known then, which is `last` if the
-    /// continuation meets the end known there, and whether that cell was found from scratch.
+    /// Continues from `first` on. Returns the last cell whose end is known, and whether that cell
+    /// was searched from scratch. It is `last` if the continuation meets the end known there.
     fn advance(
         &mut self,
         first: usize,
@@ -219,8 +221,7 @@ impl<'p> Block<'p> {
             self.found[cell] = Some(critical);
             self.scratch[cell] = false;
             if neighbour.surprised() && cell >= checked + self.options().surprises {
-                // Where ends change as fast as that along the line, stick-slip may have another one
-                // below.
+                // Where ends change that fast along the line, stick-slip may end earlier.
                 if !self.meet(cell).0 {
                     return (seen, seen == checked);
                 }
@@ -233,17 +234,17 @@ impl<'p> Block<'p> {
     }
 
     /// Whether the slip at the end `there` differs from that of the cell before by so much that the
-    /// continuation has changed its branch. Which cells end by which is then found from scratch.
+    /// continuation has changed its branch. Cells from here on are then searched from scratch.
     fn jumps(&self, cell: usize, there: &CriticalVelocity) -> bool {
         let change = |from: f64, to: f64| (to / from - 1.0).abs();
         let expected = change(self.problems[cell - 1].tau, self.problems[cell].tau);
         let before = self.found[cell - 1].map_or(f64::NAN, |before| before.slip_time);
-        // Not for NaN: a lift-off has no such time.
+        // False for NaN: a lift-off has no such time.
         change(before, there.slip_time) > self.options().jump_of_slip + expected
     }
 }
 
-/// Whether two answers are one.
+/// Whether two answers agree.
 fn meets(a: &CriticalVelocity, b: &CriticalVelocity, options: &AlongDelayOptions) -> bool {
     let near =
         |within: f64, a: f64, b: f64| a.is_nan() && b.is_nan() || (a - b).abs() <= within * a.abs();
@@ -287,8 +288,8 @@ mod tests {
         assert!(3 * along.steps < alone.steps, "{along:?} {alone:?}");
     }
 
-    /// From τ = 4.214 to 4.272 stick-slip ends by a graze at 0.234, which at other delays it passes
-    /// on its way to another one, at 0.34 to 0.39.
+    /// From τ = 4.214 to 4.272 stick-slip ends by a graze at 0.234. At other delays it passes that
+    /// graze on its way to another one, at 0.34 to 0.39.
     #[test]
     fn an_end_that_opens_below_for_a_few_cells_is_found() {
         let law = FrictionLaw::weakening(0.5, 0.4288, 1.0).unwrap();

@@ -1,10 +1,11 @@
-//! The critical velocity where searches disagree, or none came to its end, and its bounds.
+//! The critical velocity where searches disagree or do not come to an end, and its bounds.
 //!
 //! Where stick-slip ends by chance, it ends at a lower v0 the longer it is held at each. So two
 //! slow searches are added; the second holds each v0 longer than the first. Where they agree, their
 //! end is v_c, that of v0 raised slowly. Else they bound it. The lower bound lies below the ends of
-//! all searches, by as much as the slow ones differ. The upper bound goes up from the highest end
-//! of the slow ones, to a v0 at which stick-slip is lost from every phase of its cycle.
+//! all searches, by as much as the slow ones differ. The upper bound is searched upwards from the
+//! highest end of the slow ones: it is a v0 at which stick-slip is lost from every phase of its
+//! cycle.
 
 use super::confirmation::{gliding, told};
 use super::options::{BracketOptions, Options, RampOptions};
@@ -14,11 +15,11 @@ use super::regime::{Followed, Observation, Regime, Simulated};
 use super::search::{Chance, Search};
 use crate::slip::motion::Accuracy;
 
-/// An answer with its bounds. A decided answer bounds itself; else the bounds come from two slow
-/// searches, from the `searches` made before and from `others`, further answers.
+/// An answer with its bounds. A decided answer bounds itself. Else the bounds come from two slow
+/// searches, from the `searches` made before and from the answers `others`.
 ///
-/// An answer in which chance had a part, or that takes long to show, is decided only where slow
-/// steps lead to it as well.
+/// Where chance had a part in an answer, or sticks are long, it is decided only if a slow search
+/// agrees with it.
 pub(super) fn bounded(
     problem: &Problem,
     critical: CriticalVelocity,
@@ -45,32 +46,32 @@ pub(super) fn bounded(
     by_slow_searches(problem, critical, first, &searches, others)
 }
 
-/// Whether velocity control makes sticks so long that searches may not wait for what they come to.
+/// Whether velocity control makes sticks so long that searches may not wait for their outcome.
 fn long_sticks(problem: &Problem) -> bool {
     problem.slower() > problem.options.bracket.long_sticks
 }
 
-/// Whether an end has sticks that have become too short to be told from none: where they are long
-/// before it, they may go on for long.
+/// Whether the sticks at an end are too short to be told from none. Where velocity control makes
+/// sticks long, such short ones may still go on for long.
 fn vanished(problem: &Problem, end: &CriticalVelocity) -> bool {
     long_sticks(problem) && end.stick_time < problem.options.bracket.short_stick
 }
 
-/// What a slow search tells.
+/// The answer of a slow search.
 fn told_slowly(problem: &Problem, search: &Search) -> CriticalVelocity {
     told(&search.ramped, &problem.options.ramp)
 }
 
-/// The lowest v0 to which any of the searches or answers came.
+/// The lowest v0 up to which stick-slip persists by any of the searches or answers.
 fn lowest(searches: &[Search], critical: &CriticalVelocity, others: &[CriticalVelocity]) -> f64 {
     let ends = others.iter().chain([critical]);
     let ends = ends.map(CriticalVelocity::end_of_stick_slip);
     let persist = searches.iter().map(Search::persists);
-    // Not those that are NaN.
+    // The minimum ignores NaN.
     ends.chain(persist).fold(f64::INFINITY, f64::min)
 }
 
-/// What the `first` slow search and a slower one tell of an answer that is not decided.
+/// The answer of the `first` slow search and a slower one, where `critical` is not certain.
 fn by_slow_searches(
     problem: &Problem,
     critical: CriticalVelocity,
@@ -112,7 +113,7 @@ fn between(
     let below = (of_spread * spread).max(least);
     let below = below.min(problem.options.bracket.farthest_below);
     let alike = slow[0].lifts_off() == slow[1].lifts_off();
-    // Large steps throw stick-slip beyond the end that it comes to while v0 is raised slowly.
+    // Motions of large steps are left out: those steps throw stick-slip beyond its end.
     let small = problem.options.bracket.slow_steps[0];
     let by_small_steps = searches.iter().filter(|search| search.step <= small);
     let motions = slow.iter().chain(by_small_steps);
@@ -131,7 +132,7 @@ fn between(
     }
 }
 
-/// Searches by the usual steps, and gliding to near the end of an answer.
+/// Two searches: by the usual steps, and with v0 gliding to near the end of an answer.
 fn usual_and_gliding(problem: &Problem, critical: &CriticalVelocity) -> [Search; 2] {
     let usual = &problem.options.ramp;
     [*usual, gliding(critical, usual)].map(|options| from_low(problem, &options))
@@ -167,7 +168,7 @@ fn slow_options(options: &Options, held: Held) -> RampOptions {
     }
 }
 
-/// A slow search that begins somewhat below the `lowest` end of the others. From lower velocities
+/// A slow search that begins well below the `lowest` end of the others. From still lower velocities
 /// it would take long, because sticks are long there.
 fn slow(problem: &Problem, lowest: f64, held: Held) -> Search {
     let until = RampOptions {
@@ -186,9 +187,9 @@ fn from_low(problem: &Problem, options: &RampOptions) -> Search {
     from_low_velocity(problem, options, Accuracy::of(options.tolerance))
 }
 
-/// The smallest v0 that was tried, from above the end at `from` on, at which the stick-slip of some
-/// blocks is lost from every phase of its cycle; none up to the end of the range, or where there is
-/// no block. The blocks are left in their last states.
+/// The smallest v0 tried above the end `from` at which the stick-slip of all blocks is lost from
+/// every phase of its cycle. None where there is none up to `v_max`, or there is no block. The
+/// blocks are left in their last states.
 fn lost_for_good<F: Followed>(
     blocks: &mut [F],
     from: f64,
@@ -226,17 +227,17 @@ fn lost_for_good<F: Followed>(
     None
 }
 
-/// What becomes of stick-slip at a v0.
+/// What stick-slip does at a v0 above its end.
 enum Beyond<F> {
-    /// It is lost from every phase.
+    /// It is lost from every phase tried.
     Lost,
-    /// It persists from one.
+    /// It persists from at least one phase.
     Persists(Box<F>),
-    /// One is not known.
+    /// The outcome from at least one phase is not known.
     Unknown,
 }
 
-/// What becomes of the stick-slip of a block at `v0`, from some phases of its cycle.
+/// What the stick-slip of a block does at `v0`, from several phases of its cycle.
 fn from_every_phase<F: Followed>(
     block: &F,
     v0: f64,
@@ -255,7 +256,7 @@ fn from_every_phase<F: Followed>(
             return Beyond::Persists(Box::new(trial));
         }
         known &= regime != Regime::Undecided;
-        // By chance it may end at its own v0.
+        // Irregular stick-slip can end by chance at the v0 of the block itself.
         if phase + 1 == options.phases || !start.next_phase(options.steps_of_cycle) {
             break;
         }
@@ -295,8 +296,8 @@ mod tests {
         assert!(told(at_once).iter().all(|bound| bound.is_nan()));
     }
 
-    /// Chaos of the logistic map is lost at v0 = 4, from every phase of it; the orbit of the
-    /// saddle-node at v0 = 1.
+    /// The chaos of the logistic map is lost at v0 = 4, from every phase; the orbit of the
+    /// saddle-node is lost at v0 = 1.
     #[test]
     fn what_is_lost_for_good_is_so_just_beyond_its_end() {
         let options = Options {
@@ -317,7 +318,7 @@ mod tests {
         assert!((found / expected - 1.0).abs() < 1e-12 && found > 4.0);
         assert_eq!(lost(&mut [chaos.clone()], 3.9, 3.95), None);
         assert_eq!(lost(&mut [], 3.9, 10.0), None);
-        // What goes on from any one of the blocks is not lost.
+        // Stick-slip that goes on from any one of the blocks is not lost.
         let fold = Synthetic::new(Family::SaddleNode, 0.99, 0.1);
         let alone = lost(&mut [fold.clone()], 0.999, 10.0).unwrap();
         assert!(alone > 1.0 && alone < 1.003, "{alone}");
@@ -325,7 +326,7 @@ mod tests {
         assert!(both > 4.0 && both < 5.3, "{both}");
     }
 
-    /// Two slow searches that agree tell v_c, whatever fast ones said.
+    /// Two slow searches that agree decide v_c, whatever fast ones said.
     #[test]
     fn slow_searches_that_agree_decide() {
         let problem = letters(-0.33, 0.0, 4.15);
@@ -342,7 +343,8 @@ mod tests {
         assert_eq!(found.transition, Transition::Grazing);
     }
 
-    /// Where they differ they bound it: with the spread of their ends, and others, below.
+    /// Two slow searches that differ bound v_c. Below, the margin grows with the spread of their
+    /// ends.
     #[test]
     fn slow_searches_that_differ_bound() {
         let problem = letters(-0.33, 0.0, 4.15);

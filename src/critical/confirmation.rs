@@ -1,4 +1,4 @@
-//! What searches by simulation tell, alone and together.
+//! The answers of searches by simulation, alone and together.
 
 use super::options::RampOptions;
 use super::problem::{CriticalVelocity, GRAZE_PRECISION, Method, Problem};
@@ -16,8 +16,8 @@ pub fn by_simulation(
     accuracy: Accuracy,
 ) -> CriticalVelocity {
     let ramped = from_low_velocity(problem, options, accuracy).ramped;
-    // Where irregular stick-slip ends depends on the steps of v0 and on how long each is waited
-    // for: one search does not decide it.
+    // The end of irregular stick-slip depends on the steps of v0 and on the time for which each v0
+    // is held, so one search does not decide it.
     let irregular = |last: &Response| last.regime == Regime::Irregular;
     let by_chance = ramped.lost.is_some() && ramped.last.as_ref().is_some_and(irregular);
     let critical = told(&ramped, options);
@@ -27,8 +27,8 @@ pub fn by_simulation(
     }
 }
 
-/// v0 glides to near the end of stick-slip that was found: by small steps, without waiting for what
-/// it comes to on the way.
+/// Options with which v0 glides to near the end of stick-slip that was `found`: by small steps,
+/// without waiting for the outcome at each.
 pub(super) fn gliding(found: &CriticalVelocity, options: &RampOptions) -> RampOptions {
     let end = found.end_of_stick_slip();
     RampOptions {
@@ -46,10 +46,9 @@ pub(super) fn gliding(found: &CriticalVelocity, options: &RampOptions) -> RampOp
     }
 }
 
-/// What the `first` search with these options tells, and all that were made. v0 is raised slowly:
-/// an end that is another one with other steps of v0 and a finer integration, or while v0 glides,
-/// is not decided. What ends by chance is where all of these tell the same. `usual` are the options
-/// without what is special to this search.
+/// The answer of the `first` search, made with `options`, and all searches made. It is decided only
+/// if two more searches agree: one with other steps of v0 and a finer integration, and one in which
+/// v0 glides. `usual` are the options without those special to this search.
 pub(super) fn confirmed(
     first: Search,
     options: &RampOptions,
@@ -82,11 +81,11 @@ pub(super) fn confirmed(
     (critical, searches)
 }
 
-/// What a search tells, to be compared with others where it ends by chance.
+/// The answer of a search. Where stick-slip ends by chance, it has to be compared with others.
 pub(super) fn told(ramped: &Ramped, options: &RampOptions) -> CriticalVelocity {
     let method = Method::Simulation;
     let undecided = |lost: &Response| lost.regime == Regime::Undecided;
-    // To rounding sticks are lost as well where they only become shorter and shorter.
+    // Sticks that only become shorter and shorter are lost to rounding as well.
     let short = |last: &Response| last.summary.stick_time < options.vanishing_stick;
     let rounding = |last: &Response| short(last) && !ramped.vanish;
     let decided = ramped.complete
@@ -115,7 +114,7 @@ pub(super) fn told(ramped: &Ramped, options: &RampOptions) -> CriticalVelocity {
                 vc: if lost.is_some() { last.v0 } else { f64::NAN },
                 vc_lower: last.v0,
                 vc_upper: lost.map_or(f64::NAN, |lost| lost.v0),
-                // Rounding can leave less than none of a stick that vanishes.
+                // With rounding the time of a stick that vanishes could become negative.
                 stick_time: last.summary.stick_time - longer.min(last.summary.stick_time),
                 slip_time: last.summary.slip_time + longer,
                 n_min: last.summary.n_min,
@@ -126,11 +125,11 @@ pub(super) fn told(ramped: &Ramped, options: &RampOptions) -> CriticalVelocity {
     }
 }
 
-/// How stick-slip ends that is lost just beyond its last response.
+/// How stick-slip ends, from the last response before it is lost.
 fn transition(last: &Response, graze_step: f64, options: &RampOptions) -> Transition {
     match last.regime {
         Regime::Irregular => Transition::Irregular,
-        // Of doubled stick-slip as well: one of the stops of its period.
+        // Also of doubled stick-slip: one of the stops of its period grazes.
         _ if last.depth.abs() < options.grazing * last.v0 || graze_step < GRAZE_PRECISION => {
             Transition::Grazing
         }

@@ -2,9 +2,9 @@
 //!
 //! The event functions g(v0) of the last two orbits predict the event ([`Prediction`]). A step
 //! takes a share of the way there. The corrector is the return map itself, iterated until periods
-//! repeat ([`Branch::orbit_at`]); a step from which it does not lead back to an orbit of the same
-//! kind is undone and made smaller. The rules for step sizes are listed in [`super::step_control`],
-//! all numbers in [`ContinuationOptions`].
+//! repeat ([`Branch::orbit_at`]). A step is undone and made smaller where that does not lead to an
+//! orbit of the same kind. The rules for step sizes are listed in [`super::step_control`], all
+//! numbers in [`ContinuationOptions`].
 
 use crate::model::elementary::power;
 use crate::slip::motion::Accuracy;
@@ -20,12 +20,12 @@ use super::transition::{Located, Undetermined};
 pub(super) struct Orbit {
     /// The last period that was followed.
     pub period: Period,
-    /// The event functions, which may be the limit that periods converge to.
+    /// The event functions: those of the period, or the limit that periods converge to.
     pub events: EventFunctions,
 }
 
 impl Orbit {
-    /// Of one period, as it is.
+    /// The orbit of one period, without a limit.
     pub(super) fn of(period: Period) -> Self {
         let events = period.event_functions();
         Self { period, events }
@@ -34,9 +34,9 @@ impl Orbit {
 
 /// A branch of periodic orbits, one at each v0.
 pub(super) trait Branch {
-    /// The orbit at `v0`, from where the last one that was accepted leads; `expected` is the period
-    /// nearby. With memory periods are followed until their event functions differ by no more than
-    /// `settled`, relative; one period where that is infinite.
+    /// The orbit at `v0`, started from the last accepted one; `expected` is the period nearby. With
+    /// memory, periods are followed until their event functions differ by no more than `settled`,
+    /// relative; one period where `settled` is infinite.
     ///
     /// # Errors
     /// See [`NoReturn`].
@@ -47,7 +47,7 @@ pub(super) trait Branch {
         settled: f64,
     ) -> Result<Orbit, NoReturn>;
 
-    /// Goes on from the last orbit that was found.
+    /// Accepts the last orbit that was found as the start of the next one.
     fn accept(&mut self);
 
     /// Goes on with another accuracy.
@@ -72,14 +72,14 @@ pub(super) struct Point {
     pub settled: f64,
     /// The derivatives of the event functions with respect to v0; NaN before they are known.
     pub slopes: EventFunctions,
-    /// Whether they are of this problem, not of one with another delay.
+    /// Whether the slopes are of this problem, not of one with another delay.
     pub own_slopes: bool,
     /// Where the event was predicted before this point was reached; NaN where it was not.
     pub predicted: f64,
 }
 
 impl Point {
-    /// Before anything is known of how it changes.
+    /// A first point, whose slopes are not known.
     pub(super) fn first(v0: f64, orbit: Orbit, settled: f64) -> Self {
         Self {
             v0,
@@ -101,14 +101,15 @@ impl Point {
         self.v0 * (1.0 + self.predict().step)
     }
 
-    /// Whether the event is near, and where it was predicted before.
+    /// Whether the event is near, and two predictions of it agree.
     fn agrees(&self, options: &ContinuationOptions) -> bool {
         let end = self.end();
         let near = end / self.v0 - 1.0 < options.quite_near;
         near && (end / self.predicted - 1.0).abs() < options.agreement
     }
 
-    /// Whether the event is near enough for slopes that are not its own.
+    /// Whether the slopes are good enough to locate the event: they are of this problem, or the
+    /// event is very near.
     fn tells(&self, options: &ContinuationOptions) -> bool {
         let end = self.end();
         let as_predicted = (end / self.predicted - 1.0).abs() < options.borrowed;
@@ -118,7 +119,7 @@ impl Point {
     /// The next point.
     fn moved_to(&self, v0: f64, orbit: Orbit, settled: f64) -> Self {
         let (mut slopes, mut own_slopes) = (self.slopes, self.own_slopes);
-        // At the same v0 only the event functions are better known.
+        // At the same v0 the event functions become more exact, and the slopes stay.
         if v0 > self.v0 {
             let step = v0 - self.v0;
             slopes = orbit
@@ -150,8 +151,8 @@ fn settled_after(step: f64, options: &ContinuationOptions) -> f64 {
     }
 }
 
-/// Follows `branch` from a point to the first zero of an event function, by `first_step` at first,
-/// relative; with the last point.
+/// Follows `branch` from a point to the first zero of an event function. The first relative step is
+/// at most `first_step`. Returns the last point as well.
 pub(super) fn continue_to_event(
     branch: &mut impl Branch,
     mut at: Point,
@@ -174,7 +175,7 @@ pub(super) fn continue_to_event(
             } else if last || gap < options.near || at.agrees(options) {
                 return (locate(&at, options), at);
             } else {
-                // Once more, beyond where the last one failed.
+                // One more step, beyond the v0 that failed.
                 (last, step) = (true, options.last_step * options.near);
             }
         }
@@ -192,7 +193,7 @@ pub(super) fn continue_to_event(
                 control.succeeded(next, step);
                 last = false;
             }
-            // A start that is not sustained.
+            // Stick-slip is not sustained at the start.
             Err(NoReturn::StopMissed | NoReturn::LiftOff) if step == 0.0 => {
                 return (Err(Undetermined::NotSustained), at);
             }
@@ -206,7 +207,7 @@ pub(super) fn continue_to_event(
     (Err(Undetermined::TooManyTrials), at)
 }
 
-/// The event that vanishes next at the last point, if it is near.
+/// The event predicted from the last point, if it is near.
 fn locate(at: &Point, options: &ContinuationOptions) -> Result<Located, Undetermined> {
     let Prediction { step, event } = at.predict();
     let near = match at.agrees(options) {
@@ -221,9 +222,8 @@ fn locate(at: &Point, options: &ContinuationOptions) -> Result<Located, Undeterm
     }
 }
 
-/// Whether a relative `step` of v0 threw stick-slip from one kind to another: the mean cycle or the
-/// mean slip of its period changed by more than such a step explains, or it turns back more or less
-/// often.
+/// Whether a relative `step` of v0 threw stick-slip from one kind to another: its mean cycle or
+/// mean slip changed by more than such a step explains, or the number of its reversals changed.
 pub(super) fn is_jump(
     before: &Period,
     after: &Period,
@@ -234,8 +234,7 @@ pub(super) fn is_jump(
     !same || times_jump(before.mean_times(), after.mean_times(), step, options)
 }
 
-/// Whether a relative `step` of v0 threw stick-slip from one kind to another, told from the
-/// durations of mean cycles and slips alone.
+/// The same as `is_jump`, from the durations of mean cycles and slips alone.
 pub(super) fn times_jump(
     before: [f64; 2],
     after: [f64; 2],
@@ -244,15 +243,15 @@ pub(super) fn times_jump(
 ) -> bool {
     let [cycle, slip] = [0, 1].map(|i| after[i] / before[i]);
     let shortest = options.shorter_cycle / (1.0 + step);
-    // Where sticks are not known, slips tell.
+    // Where the time of a cycle is unknown, slips decide.
     let same_cycle = cycle.is_nan() || (shortest..=options.longer_cycle).contains(&cycle);
     !same_cycle || !(options.shorter_slip..=options.longer_slip).contains(&slip)
 }
 
 /// Follows `branch` as [`continue_to_event`] does, and then checks the event by a finer
-/// integration. Where that gives another event, or where v0 is so low that the coarse one is not
-/// exact enough, the branch is followed once more with it. An event that only the coarse
-/// integration has is undetermined.
+/// integration. Where that gives another event, the branch is followed once more with it. The same
+/// is done where v0 is so low that the coarse integration is not exact enough. An event that only
+/// the coarse integration has is undetermined.
 pub(super) fn continue_to_checked_event<B: Branch + Clone>(
     branch: &mut B,
     from: Point,
@@ -301,8 +300,7 @@ fn locate_again(
     continue_to_event(branch, from, options.back, options)
 }
 
-/// Whether the event function that vanishes next says by the branch as it is now that the event is
-/// where it was located before.
+/// Whether the branch, with its present accuracy, has the event where it was located before.
 fn is_same_event(branch: &mut impl Branch, at: &Point, options: &ContinuationOptions) -> bool {
     let event = at.predict().event;
     match branch.orbit_at(at.v0, Some(&at.orbit.period), options.settled) {
@@ -330,7 +328,7 @@ mod tests {
         continued_by(0.1, family, (v0, x), slips)
     }
 
-    /// The same by steps no larger than this.
+    /// The same with steps of at most `largest_step`.
     fn continued_by(
         largest_step: f64,
         family: Family,
@@ -379,8 +377,8 @@ mod tests {
         }
     }
 
-    /// The period doubles before the graze: small steps lose the branch there. Large ones, after
-    /// which periods need not come to rest, may pass; so the end of a branch is checked.
+    /// The period doubles before the graze: small steps lose the branch there. Large ones may pass,
+    /// since periods need not settle after them. So the end of a branch is checked.
     #[test]
     fn a_branch_that_loses_its_stability_is_not_settled() {
         for s in [0.1, 0.3_f64] {
@@ -401,7 +399,7 @@ mod tests {
         assert!(at.v0 > 0.9 && at.v0 < 1.0, "{at:?}");
     }
 
-    /// Of a period of two slips the deeper one grazes; which one that is depends on the start.
+    /// In a period of two slips the deeper one grazes; which one is deeper depends on the start.
     #[test]
     fn a_slip_of_a_doubled_period_grazes() {
         const GRAZE: f64 = 0.84;

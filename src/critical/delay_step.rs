@@ -1,9 +1,9 @@
 //! One step of continuation in the delay: the end of a branch at one delay as the start of the
 //! search at the next.
 //!
-//! The ends at the last four delays predict the next one; the pasts at the last two, both taken
-//! just below their ends, predict the orbit just below that. From there v0 is raised by the same
-//! continuation as in a search from scratch, but for its check by a finer integration.
+//! The ends at the last four delays predict the next one. The pasts at the last two, both taken
+//! just below their ends, predict the orbit just below the next end. From there v0 is raised by the
+//! same continuation as in a search from scratch, without its check by a finer integration.
 
 use super::continuation::{Point, continue_to_event, is_jump};
 use super::end_of_branch::{approach, verify};
@@ -21,27 +21,27 @@ pub(super) struct Neighbour<'o> {
     options: &'o AlongDelayOptions,
     branch: WithHistory<'o, Motion>,
     at: Point,
-    /// The state at the end of the cell before the last one.
+    /// The state at the end of the branch in the cell before the last one.
     before: Option<Released<Motion>>,
-    /// Delays and ends of the cells before, the last ones.
+    /// Delays and ends of the last cells.
     ends: Vec<(f64, f64)>,
-    /// How it ends.
+    /// How the branch ends.
     event: Event,
-    /// How far off the end was last predicted, relative.
+    /// The error of the last prediction of an end, relative.
     off: f64,
-    /// How far below the predicted end the next cell starts at least, relative.
+    /// The least distance of the next start below its predicted end, relative.
     near: f64,
-    /// Cells in a row that ended by the slopes of one before.
+    /// Cells in a row whose ends were located with slopes of a cell before.
     borrowed: u32,
-    /// How clearly stick-slip ended at the last cell whose motion was followed beyond its end, the
-    /// delay there, and the change with the delay's logarithm; NaN where it is not known.
+    /// The lowest minimum of ẋ over v0 beyond the end of the last cell that was followed beyond its
+    /// end, the delay there, and its change with the logarithm of the delay; NaN where not known.
     clear: f64,
     seen_at: f64,
     change: f64,
-    /// The number of ends since then, and the time in slip at that cell.
+    /// The number of ends since then, and the time in slip of a period at that cell.
     unseen: u32,
     slip_seen: f64,
-    /// Whether it is known that stick-slip leads there.
+    /// Whether it is known that stick-slip comes to this end.
     pub decided: bool,
     /// The kinds of stick-slip on the way from low velocities, by their slips in a period.
     pub way: Vec<usize>,
@@ -50,7 +50,7 @@ pub(super) struct Neighbour<'o> {
 /// The number of ends that a prediction is made of.
 const KNOWN_ENDS: usize = 4;
 
-/// From how far below the predicted end a cell starts, relative: at first, and at least.
+/// How far below the predicted end a cell starts, relative: at first, and at least.
 fn nearest(event: Event, options: &AlongDelayOptions) -> [f64; 2] {
     match event {
         Event::LiftOff => [options.lift_off_first, options.lift_off_least],
@@ -61,16 +61,16 @@ fn nearest(event: Event, options: &AlongDelayOptions) -> [f64; 2] {
     }
 }
 
-/// What a start is made from, and how near its end the next cell may start.
+/// The point a cell starts from, and bounds for the start of the next cell.
 struct Start {
     from: Point,
-    /// Not nearer than the first number, and not farther than the second, unless something else
-    /// asks for it; relative.
+    /// The least and the largest distance below its end at which the next cell starts, relative.
+    /// Larger errors of predictions override the latter.
     next_within: [f64; 2],
 }
 
 impl<'o> Neighbour<'o> {
-    /// From an `ending` of `problem` that follows the last point of `branch`.
+    /// The neighbour for an `ending` of `problem` that follows the last point of `branch`.
     pub(super) fn new(
         problem: &'o Problem,
         branch: WithHistory<'o, Motion>,
@@ -98,22 +98,23 @@ impl<'o> Neighbour<'o> {
         }
     }
 
-    /// This end, with what is known of the same one from a search from scratch.
+    /// This neighbour, with the knowledge of `other`, which was searched from scratch at the same
+    /// cell.
     pub(super) fn like(mut self, other: &Self) -> Self {
         self.decided = other.decided;
         self.way.clone_from(&other.way);
         self
     }
 
-    /// The end of stick-slip of `problem`, which differs by its delay alone from the one before;
-    /// none where the branch before does not lead to it. This must not be used again then.
+    /// The end of stick-slip of `problem`, which differs from the last one by its delay alone. None
+    /// where the branch does not lead to it; this neighbour must not be used again then.
     pub(super) fn next(&mut self, problem: &Problem) -> Option<Ending> {
         let mut trials = self.options.most_trials;
         self.approach(problem, &mut trials)
     }
 
-    /// The end at the delay of `problem`, by way of delays in between where the whole way is too
-    /// far, within the number of `trials` that are left.
+    /// The end at the delay of `problem`, within the number of `trials` left. Where the whole way
+    /// is too far, it goes by delays in between.
     fn approach(&mut self, problem: &Problem, trials: &mut u32) -> Option<Ending> {
         let first = nearest(self.event, self.options)[0];
         loop {
@@ -130,7 +131,7 @@ impl<'o> Neighbour<'o> {
                     _ => return None,
                 }
             }
-            // It may have been too near.
+            // The start may have been too near its end.
             self.near = first;
         }
         let last = self.ends.last()?.0;
@@ -145,7 +146,7 @@ impl<'o> Neighbour<'o> {
         self.approach(problem, trials)
     }
 
-    /// The end at the delay of `problem`, or what was found in its place.
+    /// The end at the delay of `problem`, or what follows instead.
     fn attempt(&mut self, problem: &Problem) -> Result<Ending, Sequel> {
         let (tau, options) = (problem.tau, self.options);
         let predicted = self.predicted(tau);
@@ -191,8 +192,7 @@ impl<'o> Neighbour<'o> {
         }
         let mut near = (2.0 * self.off).max(self.near).min(options.farthest);
         if self.before.is_none() {
-            // An orbit that has to change starts with a transient, a small one where its past is
-            // extrapolated.
+            // Without a second past a changed orbit starts with a larger transient.
             let change = (predicted / last.1 - 1.0).abs();
             near = (options.off_by_change * change).clamp(near, options.farthest);
         }
@@ -213,8 +213,8 @@ impl<'o> Neighbour<'o> {
         Err(Undetermined::NotSustained)
     }
 
-    /// What follows an ending: from the ends before if these suffice, else by following the motion
-    /// beyond it. The end was `predicted` there, and its orbit slips for `slip` in a period.
+    /// What follows an ending: by the ends before if these suffice, else by following the motion
+    /// beyond it. The end was `predicted`, and its orbit slips for the time `slip` in a period.
     fn look(&mut self, problem: &Problem, ending: &Ending, predicted: f64, slip: f64) -> Sequel {
         if !ending.event.may_end() {
             return Sequel::Periodic(self.at.orbit.period.cycles().len());
@@ -234,36 +234,36 @@ impl<'o> Neighbour<'o> {
         seen
     }
 
-    /// Whether the next end, at `tau`, may be taken for that of stick-slip because it clearly ended
-    /// at those before: what the block does beyond them changes smoothly along a line.
+    /// Whether the next end, at `tau`, may be accepted without following the motion beyond it.
+    /// Motions beyond the ends before were clear of a stop, and change smoothly along a line.
     fn may_be_unseen(&self, tau: f64) -> bool {
         let options = self.options;
         if self.unseen == options.most_unseen {
             return false;
         }
         if self.event == Event::StickVanishes {
-            // Sticks are as short beyond their end as before it: only a small change says that
-            // nothing else becomes of it.
+            // Beyond a stick that vanishes no minimum of ẋ shows how clear the end is, so only a
+            // small change of the delay is trusted.
             let near = |last: &(f64, f64)| (tau / last.0 - 1.0).abs() < options.small_change;
             return self.clear > 0.0 && self.ends.last().is_some_and(near);
         }
-        // Not for NaN.
+        // False for NaN.
         let since = ln(tau / self.seen_at).abs();
         self.clear > options.clear && options.caution * self.change * since < self.clear
     }
 
-    /// Learns how clearly stick-slip ends at `tau`.
+    /// Notes how clearly stick-slip ends at `tau`.
     fn see(&mut self, tau: f64, clear: f64) {
         self.change = ((clear - self.clear) / ln(tau / self.seen_at)).abs();
         (self.clear, self.seen_at, self.unseen) = (clear, tau, 0);
     }
 
-    /// Whether the last end was not where the ends before predicted it.
+    /// Whether the last end was far from where the ends before predicted it.
     pub(super) fn surprised(&self) -> bool {
         self.ends.len() == KNOWN_ENDS && self.off > self.options.surprise
     }
 
-    /// Whether it was seen that stick-slip ends where the last cell says.
+    /// Whether the motion beyond the last end was followed.
     pub(super) fn seen(&self) -> bool {
         self.unseen == 0
     }
@@ -281,8 +281,8 @@ impl<'o> Neighbour<'o> {
         (!is_jump(here, there, change, self.branch.options())).then_some(point)
     }
 
-    /// Learns of the cell before, whose end was found otherwise: an end like its own predicts the
-    /// next one better.
+    /// Adds the end of an earlier cell that was found in another way: it makes the next prediction
+    /// better.
     pub(super) fn recall(&mut self, tau: f64, end: f64) {
         if self.ends.len() < KNOWN_ENDS && self.ends.first().is_some_and(|first| tau < first.0) {
             self.ends.insert(0, (tau, end));
@@ -291,7 +291,7 @@ impl<'o> Neighbour<'o> {
         }
     }
 
-    /// The end at `tau`: its logarithm as the polynomial of that of the delay through the last ones
+    /// The predicted end at `tau`: a polynomial through the logarithms of the last delays and ends
     /// (Neville).
     fn predicted(&self, tau: f64) -> f64 {
         let n = self.ends.len();
@@ -306,7 +306,7 @@ impl<'o> Neighbour<'o> {
                 p[i] = ((x - high) * p[i] + (low - x) * p[i + 1]) / (low - high);
             }
         }
-        // Not far from the last one, whatever the polynomial does.
+        // Limited, since a polynomial may extrapolate wildly.
         let (last, farthest) = (logs[n - 1].1, self.options.farthest_log);
         exp(p[0].clamp(last - farthest, last + farthest))
     }
@@ -339,7 +339,7 @@ mod tests {
         assert_eq!(neighbour.ends.len(), KNOWN_ENDS);
     }
 
-    /// A power of the delay is a line in logarithms, a cubic of it one through four ends.
+    /// A power law is a line in logarithms; four ends give a cubic.
     #[test]
     fn ends_are_predicted_by_a_polynomial_of_logarithms() {
         let problem = letters(-0.33, 0.0, 4.15);
@@ -349,7 +349,7 @@ mod tests {
         let cubic = |tau: f64| 0.3 * (0.2 * tau.ln().powi(3) - tau.ln()).exp();
         neighbour.ends = [1.0, 1.2, 1.5, 1.6].map(|tau| (tau, cubic(tau))).to_vec();
         assert!((neighbour.predicted(1.7) / cubic(1.7) - 1.0).abs() < 1e-12);
-        // Not far from the last one.
+        // The distance from the last one is limited.
         neighbour.ends = vec![(1.0, 0.1), (1.01, 0.5)];
         assert!((neighbour.predicted(2.0) - 0.5 * 0.5_f64.exp()).abs() < 1e-12);
     }
@@ -373,7 +373,7 @@ mod tests {
         neighbour.unseen = 0;
         neighbour.clear = 1e-3;
         assert!(!neighbour.may_be_unseen(4.1));
-        // Where a stick vanishes only a small change of the delay says so.
+        // Where a stick vanishes only a small change of the delay is allowed.
         neighbour.event = Event::StickVanishes;
         assert!(neighbour.may_be_unseen(4.2) && !neighbour.may_be_unseen(4.4));
     }

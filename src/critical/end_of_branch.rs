@@ -79,8 +79,8 @@ fn approach_stick<M: ReturnMap>(
     Ok(Ending::new(located, orbit.period))
 }
 
-/// What follows the end of a branch. The motion that it was told from is left as the one that
-/// `branch` tried last.
+/// What follows the end of a branch. The motion that showed it is left as the one that `branch`
+/// tried last.
 pub(super) fn verify(
     problem: &Problem,
     branch: &mut WithHistory<'_, Motion>,
@@ -111,8 +111,8 @@ pub(super) fn verify(
     }
 }
 
-/// Whether the orbit just below a graze at `v0` attracts. Where a period has doubled, the orbit of
-/// the single period goes on, unstable, to a graze of its own, which is not the end.
+/// Whether the orbit just below a graze at `v0` attracts. Beyond a period doubling the orbit of the
+/// single period goes on, unstable, to a graze of its own, which is not the end.
 fn attracts_below_graze<M: ReturnMap>(
     branch: &mut WithHistory<'_, M>,
     v0: f64,
@@ -130,9 +130,9 @@ fn attracts_below_graze<M: ReturnMap>(
     }
 }
 
-/// Whether stick-slip comes back to the orbit that `map` is on when it is `disturbed` by v0 being
-/// lower by this share in one period: an unstable orbit, followed from close by, seems to be at
-/// rest as well.
+/// Whether stick-slip comes back to the orbit of `map` after v0 was lower in one period by the
+/// share `disturbed`. Periods alone do not show it: an unstable orbit that is followed closely
+/// seems to be at rest as well.
 fn attracts<M: ReturnMap>(mut map: M, period: &Period, disturbed: f64, options: &Options) -> bool {
     let checks = &options.transition;
     let v0 = map.v0();
@@ -196,8 +196,8 @@ mod tests {
         Period::new(slips, cycles)
     }
 
-    /// The fixed point of the logistic map attracts up to v0 = 3, that of two slips from there to
-    /// v0 = 1 + √6.
+    /// The fixed point of the logistic map attracts up to v0 = 3, the orbit of two slips from there
+    /// to v0 = 1 + √6.
     #[test]
     fn orbits_attract_until_their_period_doubles() {
         let options = Options::default();
@@ -272,7 +272,7 @@ mod tests {
             assert!((ending.v0 - 1.0).abs() < 1e-6);
             let below = ending.v0 - branch.map().v0;
             assert!((0.0..3e-5).contains(&below), "{below}");
-            // It is not where it was not located.
+            // It does not end at a v0 where no event was located.
             let elsewhere = Located { event, v0: 1.1 };
             let found = approach(&mut branch, elsewhere, &at, &options);
             assert_eq!(found, Err(Undetermined::NotConfirmed));

@@ -1,7 +1,7 @@
-//! Event functions: what is positive along a branch of periodic stick-slip and vanishes where the
-//! branch ends or becomes another one.
+//! Event functions: numbers that are positive along a branch of periodic stick-slip. One of them
+//! vanishes where the branch ends or changes its kind.
 //!
-//! All have one sign: positive before the event, zero at it. The numbers are those of the page in
+//! All have one sign: positive before the event, zero at it. They are numbered as on the page of
 //! [`super`].
 //!
 //! ```text
@@ -12,13 +12,13 @@
 //! dip            the lowest minimum of ẋ before a stop      g = 0: a new stop              (E5)
 //! ```
 //!
-//! (E1) is smooth in v0 up to its zero, where the slip time has a square root: the Taylor
-//! polynomial of the last step of a slip goes on beyond the stop as if friction had not changed its
-//! sign there.
+//! (E1) is smooth in v0 up to its zero, where the slip time has a square root. For it the Taylor
+//! polynomial of the last step of a slip is continued beyond the stop as if friction had not
+//! changed its sign there.
 //!
-//! A new event function needs a variant and a field here, its value in each cycle and period
-//! (`return_map`), what a branch does at its zero (`continuation`, `end_of_branch`, `memoryless`),
-//! a row in the table of [`super`], and, if simulation shall see it, a line in
+//! A new event function needs a variant and a field here, and its value in each cycle and period
+//! (`return_map`). It needs a rule for a branch at its zero (`continuation`, `end_of_branch`,
+//! `memoryless`), and a row in the table of [`super`]. For simulation to see it, it needs a line in
 //! `regime::Response::event_functions`. The compiler asks for the rest.
 
 /// The most slips in a period that is followed by continuation.
@@ -43,7 +43,8 @@ pub(super) enum Event {
 }
 
 impl Event {
-    /// Whether stick-slip, or the model, may end there. Else it becomes of another kind.
+    /// Whether stick-slip or the model may end there. Other events only change the kind of
+    /// stick-slip.
     pub(super) const fn may_end(self) -> bool {
         matches!(self, Self::Graze(_) | Self::LiftOff | Self::StickVanishes)
     }
@@ -54,8 +55,8 @@ impl Event {
     }
 }
 
-/// The event functions of one period; NaN for what the period does not have. Their derivatives with
-/// respect to v0 are such numbers as well.
+/// The event functions of one period; NaN where the period has no such number. The same struct
+/// holds their derivatives with respect to v0.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct EventFunctions {
     /// How far below 0 each slip would have gone beyond its stop, in N0/√(κM).
@@ -80,7 +81,7 @@ impl EventFunctions {
         dip: f64::NAN,
     };
 
-    /// This one alone.
+    /// The event function of `event` alone; the others are unknown.
     pub(super) fn alone(event: Event, value: f64) -> Self {
         let mut one = Self::UNKNOWN;
         match event {
@@ -107,7 +108,7 @@ impl EventFunctions {
         })
     }
 
-    /// The one that vanishes at `event`.
+    /// The event function that vanishes at `event`.
     pub(super) fn of(&self, event: Event) -> f64 {
         match event {
             Event::Graze(slip) => self.depth[slip],
@@ -118,7 +119,7 @@ impl EventFunctions {
         }
     }
 
-    /// What `f` makes of each of these and the same one of `other`.
+    /// `f` of each of these and the same one of `other`.
     pub(super) fn with(&self, other: &Self, f: impl Fn(f64, f64) -> f64) -> Self {
         Self {
             depth: std::array::from_fn(|slip| f(self.depth[slip], other.depth[slip])),
@@ -129,7 +130,8 @@ impl EventFunctions {
         }
     }
 
-    /// What is noise in the one of `event` at `v0`, where forces and times are known to `noise`.
+    /// The noise of the event function of `event` at `v0`, where forces and times are known to
+    /// `noise`.
     pub(super) fn noise(event: Event, noise: f64, v0: f64) -> f64 {
         match event.of_velocity() {
             true => noise * v0,

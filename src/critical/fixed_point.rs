@@ -1,5 +1,5 @@
-//! The fixed point that iterates of the return map converge to, as the event functions of the last
-//! three periods tell.
+//! The fixed point that iterates of the return map converge to, estimated from the event functions
+//! of the last three periods.
 
 use super::event_functions::EventFunctions;
 use super::options::ContinuationOptions;
@@ -12,17 +12,17 @@ impl Iterates {
     /// Before the first period.
     pub(super) const NONE: Self = Self([EventFunctions::UNKNOWN; 3]);
 
-    /// Whether there is none yet.
+    /// Whether no period was added yet.
     pub(super) fn none_yet(&self) -> bool {
         self.0[2].load.is_nan()
     }
 
-    /// One more period.
+    /// Adds the event functions of one more period.
     pub(super) fn push(&mut self, events: EventFunctions) {
         self.0 = [self.0[1], self.0[2], events];
     }
 
-    /// Whether there are three that repeat to `settled`, relative, at `v0`.
+    /// Whether there are three periods, and they repeat to `settled`, relative, at `v0`.
     pub(super) fn settled(&self, settled: f64, v0: f64, options: &ContinuationOptions) -> bool {
         let [first, second, third] = self.0.map(|events| events.each());
         let mut all = first.iter().zip(&second).zip(&third);
@@ -33,7 +33,7 @@ impl Iterates {
             })
     }
 
-    /// What they converge to.
+    /// The limits to which the event functions converge.
     pub(super) fn limits(&self, options: &ContinuationOptions) -> EventFunctions {
         let [first, second, third] = &self.0;
         let before = second.with(first, |second, first| second - first);
@@ -43,10 +43,10 @@ impl Iterates {
     }
 }
 
-/// Whether the last two of three numbers differ by no more than `settled`, relative, and by less
-/// than the first two: else the orbit that they seem to reach may be unstable. That they come
-/// nearer is not asked where a rough orbit is enough. Or whether they differ by no more than
-/// `noise`. What a period does not have is at rest.
+/// Whether a number has come to rest in three periods. The last two have to differ by no more than
+/// `settled`, relative, and by less than the first two, since the orbit may be unstable otherwise.
+/// The latter is not required where a rough orbit is enough. Differences of at most `noise`, and
+/// numbers that a period does not have, count as at rest.
 fn at_rest(
     [first, second, third]: [f64; 3],
     settled: f64,
@@ -105,7 +105,7 @@ mod tests {
             assert_eq!(found.stick_time, 2.0);
             assert!(found.dip.is_nan());
         }
-        // Too far an extrapolation: the last one as it is.
+        // The ratio is too large to extrapolate: the last one as it is.
         assert_eq!(sequence(0.8, 3).limits(&options).load, 1.0 + 1e-3 * 0.64);
     }
 

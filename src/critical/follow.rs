@@ -1,8 +1,8 @@
 //! The protocol `follow`: the largest v0 at which stick-slip persists while v0 is raised slowly, by
 //! the first method that leads to it.
 //!
-//! One kind of stick-slip after the other is continued to the event where it ends or becomes of the
-//! next kind; irregular stick-slip in between is crossed by simulation.
+//! One kind of stick-slip after the other is continued to the event where it ends or changes into
+//! the next kind. Irregular stick-slip in between is crossed by simulation.
 
 use super::after_event::sequel;
 use super::bracket::bounded;
@@ -28,7 +28,7 @@ pub fn critical_velocity(problem: &Problem) -> CriticalVelocity {
     from_scratch(problem).0
 }
 
-/// The critical velocity, and what a neighbour may start from.
+/// The critical velocity, and the neighbour from which continuation along the delay may start.
 pub(super) fn from_scratch(problem: &Problem) -> Found<'_> {
     if problem.persists_without_control() {
         let persists = Transition::Persists;
@@ -53,7 +53,7 @@ fn from_start(problem: &Problem, v0: f64) -> Result<Found<'_>, NoStart> {
             return Ok((bounded(problem, critical, Vec::new(), &[]), None));
         }
         Err(NoReturn::LiftOff) => return Err(NoStart::LiftOff),
-        // Looked at longer only where no start leads to stick-slip.
+        // Such a start is simulated only where no start leads to stick-slip.
         Err(NoReturn::StopMissed) if !larger => return Err(NoStart::NotSustained),
         Ok(None) | Err(_) => {}
     }
@@ -66,7 +66,7 @@ fn from_start(problem: &Problem, v0: f64) -> Result<Found<'_>, NoStart> {
         way: Vec::new(),
     };
     let mut others = Vec::new();
-    // At a larger velocity than the first one the block may stick once, and not again.
+    // At a larger start velocity than the first the block may stick once and not again.
     let (mut critical, mut neighbour) = match WithHistory::released(problem, v0, accuracy) {
         Ok((branch, first)) if !larger => kinds.end(branch, first, options.largest_step),
         Err(NoReturn::LiftOff) => return Err(NoStart::LiftOff),
@@ -89,18 +89,18 @@ fn from_start(problem: &Problem, v0: f64) -> Result<Found<'_>, NoStart> {
     Ok((bounded, neighbour))
 }
 
-/// Stick-slip from which simulation has to go on: motions at less and less high v0, each for the
-/// case that the one before is not sustained. The first relative steps of v0 are `step` times those
-/// of a search from low v0.
+/// Stick-slip from which simulation has to go on: motions at lower and lower v0, each used if the
+/// one before is not sustained. The first relative steps of v0 are `step` times those of a search
+/// from low v0.
 struct Handover {
     motions: Vec<Motion>,
     step: f64,
 }
 
-/// What is found, and what a neighbour may start from.
+/// The critical velocity, and the neighbour from which continuation along the delay may start.
 type Found<'p> = (CriticalVelocity, Option<Neighbour<'p>>);
 
-/// What is found by simulation, and the searches that told it.
+/// The critical velocity by simulation, and the searches that gave it.
 type Searched = (CriticalVelocity, Vec<Search>);
 
 /// One kind of stick-slip after the other.
@@ -112,12 +112,12 @@ struct Kinds<'p> {
     entry: Option<Box<Motion>>,
     /// The searches by simulation that came to an end.
     searches: Vec<Search>,
-    /// The slips in a period of each kind up to there, and 0 for irregular stick-slip.
+    /// The slips in a period of each kind on the way, and 0 for irregular stick-slip.
     way: Vec<usize>,
 }
 
 impl<'p> Kinds<'p> {
-    /// The end of stick-slip from a point of a branch on, by this relative `step` of v0 at first.
+    /// The end of stick-slip from a point of a branch on, with this first relative `step` of v0.
     fn end(&mut self, branch: WithHistory<'p, Motion>, at: Point, step: f64) -> Found<'p> {
         match self.follow(branch, at, step) {
             Ok(found) => found,
@@ -216,14 +216,15 @@ impl<'p> Kinds<'p> {
         })
     }
 
-    /// One more kind on the way: what comes after irregular stick-slip does so by chance.
+    /// Notes one more kind on the way. Kinds after irregular stick-slip do not count: chance
+    /// selects them.
     fn pass(&mut self, slips: usize) {
         if self.entry.is_none() {
             self.way.push(slips);
         }
     }
 
-    /// The end that the last kind of stick-slip has.
+    /// The critical velocity at an ending of the last kind of stick-slip.
     fn ended(&self, branch: WithHistory<'p, Motion>, at: Point, ending: &Ending) -> Found<'p> {
         let ending = ending.of_stick_slip();
         let critical = ending.critical_velocity(Method::GrazeOrbit);
@@ -251,7 +252,7 @@ impl<'p> Kinds<'p> {
         let search = ramp::from(self.problem, motion, &options);
         let ramped = &search.ramped;
         let Some(last) = ramped.last else {
-            // It was lost where it was come to.
+            // It was lost at the v0 at which it was reached.
             let by = Method::Simulation;
             let lost = ramped.lost.filter(|lost| lost.regime == Regime::LiftOff);
             return Err(CriticalVelocity {
@@ -274,7 +275,7 @@ impl<'p> Kinds<'p> {
         }
     }
 
-    /// Once more from the first irregular stick-slip on.
+    /// The end of stick-slip, searched once more from the first irregular stick-slip on.
     fn again(&mut self, entry: Motion) -> CriticalVelocity {
         match self.cross(entry) {
             Ok((motion, slips)) => self.end_of(motion, slips).0,
@@ -282,8 +283,7 @@ impl<'p> Kinds<'p> {
         }
     }
 
-    /// Once more from the first irregular stick-slip on, while v0 glides to near the end that was
-    /// `found`.
+    /// The same while v0 glides to near the end that was `found`.
     fn glide(&mut self, mut entry: Motion, found: &CriticalVelocity) -> CriticalVelocity {
         let usual = &self.problem.options.ramp;
         let options = gliding(found, usual);
@@ -301,8 +301,8 @@ impl<'p> Kinds<'p> {
     }
 }
 
-/// What became of stick-slip that was lost from sight at its last point, the motion that came to
-/// it, and how far beyond, relative.
+/// What follows stick-slip whose branch was lost at its last point; the motion that showed it; and
+/// how far beyond that point it is, relative.
 fn look_beyond(
     problem: &Problem,
     branch: &WithHistory<'_, Motion>,
@@ -323,8 +323,8 @@ fn look_beyond(
     (next, motion, beyond)
 }
 
-/// By simulation from the first of some motions in stick-slip that is sustained; from low
-/// velocities where none is.
+/// By simulation, from the first of some motions whose stick-slip is sustained; from low velocities
+/// where none is.
 fn simulated_from(problem: &Problem, Handover { motions, step }: Handover) -> Searched {
     let usual = &problem.options.ramp;
     for motion in motions {
@@ -362,8 +362,8 @@ mod tests {
     use super::*;
     use crate::model::FrictionLaw;
 
-    /// Known cells, each with the work that finding them takes: fewer trials and steps are better,
-    /// more have to have a reason.
+    /// Known cells, each with the work of its search. Fewer trials and steps are better; more need
+    /// a reason.
     #[test]
     fn known_cells_take_no_more_work() {
         let weaker = |slope: f64, alpha_v: f64, tau: f64| {
@@ -397,7 +397,7 @@ mod tests {
         assert!(found.vc.is_nan() && found.decided);
     }
 
-    /// What was lost from sight is looked for beyond its last point, as far as it is the same.
+    /// Stick-slip whose branch was lost is followed beyond its last point until its kind changes.
     #[test]
     fn a_branch_that_was_lost_is_recognised() {
         let problem = letters(-0.33, 0.0, 4.15);
@@ -422,7 +422,7 @@ mod tests {
         );
     }
 
-    /// Where the first of some motions is not sustained the next one is gone on with.
+    /// Where the first of some motions is not sustained, simulation goes on with the next one.
     #[test]
     fn simulation_goes_on_from_what_is_sustained() {
         let problem = letters(-0.33, 0.0, 4.15);

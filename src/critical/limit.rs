@@ -38,7 +38,7 @@ pub struct LimitCell {
 }
 
 impl LimitCell {
-    /// At γ > 0 and μ_K/μ_S in (0, 1].
+    /// The limit at γ > 0 and μ_K/μ_S in (0, 1].
     ///
     /// # Errors
     /// As [`CoulombLimit::at`].
@@ -81,7 +81,7 @@ fn omega(gamma: f64) -> f64 {
 }
 
 impl CoulombLimit {
-    /// At γ > 0 and r = μ_K/μ_S in (0, 1].
+    /// The limit at γ > 0 and r = μ_K/μ_S in (0, 1].
     ///
     /// # Errors
     /// When γ is not finite and greater than 0, or r not in its range.

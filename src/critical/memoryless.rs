@@ -20,14 +20,14 @@ pub(super) struct Memoryless<'p> {
 }
 
 impl<'p> Memoryless<'p> {
-    /// Of `problem`, which has pure load control.
+    /// Slips without memory of `problem`, which has pure load control.
     pub(super) fn new(problem: &'p Problem, accuracy: Accuracy) -> Self {
         let motion = problem.at_rest(1e-3, accuracy);
         Self { problem, motion }
     }
 
-    /// The period just below `v0`, by `precision`, if its stick, and so the one before it, outlast
-    /// the delay.
+    /// The period just below `v0`, by the relative distance `precision`. None unless its stick, and
+    /// so the one before it, outlasts the delay.
     pub(super) fn outlasts(&mut self, v0: f64, precision: f64) -> Option<Period> {
         let problem = self.problem;
         let cycle = self
@@ -38,7 +38,7 @@ impl<'p> Memoryless<'p> {
         cycle.map(Period::of)
     }
 
-    /// The end of stick-slip from a point on; none where slips without memory do not lead to it.
+    /// The end of stick-slip from a point on. None where slips without memory do not lead to it.
     fn end(&mut self, mut from: Point) -> Option<Ending> {
         let problem = self.problem;
         let (options, checks) = (&problem.options.continuation, &problem.options.transition);
@@ -64,8 +64,8 @@ impl<'p> Memoryless<'p> {
         None
     }
 
-    /// The graze at `v0` next to the last point, if stick-slip ends there. Where it does not, the
-    /// search starts again, with history.
+    /// The graze at `v0`, next to the last point, if stick-slip ends there. None where it does not:
+    /// the search then starts again with history.
     fn graze(&mut self, v0: f64, at: &Point) -> Option<Ending> {
         let problem = self.problem;
         let options = &problem.options.transition;
@@ -120,7 +120,7 @@ impl Branch for Memoryless<'_> {
     }
 }
 
-/// The end of stick-slip of slips without memory from `v0` on, under pure load control; none where
+/// The end of stick-slip under pure load control, by slips without memory from `v0` on. None where
 /// they do not lead to it.
 ///
 /// # Errors
@@ -145,7 +145,7 @@ mod tests {
     use super::*;
     use crate::model::FrictionLaw;
 
-    /// The letter's Fig. 4: with the delay the graze comes to the closed form.
+    /// The letter's Fig. 4: as the delay falls the graze tends to the closed form.
     #[test]
     fn a_short_delay_grazes_where_the_closed_form_says() {
         for gamma in [0.1, 0.3, 0.6] {

@@ -3,7 +3,7 @@
 //! # The mathematics
 //!
 //! **State.** A block that is just released has ẋ = 0, and its spring is as strong as static
-//! friction. What it does next depends on its elongation over the last delay alone,
+//! friction. Its future depends on its elongation over the last delay alone,
 //!
 //! ```text
 //! φ(s) = a(t + s),   −τ ≤ s ≤ 0,   φ(0) = μ_S N,   N = 1 + α_n (φ(0) − φ(−τ))            (1)
@@ -26,7 +26,7 @@
 //! φ, P(φ), P²(φ), …  →  φ*(v0)                                                           (3)
 //! ```
 //!
-//! where three periods in a row tell the limit of a number g of the orbit (Aitken):
+//! where three periods in a row give the limit of a number g of the orbit (Aitken):
 //!
 //! ```text
 //! g* = g₃ + Δ q/(1 − q),   Δ = g₃ − g₂,   q = Δ/(g₂ − g₁)                                (4)
@@ -39,9 +39,9 @@
 //! φ(s) = φ(0) + v0 s,   φ(0) = μ_S (1 + α_n v0 τ)                                        (5)
 //! ```
 //!
-//! **Event functions.** As v0 grows, a branch of orbits goes on until one of five numbers vanishes
-//! that are positive along it (`event_functions`, E1 to E5). They are smooth in v0, so a secant of
-//! the last two orbits predicts where (`continuation`):
+//! **Event functions.** Along a branch of orbits five numbers are positive. As v0 grows, the branch
+//! goes on until one of them vanishes (`event_functions`, E1 to E5). They are smooth in v0, so a
+//! secant of the last two orbits predicts the zero (`continuation`):
 //!
 //! ```text
 //! v0* = v0 − g(v0)/g′,   g′ = (g(v0) − g(v0 − h))/h,   the smallest v0* ≥ v0 of all g    (6)
@@ -61,9 +61,9 @@
 //! Kowalczyk, *Piecewise-smooth Dynamical Systems* (Springer 2008), chapters 7 and 8. The depth
 //! (E1) is smooth all the same.
 //!
-//! Events that no g announces: the fixed point of (2) loses its stability (period doubling, where
+//! No g announces these events: the fixed point of (2) loses its stability (period doubling, where
 //! stick-slip goes on with twice the slips), meets an unstable one (saddle-node), or irregular
-//! stick-slip is lost all at once (crisis). Iteration (3) then does not settle; simulation tells
+//! stick-slip is lost all at once (crisis). Iteration (3) then does not settle; simulation shows
 //! what follows.
 //!
 //! **Algorithm** of the protocol `follow` ([`critical_velocity`]): raise v0 slowly from low values.
@@ -84,10 +84,10 @@
 //!         not known:                   go on by simulation          ramp
 //! ```
 //!
-//! Simulation (`ramp`, `regime`) holds stick-slip at one v0 after the other until it is known what
-//! it comes to; v0 is raised by steps that are halved where it is lost, and its answer has to be
+//! Simulation (`ramp`, `regime`) holds stick-slip at one v0 after the other until its outcome is
+//! known. v0 is raised by steps that are halved where stick-slip is lost, and the answer has to be
 //! confirmed by other steps (`confirmation`). Where these disagree, two slow searches decide. If
-//! they disagree as well, v_c is not decided, and bounded (`bracket`). Along a line of delays the
+//! they disagree as well, v_c is not decided, but bounded (`bracket`). Along a line of delays the
 //! ends at the last delays predict the next one (`delay_step`, [`along_delay`]). By the other
 //! protocol, [`switch_on`], control is switched on at a phase of uncontrolled stick-slip. Coulomb
 //! friction under load control has a closed form as τ → 0: [`limit`], the letter's Fig. 4.
@@ -95,14 +95,14 @@
 //! Continuation by predictor and corrector with step control: Allgower and Georg, *Numerical
 //! Continuation Methods* (Springer 1990); Keller, *Lectures on Numerical Methods in Bifurcation
 //! Problems* (Tata Institute 1987); Doedel, *Lecture notes on numerical analysis of nonlinear
-//! equations* (in Krauskopf, Osinga and Galán-Vioque, Springer 2007). All numbers that tune it
-//! stand in [`options`], with their reasons; the predictor in `step_control`, with a list of all
-//! rules for step sizes.
+//! equations* (in Krauskopf, Osinga and Galán-Vioque, Springer 2007). All numbers that tune it are
+//! in [`options`], with their reasons. The predictor is in `step_control`, with a list of all rules
+//! for step sizes.
 //!
-//! - `observers`: what is seen of a motion meanwhile: its last stops, when a slip goes on for good,
+//! - `observers`: what a search observes of a motion: its last stops, a slip that goes on for good,
 //!   irregular sticking
-//! - `problem`: what is asked, the controlled oscillator, and what is told
-//! - `search`: what a search by simulation came to
+//! - `problem`: the question, which is the controlled oscillator, and the answer
+//! - `search`: the result of a search by simulation
 //! - `synthetic`: return maps of one number with closed forms, in the place of the oscillator's,
 //!   for tests
 //! - `work`: the work of a search, counted for tests

@@ -1,12 +1,12 @@
-//! What is seen of stick-slip while it is simulated: its last stops, whether a block that slips
-//! will stop again, and whether one whose outcome takes long goes on to stick or calms down.
+//! Observers of stick-slip while it is simulated: its last stops, whether a block that slips will
+//! stop again, and whether one whose outcome takes long goes on to stick or calms down.
 
 use super::event_functions::MOST_SLIPS;
 use super::options::{RampOptions, SwitchOnOptions};
 use crate::slip::motion::{Event, Mode, Motion};
 use crate::slip::outcome::Observer;
 
-/// How long a block that slips is waited for.
+/// How long to wait for a block that slips.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Waiting {
     /// For a few cycles: v0 glides on.
@@ -22,7 +22,8 @@ pub(super) enum Waiting {
 }
 
 impl Waiting {
-    /// Stick-slip that does not repeat within so many cycles under the delay `tau` is irregular.
+    /// The number of cycles within which stick-slip has to repeat under the delay `tau`. Else it is
+    /// irregular.
     pub(super) fn cycles(self, tau: f64, options: &RampOptions) -> usize {
         let [always, of_delay] = match self {
             Self::Brief => options.cycles_gliding,
@@ -42,12 +43,12 @@ impl Waiting {
     }
 }
 
-/// A stop that is shallow is near a graze.
+/// The depth of a stop, which is small near a graze.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct ShallowStop {
-    /// From the stop to where it would have gone.
+    /// Time from the stop to the minimum of ẋ that it cut off.
     pub to_minimum: f64,
-    /// How far below 0 that is.
+    /// How far below 0 that minimum is.
     pub depth: f64,
 }
 
@@ -58,15 +59,15 @@ impl ShallowStop {
     };
 }
 
-/// Sees the stops of a motion, and the minima of ẋ where it does not stop.
+/// Observes the stops of a motion, and the minima of ẋ where it does not stop.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Stops<'o> {
     options: &'o RampOptions,
-    /// When the last one was.
+    /// Time of the last stop.
     pub last: f64,
-    /// How many there were.
+    /// Number of stops.
     pub count: u32,
-    /// The last ones: as many as slips in the longest period that is recognised.
+    /// The last stops: as many as slips in the longest period that is recognised.
     recent: [ShallowStop; MOST_SLIPS],
     /// Whether sliding is linearly stable: then minima that rise go on rising.
     slides: bool,
@@ -74,19 +75,19 @@ pub(super) struct Stops<'o> {
     window: f64,
     until: f64,
     lowest: f64,
-    /// The lowest one of the window before: what has risen after a graze may fall again, to another
-    /// kind of stick-slip.
+    /// The lowest minimum of the window before. After a graze minima may rise and fall again, to
+    /// another kind of stick-slip.
     before: f64,
     windows: u32,
     /// Amplitudes beyond this are far from stick-slip.
     large: f64,
     far: bool,
-    /// Windows in a row in which it did not fall.
+    /// Windows in a row in which the lowest minimum did not fall.
     calm: u32,
 }
 
 impl<'o> Stops<'o> {
-    /// Of a motion from now on; `slides`: whether sliding is linearly stable.
+    /// An observer of `motion` from now on. `slides` says whether sliding is linearly stable.
     pub(super) fn new(
         motion: &Motion,
         slides: bool,
@@ -118,7 +119,7 @@ impl<'o> Stops<'o> {
         }
     }
 
-    /// The shallowest stop of the last period, of so many `slips`.
+    /// The shallowest stop of the last period, which has so many `slips`.
     pub(super) fn shallowest(&self, slips: u32) -> ShallowStop {
         let count = self.count as usize;
         let recent = (slips.max(1) as usize).min(MOST_SLIPS).min(count);
@@ -142,7 +143,7 @@ impl<'o> Stops<'o> {
         self.calm >= windows || at_last && 2 * self.calm >= self.windows
     }
 
-    /// Whether it has grown far beyond stick-slip.
+    /// Whether the motion has grown far beyond stick-slip.
     pub(super) fn far(&self) -> bool {
         self.far
     }
@@ -153,7 +154,7 @@ impl<'o> Stops<'o> {
         (self.windows, self.calm) = (0, 0);
     }
 
-    /// A window without a stop has passed.
+    /// Ends a window without a stop.
     fn close(&mut self, now: f64) {
         let falls = self.options.falls;
         self.windows += 1;
@@ -199,16 +200,17 @@ impl Observer for Stops<'_> {
     }
 }
 
-/// Sees whether the block still sticks from time to time, or comes nearer and nearer to sliding.
+/// Observes whether the block still sticks from time to time, or comes nearer and nearer to
+/// sliding.
 pub(super) struct Sticking<'o> {
     options: &'o SwitchOnOptions,
-    /// How long stick-slip is waited for to repeat.
+    /// How long to wait for stick-slip to repeat.
     patience: f64,
-    /// Until when it is.
+    /// The time until which to wait for it.
     until: f64,
     now: f64,
     released: f64,
-    /// How often it was released after it had slipped for long.
+    /// How often it was released after a long slip.
     returns: u32,
     /// Whether sliding is linearly stable.
     slides: bool,
@@ -221,7 +223,7 @@ pub(super) struct Sticking<'o> {
 }
 
 impl<'o> Sticking<'o> {
-    /// Of a motion that has just been released, at t = 0.
+    /// An observer of a motion that has just been released, at t = 0.
     pub(super) const fn new(patience: f64, slides: bool, options: &'o SwitchOnOptions) -> Self {
         Self {
             options,
@@ -242,15 +244,14 @@ impl<'o> Sticking<'o> {
         self.now - self.released < self.options.recent * self.patience
     }
 
-    /// Whether it still sticks, for longer than it was waited for to do so periodically, or has
-    /// come back to it again and again.
+    /// Whether stick-slip goes on: the block still sticks after the time to wait for a repetition,
+    /// or has come back to sticking again and again.
     pub(super) fn goes_on(&self) -> bool {
         self.now >= self.until && self.recently() || self.returns >= self.options.returns
     }
 
-    /// Whether it slips forwards, and has come nearer to stable sliding for long. That far from any
-    /// stick only the amplitude of its oscillation is left to change, slowly, and goes on as it
-    /// does.
+    /// Whether the block slips forwards and has come nearer to stable sliding for long. That far
+    /// from any stick only the amplitude of its oscillation changes, slowly and in one direction.
     pub(super) fn calms_down(&self) -> bool {
         self.slides && self.rises >= self.options.rises
     }
@@ -273,7 +274,7 @@ impl Observer for Sticking<'_> {
         self.now = motion.t;
         if event == Some(Event::Release) {
             if !self.recently() {
-                // It had slipped for long: whether it goes on to stick is to be seen.
+                // After a long slip the wait for a repetition begins anew.
                 self.until = self.now + self.patience;
                 self.returns += 1;
             }

@@ -1,5 +1,4 @@
-//! The question and the answer: the controlled oscillator whose critical velocity is asked for, and
-//! what is found.
+//! The question and the answer: a controlled oscillator, and its critical velocity.
 
 use super::options::{Options, RampOptions};
 use super::transition::Transition;
@@ -24,13 +23,13 @@ pub struct Problem {
     pub alpha_n: f64,
     /// τ √(κ/M).
     pub tau: f64,
-    /// R, the memory of the feedback, −1 < R < 1; left aside without gains.
+    /// R, the memory of the feedback, −1 < R < 1; ignored without gains.
     pub memory: f64,
-    /// δ √(κ/M) ≥ 0, the latency of the feedback; left aside without gains.
+    /// δ √(κ/M) ≥ 0, the latency of the feedback; ignored without gains.
     pub latency: f64,
-    /// What ends the search: its answer then means nothing.
+    /// A flag that ends the search; its answer is then meaningless.
     pub stop: Stop,
-    /// What tunes the search.
+    /// The options of the search.
     pub options: Options,
 }
 
@@ -93,7 +92,7 @@ impl Problem {
         (1.0 - share).max(1.0)
     }
 
-    /// How long a stick has to last for it to erase the past; none where none does that: under
+    /// How long a stick has to last to erase the past. None where no stick erases it: under
     /// velocity control, and with memory.
     pub(super) fn erasing_stick(&self) -> Option<f64> {
         let erased = self.alpha_v == 0.0 && (self.memory == 0.0 || self.alpha_n == 0.0);
@@ -169,7 +168,7 @@ impl Problem {
     }
 }
 
-/// Why nothing begins at a start velocity.
+/// Why a search cannot begin at a start velocity.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum NoStart {
     /// N ≤ 0.
@@ -178,7 +177,7 @@ pub(super) enum NoStart {
     NotSustained,
 }
 
-/// What gave a critical velocity.
+/// The method that gave a critical velocity.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Method {
     /// The return map without memory, at its graze or at its lift-off.
@@ -210,19 +209,19 @@ impl Method {
 pub struct CriticalVelocity {
     /// The largest v0 at which stick-slip persists; 0 where it never does.
     pub vc: f64,
-    /// A lower bound of v_c: stick-slip was seen to persist up to beyond it by every step size that
-    /// was tried, and it lies lower by a margin for still slower ones. v_c itself where that is
-    /// decided, `v_liftoff` where the model ends, the end of the range where stick-slip persists.
-    /// NaN where lift-off comes before any stick-slip.
+    /// A lower bound of v_c: stick-slip persisted up to beyond it by every step size that was
+    /// tried, and a margin is left for still slower ones. v_c itself where that is decided,
+    /// `v_liftoff` where the model ends, the end of the range where stick-slip persists. NaN where
+    /// lift-off comes before any stick-slip.
     pub vc_lower: f64,
-    /// An upper bound: the smallest v0 of those tried above the ends of slow searches at which
-    /// stick-slip was lost from every phase of its cycle, or ended by lift-off; v_c or `v_liftoff`
-    /// where it is decided. NaN where neither was seen up to the end of the range, and where slow
-    /// searches disagree whether it lifts off.
+    /// An upper bound of v_c: of the v0 tried above the ends of slow searches, the smallest at
+    /// which stick-slip was lost from every phase of its cycle, or ended by lift-off. v_c or
+    /// `v_liftoff` where that is decided. NaN where neither was seen up to the end of the range,
+    /// and where slow searches disagree on lift-off.
     pub vc_upper: f64,
-    /// How it ends there.
+    /// How stick-slip ends at v_c.
     pub transition: Transition,
-    /// What gave the answer.
+    /// The method that gave the answer.
     pub method: Method,
     /// The smallest v0 at which N ≤ 0 occurs, where that ends stick-slip.
     pub v_liftoff: f64,
@@ -234,8 +233,7 @@ pub struct CriticalVelocity {
     pub n_min: f64,
     /// Whether stick-slip was sustained at any v0 that was tried.
     pub sustained: bool,
-    /// Whether it is known what becomes of the motion beyond v_c, and all searches that were asked
-    /// agree on it.
+    /// Whether the motion beyond v_c is known, and all searches that were made agree.
     pub decided: bool,
 }
 
@@ -259,7 +257,7 @@ impl CriticalVelocity {
         }
     }
 
-    /// A decided answer with itself for bounds, where v0 was looked at up to `v_max`.
+    /// A decided answer bounded by itself, where v0 was searched up to `v_max`.
     pub(super) fn bounded_by_itself(self, v_max: f64) -> Self {
         let end = match self.sustained || self.transition == Transition::Never {
             true => self.end_of_stick_slip(),
@@ -273,12 +271,12 @@ impl CriticalVelocity {
         }
     }
 
-    /// Whether `other` says the same of the end of stick-slip: at v_c, or the velocity of lift-off,
-    /// within [`GRAZE_PRECISION`].
+    /// Whether `other` has the same end of stick-slip: at v_c, or the velocity of lift-off, within
+    /// [`GRAZE_PRECISION`].
     ///
-    /// Both have to lift off, to persist or never to be stick-slip; by which of the other ends it
-    /// is lost is told from the last v0 that holds it alone, whose cycles need not have come to
-    /// repeat, so that is not compared.
+    /// Lift-off, persistence and the lack of stick-slip have to be the same in both. The other
+    /// kinds of end are not compared: they are told from the last v0 that holds stick-slip alone,
+    /// and cycles need not repeat there yet.
     #[must_use]
     pub fn ends_like(&self, other: &Self) -> bool {
         let near =

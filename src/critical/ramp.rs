@@ -2,7 +2,7 @@
 //! carried from one to the next, by steps that grow and are halved.
 //!
 //! A v0 at which stick-slip was lost is no bound: near its end it attracts from less and less far,
-//! so it may have been the size of the step that lost it. The same v0 is tried again from closer by
+//! so the size of the step may have lost it. The same v0 is tried again from closer by
 //! ([`StepControl`]), until the last v0 that held and the first that did not are close enough.
 
 use super::continuation::times_jump;
@@ -27,7 +27,7 @@ pub(super) fn from_low_velocity(
         if ramped.last.is_some() {
             return Ok(search);
         }
-        // Where stick-slip was lost otherwise before, a lift-off at a larger start is that of the
+        // If a lower start lost stick-slip in another way, lift-off at a larger one is due to that
         // start alone.
         let lowest = lost.as_ref().map_or(f64::INFINITY, |lost| lost.v0);
         let lifts_off = |now: &Response| now.regime == Regime::LiftOff;
@@ -120,14 +120,15 @@ struct Ramp<'o, F> {
     /// The smallest v0 above `last` at which stick-slip was lost, and the relative step that lost
     /// it.
     lost: Option<(Response, f64)>,
-    /// The smallest v0 above `last` to which the step was too large for what it led to.
+    /// The smallest v0 above `last` to which a step was too large: it led to another kind of
+    /// stick-slip.
     jump: Option<f64>,
     control: StepControl<'o>,
-    /// The share of the way to where stick-slip is predicted to end that is taken at once.
+    /// The share of the way to the predicted end of stick-slip that is taken at once.
     share: f64,
-    /// From where on, and how often since, stick-slip survived where it had been lost.
+    /// The v0 from which on stick-slip survived where it had been lost, and how often it has since.
     passed: (f64, u32),
-    /// Whether any step shortened the sticks as if none were left soon.
+    /// Whether any step shortened the sticks so much that none would be left soon.
     vanish: bool,
     /// Whether irregular stick-slip or a jump was on the way.
     chance: bool,
@@ -135,8 +136,8 @@ struct Ramp<'o, F> {
 }
 
 impl<F: Followed> Ramp<'_, F> {
-    /// Raises v0 until stick-slip persists at one of two v0 as near as asked for, and does not at
-    /// the other; false where that takes too long.
+    /// Raises v0 until two v0 are as near as required, and stick-slip persists at the lower one
+    /// alone. False where that takes too long.
     fn run(&mut self) -> bool {
         let end = self.options.v_max * self.block.unit();
         for _ in 0..self.options.trials {
@@ -152,7 +153,7 @@ impl<F: Followed> Ramp<'_, F> {
                 continue;
             }
             let v0 = (self.last.v0 * (1.0 + step)).min(end);
-            // To the last bit, where it is tried once more.
+            // A v0 that is tried once more is exactly the same.
             let again = self.lost.map(|(lost, _)| lost.v0);
             let again = again.filter(|lost| (v0 / lost - 1.0).abs() < 1e-12);
             self.attempt(again.unwrap_or(v0), step);
@@ -163,7 +164,7 @@ impl<F: Followed> Ramp<'_, F> {
         false
     }
 
-    /// Looks longer whether irregular stick-slip repeats where it was last.
+    /// Follows irregular stick-slip at the last v0 for longer, to see whether it repeats.
     fn classify(&mut self) {
         if self.last.regime == Regime::Irregular && !self.options.patient {
             let how = Observation::at_length(self.options, 0.0);
@@ -174,7 +175,7 @@ impl<F: Followed> Ramp<'_, F> {
         }
     }
 
-    /// The last step: from irregular stick-slip a longer one.
+    /// The last step, which is longer from irregular stick-slip.
     fn precision(&self) -> f64 {
         match self.last.regime {
             Regime::Irregular => self.options.last.max(self.options.last_irregular),
@@ -182,13 +183,13 @@ impl<F: Followed> Ramp<'_, F> {
         }
     }
 
-    /// Whether stick-slip was lost again and again on a short way: steps however short throw it off
+    /// Whether stick-slip was lost again and again on a short way: steps of any size throw it off
     /// by chance.
     fn by_chance(&self) -> bool {
         self.passed.1 >= self.options.most_passed
     }
 
-    /// Where it had been lost at `v0`, it was not from nearby.
+    /// Notes that stick-slip survives at `v0`, where a larger step had lost it.
     fn pass(&mut self, v0: f64) {
         let (from, times) = self.passed;
         self.passed = match v0 > from * (1.0 + self.options.short_way) {
@@ -196,12 +197,12 @@ impl<F: Followed> Ramp<'_, F> {
             false => (from, times + 1),
         };
         self.lost = None;
-        // Else it would creep on.
+        // Where chance decides, retries would make the search creep on.
         let retry = Retry::Same(self.options.nearby);
         self.control.retry = Some(retry).filter(|_| !self.by_chance());
     }
 
-    /// How far the next v0 is from the last, relative.
+    /// The next relative step of v0.
     fn next_step(&self) -> f64 {
         let options = self.options;
         let mut wanted = self.share * predict(self.before, &self.last).step;
@@ -217,14 +218,14 @@ impl<F: Followed> Ramp<'_, F> {
         step.min(if far { 0.5 * room } else { room })
     }
 
-    /// The largest relative step of v0 that may lead from the last response to this one, to which
-    /// it took `step`.
+    /// The largest relative step of v0 that is allowed from the last response to `there`, which was
+    /// reached by `step`.
     fn largest_step(&self, there: &Response, step: f64) -> f64 {
         let last = &self.last;
         let jumps = self.jumps(there, step);
         match (last.regime, there.regime) {
             (Regime::Periodic, Regime::Periodic) if last.is_like(there) && !jumps => f64::INFINITY,
-            // Once chance has a part in it nothing is gained by that.
+            // Once chance has a part, smaller steps gain nothing.
             _ if self.chance => self.options.unseen,
             (Regime::Periodic, Regime::Periodic) if jumps => self.continuation.jump,
             (Regime::Periodic, Regime::Irregular) => self.options.careful,
@@ -274,8 +275,8 @@ impl<F: Followed> Ramp<'_, F> {
         }
     }
 
-    /// Whether stick-slip really is lost where it was last: waits longer. If not, goes on from
-    /// there.
+    /// Whether stick-slip is really lost at the last v0 that lost it, by a longer wait. If not, the
+    /// search goes on from there.
     fn is_lost(&mut self) -> bool {
         let slips = |(lost, _): &(Response, f64)| lost.regime == Regime::Slips;
         let Some((lost, by)) = self.lost.filter(slips).filter(|_| !self.by_chance()) else {
@@ -298,8 +299,8 @@ impl<F: Followed> Ramp<'_, F> {
     }
 }
 
-/// The event functions of a response and their slopes, as the secants from the response before
-/// tell; unknown where the two are not of one kind.
+/// The event functions of a response, and their slopes by secants from the response before. The
+/// slopes are unknown where the two are not of one kind.
 fn secants(before: Option<Response>, last: &Response) -> (EventFunctions, EventFunctions) {
     let now = last.event_functions();
     let slopes = before.filter(|before| before.is_like(last)).map(|before| {
@@ -416,7 +417,7 @@ mod tests {
         assert!(none.last.is_none() && none.lost.is_some() && none.complete);
     }
 
-    /// Through chaos to a window of the logistic map in which three slips repeat: from v0 = 1 + √8.
+    /// Chaos leads to a window of the logistic map in which three slips repeat, from v0 = 1 + √8.
     #[test]
     fn irregular_stick_slip_is_crossed_to_where_it_repeats() {
         let options = RampOptions {

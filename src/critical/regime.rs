@@ -13,7 +13,7 @@ use crate::slip::watch::follow;
 pub enum Regime {
     /// Stick-slip goes on, periodically.
     Periodic,
-    /// It went on for as long as was waited, in cycles that do not repeat: it may still be lost by
+    /// It went on for the whole waiting time, in cycles that do not repeat. It may still be lost by
     /// chance.
     Irregular,
     /// N ≤ 0.
@@ -35,7 +35,7 @@ impl Regime {
         matches!(self, Self::Periodic | Self::Irregular)
     }
 
-    /// What an outcome of a motion tells.
+    /// The regime of a motion with this outcome.
     pub(super) const fn of(outcome: Outcome) -> Self {
         match outcome {
             Outcome::StickSlip => Self::Periodic,
@@ -52,19 +52,19 @@ impl Regime {
 pub(super) struct Response {
     /// v0.
     pub v0: f64,
-    /// What it came to.
+    /// The regime.
     pub regime: Regime,
     /// The motion's summary.
     pub summary: Summary,
-    /// Time from the shallowest stop of the last period to where it would have gone, see
+    /// Time from the shallowest stop of the last period to the minimum of ẋ that it cut off, see
     /// [`crate::slip::step::Step::minimum_beyond_stop`].
     pub to_minimum: f64,
-    /// How far below 0 that is, ≥ 0.
+    /// How far below 0 that minimum is, ≥ 0.
     pub depth: f64,
 }
 
 impl Response {
-    /// Whether it and `other` are periodic with as many slips in a period.
+    /// Whether both this one and `other` are periodic, with the same number of slips in a period.
     pub(super) fn is_like(&self, other: &Self) -> bool {
         let periodic = |response: &Self| response.regime == Regime::Periodic;
         periodic(self) && periodic(other) && self.summary.slips == other.summary.slips
@@ -75,8 +75,8 @@ impl Response {
         self.regime.persists()
     }
 
-    /// Its event functions, as far as they are seen: of the shallowest stop, the load and all
-    /// sticks of a period together.
+    /// Its event functions, as far as simulation sees them: the depth of the shallowest stop, the
+    /// smallest load, and the time of all sticks of a period together.
     pub(super) fn event_functions(&self) -> EventFunctions {
         let mut depth = [f64::NAN; MOST_SLIPS];
         depth[0] = self.depth;
@@ -104,7 +104,7 @@ pub(super) struct Observation<'o> {
 }
 
 impl<'o> Observation<'o> {
-    /// At `v0`, after a relative step to it.
+    /// For `v0`, reached by a relative step.
     pub(super) fn after(options: &'o RampOptions, v0: f64, step: f64) -> Self {
         let how = Self::new(options, step);
         Self {
@@ -151,14 +151,14 @@ pub(super) trait Followed: Clone {
     /// μ_S, the unit of start velocities and of the largest v0.
     fn unit(&self) -> f64;
 
-    /// Becomes a copy of `other`, in memory that is there.
+    /// Becomes a copy of `other` in the memory that it has.
     fn copy_from(&mut self, other: &Self);
 
     /// Follows stick-slip at `v0` until its regime is known.
     fn response_at(&mut self, v0: f64, how: &Observation) -> Response;
 
-    /// Goes on at the v0 it has to the next phase of its cycle, a release or a stop; false where it
-    /// does not come to one within so many steps.
+    /// Goes on at its present v0 to the next phase of its cycle, a release or a stop. False where
+    /// it reaches none within so many steps.
     fn next_phase(&mut self, steps: u32) -> bool;
 }
 
@@ -199,7 +199,7 @@ impl Followed for Simulated<'_> {
     }
 }
 
-/// Follows a motion at the v0 it has, waited for as long as at the end of a search.
+/// Follows a motion at its present v0, for as long as at the end of a search.
 pub(super) fn response_at_length(problem: &Problem, motion: &mut Motion) -> Response {
     let v0 = motion.parameters().v0;
     let how = Observation::at_length(&problem.options.ramp, 0.0);

@@ -10,10 +10,10 @@ use crate::slip::motion::{Accuracy, Event, Mode, Motion, Stretch};
 /// One slip and the stick after it. Times in √(M/κ), velocities in N0/√(κM), forces in N0.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Cycle {
-    /// How far below 0 the slip would have gone beyond its stop, ≥ 0 (above 0, if it came to its
-    /// stop backwards); 0 where the stop is a graze.
+    /// The depth of the stop, ≥ 0: how far below 0 the minimum of ẋ lies that it cut off, or above
+    /// 0 the maximum of a slip backwards. 0 where the stop is a graze.
     pub depth: f64,
-    /// From the stop until ẋ would have been at that minimum.
+    /// Time from the stop to that minimum.
     pub to_minimum: f64,
     /// Duration of the slip.
     pub slip: f64,
@@ -21,9 +21,9 @@ pub(super) struct Cycle {
     pub stick: f64,
     /// The smallest load.
     pub n_min: f64,
-    /// How often it turns back on the way to its stop.
+    /// The number of reversals on the way to the stop.
     pub reversals: u32,
-    /// The force that is missing at the stop for the block to slip on, or back.
+    /// The force that the block lacks at the stop to slip on, or back.
     pub missing_force: f64,
     /// The lowest minimum of ẋ > 0 before the stop; NaN where there is none.
     pub dip: f64,
@@ -67,12 +67,12 @@ pub(super) struct Period {
 }
 
 impl Period {
-    /// Of the first `slips` of `cycles`.
+    /// A period of the first `slips` of `cycles`.
     pub(super) fn new(slips: usize, cycles: [Cycle; MOST_SLIPS]) -> Self {
         Self { slips, cycles }
     }
 
-    /// Of one slip.
+    /// A period of one slip.
     pub(super) fn of(cycle: Cycle) -> Self {
         Self::new(1, [cycle; MOST_SLIPS])
     }
@@ -104,7 +104,7 @@ impl Period {
         loads.fold(f64::INFINITY, f64::min)
     }
 
-    /// How often it turns back.
+    /// The number of reversals.
     pub(super) fn reversals(&self) -> u32 {
         self.cycles().iter().map(|cycle| cycle.reversals).sum()
     }
@@ -149,13 +149,14 @@ pub(super) enum NoReturn {
     Undefined,
     /// Periods did not come to rest.
     NotSettled,
-    /// v0 is above the range that is searched, or the stick below it.
+    /// v0 is above the range that is searched, or a stick is too short to erase the memory.
     OutsideDomain,
 }
 
-/// A return map with its state: from one release to the next at one v0.
+/// A return map with its state: from one release to the next at one v0. That of the oscillator is
+/// [`Motion`].
 ///
-/// Dispatch is static. [`Motion`] is the one of the oscillator.
+/// Dispatch is static.
 pub(super) trait ReturnMap: Clone {
     /// v0, in N0/√(κM).
     fn v0(&self) -> f64;
@@ -169,16 +170,16 @@ pub(super) trait ReturnMap: Clone {
     /// Changes the delay from now on.
     fn set_delay(&mut self, tau: f64);
 
-    /// Becomes a copy of `other`, in memory that is there.
+    /// Becomes a copy of `other` in the memory that it has.
     fn copy_from(&mut self, other: &Self);
 
     /// Goes on with another accuracy.
     fn refine(&mut self, accuracy: Accuracy);
 
-    /// Becomes the state at `v0` and the delay `tau` that the two `pasts` tell, the last one and
-    /// the one before: the last one and `share` of what lies between them, with slips and sticks
-    /// aligned (`stretches`, the last one first). False where that cannot be told; the state then
-    /// means nothing.
+    /// Becomes the state at `v0` and the delay `tau`, extrapolated from two `pasts`, the last one
+    /// and the one before: the last one plus `share` of the difference between them. Slips and
+    /// sticks are aligned by `stretches`, the last one first. False where that is not possible; the
+    /// state is then meaningless.
     fn extrapolate(
         &mut self,
         pasts: (&mut Self, &mut Self),
@@ -273,7 +274,7 @@ impl ReturnMap for Motion {
                         ..cycle
                     });
                 }
-                // It swings back, and may stop later.
+                // The block swings back, and may stop later.
                 (Some(Event::Reversal), None) => reversals += 1,
                 (Some(_), _) => return Err(NoReturn::Undefined),
                 (None, None) => {
@@ -298,8 +299,8 @@ impl ReturnMap for Motion {
     }
 }
 
-/// Whether the last step of a slip, `since` its release, shows that the stop `expected` does not
-/// come.
+/// Whether the last step of a slip shows that the `expected` stop is missed. The step begins a time
+/// `since` after the release.
 fn misses(motion: &Motion, since: f64, expected: Stop, options: &ContinuationOptions) -> bool {
     let step = motion.last_step();
     let slip = expected.slip;
@@ -330,7 +331,7 @@ mod tests {
         }
     }
 
-    /// The cycle of the letter's Fig. 3 at v0 = 0.35, under a gain that does not show.
+    /// The cycle of the letter's Fig. 3 at v0 = 0.35, under a negligible gain.
     #[test]
     fn one_slip_and_stick() {
         let options = ContinuationOptions::default();

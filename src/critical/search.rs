@@ -1,4 +1,4 @@
-//! What a search by simulation came to.
+//! The result of a search by simulation.
 
 use super::regime::{Regime, Response};
 use crate::slip::motion::Motion;
@@ -10,7 +10,7 @@ pub(super) enum Chance {
     None,
     /// Irregular stick-slip or a jump was on the way.
     OnTheWay,
-    /// Stick-slip survived again and again where it had been lost: it is thrown off by chance.
+    /// Stick-slip survived again and again where it had been lost: it is lost by chance.
     AtEnd,
 }
 
@@ -19,15 +19,14 @@ pub(super) enum Chance {
 pub(super) struct Ramped {
     /// The largest v0 at which stick-slip persists; none where it was not found anywhere.
     pub last: Option<Response>,
-    /// The smallest v0, above it, at which it does not; none where it persists to the end of the
+    /// The smallest v0 above that at which it does not; none where it persists to the end of the
     /// range.
     pub lost: Option<Response>,
-    /// Whether the search came to its end: to the end of the range, or to two v0 as near as asked
-    /// for.
+    /// Whether the search came to the end of the range, or to two v0 as near as required.
     pub complete: bool,
     /// What part chance had in it.
     pub chance: Chance,
-    /// Whether sticks become shorter such that none is left just beyond the last v0.
+    /// Whether sticks shorten so fast that none is left just beyond the last v0.
     pub vanish: bool,
     /// The relative step beyond the last v0 at which the depth of the stops is predicted to vanish;
     /// infinite where it is not.
@@ -35,7 +34,7 @@ pub(super) struct Ramped {
 }
 
 impl Ramped {
-    /// No v0 at which stick-slip persists.
+    /// A search that found no v0 at which stick-slip persists.
     pub(super) fn none(lost: Option<Response>) -> Self {
         Self {
             last: None,
@@ -59,7 +58,7 @@ pub(super) struct Search {
 }
 
 impl Search {
-    /// The largest v0 at which stick-slip persists, 0 where it does nowhere.
+    /// The largest v0 at which stick-slip persists; 0 where there is none.
     pub(super) fn persists(&self) -> f64 {
         self.ramped.last.map_or(0.0, |last| last.v0)
     }

@@ -25,8 +25,7 @@ pub(super) struct Prediction {
 }
 
 impl Prediction {
-    /// The first zero of an event function beyond `v0`, on lines with these slopes: on the secants
-    /// of the last two orbits.
+    /// The first zero of an event function beyond `v0`, by lines with these slopes.
     pub(super) fn first(events: &EventFunctions, slopes: &EventFunctions, v0: f64) -> Self {
         let mut first = Self {
             step: f64::INFINITY,
@@ -44,34 +43,35 @@ impl Prediction {
 
 /// How far the next step in v0 may go. All steps are relative.
 ///
-/// A step that failed makes the next one half as long, one that succeeded doubles the largest that
-/// is allowed, up to a limit. A v0 that failed is no bound: it may have been the size of the step.
-/// So the next step goes half of the way to it, and once the distance is much smaller than the step
-/// that failed, [`Retry`] says what is tried.
+/// A step that failed makes the next one half as long. One that succeeded doubles the largest step
+/// that is allowed, up to a limit. A v0 that failed is no bound: the size of the step may be the
+/// reason. So the next step goes half of the way to it. Once the distance is much smaller than the
+/// step that failed, [`Retry`] says what is tried.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct StepControl<'o> {
     options: &'o ContinuationOptions,
-    /// What is tried near a v0 that failed; none where it is not to be passed any more.
+    /// What is tried near a v0 that failed; None where it is not to be passed any more.
     pub retry: Option<Retry>,
-    /// The largest step for now, and at all.
+    /// The largest step at present, and its upper limit.
     largest: f64,
     limit: f64,
-    /// A v0 that failed, unless one beyond it has not, and the step that led there: the lowest
-    /// one, but where steps beyond it are tried the last one.
+    /// The lowest v0 that failed, or the last one where steps beyond it are tried, and the step
+    /// that led there. None once a v0 beyond it has succeeded.
     failed: Option<(f64, f64)>,
 }
 
 /// What is tried near a v0 that failed, and how near, as a share of the step that failed.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Retry {
-    /// A step of that size, beyond it: continuation, which is not asked for a bracket.
+    /// A step of that size, beyond it: for continuation, which needs no bracket.
     Beyond(f64),
-    /// That v0 once more: simulation, which ends between one v0 that failed and one that did not.
+    /// That v0 once more: for simulation, which ends between one v0 that failed and one that did
+    /// not.
     Same(f64),
 }
 
 impl<'o> StepControl<'o> {
-    /// Before the first step, which is no larger than `first`, as none is larger than `limit`.
+    /// The control before the first step, which is at most `first`. All steps are at most `limit`.
     pub(super) fn new(
         first: f64,
         limit: f64,
@@ -87,7 +87,7 @@ impl<'o> StepControl<'o> {
         }
     }
 
-    /// The step from `v0` where `wanted` is asked for, but no smaller one than `least`.
+    /// The step from `v0` if `wanted` is asked for; at least `least`.
     pub(super) fn step(&self, v0: f64, wanted: f64, least: f64) -> f64 {
         let step = wanted.clamp(least, self.largest.max(least));
         let Some((failed, by)) = self.failed else {
@@ -112,17 +112,17 @@ impl<'o> StepControl<'o> {
         self.shrink(step);
     }
 
-    /// The next step is smaller than this one.
+    /// Makes the next step smaller than this one.
     pub(super) fn shrink(&mut self, step: f64) {
         self.largest = self.options.reduction * step;
     }
 
-    /// A step to `v0` succeeded; true where one had failed there before.
+    /// Notes that a step to `v0` succeeded; true where a v0 up to there had failed before.
     pub(super) fn succeeded(&mut self, v0: f64, step: f64) -> bool {
         let passed = self.failed.is_some_and(|(failed, _)| failed <= v0);
         let mut largest = self.largest;
         if passed {
-            // What failed there was the size of the step: the steps from here on grow slowly.
+            // The size of the step was the reason, so steps grow slowly from here on.
             (self.failed, largest) = (None, step);
         }
         self.largest = (self.options.growth * largest).min(self.limit);
@@ -173,22 +173,22 @@ mod tests {
         assert_eq!(control.step(1.1, 5.0, 0.0), 0.6);
     }
 
-    /// A v0 that failed may have done so by the size of the step.
+    /// The size of the step may be the reason that a v0 failed.
     #[test]
     fn what_failed_is_come_nearer_to_and_passed_by_a_smaller_step() {
         let options = ContinuationOptions::default();
         let mut control = StepControl::new(0.4, 1.0, Retry::Beyond(0.3), &options);
         control.failed(1.4, 0.4);
-        // A smaller step than the way to it is free; from there by half of the way.
+        // A step shorter than the way is free; the next one goes half of the way.
         assert_eq!(control.step(1.0, 5.0, 0.0), 0.2);
         control.succeeded(1.2, 0.2);
         let room = 1.4 / 1.2 - 1.0;
         assert!((control.step(1.2, 5.0, 0.0) - 0.5 * room).abs() < 1e-15);
-        // From nearby by 0.3 of the step that failed there, beyond it.
+        // From nearby the step is 0.3 of the one that failed, and leads beyond.
         let from = 1.4 / 1.05;
         assert!((control.step(from, 5.0, 0.0) - 0.12).abs() < 1e-15);
         assert!((control.step(from, 0.1, 0.0) - 0.1).abs() < 1e-15);
-        // Where that succeeds it is forgotten, and steps grow from there on.
+        // Success beyond it forgets the failure, and steps grow from there on.
         assert!(control.succeeded(1.45, 0.12));
         assert_eq!(control.step(1.45, 5.0, 0.0), 0.24);
     }

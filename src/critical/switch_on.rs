@@ -1,5 +1,5 @@
 //! The critical velocity by the protocol `switch-on`: control is switched on at a phase of
-//! uncontrolled stick-slip, and the velocities v0 at which stick-slip survives that form windows.
+//! uncontrolled stick-slip. The velocities v0 at which stick-slip survives this form windows.
 
 use super::observers::Sticking;
 use super::problem::Problem;
@@ -27,10 +27,10 @@ pub struct Scan {
     pub v_min: f64,
     /// The largest one.
     pub v_max: f64,
-    /// How many v0 are tried before edges are looked for, evenly in their logarithms: windows
-    /// narrower than their distance can be missed.
+    /// The number of v0 that are tried before edges are refined, evenly spaced in logarithms.
+    /// Windows narrower than the spacing can be missed.
     pub points: u32,
-    /// Edges are known to this, relative.
+    /// The relative precision of edges.
     pub precision: f64,
     /// The most steps of the integrator at one v0.
     pub steps: u64,
@@ -54,12 +54,12 @@ impl Default for Scan {
 /// Where stick-slip survives.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Windows {
-    /// From and to, increasing; the first from is `v_min` where it survives there already, the last
-    /// to `v_max` likewise.
+    /// Windows of v0, from and to, increasing. The first begins at `v_min` if stick-slip survives
+    /// there, the last ends at `v_max` likewise.
     pub survives: Vec<[f64; 2]>,
-    /// The largest v0 at which it was seen to survive, and the smallest above it from which on it
-    /// was seen not to: the topmost edge, or the velocities that were tried beside it where it is
-    /// not known. The first is 0 where it survives nowhere, the second NaN where it is not seen.
+    /// The largest v0 at which stick-slip survived, and the smallest above it from which on it did
+    /// not: both are the topmost edge where that is certain, else the velocities tried beside it.
+    /// The first is 0 where it survives nowhere, the second NaN where there is none.
     pub top_within: [f64; 2],
     /// The smallest v0 at which N ≤ 0 occurs; none where it does not.
     pub v_liftoff: Option<f64>,
@@ -71,7 +71,7 @@ pub struct Windows {
 
 impl Windows {
     /// The topmost edge: above it, as far as v0 was tried, stick-slip does not survive. None where
-    /// it does nowhere.
+    /// it survives nowhere.
     #[must_use]
     pub fn top(&self) -> Option<f64> {
         self.survives.last().map(|window| window[1])
@@ -85,12 +85,12 @@ pub struct Trials<'p> {
     accuracy: Accuracy,
     phase: Phase,
     steps: u64,
-    /// Steps taken, those of uncontrolled cycles at a guess.
+    /// Steps taken, with an estimate for uncontrolled cycles.
     spent: u64,
 }
 
 impl<'p> Trials<'p> {
-    /// For `problem` and `phase`.
+    /// Trials of `problem` at `phase`.
     #[must_use]
     pub fn new(problem: &'p Problem, phase: Phase, accuracy: Accuracy, steps: u64) -> Self {
         Self {
@@ -120,8 +120,8 @@ impl<'p> Trials<'p> {
         }
     }
 
-    /// The worst regime of all phases: periodic stick-slip at one phase counts, else irregular
-    /// stick-slip, else lift-off, else undecided, else the end.
+    /// The worst regime of all phases, from worst to best: periodic stick-slip, irregular
+    /// stick-slip, lift-off, undecided, ended.
     fn worst(&mut self, v0: f64, phases: u32) -> Regime {
         let long = self.problem.options.switch_on.longest;
         let (mut worst, period) = self.once(v0, 0.0, long);
@@ -140,7 +140,7 @@ impl<'p> Trials<'p> {
             if worst == Regime::Periodic {
                 return worst;
             }
-            // After one that is not told only what is seen soon counts.
+            // After an undecided phase the others are not followed for long.
             let longest = match worst {
                 Regime::Undecided => 1.0,
                 _ => long,
@@ -154,8 +154,8 @@ impl<'p> Trials<'p> {
         worst
     }
 
-    /// At one phase, with the uncontrolled period. What becomes of a slip is waited for `longest`
-    /// times as long as stick-slip is waited for to repeat.
+    /// The regime at one phase, and the uncontrolled period. A slip is followed `longest` times as
+    /// long as stick-slip is waited for to repeat.
     fn once(&mut self, v0: f64, phase: f64, longest: f64) -> (Regime, f64) {
         let parameters = self.problem.at(v0, 0.0);
         let restarted = restart_after_release(&mut self.motion, &parameters, self.accuracy, phase);
@@ -217,7 +217,7 @@ type Tried = (f64, Regime);
 /// What is found on the way from one velocity to the next.
 struct Walk {
     before: Tried,
-    /// Where the window began that goes on.
+    /// Where the present window began.
     open: Option<f64>,
     found: Windows,
 }
@@ -282,7 +282,7 @@ impl Walk {
     }
 }
 
-/// The last two velocities on either side of where the answer changes.
+/// The two velocities on either side of a change of the answer, refined to `precision`.
 fn edge(
     trials: &mut Trials,
     (mut low, mut high): (Tried, Tried),
@@ -310,8 +310,8 @@ const fn lifts(regime: Regime) -> bool {
     matches!(regime, Regime::LiftOff)
 }
 
-/// Whether an edge next to this regime is where it was found to be: what ends by chance ends
-/// elsewhere with the next error.
+/// Whether an edge next to this regime is certain. Where stick-slip ends by chance, other rounding
+/// errors move the edge.
 const fn certain(regime: Regime) -> bool {
     !matches!(regime, Regime::Irregular | Regime::Undecided)
 }
@@ -344,7 +344,8 @@ mod tests {
         assert!(!cut_off.complete && !cut_off.decided);
     }
 
-    /// Of the phases of Fig. 3(a) at 0.3 some keep stick-slip, the release does not.
+    /// In Fig. 3(a) at v0 = 0.3 some phases keep stick-slip, but switching on at the release does
+    /// not.
     #[test]
     fn the_worst_phase_keeps_stick_slip() {
         let problem = letters(-0.33, 0.0, 4.15);

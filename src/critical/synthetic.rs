@@ -1,6 +1,6 @@
 //! Return maps of one number with closed forms, in the place of the oscillator's, for tests: a
-//! graze, a saddle-node, period doubling and a crisis, each at a v0 that is known. And problems of
-//! the letter.
+//! graze, a saddle-node, period doubling and a crisis, each at a known v0. And problems of the
+//! letter.
 
 use super::event_functions::{Event, MOST_SLIPS};
 use super::options::{ContinuationOptions, Options};
@@ -69,7 +69,7 @@ pub(super) struct Synthetic {
 }
 
 impl Synthetic {
-    /// At `x`.
+    /// The map at the state `x`.
     pub(super) fn new(family: Family, v0: f64, x: f64) -> Self {
         let (tau, tolerance) = (1.0, 1e-6);
         Self {
@@ -179,7 +179,7 @@ impl ReturnMap for Synthetic {
     }
 }
 
-/// So many iterations are waited for an orbit to come to rest, or to be lost.
+/// The most iterations until an orbit has come to rest or is lost.
 const ITERATIONS: usize = 20_000;
 
 impl Followed for Synthetic {

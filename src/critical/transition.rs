@@ -1,5 +1,5 @@
-//! How stick-slip ends or becomes of another kind as v0 grows, what follows, and why that may not
-//! be known.
+//! How stick-slip ends or changes its kind as v0 grows, what follows, and why that may not be
+//! known.
 
 use super::event_functions::Event;
 use super::options::TransitionOptions;
@@ -24,8 +24,8 @@ pub enum Transition {
     Persists,
     /// No stick-slip is sustained at any v0 that was tried: v_c = 0.
     Never,
-    /// It does not survive switching on above v_c, whatever it becomes: by the protocol
-    /// [`super::switch_on`] no more is known.
+    /// It does not survive switching on above v_c. The protocol [`super::switch_on`] does not tell
+    /// how it ends.
     Lost,
 }
 
@@ -97,8 +97,8 @@ pub(super) struct Ending {
 /// What follows an event as v0 grows.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Sequel {
-    /// Stick-slip ends; minima of ẋ after that, over v0, are not below this, where that is known,
-    /// else 0; 1 where the block slides and turns back at once.
+    /// Stick-slip ends. The number is a lower bound of the minima of ẋ after that, over v0: 0 where
+    /// none is known, 1 where the stick vanished or the block lifts off.
     Ends(f64),
     /// Stick-slip with so many slips in a period.
     Periodic(usize),
@@ -109,13 +109,13 @@ pub(super) enum Sequel {
 }
 
 impl Ending {
-    /// Of an event that is located.
+    /// The ending at a located event.
     pub(super) fn new(Located { event, v0 }: Located, period: Period) -> Self {
         Self { event, v0, period }
     }
 
-    /// This one where stick-slip ends: an event by which it else becomes of another kind is the end
-    /// of its stick.
+    /// This ending as the end of stick-slip: an event that else only changes its kind counts as the
+    /// vanishing of its stick.
     pub(super) fn of_stick_slip(self) -> Self {
         match self.event.may_end() {
             true => self,
@@ -147,7 +147,7 @@ impl Ending {
     }
 }
 
-/// Whether the slip `i` of two periods is one.
+/// Whether the slip `i` is the same in two periods.
 pub(super) fn same_slip(
     one: &Period,
     other: &Period,

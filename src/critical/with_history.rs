@@ -1,10 +1,9 @@
 //! The return map with its history: period after period of stick-slip, from one v0 to the next.
 //!
-//! The past of a block that is released is a function of the time since then, smooth in v0 as long
-//! as stick-slip stays of one kind. So a new v0 starts from the pasts at the last two,
-//! extrapolated: what is left of a transient is of the second order in the step of v0, where simply
-//! going on would leave one of the first order. The map is iterated from there until periods repeat
-//! ([`Iterates`]).
+//! The past of a block at its release is a function of time, smooth in v0 as long as stick-slip
+//! stays of one kind. So a new v0 starts from an extrapolation of the pasts at the last two v0. The
+//! transient that is left is of second order in the step of v0; without extrapolation it would be
+//! of first order. The map is iterated from there until periods repeat ([`Iterates`]).
 
 use super::continuation::{Branch, Orbit, Point, Releases};
 use super::event_functions::{EventFunctions, MOST_SLIPS};
@@ -14,7 +13,7 @@ use super::problem::Problem;
 use super::return_map::{Cycle, NoReturn, Period, ReturnMap, Stop};
 use crate::slip::motion::{Accuracy, Motion, Stretch};
 
-/// A state at the end of a period, and the v0 it belongs to; NaN where it means nothing.
+/// A state at the end of a period, and its v0; NaN where the state is meaningless.
 #[derive(Debug, Clone)]
 pub(super) struct Released<M> {
     map: M,
@@ -105,7 +104,7 @@ impl<M: ReturnMap> Branch for WithHistory<'_, M> {
         #[cfg(test)]
         super::work::count_trial();
         if v0 > self.v_end {
-            // Where simulation does not look either.
+            // Simulation does not search there either.
             return Err(NoReturn::OutsideDomain);
         }
         self.release_at(v0);
@@ -127,15 +126,15 @@ impl<M: ReturnMap> Branch for WithHistory<'_, M> {
 }
 
 impl<'o> WithHistory<'o, Motion> {
-    /// Of stick-slip of `problem` that a `motion`, which is just released, is in.
+    /// The branch of a `motion` in stick-slip of `problem` that was just released.
     pub(super) fn in_stick_slip(problem: &'o Problem, motion: Motion, slips: usize) -> Self {
         let options = &problem.options;
         let v_end = problem.v_max();
         Self::new(motion, slips, v_end, &options.continuation)
     }
 
-    /// The branch of a block that is released from a stick without memory at `v0`, which has one
-    /// slip in a period, with its first point.
+    /// The branch of a block that is released from a stick without memory at `v0`, with its first
+    /// point. It has one slip in a period.
     ///
     /// # Errors
     /// When the block does not stick again.
@@ -153,8 +152,8 @@ impl<'o> WithHistory<'o, Motion> {
 }
 
 impl<'o, M: ReturnMap> WithHistory<'o, M> {
-    /// Of a `map` whose state is a release in stick-slip of so many `slips`, at most
-    /// [`MOST_SLIPS`], in a period; up to `v_end`.
+    /// The branch of a `map` that was just released in stick-slip of so many `slips`, at most
+    /// [`MOST_SLIPS`], in a period. It is followed up to `v_end`.
     pub(super) fn new(map: M, slips: usize, v_end: f64, options: &'o ContinuationOptions) -> Self {
         let v0 = map.v0();
         let at = Released {
@@ -176,7 +175,7 @@ impl<'o, M: ReturnMap> WithHistory<'o, M> {
         }
     }
 
-    /// What it is continued with.
+    /// The options of continuation.
     pub(super) fn options(&self) -> &'o ContinuationOptions {
         self.options
     }
@@ -186,7 +185,7 @@ impl<'o, M: ReturnMap> WithHistory<'o, M> {
         &self.accepted
     }
 
-    /// Its map.
+    /// The map of the state that was accepted last.
     pub(super) fn map(&self) -> &M {
         &self.accepted.map
     }
@@ -227,9 +226,9 @@ impl<'o, M: ReturnMap> WithHistory<'o, M> {
         Some(Point::first(v0, orbit, f64::INFINITY))
     }
 
-    /// Starts with another delay and `v0` from where it ended; with a state that ended likewise at
-    /// another delay, from both pasts, extrapolated by `share` of what lies between them. Slopes
-    /// are taken to be those of a point `like` it.
+    /// Starts at another delay and `v0` from the state at which the branch ended. With a state
+    /// `before` that ended at another delay, both pasts are extrapolated by `share` of the
+    /// difference between them. The slopes are those of the point `like`.
     pub(super) fn restart(
         &mut self,
         before: Option<(&mut Released<M>, f64)>,
@@ -249,7 +248,7 @@ impl<'o, M: ReturnMap> WithHistory<'o, M> {
         let settled = options.settled;
         let orbit = self.iterate(Some(&like.orbit.period), settled).ok()?;
         std::mem::swap(&mut self.accepted, &mut self.tried);
-        // What was accepted before belongs to another delay.
+        // The state that was accepted before belongs to another delay.
         self.before.v0 = f64::NAN;
         Some(Point {
             slopes: like.slopes,
@@ -318,7 +317,7 @@ mod tests {
             one.orbit_at(3.2, None, 0.01).unwrap_err(),
             NoReturn::NotSettled
         );
-        // With twice the slips it is one that does.
+        // The orbit with twice the slips attracts.
         let mut two = branch(LOGISTIC, 3.2, 0.75, 2);
         let orbit = two.orbit_at(3.2, None, 1e-4).unwrap();
         let depth = orbit.events.depth[0].min(orbit.events.depth[1]);
@@ -326,7 +325,7 @@ mod tests {
         assert!((x - logistic_pair(3.2)).abs() < 1e-4, "{x}");
     }
 
-    /// Pasts at two v0 tell the one at a third: a transient is of the second order then.
+    /// Pasts at two v0 are extrapolated to a third: the transient is then of second order.
     #[test]
     fn the_past_is_extrapolated() {
         let mut branch = branch(LOGISTIC, 2.0, 0.5, 1);
@@ -339,7 +338,7 @@ mod tests {
         let step = |v0: f64| (x(v0) - x(2.2)).abs();
         let off = (branch.release_at(2.3).x - x(2.3)).abs();
         assert!(off < 0.15 * step(2.3), "{off} {}", step(2.3));
-        // Too far: from the last one as it is.
+        // Too far to extrapolate: it starts from the last past as it is.
         let off = (branch.release_at(2.6).x - x(2.6)).abs();
         assert!((off / step(2.6) - 1.0).abs() < 0.01, "{off} {}", step(2.6));
     }

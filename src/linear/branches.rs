@@ -1,10 +1,10 @@
 //! Starting values for characteristic roots from the branches of the complex logarithm.
 //!
-//! With P = B − A and Q = A the equation D = 0 reads λτ = log(−Q/P) + 2πik: every root belongs to a
-//! branch k, and for long delays or far from the zeros of P and Q to one branch a root. Newton's
-//! method on this equation is then near its goal from the start, at any delay and with no matrix.
-//! Nothing promises that all roots are found: [`super::spectrum`] counts them, and turns to
-//! collocation where some are missing.
+//! With P = B − A and Q = A the equation D = 0 reads λτ = log(−Q/P) + 2πik. Every root belongs to a
+//! branch k. For long delays, or far from the zeros of P and Q, each branch has one root. Newton's
+//! method on this equation then starts near its goal, at any delay and with no matrix. Nothing
+//! promises that all roots are found: [`super::spectrum`] counts them, and turns to collocation
+//! where some are missing.
 
 use std::f64::consts::{PI, TAU};
 
@@ -18,9 +18,9 @@ use crate::model::elementary::{arg, exp, ln};
 
 /// Newton steps on the logarithmic equation before a start is handed over.
 const STEPS: u32 = 4;
-/// Most branches looked at; beyond this the line was set too far left.
+/// Most branches examined; beyond this the line was set too far left.
 const MOST_BRANCHES: usize = 1 << 20;
-/// Most of them followed: more roots than that right of the line are not wanted.
+/// Most branches followed: more roots than that right of the line are not wanted.
 const MOST_STARTS: usize = 4096;
 /// The first of them are followed in any case.
 const ALWAYS_FOLLOWED: usize = 4;
@@ -85,8 +85,8 @@ pub(super) fn starting_values(
     let branches = (radius * span / PI).ceil() + 2.0;
     let kappa = exp(-line * tau);
     let place = |j: usize| PI * j as f64 / span;
-    // A root right of the line lies where feedback is the larger part on the line, as far as one
-    // can tell from there.
+    // A guess: roots right of the line belong to branches where feedback is the larger term on the
+    // line.
     let inside = |j: usize| {
         let [p, _, q, _] = pair.at(Complex64::new(line, place(j)));
         p.norm_sqr() <= kappa * kappa * q.norm_sqr()
@@ -104,7 +104,7 @@ pub(super) fn starting_values(
         }
         (before, here) = (here, after);
     }
-    // Weak feedback leaves the zeros of P, short delays those of B where they are.
+    // Roots stay near the zeros of P under weak feedback, near those of B at short delays.
     equation.zeros(starts);
     real_starts(&pair, tau, line, radius, starts);
 }
@@ -149,19 +149,19 @@ pub(super) fn quadratic_zeros(linear: f64, constant: f64) -> impl Iterator<Item 
 /// (1 − a_v τ + Q(0) τ²/2) λ² + (b − Q(0) τ) λ + 1,
 /// ```
 ///
-/// Strong gains with a short delay put them where neither the branches nor the parts of the real
-/// axis lead.
+/// With strong gains and a short delay neither the branches nor the parts of the real axis lead to
+/// these roots.
 pub(super) fn slow_starts(groups: Groups, tau: f64) -> impl Iterator<Item = Complex64> {
     let LetterPair { q0, q1, .. } = LetterPair::new(groups);
     let (leading, linear) = (1.0 - q1 * tau + 0.5 * q0 * tau * tau, groups.b - q0 * tau);
-    // The zeros of its mirror image are 1/λ: the leading coefficient may vanish.
+    // Solved for 1/λ, since the leading coefficient may vanish.
     quadratic_zeros(linear, leading)
         .map(|z| divide(Complex64::ONE, z))
         .filter(|z| z.re.is_finite() && z.im.is_finite())
         .map(|z| Complex64::new(z.re, z.im.abs()))
 }
 
-/// Halvings of such a part: Newton's method does the rest.
+/// Halvings of a part of the real axis: Newton's method does the rest.
 const HALVINGS: u32 = 8;
 
 /// A start in each part of the real axis right of `line` in which D changes its sign.

@@ -32,9 +32,9 @@
 //! to the accuracy at which (2) rounds: it is undecided only where a root lies within rounding of
 //! the line. Nothing here is shared with the tracker, the spectrum or the crossing delays.
 //!
-//! Strong gains with a short delay make P and κQ large and nearly opposite: D is what little they
-//! leave. So B, in which the gains are not, and κ − 1 stand for P and κ wherever the two cancel,
-//! and (2) rounds by the small angle of (3).
+//! Strong gains with a short delay make P and κQ large and nearly opposite, and D is their small
+//! sum. So wherever the two cancel they are expressed by B, which has no gains, and by κ − 1. Then
+//! (2) rounds by the small angle of (3).
 //!
 //! Longer than most files: one derivation, in its order.
 
@@ -91,7 +91,7 @@ struct VerticalLine {
     echo: Rounded,
 }
 
-/// Equation (4) with what does not depend on the delay, κ given, worked out.
+/// Equation (4) with all terms evaluated that do not depend on the delay at given κ.
 #[derive(Debug, Clone, Copy)]
 struct Turning {
     /// 1 − [arg P(∞) − arg D(0)]/π.
@@ -100,7 +100,7 @@ struct Turning {
     down: Option<Switch>,
 }
 
-/// A place ω where the larger one of P and κQ changes.
+/// A frequency ω at which the larger one of P and κQ changes.
 #[derive(Debug, Clone, Copy)]
 struct Switch {
     omega: Rounded,
@@ -202,8 +202,8 @@ impl VerticalLine {
         })
     }
 
-    /// ω₋ and ω₊ coincide to rounding: whatever turns there are on the way up, there are on the way
-    /// down. They cancel, but for a delay at which it is in doubt which they are.
+    /// ω₋ and ω₊ coincide to rounding, so their turns cancel. Only at a delay at which (2) may
+    /// round either way is the count undecided.
     fn nearly_touching(&self, discriminant_error: f64) -> Option<Turning> {
         let y = Rounded {
             value: -self.h.value,
@@ -241,7 +241,7 @@ impl VerticalLine {
             value: large,
             error: large_error,
         };
-        // As the sign is copied: h may be −0.
+        // By the sign bit, which `copysign` copied: h may be −0.
         if h.value.is_sign_negative() {
             [large, small]
         } else {
@@ -344,7 +344,7 @@ impl VerticalLine {
     }
 }
 
-/// `f64::max` but for NaN, which takes it longer.
+/// `f64::max` without its care for NaN, which costs time.
 #[inline(always)]
 fn larger(a: f64, b: f64) -> f64 {
     if a > b { a } else { b }
@@ -395,7 +395,7 @@ impl Switch {
         let whole = turns as i64 as f64;
         let part = turns - whole;
         let floor = if part < 0.0 { whole - 1.0 } else { whole };
-        // NaN is undecided as well, and so is what no integer holds.
+        // NaN is undecided as well, and so are values too large for an integer.
         let (low, high) = (part.abs(), 1.0 - part.abs());
         let apart = if low < high { low } else { high };
         (apart * TAU > error).then_some(floor + self.ahead)

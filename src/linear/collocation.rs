@@ -9,8 +9,8 @@
 //! ```
 //!
 //! a matrix of N + 2 rows instead of the 2N + 2 of the general method; N + n rows for degree n. In
-//! a neutral equation u(0) holds x⁽ⁿ⁾ as well, which the equation itself gives. The only file that
-//! uses faer: without its feature `std`, with which it picks code by the processor.
+//! a neutral equation u(0) holds x⁽ⁿ⁾ as well, which the equation itself gives. This is the only
+//! file that uses faer. Its feature `std` is off, since with it faer picks code by the processor.
 
 use std::f64::consts::PI;
 
@@ -31,7 +31,7 @@ pub const MOST_NODES: usize = 384;
 /// and Michiels, 2012). With |λ|τ/2 as the argument of the Chebyshev expansion its error falls
 /// faster than any power once N exceeds that argument.
 ///
-/// None where that takes more than is reasonable.
+/// None where that takes more than `MOST_NODES`.
 #[must_use]
 pub fn nodes_for(tau: f64, radius: f64) -> Option<usize> {
     let half_angle = 0.5 * tau * radius;
@@ -39,8 +39,8 @@ pub fn nodes_for(tau: f64, radius: f64) -> Option<usize> {
     (nodes <= MOST_NODES as f64).then_some(nodes as usize)
 }
 
-/// Approximate roots with Im λ ≥ 0 from `nodes` nodes, by falling real part; those far left mean
-/// nothing.
+/// Approximate roots with Im λ ≥ 0 from `nodes` nodes, by falling real part; those far left are
+/// meaningless.
 ///
 /// `p` and `q` are the coefficients of P and Q, the constants first; the last of P is not 0, and Q
 /// has no higher degree. Newton's method has to polish the roots. `tau` > 0 in units of √(M/κ).
@@ -110,7 +110,7 @@ fn generator(p: &[f64], q: &[f64], tau: f64, nodes: usize) -> Mat<f64> {
     let n = p.len() - 1;
     let size = nodes + n;
     let per_leading = 1.0 / p[n];
-    // What of u(0) is x⁽ⁿ⁾.
+    // The coefficient of x⁽ⁿ⁾ in u(0).
     let neutral = q.get(n).copied().unwrap_or(0.0) * per_leading;
     let mut matrix = Mat::<f64>::zeros(size, size);
     for i in 1..n {
@@ -146,7 +146,8 @@ fn late_generator(of: &Late<'_>, nodes: usize) -> Mat<f64> {
     let per_leading = 1.0 / of.open[n];
     let late = interpolation(nodes, of.latency / span);
     let delayed = interpolation(nodes, of.tau / span);
-    // s(0) as a row over z, ż, … and s at the other nodes: it stands in its own interpolation.
+    // s(0) as a row over z, ż, … and s at the other nodes. The interpolation at τ contains s(0)
+    // itself.
     let per_own = 1.0 / (1.0 - of.memory * delayed[0]);
     let mut now = vec![0.0; nodes + n];
     for (entry, a) in now.iter_mut().zip(of.gain) {

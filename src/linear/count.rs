@@ -79,7 +79,7 @@ impl Crossings {
         self.always_marginal || (self.undamped && tau <= tolerance.0 * self.time_unit)
     }
 
-    /// The distance from `delay`, one of those of `crossing`, up to which others are marginal.
+    /// The distance from `delay`, a delay of `crossing`, up to which other delays are marginal.
     #[inline]
     #[must_use]
     pub fn marginal_distance(
@@ -145,8 +145,8 @@ mod tests {
         }
     }
 
-    /// The pair ±i leaves the axis as the first order of τ says, so positive load gain destabilises
-    /// at b = 0.
+    /// To first order in τ the pair ±i leaves the axis with the sign of the load gain, so positive
+    /// gain destabilises at b = 0.
     #[test]
     fn undamped_pair_moves_with_the_sign_of_the_load_gain() {
         assert_eq!(count(0.0, 0.0, 0.2, 0.1).n_unstable, 2);

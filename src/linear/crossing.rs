@@ -68,7 +68,7 @@ pub struct Crossing {
     pub theta: f64,
     /// The first branch k that is a crossing: 1 where θ = 0 exactly (b = 0), else 0.
     pub first_branch: u64,
-    /// What the pair does there.
+    /// How the pair moves there.
     pub direction: Direction,
     /// θ/ω.
     first_delay: f64,
@@ -90,7 +90,7 @@ impl Crossing {
         direction: Direction,
     ) -> Self {
         let per_omega = 1.0 / omega;
-        // A frequency of which nothing is known spoils every delay.
+        // If the frequency is unknown, so are all delays.
         let frequency_error = if omega_error < 0.5 * omega {
             omega_error * per_omega / (1.0 - omega_error * per_omega) + 4.0 * UNIT_ROUNDOFF
         } else {
@@ -108,18 +108,18 @@ impl Crossing {
         }
     }
 
-    /// θ may be 0 or 2π: a pair starts on the axis at τ = 0.
+    /// Whether θ may be 0 or 2π: a pair starts on the axis at τ = 0.
     pub(super) fn starts_at_zero(&self) -> bool {
         let apart = self.first_delay.min((self.period - self.first_delay).abs());
         apart <= self.phase_error + self.frequency_error * self.period
     }
 
-    /// `tau` lies within `part` of a period of a delay of this crossing.
+    /// Whether `tau` lies within `part` of a period of a delay of this crossing.
     pub(super) fn near(&self, tau: f64, part: f64) -> bool {
         self.marginal_at(tau, |delay| self.delay_error(delay).max(part * self.period))
     }
 
-    /// `tau` is no farther from one of the delays than is allowed there.
+    /// Whether `tau` is within the distance of one of the delays that is `allowed` there.
     pub(super) fn marginal_at(&self, tau: f64, allowed: impl Fn(f64) -> f64) -> bool {
         if self.period <= allowed(tau) {
             return true;
@@ -153,7 +153,7 @@ impl Crossing {
         self.phase_error + self.frequency_error * tau
     }
 
-    /// With delays in a unit of time of which `time_unit` makes one of these.
+    /// The crossing in physical time: the unit of its delays is `time_unit`.
     pub(super) fn scaled(self, time_unit: f64) -> Self {
         Self {
             omega: self.omega / time_unit,
@@ -241,8 +241,7 @@ impl Crossings {
         }
         let (c, d) = quadratic(groups);
         let discriminant = discriminant(groups);
-        // What rounding of the groups themselves does to c and d counts as well: it matters where
-        // they cancel.
+        // The rounding of the groups themselves counts as well: it matters where c and d cancel.
         let Groups { a_v, a_n, .. } = groups;
         let c_error = ROUNDINGS * UNIT_ROUNDOFF * (b * b + 2.0 * a_n.abs());
         let d_error = ROUNDINGS * UNIT_ROUNDOFF * (b * b + 2.0 * (b * a_v).abs());
@@ -259,7 +258,7 @@ impl Crossings {
             let mut x_error = (y_error + f64x2::splat(UNIT_ROUNDOFF)).to_array();
             for (small, other) in [(0, 1), (1, 0)] {
                 if x[small].abs() < 0.25 && x[other].abs() > 2.0 * x[small].abs() {
-                    // 1 + y loses digits where x is small, its sign among them; the product of both
+                    // Where x is small 1 + y loses digits, even its sign; the product of both zeros
                     // keeps them.
                     x[small] = frequency_product(groups) / x[other];
                     let relative = x_error[other] / x[other].abs() + ROUNDINGS * UNIT_ROUNDOFF;
@@ -274,8 +273,7 @@ impl Crossings {
         crossings
     }
 
-    /// These crossings with delays in units of time of which `time_unit` = √(M/κ) makes one
-    /// dimensionless unit.
+    /// These crossings in physical time: the dimensionless unit of time is `time_unit` = √(M/κ).
     #[inline]
     #[must_use]
     pub fn in_physical_time(self, time_unit: f64) -> Self {
@@ -325,7 +323,7 @@ pub fn discriminant(groups: Groups) -> f64 {
 pub fn frequency_product(groups: Groups) -> f64 {
     let Groups { b, a_v, a_n } = groups;
     let sum = 1.0 - 2.0 * a_n;
-    // What rounding took from the sum (Knuth's two-sum): it counts where the rest cancels.
+    // The rounding error of the sum (Knuth's two-sum), which matters where the rest cancels.
     let part = sum - 1.0;
     let lost = (1.0 - (sum - part)) + (-2.0 * a_n - part);
     (-2.0 * b).mul_add(a_v, sum) + lost
@@ -370,7 +368,7 @@ fn roots((c, c_error): (f64, f64), d: f64, root: f64, discriminant_error: f64) -
     }
 }
 
-/// What two crossings are made of, computed side by side: the arms ω₊ and ω₋ need the same
+/// The numbers of two crossings, computed side by side: the arms ω₊ and ω₋ need the same
 /// operations.
 struct Arms {
     x: [f64; 2],
@@ -385,7 +383,7 @@ struct Arms {
 }
 
 impl Arms {
-    /// Equation (2) at x = 1 + y, for x > 0; what stands where x is not positive means nothing.
+    /// Equation (2) at x = 1 + y. Where x is not positive the result is meaningless.
     #[inline(always)]
     fn new(groups: Groups, (y, y_error): (f64x2, f64x2), (x, x_error): (f64x2, f64x2)) -> Self {
         let Groups { b, a_v, a_n } = groups;
@@ -435,8 +433,8 @@ impl Arms {
 
 /// The argument of `cosine` + i `sine` in [0, 2π].
 ///
-/// A phase that is negative by less than rounding comes out as 2π, which is right: the crossing at
-/// τ = 0⁻ is none, the one a turn later is. The exact zero comes out as 0.
+/// A phase that is negative by less than rounding becomes 2π, which is right: there is no crossing
+/// at τ = 0⁻, but there is one a turn later. Exact zero stays 0.
 #[inline(always)]
 fn phase(sine: f64x2, cosine: f64x2) -> f64x2 {
     let angle = atan2(sine, cosine);
@@ -445,8 +443,8 @@ fn phase(sine: f64x2, cosine: f64x2) -> f64x2 {
 
 /// The angles of the points (x, y) in [−π, π], to a few units in the last place; 0 at the origin.
 ///
-/// After Cephes and Agner Fog's vector class library, like wide's own, but that one fuses products
-/// and sums where the processor can: here bits are the same on all of them.
+/// After Cephes and Agner Fog's vector class library, as in the crate wide. That one fuses products
+/// and sums where the processor can; here the bits are the same on all processors.
 #[inline(always)]
 fn atan2(y: f64x2, x: f64x2) -> f64x2 {
     const MORE_BITS: f64 = 6.123_233_995_736_766e-17;

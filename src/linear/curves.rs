@@ -4,8 +4,8 @@
 //! Between two breakpoints of p (folds ω₋ = ω₊, and ω₋ = 0) each branch k of ω₊ and of ω₋ is a
 //! smooth arc τ_k(p). An arc is parametrised by s in [0, 1] with p = p₀ + (p₁ − p₀)(1 − cos πs)/2,
 //! which undoes the square root at a fold. Arcs are cut at corners, where τ_j(ω₊) = τ_k(ω₋): a
-//! double Hopf point. On each piece the number of unstable roots to both sides is then constant,
-//! and says whether the piece bounds the stable region.
+//! double Hopf point. On each piece the number of unstable roots on both sides is then constant,
+//! and shows whether the piece bounds the stable region.
 
 use std::ops::RangeInclusive;
 
@@ -40,8 +40,7 @@ pub enum CurveKind {
     Pair,
     /// A real root: at the origin, where the line is the imaginary axis.
     RealRoot,
-    /// |p_n| = κ|q_n|, κ = e^(στ): the line is that at which roots accumulate, or a root comes from
-    /// infinity.
+    /// |p_n| = κ|q_n|, κ = e^(στ): roots accumulate at the line, or a root comes from infinity.
     LeadingCoefficient,
 }
 
@@ -84,7 +83,7 @@ impl StableSide {
         }
     }
 
-    /// The side of that [`StableSide::sign`]; neither for other numbers.
+    /// The side with this [`StableSide::sign`]; `Neither` for other numbers.
     #[must_use]
     pub const fn of_sign(sign: i8) -> Self {
         match sign {
@@ -104,8 +103,8 @@ pub struct CurvePiece {
     pub kind: CurveKind,
     /// Branch number k of the letter's Eq. (5).
     pub branch: u64,
-    /// What the root does there as the delay, or q, grows; p, where that is the same all along the
-    /// piece. A touch where that is not known.
+    /// How the root moves there as the delay, or q, grows; as p grows where p is the same all along
+    /// the piece. A touch where that is not known.
     pub direction: Direction,
     /// Where the stable region lies.
     pub stable_side: StableSide,
@@ -136,7 +135,7 @@ pub struct Corner {
 pub struct PlaneCurves {
     /// Pieces of constant direction and constant count on both sides.
     pub pieces: Vec<CurvePiece>,
-    /// Where they meet.
+    /// Points where two curves cross.
     pub corners: Vec<Corner>,
 }
 
@@ -199,7 +198,7 @@ pub fn scan_breakpoints(
 /// Traces every crossing curve inside `window`.
 ///
 /// `crossings_at` gives the crossings of the line at p; `breakpoints` are the values of p at which
-/// their number changes (others do no harm; those outside the window are passed over).
+/// their number changes. Additional values do no harm, and values outside the window are ignored.
 ///
 /// # Errors
 /// When more curves lie in the window than can be traced.
@@ -214,7 +213,7 @@ pub fn trace(
         .filter(|p| window.p.contains(p))
         .chain([*window.p.start(), *window.p.end()])
         .collect();
-    // The same breakpoint found by two conditions differs by rounding: the sliver between is no
+    // A breakpoint found by two conditions differs by rounding; the sliver in between is no
     // stretch.
     let sliver = 1e-12 * window.p_width();
     for end in &mut ends {
@@ -351,8 +350,7 @@ mod tests {
         }
     }
 
-    /// Every change of stability along any line of the plane lies on a bounding piece: none is left
-    /// out.
+    /// Every change of stability along any line of the plane lies on a bounding piece.
     #[test]
     fn no_boundary_is_missing() {
         for b in [-0.6, -0.3, -0.1, -0.02] {

@@ -1,4 +1,4 @@
-//! What finding and following roots needs of a characteristic equation.
+//! A characteristic equation, with all that is needed to find and follow its roots.
 
 use num_complex::Complex64;
 
@@ -17,14 +17,14 @@ pub trait Equation: Copy {
     /// The number of roots right of the imaginary axis at any delay.
     type Unstable;
 
-    /// Counts right of a line cost much more than evaluations: a certificate begins with the margin
-    /// of the cell before.
+    /// Whether counts right of a line cost much more than evaluations. A certificate then begins
+    /// with the margin of the cell before.
     const KEEPS_MARGINS: bool;
 
     /// P and Q.
     fn pair(self) -> impl Pair;
 
-    /// No feedback: the delay does not matter.
+    /// Whether there is no feedback: the delay then does not matter.
     fn uncontrolled(self) -> bool;
 
     /// D and its derivatives.
@@ -33,16 +33,16 @@ pub trait Equation: Copy {
     /// A bound on the rounding of `jet.value`.
     fn rounding(self, jet: &Jet, tau: f64, lambda: Complex64) -> f64;
 
-    /// D‴, roughly, where `jet` is D.
+    /// A rough value of D‴, where `jet` is D.
     fn third(self, jet: &Jet, tau: f64, lambda: Complex64) -> Complex64;
 
-    /// How many roots lie right of `line`; none where that is open, or infinite.
+    /// The number of roots right of `line`; none where it is undecided or infinite.
     fn right_of(self, tau: f64, line: f64) -> Option<u64>;
 
     /// Counts right of the axis.
     fn unstable(self) -> Self::Unstable;
 
-    /// The number that `unstable` tells at `tau`.
+    /// The number of unstable roots at `tau`, from `unstable`; none where it is undecided.
     fn unstable_at(unstable: &Self::Unstable, tau: f64) -> Option<u64>;
 
     /// How far back in time the equation reaches at the delay `tau`.
@@ -53,11 +53,11 @@ pub trait Equation: Copy {
     /// The radius within which every root with Re λ ≥ `line` lies.
     fn root_bound(self, tau: f64, line: f64) -> f64;
 
-    /// The part of the plane left of which there is nothing to find: roots accumulate there.
+    /// The real part at which roots accumulate; nothing is searched left of it.
     fn essential_abscissa(self, tau: f64) -> f64;
 
-    /// Appends the zeros of D at τ = 0, or everywhere where the delay does not matter, in the upper
-    /// half-plane and on the real axis; returns how many there are in all.
+    /// Appends the zeros of D at τ = 0, or at any delay where it does not matter, in the upper
+    /// half-plane and on the real axis. Returns how many there are in all.
     fn without_delay(self, tau: f64, starts: &mut Vec<Complex64>) -> u64;
 
     /// Appends the zeros of P, and of P + Q: weak feedback and short delays leave roots there.

@@ -9,11 +9,11 @@
 //! - [`count`]: the exact number of unstable roots at a delay
 //! - [`stable_delays`]: all delay intervals on which sliding is stable
 //! - [`row`]: counts and margins at many delays of one line
-//! - [`status`]: what a cell says about itself
+//! - [`status`]: the status bits of a cell
 //! - [`gains`]: the crossing curve with one gain given and the other solved for
 //! - [`curves`]: crossing curves in a plane of a parameter and the delay, cut at their corners
 //! - [`decay`]: curves of a given degree of stability in such a plane: where max Re λ = −σ
-//! - [`plane`]: a characteristic function over a plane, as what follows curves takes it
+//! - [`plane`]: a characteristic function over a plane, for code that follows curves
 //! - [`lobes`]: where the stable regions of pure control end
 //! - [`best`]: the settings of fastest decay, for every stable region
 //! - [`margins`]: how far a setting is from the boundary of stability, in every direction
@@ -21,8 +21,8 @@
 //! - `certificate`: the number of roots right of any vertical line: argument principle in closed
 //!   form
 //! - `collocation`: roots as eigenvalues; the only file that imports faer
-//! - `controlled`: the controlled oscillator as such an equation
-//! - `equation`: what finding and following roots needs of a characteristic equation
+//! - `controlled`: the controlled oscillator as an `equation`
+//! - `equation`: a characteristic equation, with all that is needed to find and follow its roots
 //! - `general`: any linear system with one delay
 //! - `newton`: polishing of a root (Halley's method) and its error
 //! - `rightmost`: the rightmost roots at one point, with the certificate that a map's cell has

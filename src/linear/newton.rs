@@ -14,8 +14,8 @@ const MOST_STEPS: u32 = 40;
 pub struct Root {
     /// λ with Im λ ≥ 0, in units of √(κ/M); with Im λ > 0 it stands for the pair λ, λ*.
     pub lambda: Complex64,
-    /// Estimate of |λ − exact root|: the rounding error of D over |D′|, or what it comes to at a
-    /// double root.
+    /// Estimate of |λ − exact root|: the rounding error of D over |D′|, or the corresponding error
+    /// at a double root.
     pub error: f64,
 }
 
@@ -26,7 +26,7 @@ impl Root {
         if self.lambda.im == 0.0 { 1 } else { 2 }
     }
 
-    /// Some other root lies so near that rounding hardly tells them apart.
+    /// Whether some other root lies so near that rounding hardly tells them apart.
     #[must_use]
     pub fn nearly_multiple(&self) -> bool {
         self.error > 1e-10 * (1.0 + norm(self.lambda))
@@ -43,8 +43,8 @@ pub(super) fn halley_step(newton: Complex64, bend: Complex64) -> Complex64 {
     divide(newton, 1.0 - 0.5 * newton * bend)
 }
 
-/// The step to the nearer zero of the parabola that touches D: Halley's but for the neighbourhood
-/// of a double root, where that one stalls.
+/// The step to the nearer zero of the parabola that touches D. It is Halley's step except near a
+/// double root, where that one stalls.
 fn step_of(jet: &Jet) -> Complex64 {
     let square = jet.first * jet.first;
     let bent = 2.0 * jet.value * jet.second;
@@ -106,7 +106,7 @@ fn iterate(equation: impl Equation, tau: f64, start: Complex64) -> Option<Root> 
     None
 }
 
-/// `lambda` with its error: |D| ≤ `rounding` leaves room for |D′|δ + |D″|δ²/2 of that size.
+/// `lambda` with its error δ: |D′|δ or |D″|δ²/2 is then as large as `rounding`.
 fn finished(lambda: Complex64, jet: &Jet, rounding: f64) -> Root {
     let simple = rounding / norm(jet.first);
     let double = (2.0 * rounding / norm(jet.second)).sqrt();

@@ -1,8 +1,8 @@
-//! A characteristic function over a plane of two parameters p and q, as what follows curves in it
-//! takes it.
+//! A characteristic function over a plane of two parameters p and q, for code that follows curves
+//! in it.
 //!
-//! One of the two, or both, may be delays, or neither. λ is in the inverse of the plane's own unit
-//! of time, in which delays are given too.
+//! One of the two, both or neither may be delays. λ is in the inverse of the plane's own unit of
+//! time, in which delays are given too.
 
 use num_complex::Complex64;
 
@@ -43,7 +43,7 @@ pub struct Local {
 }
 
 impl Local {
-    /// D is 0 within rounding.
+    /// Whether D is 0 within rounding.
     #[must_use]
     pub fn vanishes(&self) -> bool {
         elementary::norm(self.value) <= ROUNDINGS * self.rounding
@@ -60,12 +60,12 @@ impl Local {
     }
 }
 
-/// What steps along q have to know at one point.
+/// Bounds at one point for steps along q.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Band {
-    /// No root on the line is faster than this frequency; 0 where none can be there.
+    /// The highest frequency that a root on the line can have; 0 where no root can lie there.
     pub highest: f64,
-    /// Some root is right of the line here and at every larger q.
+    /// Whether some root is right of the line here and at every larger q.
     pub enough: bool,
 }
 
@@ -75,10 +75,10 @@ pub trait Plane {
     /// The window.
     fn window(&self) -> &Window;
 
-    /// The unit of time √(M/κ) at a point, or another time over which things happen.
+    /// The unit of time √(M/κ) at a point, or another natural unit of time.
     fn unit(&self, p: f64, q: f64) -> f64;
 
-    /// All delays at a point together.
+    /// The sum of all delays at a point.
     fn delay(&self, p: f64, q: f64) -> f64;
 
     /// Which of p and q are delays.
@@ -98,6 +98,6 @@ pub trait Plane {
     /// The frequencies above 0 at which a root may lie on the line.
     fn frequencies(&self, p: f64, q: f64, sigma: f64) -> Vec<f64>;
 
-    /// What is known of the roots on the line before one steps along q.
+    /// Bounds of the roots on the line, for steps along q.
     fn band(&self, p: f64, q: f64, sigma: f64) -> Band;
 }

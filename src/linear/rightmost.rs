@@ -16,15 +16,15 @@ pub struct Rightmost {
     /// No root lies right of Re λ + margin·max(1, |Re λ|), λ being the first of `roots`; NaN where
     /// nothing converged.
     pub margin: f64,
-    /// The argument principle confirms that, and the number of unstable roots.
+    /// Whether the argument principle confirms that, and the number of unstable roots.
     pub certified: bool,
-    /// What was not found, if anything.
+    /// The line right of which roots are missing, if any are.
     pub missing: Option<Incomplete>,
 }
 
 impl Rightmost {
-    /// The `wanted` rightmost roots, at least one, at the delay `tau` ≥ 0; `count` is what the
-    /// closed form says there.
+    /// The `wanted` rightmost roots, at least one, at the delay `tau` ≥ 0; `count` is that of the
+    /// closed form there.
     #[must_use]
     pub fn at(equation: impl Equation, tau: f64, wanted: usize, count: Count) -> Self {
         let counted = count.n_unstable.min(u64::from(MOST_COUNTED));

@@ -1,5 +1,5 @@
-//! Bisection: where scalar conditions change. Every use evaluates a smooth closed form a few dozen
-//! times in all, and this cannot fail.
+//! Bisection, to find where scalar conditions change. Every use evaluates a smooth closed form a
+//! few dozen times in all, and bisection cannot fail.
 
 /// The root of `f` in [`lo`, `hi`], where f(lo) and f(hi) differ in sign, to the last bit that
 /// bisection resolves.
@@ -9,8 +9,8 @@ pub(crate) fn bisect(lo: f64, hi: f64, f: impl Fn(f64) -> f64) -> f64 {
     0.5 * (lo + hi)
 }
 
-/// Where between `from` and `to` it changes whether numbers are `like_from`, as `from` is and `to`
-/// is not: two numbers that enclose it, near `enough`, or with none in between.
+/// Encloses a change of the condition `like_from`, which holds at `from` and not at `to`. Returns
+/// two numbers around it that are near `enough`, or have none in between.
 pub(crate) fn narrowed(
     mut from: f64,
     mut to: f64,

@@ -33,7 +33,7 @@ impl Rounded {
         }
     }
 
-    /// `by` is as good as exact.
+    /// The product with `by`, whose own error is negligible.
     #[inline(always)]
     pub(super) fn scaled(self, by: f64) -> Self {
         Self {
@@ -57,7 +57,7 @@ impl Rounded {
         }
     }
 
-    /// The sign is beyond doubt.
+    /// Whether the sign is beyond doubt.
     #[inline(always)]
     pub(super) fn decided(self) -> bool {
         self.value.abs() > self.error

@@ -59,7 +59,7 @@ impl Delays {
         if self.per_step == 0.0 {
             return fenced[1..=most].partition_point(|&v| v <= tau);
         }
-        // Right but for rounding on an evenly spaced grid; the loops make it right for any.
+        // Exact up to rounding on an evenly spaced grid; the loops make it right for any.
         let guess = (tau - fenced[1]) * self.per_step + 1.0;
         let mut i = (guess as i64).clamp(0, most as i64) as usize;
         while fenced[i] > tau {
@@ -89,7 +89,7 @@ pub(super) trait Line {
     /// The count at one delay.
     fn count(&self, tau: f64, tolerance: MarginalTolerance) -> Count;
 
-    /// The distance from `delay`, one of those of `crossing`, up to which others are marginal.
+    /// The distance from `delay`, a delay of `crossing`, up to which other delays are marginal.
     fn marginal_distance(
         &self,
         crossing: &Crossing,
@@ -115,20 +115,20 @@ impl Line for Crossings {
     }
 }
 
-/// One family of crossings on its way along a row.
+/// The place of a row in one family of crossings.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Cursor<'c> {
     crossing: Option<&'c Crossing>,
     /// Branch of the next crossing.
     branch: u64,
-    /// Crossings behind.
+    /// Number of crossings passed.
     passed: u64,
     /// Index of the first delay beyond the next crossing.
     index: usize,
 }
 
 impl Cursor<'_> {
-    /// On no crossing.
+    /// Without a crossing.
     pub(super) const IDLE: Self = Self {
         crossing: None,
         branch: 0,
@@ -148,7 +148,7 @@ pub(super) struct Row<'a, L> {
     line: &'a L,
     delays: &'a Delays,
     tolerance: MarginalTolerance,
-    /// Some cell's status was changed.
+    /// Whether some cell's status was changed.
     flagged: Cell<bool>,
 }
 
@@ -163,18 +163,18 @@ impl<'a, L: Line> Row<'a, L> {
         }
     }
 
-    /// What is marginal.
+    /// How near to a crossing a delay is marginal.
     pub(super) fn tolerance(&self) -> MarginalTolerance {
         self.tolerance
     }
 
-    /// Some cell's status was changed.
+    /// Whether some cell's status was changed.
     #[inline(always)]
     pub(super) fn flagged(&self) -> bool {
         self.flagged.get()
     }
 
-    /// Crossings of the frequency `fastest` are denser than cells.
+    /// Whether crossings of the frequency `fastest` are denser than cells.
     #[inline(always)]
     pub(super) fn is_dense(&self, fastest: f64) -> bool {
         let values = self.delays.values();
@@ -325,8 +325,8 @@ impl Row<'_, Crossings> {
     }
 }
 
-/// Fills at least the first `length` elements, in whole blocks: what is filled too much is
-/// overwritten by the next stretch.
+/// Fills at least the first `length` elements, in whole blocks; elements beyond are overwritten by
+/// the next stretch.
 #[inline]
 fn fill_ahead(row: &mut [u16], length: usize, value: u16) {
     const BLOCK: usize = 32;
@@ -345,12 +345,12 @@ pub(super) fn saturated(count: u64) -> u16 {
 }
 
 impl Crossings {
-    /// The count of unstable roots and the status at every delay of a row: as [`Crossings::count`]
-    /// says, cell by cell.
+    /// The count of unstable roots and the status at every delay of a row, the same as
+    /// [`Crossings::count`] cell by cell.
     ///
     /// `n_unstable` and `status` have the length of `delays`. Every element of `n_unstable` is
-    /// written. `status` holds zeros to begin with, and flags are added where there are any: true
-    /// is returned if so. Counts above [`MOST_COUNTED`] are cut and say so in the status.
+    /// written. `status` has to hold zeros; flags are added to it. Returns whether any were. Counts
+    /// above [`MOST_COUNTED`] are cut, and flagged in the status.
     pub fn fill_counts(
         &self,
         delays: &Delays,

@@ -5,8 +5,8 @@ use num_complex::Complex64;
 use super::characteristic::Jet;
 use crate::model::Groups;
 
-/// Derivatives of a root λ with respect to the dimensionless groups and the delay. Real parts are
-/// those of the abscissa.
+/// Derivatives of a root λ with respect to the dimensionless groups and the delay. Their real parts
+/// are the derivatives of the abscissa.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Sensitivity {
     /// ∂λ/∂b.

@@ -1,9 +1,9 @@
 //! All characteristic roots right of a vertical line, none missed.
 //!
-//! Starting values come from the branches of the logarithm; where these do not lead to every root,
-//! from D at small λτ; or else from collocation with as many nodes as it takes. Each is polished,
-//! duplicates are removed, and the number that is left is compared with the number that the
-//! argument principle says there is ([`super::certificate`]).
+//! Starting values come from the branches of the logarithm. Where these do not lead to every root,
+//! they come from D at small λτ, or else from collocation with as many nodes as it takes. Each is
+//! polished, and duplicates are removed. The number of roots is then compared with the one by the
+//! argument principle ([`super::certificate`]).
 
 use num_complex::Complex64;
 
@@ -13,18 +13,18 @@ use super::equation::Equation;
 use super::newton::{Root, divide, polish};
 use crate::model::elementary::{norm, sqrt};
 
-/// Collocation with more nodes each time, at most so often.
+/// The most attempts at collocation, each with more nodes than the one before.
 const COLLOCATIONS: u32 = 3;
-/// |στ| up to which e^(−στ) and what is made of it neither overflow nor lose all meaning.
+/// The largest |στ| at which terms with e^(−στ) neither overflow nor lose all digits.
 const FARTHEST_LEFT: f64 = 700.0;
 
-/// Between roots that crowd together a line is looked for down to this distance (relative), in so
-/// many halvings.
+/// Between crowded roots a line is searched down to this relative distance, by at most so many
+/// halvings.
 const CROWDED: f64 = 1e-12;
 const MOST_HALVINGS: u32 = 64;
-/// How near to the line at which roots accumulate they are looked for, in units of 1/τ.
+/// How near to the line at which roots accumulate they are searched, in units of 1/τ.
 const BESIDE_ESSENTIAL: f64 = 1e-6;
-/// So many times as far from that line no more halvings are made towards it.
+/// Within so many times that distance, no more halvings are made towards that line.
 const CLOSE: f64 = 16.0;
 /// How far from a cluster of nearly equal roots its number may be counted.
 const FARTHEST_COUNT: f64 = 0.03;
@@ -48,7 +48,7 @@ pub struct Incomplete {
 
 impl RootFinder {
     /// Every root with Re λ > `line` and Im λ ≥ 0: by falling real part, among equal ones by rising
-    /// imaginary part. A double root stands there twice.
+    /// imaginary part. A double root is listed twice.
     ///
     /// `tau` ≥ 0 in units of √(M/κ), `line` in their inverse.
     ///
@@ -114,7 +114,7 @@ impl RootFinder {
         self.right_of(equation, tau, line)
     }
 
-    /// Adds what the starting values lead to, without duplicates, in order.
+    /// Adds the roots to which the starting values lead, without duplicates, in order.
     fn polish_starts(&mut self, equation: impl Equation, tau: f64, line: f64) {
         for i in 0..self.starts.len() {
             let added = self.polish_start(equation, tau, line, self.starts[i]);
@@ -154,8 +154,8 @@ impl RootFinder {
         Some(root)
     }
 
-    /// Whether the roots are `count`. Roots that rounding hardly tells apart are as many as are
-    /// counted where they are.
+    /// Whether the number of roots found is `count`. Where rounding hardly tells roots apart, their
+    /// number is that counted around them.
     fn complete(&mut self, equation: impl Equation, tau: f64, count: u64) -> bool {
         let number = |roots: &[Root]| roots.iter().map(Root::count).sum::<u64>();
         if number(&self.roots) == count {
@@ -201,8 +201,8 @@ impl RootFinder {
     }
 }
 
-/// A strip of real parts that holds a range and a little around it, as little as rounding (`error`)
-/// allows, and the number of roots in it.
+/// A strip of real parts around a range, as narrow as rounding (`error`) allows, and the number of
+/// roots in it.
 fn count_between(
     equation: impl Equation,
     tau: f64,
@@ -241,7 +241,7 @@ fn some_of(cluster: &[Root], number: u64) -> impl Iterator<Item = Root> {
         .into_iter()
 }
 
-/// Where the roots next to the root `lambda` are, of the cubic that touches D there.
+/// Estimates of the roots next to the root `lambda`, by the cubic that touches D there.
 fn neighbours(
     equation: impl Equation,
     tau: f64,
@@ -294,7 +294,7 @@ fn line_left_of(equation: impl Equation, tau: f64, wanted: u64, leftmost: f64) -
             _ => {}
         }
         right = left;
-        // Where roots accumulate a line next to that has too many right of it.
+        // Near the line at which roots accumulate there are too many right of a line.
         let halfway = 0.5 * (left + leftmost);
         let close = !accumulating || left - leftmost <= CLOSE * BESIDE_ESSENTIAL / tau;
         left = (left - step).max(if close { leftmost } else { halfway });

@@ -153,7 +153,7 @@ pub(super) fn signed_distance(
 pub struct MarginWalk<'c> {
     crossings: &'c Crossings,
     last: Option<u64>,
-    /// Where `below` and `above` hold: the delays looked at last.
+    /// The range of delays in which `below` and `above` hold.
     valid: (f64, f64),
     below: Option<StableInterval>,
     above: Option<StableInterval>,

@@ -1,4 +1,4 @@
-//! What a cell says about itself: bits of its status.
+//! The status bits of a cell.
 
 /// An independent method confirmed the cell.
 pub const CERTIFIED: u8 = 1;
@@ -30,6 +30,6 @@ pub const FLAGS: [(u8, &str); 6] = [
 /// computed.
 pub const MOST_COUNTED: u16 = u16::MAX - 1;
 
-/// What stands for the count where there is none: infinitely many roots are unstable, or nobody
-/// knows how many. The fill value of a map.
+/// Stands for a count that does not exist: infinitely many roots are unstable, or their number is
+/// not known. It is the fill value of a map.
 pub const NOT_COUNTED: u16 = u16::MAX;

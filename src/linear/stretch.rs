@@ -10,7 +10,7 @@ use super::curves::{
 use super::roots::bisect;
 use crate::model::elementary::{power, sin};
 
-/// Nodes at which each arc is looked at for corners and for its way through the window.
+/// Nodes at which each arc is examined for corners and for where it enters and leaves the window.
 const NODES: usize = 192;
 /// Segments into which a piece is cut before it is refined.
 const COARSE_SEGMENTS: usize = 8;
@@ -214,8 +214,8 @@ impl<'a, F: Fn(f64) -> Crossings> Stretch<'a, F> {
             q: upper.delay(cut.upper),
             upper: (upper.omega, cut.upper),
             lower: (lower.omega, cut.lower),
-            // Before and after the corner; on one of its other two sides a pair is out, on one it
-            // is in.
+            // Before and after both crossings `others` roots are unstable; on the other two sides
+            // two more, and two fewer.
             bounds_stable: others == 0 || others == 2,
         })
     }

@@ -30,23 +30,23 @@ const COMPANIONS: usize = 2;
 const MOST_TRACKS: usize = MOST_ROOTS + COMPANIONS;
 /// Evaluations of D after which a root is lost.
 const MOST_EVALUATIONS: u32 = 4;
-/// Cells after which a narrower margin than that of the cell before is tried.
+/// Cells after which a narrower margin than before is tried.
 const CELLS_WITH_A_MARGIN: u8 = 6;
 /// How far the margin may be widened where a root is nearly multiple.
 const WIDEST_MARGIN: f64 = 0.03;
-/// What a step may leave of the error, relative.
+/// The relative error that a step may leave.
 const SETTLED: f64 = 2e-16;
-/// Steps longer than this part of the distance at which D bends lead no one knows where.
+/// Steps longer than this part of the distance at which D bends are not trusted.
 const FARTHEST_STEP: f64 = 0.3;
 /// A root with an imaginary part below this (relative) is real, or nearly double.
 const NEARLY_REAL: f64 = 1e-9;
 
-/// What was found in one cell.
+/// The roots found in one cell.
 #[derive(Debug, Clone, Copy)]
 pub struct Cell<'t> {
-    /// The rightmost roots by falling real part, as many as the tracker was asked for; fewer where
-    /// there are no more (without control or delay) or, in a cell that says it has not converged,
-    /// where the others were not found. Dimensionless.
+    /// The rightmost roots by falling real part, as many as the tracker was asked for. There are
+    /// fewer without control or delay, where no more exist, and in a cell that is marked not
+    /// converged, where the others were not found. Dimensionless.
     pub roots: &'t [Root],
     /// No root lies right of Re λ + margin·max(1, |Re λ|), λ being the first of `roots`.
     pub margin: f64,
@@ -84,11 +84,11 @@ const NO_ROOT: Root = Root {
     error: 0.0,
 };
 
-/// With which margin a certificate is tried first.
+/// The margin with which a certificate is tried first.
 #[derive(Debug, Clone, Copy)]
 struct KeptMargin {
     margin: f64,
-    /// So many cells more begin with it.
+    /// The number of further cells that begin with it.
     cells: u8,
 }
 
@@ -98,7 +98,7 @@ impl KeptMargin {
         cells: 0,
     };
 
-    /// After a cell that came to `margin`, widened or not.
+    /// Learns from a cell that needed `margin`, widened or not.
     fn learn(&mut self, margin: f64, widened: bool) {
         if widened {
             (self.margin, self.cells) = (margin, CELLS_WITH_A_MARGIN);
@@ -124,12 +124,12 @@ pub struct RootTracker {
     expected: usize,
     /// For each of `roots`, where certificates cost much.
     margins: [KeptMargin; MOST_ROOTS],
-    /// Fewer roots were found than there are.
+    /// Whether fewer roots were found than were asked for.
     short: bool,
     /// The delay at which `tracks` stand, and the step that led there.
     tau: f64,
     step: f64,
-    /// What was done since the tracker was made.
+    /// Work done since the tracker was made.
     pub work: Work,
 }
 
@@ -155,11 +155,11 @@ impl RootTracker {
 
     /// Visits every cell of a line in order.
     ///
-    /// `delays` increase, in units of which `time_unit` = √(M/κ) makes one dimensionless; `first`
-    /// is the index of the first of them on the whole line, a multiple of [`BLOCK`] for values that
-    /// do not depend on how the line is cut. `counts` are their numbers of unstable roots by the
-    /// closed form; `status` comes with what that form has to say and gains certified, marginal,
-    /// not converged or disagree.
+    /// `delays` increase; divided by `time_unit` = √(M/κ) they are dimensionless. `first` is the
+    /// index of the first of them on the whole line. If it is a multiple of [`BLOCK`], values do
+    /// not depend on how the line is cut. `counts` are the numbers of unstable roots by the closed
+    /// form. `status` comes with the flags of that form, and gains certified, marginal, not
+    /// converged or disagree.
     pub fn follow<E: Equation>(
         &mut self,
         equation: E,
@@ -175,13 +175,13 @@ impl RootTracker {
         for (i, ((delay, &count), status)) in
             delays.iter().zip(counts).zip(status.iter_mut()).enumerate()
         {
-            // Without control every delay is as none: e^(−λτ) must not overflow where nothing
+            // Without control the delay is taken as 0: e^(−λτ) must not overflow where nothing
             // depends on it.
             let tau = if controlled { delay / time_unit } else { 0.0 };
             if i == 0 || (first + i).is_multiple_of(BLOCK) {
                 self.margins = [KeptMargin::NONE; MOST_ROOTS];
             }
-            // Where control begins to act there are more roots than before.
+            // After τ = 0 there are more roots than before.
             let fresh =
                 i == 0 || (first + i).is_multiple_of(BLOCK) || self.tau == 0.0 || self.short;
             let tracked = if !fresh && self.advance(equation, tau) {
@@ -336,7 +336,7 @@ impl RootTracker {
         }
         let mut widest = MARGIN;
         let essential = equation.essential_abscissa(tau);
-        // There is always one right of the line at which they accumulate, or the cell is not ours.
+        // With roots that accumulate, the rightmost one lies right of their line.
         if roots[0].lambda.re <= essential {
             return Err(Doubt::Missed);
         }
@@ -367,9 +367,9 @@ impl RootTracker {
         Ok(widest)
     }
 
-    /// The margin and the status of the cell at `tau`: `unstable`, from the certificate, is the
-    /// number of roots right of zero, `count` the closed form's, which comes with what is known of
-    /// it in `status`.
+    /// The margin and the status of the cell at `tau`. `unstable`, from the certificate, is the
+    /// number of roots right of zero; `count` is that of the closed form, whose flags are in
+    /// `status`.
     #[inline]
     fn judge(
         &mut self,
@@ -401,9 +401,9 @@ impl RootTracker {
 /// Why a cell is not certified.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Doubt {
-    /// There are roots that were not found, or roots that are none.
+    /// Some roots were not found, or some that were found are not roots.
     Missed,
-    /// An iteration or the certificate came to no end.
+    /// An iteration or the certificate did not decide.
     Undecided,
 }
 

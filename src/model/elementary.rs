@@ -1,9 +1,9 @@
 //! Elementary functions whose bits are the same on every processor.
 //!
-//! The methods of `f64` and `Complex64` call the C library, and that picks code by the processor it
-//! runs on: their last bits differ between machines, and a map would depend on where it was made.
+//! The methods of `f64` and `Complex64` call the C library, which picks its code by the processor
+//! it runs on. Their last bits differ between machines, so a map would depend on where it was made.
 //! The crate libm is plain Rust and rounds alike everywhere. `clippy.toml` refuses those methods in
-//! everything from which numbers reach a map.
+//! all code whose numbers reach a map.
 //!
 //! Errors are below one unit in the last place of the result ([`power`]: one half for each of its
 //! products).
@@ -27,7 +27,7 @@ pub fn power(base: f64, exponent: i32) -> f64 {
     if exponent < 0 { 1.0 / product } else { product }
 }
 
-/// log₂ of `x` to 1e-8, for what needs no more digits: in a third of the time.
+/// log₂ of `x` to 1e-8, in a third of the time of the exact one.
 #[inline]
 #[must_use]
 pub fn rough_log2(x: f64) -> f64 {
@@ -45,11 +45,11 @@ pub fn rough_log2(x: f64) -> f64 {
     n as f64 + std::f64::consts::LOG2_E * ln
 }
 
-/// 2 to the power `y` to 2e-7 of itself, for what needs no more digits.
+/// 2 to the power `y`, with a relative error of 2e-7.
 #[inline]
 #[must_use]
 pub fn rough_exp2(y: f64) -> f64 {
-    // Added to it, a small number loses its fraction.
+    // Adding this to a small number rounds it to an integer.
     const ROUNDING: f64 = 1.5 / f64::EPSILON;
     if y.is_nan() || y.abs() > 1000.0 {
         return libm::exp2(y);
@@ -62,7 +62,8 @@ pub fn rough_exp2(y: f64) -> f64 {
     f64::from_bits(((1023 + whole as i64) as u64) << 52) * (even + t * odd)
 }
 
-/// The root of `x` ≥ 0 of that `order` to 2e-7 of itself: enough for the length of a step.
+/// The root of order `order` of `x` ≥ 0, with a relative error of 2e-7: enough for the length of a
+/// step.
 #[inline]
 #[must_use]
 pub fn rough_root(x: f64, order: usize) -> f64 {

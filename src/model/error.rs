@@ -1,8 +1,8 @@
-//! What the model refuses, and how numbers stand in messages.
+//! Errors of parameters out of range, and the format of numbers in messages.
 
 use std::fmt;
 
-/// A number in a message: of ordinary size as it is, else with a power of ten.
+/// A number as messages show it: plain if its size is ordinary, else with a power of ten.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Shown(pub f64);
 
@@ -31,7 +31,7 @@ pub struct ModelError {
 }
 
 impl ModelError {
-    /// The friction law itself is not `allowed`, which it would have to be.
+    /// The error of a friction law that lacks a required property; `allowed` names the property.
     #[must_use]
     pub const fn of_law(allowed: &'static str) -> Self {
         Self {
@@ -48,7 +48,7 @@ impl ModelError {
             allowed,
         } = self;
         match *parameter {
-            // It is no number.
+            // An error of the law has no value.
             "friction" => format!("friction: {allowed} is needed"),
             _ => format!(
                 "{parameter} = {} is outside its range: {allowed}",
@@ -57,7 +57,7 @@ impl ModelError {
         }
     }
 
-    /// `value` if `allowed_when` holds and it is finite, else the error that names it.
+    /// `value` if it is finite and `allowed_when` holds, else an error that names the parameter.
     pub(crate) fn check(
         parameter: &'static str,
         value: f64,

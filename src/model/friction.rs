@@ -138,9 +138,10 @@ impl FrictionLaw {
         }
     }
 
-    /// The change of speed over which μ_K is another function, length/time, at the sliding speed
-    /// `speed` ≥ 0: steps of a method that knows the law by its values have to be small against it.
-    /// Infinite for Coulomb's law, and for a table, whose cubics steps end on.
+    /// The change of speed over which μ_K changes its form, length/time, at the sliding speed
+    /// `speed` ≥ 0. Steps of a method that knows the law only by its values have to be short
+    /// against it. Infinite for Coulomb's law, and for a table, where steps end at the ends of its
+    /// cubics.
     #[must_use]
     pub fn speed_scale(&self, speed: f64) -> f64 {
         match &self.kind {
@@ -200,7 +201,8 @@ mod tests {
         }
     }
 
-    /// Over a quarter of its scale every law is a cubic to a few per cent of its change from rest.
+    /// Over a quarter of its scale of speed every law is nearly a cubic: fourth differences are
+    /// small.
     #[test]
     fn a_law_is_smooth_over_its_scale_of_speed() {
         for law in laws().into_iter().skip(1) {

@@ -1,10 +1,10 @@
-//! Between which bounds the slope and the curvature of a friction law lie over a range of speeds.
+//! Bounds of the slope and the curvature of a friction law over a range of speeds.
 
 use super::friction::{FrictionLaw, Kind};
 use super::table::{Piece, Table};
 use crate::model::elementary::{exp, power};
 
-/// Rounding of what is computed here, of its largest term: a generous count.
+/// A generous bound of the rounding of the values computed here, relative to their largest term.
 const ROUNDING: f64 = 64.0 * f64::EPSILON;
 
 /// The least and the greatest value.
@@ -72,7 +72,7 @@ impl FrictionLaw {
     }
 }
 
-/// The cubics between two speeds, each with the part of it that lies there.
+/// The cubics of a table that cover speeds `from` to `to`, each with the range of w covered.
 fn pieces(table: &Table, from: f64, to: f64) -> impl Iterator<Item = (Piece, [f64; 2])> + '_ {
     let region = |speed: f64| table.region(speed).unwrap_or_else(|region| region);
     let last = table.speeds().len();
@@ -92,7 +92,7 @@ fn pieces(table: &Table, from: f64, to: f64) -> impl Iterator<Item = (Piece, [f6
     })
 }
 
-/// The least and the greatest slope of a cubic between two places.
+/// The least and the greatest slope of a cubic for w between `from` and `to`.
 fn piece_slopes(piece: &Piece, [from, to]: [f64; 2]) -> Range {
     let [_, c1, c2, c3] = piece.c;
     let at = |w: f64| (c1 + w * (2.0 * c2 + w * 3.0 * c3)) / piece.width;
@@ -101,7 +101,7 @@ fn piece_slopes(piece: &Piece, [from, to]: [f64; 2]) -> Range {
     hull([at(from), at(to)].into_iter().chain(inside))
 }
 
-/// Its curvatures at both places: linear between them.
+/// The curvatures of a cubic at both ends of a range of w; they are linear between them.
 fn piece_bends(piece: &Piece, ends: [f64; 2]) -> [f64; 2] {
     let [_, _, c2, c3] = piece.c;
     ends.map(|w| (2.0 * c2 + 6.0 * c3 * w) / (piece.width * piece.width))
@@ -125,8 +125,8 @@ mod tests {
     }
 
     proptest! {
-        /// No slope between two speeds is outside the bounds, and no difference quotient of slopes
-        /// outside those of the curvature.
+        /// Slopes at all speeds between two lie within the bounds, and difference quotients of
+        /// slopes within those of the curvature.
         #[test]
         fn slopes_and_their_changes_lie_within(from in 0.0..3.5, width in 1e-6..2.0,
                                                parts in prop::array::uniform2(0.0..1.0)) {
@@ -146,14 +146,14 @@ mod tests {
             }
         }
 
-        /// The bounds are taken.
+        /// The bounds are attained, to the resolution of the samples.
         #[test]
         fn bounds_are_no_wider_than_needed(from in 0.0..3.5, width in 1e-3..2.0) {
             for law in laws() {
                 let (low, high) = law.slopes_between(from, from + width);
                 let slopes = (0..=2000).map(|i| law.mu_prime(from + width * f64::from(i) / 2000.0));
                 let (least, most) = hull(slopes);
-                // A jump at an end of the table lies between two of these.
+                // A jump at an end of the table can lie between two samples.
                 prop_assert!(low > least - 2e-2 * (most - least) - 1e-9
                     || matches!(law.kind(), Kind::Table(_)), "{law:?} {low} {least}");
                 prop_assert!(high < most + 2e-2 * (most - least) + 1e-9

@@ -1,8 +1,8 @@
-//! The dimensionless groups on which linear stability depends.
+//! The dimensionless groups on which linear stability depends, beside the delay.
 
 /// Dimensionless groups of the controlled oscillator; the time unit is √(M/κ).
 ///
-/// With these the letter's Eq. (3) reads, E = e^(−λτ),
+/// With E = e^(−λτ) the letter's Eq. (3) reads
 ///
 /// ```text
 /// D(λ) = λ² + [b − a_v (1 − E)] λ + 1 − [b a_v + a_n] (1 − E)
@@ -19,7 +19,7 @@ pub struct Groups {
 }
 
 impl Groups {
-    /// The groups themselves, for M = κ = N0 = μ_K = 1.
+    /// Groups with the given values; for M = κ = N0 = μ_K = 1 they equal μ_K′, α_v and α_N.
     #[must_use]
     pub const fn new(b: f64, a_v: f64, a_n: f64) -> Self {
         Self { b, a_v, a_n }

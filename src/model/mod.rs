@@ -14,10 +14,10 @@
 //!
 //! - `elementary`: sin, exp and the like, the same bits on every processor; the only file that
 //!   imports libm
-//! - `error`: what the model refuses, and how numbers stand in messages
+//! - `error`: errors of parameters out of range, and the format of numbers in messages
 //! - `friction`: Coulomb, velocity weakening, Stribeck, a table: value and slope
 //! - `friction_ranges`: bounds of a law's slope and curvature over a range of speeds
-//! - `groups`: b, a_v, a_n: all that linear stability depends on
+//! - `groups`: b, a_v, a_n: linear stability depends on these and the delay alone
 //! - `known_cases`: cases with known answers, for tests and benches alike
 //! - `oscillator`: mass, spring, load, gains → dimensionless groups
 //! - `rate_and_state`: rate-and-state friction about steady sliding: its groups, the critical

@@ -6,10 +6,10 @@
 //! κ/κ_c = T/[(β − α)(1 + 1/(αT))]                                                            (3)
 //! ```
 //!
-//! A is the direct effect, B that of evolution, D the slip distance, c how much a change of the
-//! load takes from the state (Linker and Dieterich 1992); c = 0: nothing. (2) and (3) are those of
-//! section 7 of the derivation for general systems: κ_c is the stiffness below which steady sliding
-//! without control is unstable.
+//! A is the direct effect, B the effect of evolution, D the slip distance. c says how much a change
+//! of the load changes the state (Linker and Dieterich 1992); with c = 0 it does not. Equations (2)
+//! and (3) are those of section 7 of the derivation for general systems. κ_c is the stiffness below
+//! which steady sliding without control is unstable.
 
 use super::elementary::ln;
 use super::{ModelError, Oscillator, SlidingPoint};
@@ -48,7 +48,7 @@ impl RateAndState {
     /// Value and slope of the coefficient of steady sliding, μ₀ + (A − B) ln(v/v*), at `v0` > 0.
     ///
     /// # Errors
-    /// When it is not positive there.
+    /// `v0` must be finite and positive, and so must the coefficient there.
     pub fn steady(&self, v0: f64) -> Result<SlidingPoint, ModelError> {
         let v0 = ModelError::positive("v0", v0)?;
         let effect = self.direct_effect - self.evolution_effect;
@@ -83,8 +83,8 @@ impl RateAndState {
 }
 
 impl StateGroups {
-    /// κ/κ_c, (3): steady sliding without control is unstable where it is less than 1; infinite
-    /// where β ≤ α, where it is stable at every stiffness.
+    /// κ/κ_c, Eq. (3). Steady sliding without control is unstable where it is less than 1. Infinite
+    /// where β ≤ α: sliding is then stable at every stiffness.
     #[must_use]
     pub fn stiffness_ratio(&self) -> f64 {
         let weakening = self.evolution - self.direct;

@@ -8,10 +8,10 @@ use super::Shown;
 /// The most points of a table.
 pub const MOST_POINTS: usize = 4096;
 
-/// Speeds nearer to one another than this part of them are no two points.
+/// Two speeds must differ by more than this, relative to the larger one.
 const NEAREST: f64 = 1e-6;
 
-/// Speeds other than 0, and coefficients: far beyond any experiment.
+/// Allowed sizes of coefficients and of speeds other than 0: far beyond any experiment.
 const SIZES: RangeInclusive<f64> = 1e-12..=1e12;
 
 /// μ_K(v) through given points, by monotone cubics: between two points it is monotone, so it never
@@ -65,7 +65,7 @@ impl TableColumn {
     }
 }
 
-/// Why points make no friction curve.
+/// Why points do not make a friction curve.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 pub enum TableError {
     /// Too few, too many, or not in pairs.
@@ -97,7 +97,8 @@ pub enum TableError {
 pub struct Piece {
     /// The speed at which it begins.
     pub from: f64,
-    /// The distance to the speed at which it ends; for constants, that of the cubic beside them.
+    /// The distance to the speed at which it ends; for a constant, the width of the cubic beside
+    /// it.
     pub width: f64,
     /// Its coefficients, dimensionless.
     pub c: [f64; 4],
@@ -170,10 +171,11 @@ impl Table {
         }
     }
 
-    /// The point at `speed`, or the region between points that holds it, for [`Table::piece`].
+    /// The index of the point at `speed`.
     ///
     /// # Errors
-    /// The region is the `Err` of a search for the point: the number of points below.
+    /// If no point is at `speed`: the region that holds it, for [`Table::piece`], as the number of
+    /// points below.
     pub fn region(&self, speed: f64) -> Result<usize, usize> {
         self.0.speeds.binary_search_by(|at| at.total_cmp(&speed))
     }
@@ -213,7 +215,7 @@ impl Table {
     }
 }
 
-/// `allowed_when` holds for every value.
+/// Checks that `allowed_when` holds for every value.
 fn check(
     column: TableColumn,
     values: &[f64],
@@ -343,7 +345,7 @@ mod tests {
             for (i, &v) in table.speeds().iter().enumerate() {
                 let (left, right) = (table.piece(i), table.piece(i + 1));
                 prop_assert!((left.value(v) - right.value(v)).abs() < 1e-13);
-                // At the ends the constants begin.
+                // At the first and the last point the slope jumps to that of the constant.
                 if i > 0 && i + 1 < table.speeds().len() {
                     let scale = 1.0 / left.width + 1.0 / right.width;
                     prop_assert!((left.slope(v) - right.slope(v)).abs() < 1e-13 * scale);
@@ -384,7 +386,7 @@ mod tests {
     fn the_slopes_are_those_of_pchip() {
         let table = table(0.5, &[1.0, 2.0, 1.0], &[1.0, 0.6, 0.5, 0.8]);
         let slopes = [
-            // (4·(−0.4) + 0.05)/3, of the secant's sign and below 3 times its size.
+            // (4·(−0.4) + 0.05)/3: it has the secant's sign and is below 3 times its size.
             -1.55 / 3.0,
             // (5 + 4)/(5/(−0.4) + 4/(−0.05)).
             -9.0 / 92.5,

@@ -1,4 +1,4 @@
-//! A motion in physical units: what is given, and what comes out.
+//! A motion in physical units: its initial value problem, and its summary.
 
 use super::cycle::{NoCycle, UncontrolledCycle, after_release, restart_after_release};
 use super::motion::{Accuracy, Motion, Parameters};
@@ -18,9 +18,9 @@ pub struct Case {
     pub control: Control,
     /// Delay; greater than 0 where control acts.
     pub tau: f64,
-    /// R, the memory of the feedback, −1 < R < 1; left aside without gains.
+    /// R, the memory of the feedback, −1 < R < 1; ignored without gains.
     pub memory: f64,
-    /// Latency of the feedback, at least 0; left aside without gains.
+    /// Latency of the feedback, at least 0; ignored without gains.
     pub latency: f64,
     /// Pulling velocity.
     pub v0: f64,
@@ -28,11 +28,11 @@ pub struct Case {
     pub switch_on: f64,
     /// The block at t = 0 and before.
     pub start: Start,
-    /// Until when to follow the motion.
+    /// The time until which the motion is followed.
     pub horizon: f64,
     /// The most steps.
     pub steps: u64,
-    /// How exactly.
+    /// The integrator and its tolerance.
     pub accuracy: Accuracy,
 }
 
@@ -81,7 +81,7 @@ pub struct CaseUnits {
 }
 
 impl CaseUnits {
-    /// Of an oscillator.
+    /// The units of an oscillator.
     #[must_use]
     pub fn of(oscillator: &Oscillator) -> Self {
         let time = oscillator.time_unit();
@@ -124,8 +124,8 @@ impl Case {
         })
     }
 
-    /// Begins the motion of this case, as [`Case::motion`] does, in the memory of another motion;
-    /// what that holds after an error means nothing.
+    /// Begins the motion of this case, as [`Case::motion`] does, in the memory of another motion.
+    /// After an error that motion is meaningless.
     ///
     /// # Errors
     /// As [`Case::motion`].
@@ -145,7 +145,7 @@ impl Case {
         Ok(())
     }
 
-    /// The uncontrolled cycle of stick and slip of this setting, whatever the start: its times.
+    /// The times of the uncontrolled cycle of stick and slip of this setting, whatever the start.
     ///
     /// # Errors
     /// As [`Case::motion`] where that starts after a release.
@@ -249,8 +249,8 @@ impl Case {
         })
     }
 
-    /// Re λ of the rightmost root of sliding under the control that acts in the end, in 1/time, if
-    /// it is stable.
+    /// The spectral abscissa of sliding under the control that acts in the end, in 1/time. None
+    /// unless sliding is known to be stable.
     ///
     /// # Errors
     /// When v0 is out of range.
@@ -269,8 +269,8 @@ impl Case {
         Ok(self.follow(&mut motion, self.stable_abscissa()?, observer))
     }
 
-    /// Follows `motion`, which is at this case's start, as [`Case::run`] does, with what
-    /// [`Case::stable_abscissa`] says.
+    /// Follows `motion`, which is at the start of this case, as [`Case::run`] does.
+    /// `stable_abscissa` is the answer of [`Case::stable_abscissa`].
     pub fn follow(
         &self,
         motion: &mut Motion,

@@ -1,13 +1,13 @@
 //! A step by collocation: the rates of ẋ and a at Chebyshev's nodes, from the friction law itself,
 //! by Picard's iteration.
 //!
-//! A second method for [`super::motion`], which shares with Taylor series the equations and the
-//! events and nothing of how a step is made: no coefficients of the law, no radius of convergence,
-//! and steps from the law's own scale of speed. It is some ten times slower, and there to
-//! contradict the first one.
+//! A second method for [`super::motion`], to check the first one. It shares the equations and the
+//! events with Taylor's method, and nothing of how a step is made. It uses no coefficients of the
+//! law and no radius of convergence, and its steps follow the law's own scale of speed. It is some
+//! ten times slower.
 //!
 //! With M nodes s_i of a step of length h, u̇ and ȧ are the polynomials of degree M − 1 through
-//! their values there, and
+//! their values at the nodes, and
 //!
 //! ```text
 //! u(s_i) = u(0) + h Σ_j Q_ij u̇(s_j),     a(s_i) = a(0) + h Σ_j Q_ij ȧ(s_j)
@@ -30,9 +30,9 @@ const AT_REST: f64 = 2e-16;
 
 type Matrix = [[f64; NODES]; NODES];
 
-/// What depends on the nodes alone.
+/// Constants that depend on the nodes alone.
 struct Rule {
-    /// Where they are, over the length of the step.
+    /// The nodes, in units of the length of the step.
     nodes: [f64; NODES],
     /// Q: from values at the nodes to integrals from 0 to the nodes.
     integrals: Matrix,
@@ -40,7 +40,8 @@ struct Rule {
     powers: Matrix,
     /// From values at the nodes to the last two coefficients of Chebyshev's polynomials.
     tail: [[f64; NODES]; 2],
-    /// To all of them, and their coefficients of powers of s/h.
+    /// From values at the nodes to all coefficients of Chebyshev's polynomials, and from these to
+    /// coefficients of powers of s/h.
     chebyshev: Matrix,
     shifted: Matrix,
 }
@@ -99,12 +100,12 @@ fn dot(row: &[f64; NODES], values: &[f64; NODES]) -> f64 {
     row.iter().zip(values).map(|(r, v)| r * v).sum()
 }
 
-/// The last coefficients of a series are left out where they are smaller than this, relative to the
-/// largest value: as powers of s/h they would be rounding a million times as large.
+/// The last coefficients of a Chebyshev series are dropped below this, relative to the largest
+/// value. As powers of s/h they would be rounding a million times as large.
 const OF_ROUNDING: f64 = 4.0 * f64::EPSILON;
 
-/// The coefficients of powers of s/h of the polynomial through values at the nodes, without what is
-/// rounding alone.
+/// The coefficients of powers of s/h of the polynomial through values at the nodes, without
+/// Chebyshev terms that are rounding alone.
 fn rounded_off(rule: &Rule, values: &[f64; NODES]) -> [f64; NODES] {
     let size = values.iter().fold(0.0_f64, |most, v| most.max(v.abs()));
     let series = rule.chebyshev.map(|row| dot(&row, values));
@@ -119,14 +120,14 @@ pub(super) struct Solved {
     /// The coefficients of ẋ and of a, of the time since the step's start.
     pub u: Coefficients,
     pub a: Coefficients,
-    /// The size of the last terms of Chebyshev's series of the rates, times the length: what the
-    /// polynomials leave out.
+    /// The size of the last terms of Chebyshev's series of the rates, times the length: an estimate
+    /// of the error of the polynomials.
     pub rest: f64,
 }
 
-/// The step of `length` from ẋ = `u`, a = `a`. `rates` gives u̇ and ȧ of a state, of which the
-/// delayed elongation is the third number, whose polynomial is `delayed`. None where the iteration
-/// does not come to rest. `rounds_off` leaves out of the coefficients what is rounding alone.
+/// The step of `length` from ẋ = `u`, a = `a`. `rates` gives u̇ and ȧ from ẋ, a and the delayed
+/// elongation, whose polynomial is `delayed`. With `rounds_off`, terms that are rounding alone are
+/// left out. None where the iteration does not converge.
 pub(super) fn solve(
     (u, a): (f64, f64),
     length: f64,
@@ -157,7 +158,7 @@ pub(super) fn solve(
             break;
         }
         if iteration == MOST_ITERATIONS || !change.is_finite() {
-            // Rounding may go on for ever.
+            // Rounding can keep the change above AT_REST for ever.
             if change > 64.0 * AT_REST * scale || change.is_nan() {
                 return None;
             }
@@ -234,7 +235,7 @@ mod tests {
         assert!(solved.rest < 1e-11, "{:e}", solved.rest);
     }
 
-    /// y′ = −y² from 1 is 1/(1 + s): what is left out falls with the length as its order says.
+    /// y′ = −y² from 1 is 1/(1 + s). The rest falls with the length as its order says.
     #[test]
     fn the_rest_falls_with_the_length() {
         let error = |length: f64| {

@@ -3,8 +3,8 @@
 //!
 //! Every release from uncontrolled stick has the same state, (ẋ, a) = (0, μ_S) in the units of
 //! [`super::motion`], and without control the future depends on nothing else. So if the block
-//! sticks once more it goes on periodically, and what it did in the last delay is known at every
-//! phase. A memory of the feedback is that of cycles which have always been.
+//! sticks once more, its motion is periodic, and its past over one delay is known at every phase.
+//! With a memory of the feedback the cycles count as having always gone on.
 //!
 //! Whether it sticks again is known before its path in the plane of u = ẋ and a has gone round
 //! once. Paths do not cross. In slip forwards the maxima of u are above v0 and its minima below,
@@ -34,13 +34,13 @@ const LONGEST_SLIP: f64 = 1000.0 * TAU;
 const MOST_STEPS: u32 = 100_000;
 /// The most cycles in one delay.
 const MOST_CYCLES: f64 = 1e4;
-/// Nearer than this to sliding at v0, relative, the block has come to slide.
+/// Within this distance from sliding at v0, relative, the block counts as sliding.
 const SLIDING: f64 = 1e-9;
 
 /// How long the block slips and sticks in one cycle, in units of √(M/κ).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct UncontrolledCycle {
-    /// From release to where it sticks; what it slides back before that is part of it.
+    /// From release to stick, with any slip backwards before the stick.
     pub slip_time: f64,
     /// From stop to release.
     pub stick_time: f64,
@@ -60,17 +60,17 @@ pub enum NoCycle {
     /// Released once, the uncontrolled block does not stick again, or has not done so after 1000
     /// periods of free oscillation.
     NoStickSlip,
-    /// One delay has more than 10⁴ cycles, or two have more steps than are kept.
+    /// One delay has more than 10⁴ cycles, or two delays have more steps than a history keeps.
     LongDelay,
 }
 
 /// A motion in uncontrolled stick-slip that was just released: at t = 0 it has ẋ = 0, a = μ_S and
 /// begins to slip, after cycles that reach back at least one delay. Control acts from t = `phase`
-/// on, or never where both gains are 0; `phase` ≥ 0 is taken modulo the period, and
-/// `parameters.switch_on` is not looked at.
+/// on, or never where both gains are 0; `phase` ≥ 0 is taken modulo the period.
+/// `parameters.switch_on` is ignored.
 ///
-/// At phase 0 control acts on a block that already slips. Taken as still stuck it could be held
-/// back by the jump of v.
+/// At phase 0 control acts on a block that already slips. Were it still stuck, the jump of v could
+/// hold it.
 ///
 /// # Errors
 /// See [`NoCycle`].
@@ -84,8 +84,8 @@ pub fn after_release(
     Ok((motion, cycle))
 }
 
-/// Begins a motion a time after a release, as [`after_release`] does, in the memory of another
-/// motion; what that holds after an error means nothing.
+/// Begins the same motion as [`after_release`] in the memory of another motion. After an error that
+/// motion is meaningless.
 ///
 /// # Errors
 /// See [`NoCycle`].
@@ -127,8 +127,8 @@ pub fn restart_after_release(
     Ok(cycle)
 }
 
-/// How long before control acts the cycles have to be known: a delay and a latency, and as many
-/// delays more as the memory is told from the tolerance in.
+/// How long before switch-on the cycles have to be known: a delay, a latency, and as many more
+/// delays as the memory needs to fall below the tolerance.
 fn known_before(parameters: &Parameters, accuracy: Accuracy) -> f64 {
     let Parameters {
         tau,
@@ -146,7 +146,7 @@ fn known_before(parameters: &Parameters, accuracy: Accuracy) -> f64 {
     latency + tau * (1.0 + remembered)
 }
 
-/// Follows an uncontrolled block that was just released to its next release; none where it does not
+/// Follows an uncontrolled block that was just released to its next release. None where it does not
 /// stick again.
 fn follow_cycle(motion: &mut Motion) -> Option<UncontrolledCycle> {
     let start = motion.t;
@@ -175,7 +175,7 @@ fn follow_cycle(motion: &mut Motion) -> Option<UncontrolledCycle> {
                     return None;
                 }
             }
-            // It has gone round.
+            // The path has gone round once.
             Mode::Backwards if motion.mode() == Mode::Forwards => return None,
             Mode::Backwards => {}
         }

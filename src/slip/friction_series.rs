@@ -54,19 +54,19 @@ impl FrictionSeries {
         }
     }
 
-    /// Goes on from `speed`, wherever it was before.
+    /// Restarts at `speed`, whatever the speed was before.
     pub(super) fn restart(&mut self, speed: f64) {
         if let Self::Table(series) = self {
             series.restart(speed);
         }
     }
 
-    /// The longest step, at most `length`, in which the series of the law tells the law to `error`,
-    /// relative to the load; `speed` are the coefficients of ẋ.
+    /// The longest step, at most `length`, on which the series of the law is accurate to `error`,
+    /// relative to the load. `speed` holds the coefficients of ẋ.
     ///
-    /// Coulomb's law and a cubic of a table are polynomials of the speed, and the pole of velocity
-    /// weakening makes its coefficients grow as fast as its distance asks for. Stribeck's Gaussian
-    /// alone can hide from them.
+    /// Coulomb's law and a cubic of a table are polynomials of the speed. The pole of velocity
+    /// weakening shows in the growth of its coefficients. Only Stribeck's Gaussian can be missed by
+    /// them.
     pub(super) fn resolved(&self, speed: &[f64], length: f64, error: f64) -> f64 {
         match self {
             Self::Stribeck(series) => series.resolved(speed, length, error),
@@ -74,7 +74,7 @@ impl FrictionSeries {
         }
     }
 
-    /// Goes on from where `other` is, the series of the same law.
+    /// Takes over the place of `other`, the series of the same law.
     pub(super) fn copy_place(&mut self, other: &Self) {
         if let (Self::Table(series), Self::Table(other)) = (self, other) {
             series.copy_place(other);
@@ -101,7 +101,7 @@ pub(super) struct Weakening {
     mu0: f64,
     per_v_s: f64,
     friction: Coefficients,
-    /// q without its first coefficient, and the inverse of that one.
+    /// q without its first coefficient, and the inverse of the first coefficient.
     q: Coefficients,
     inverse: f64,
 }
@@ -152,21 +152,21 @@ impl Series for Stribeck {
     }
 }
 
-/// Radii of the discs on which the Gaussian is bounded, over the length of a step: large ones are
-/// for low orders.
+/// Radii of the discs on which the Gaussian is bounded, in units of the length of a step. Low
+/// orders need large ones.
 const DISCS: [f64; 8] = [1.25, 2.0, 3.0, 4.5, 10.0, 30.0, 100.0, 300.0];
-/// A step on which the series is not known to be the law becomes shorter by this, so often at most.
+/// A step on which the series may be inaccurate is shortened by this factor, at most so many times.
 const SHORTER: f64 = 0.8;
 const MOST_TIMES: u32 = 60;
 
 impl Stribeck {
     /// See [`FrictionSeries::resolved`].
     ///
-    /// Coefficient k of the Gaussian about z = ẋ/v_s is a Hermite function. These oscillate, and
-    /// tell how large those of higher order are, up to z² = 2k; beyond that the first ones are as
-    /// small as exp(−z²) whatever comes after them. There Cauchy's estimate tells instead: on a
-    /// disc of radius ρ the rest of a series of order N is at most M(ρ) (s/ρ)^N/(1 − s/ρ), where M
-    /// is the largest absolute value on that disc.
+    /// Coefficient k of the Gaussian about z = ẋ/v_s is a Hermite function. Up to z² = 2k these
+    /// functions oscillate, and show how large those of higher order are. Beyond that the first
+    /// ones are as small as exp(−z²) whatever the later ones are. There Cauchy's estimate is used:
+    /// on a disc of radius ρ the rest of a series of order N is at most M(ρ) (s/ρ)^N/(1 − s/ρ),
+    /// where M is the largest absolute value on that disc.
     fn resolved(&self, speed: &[f64], length: f64, error: f64) -> f64 {
         let order = (speed.len() - 1) as f64;
         let centre = self.scaled[0].abs();

@@ -1,5 +1,4 @@
-//! How near ẋ comes to zero in slip: minima that are passed, and the depth to which a stop would
-//! have gone.
+//! How near ẋ comes to zero in slip: its minima inside a step, and the minimum that a stop cut off.
 
 use super::series::{derivative, first_zero, shifted, value};
 use super::step::Step;
@@ -14,7 +13,7 @@ impl Step {
     pub fn speed_minimum(&self) -> Option<(f64, f64)> {
         let slope = derivative(Self::range(&self.u, self.order), 1.0);
         let slope = &slope[..self.order];
-        // One turn at most in a step, unless its ends say otherwise.
+        // A step is taken to have at most one minimum; the slopes at its ends show whether it does.
         if slope[0] > 0.0 || value(slope, self.length) < 0.0 {
             return None;
         }
@@ -23,10 +22,10 @@ impl Step {
         Some((s, value(Self::range(&self.u, self.order), s)))
     }
 
-    /// The minimum ẋ < 0 that a slip which stops at the end of this step would have reached, had
-    /// the friction gone on as for ẋ > 0 (minus the maximum, of a slip backwards), with the time
-    /// from the stop to it: the minimum is a smooth function of the parameters that is zero where
-    /// the stop is a graze.
+    /// The time from the stop at the end of this step to the minimum of ẋ that the stop cut off,
+    /// and the value there, which is at most 0. The slip is continued with the friction for ẋ > 0.
+    /// For a slip backwards the value is minus the maximum. It is a smooth function of the
+    /// parameters and is zero where the stop is a graze.
     #[must_use]
     pub fn minimum_beyond_stop(&self) -> (f64, f64) {
         let mut about = shifted(Self::range(&self.u, self.order), self.length);

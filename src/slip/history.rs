@@ -1,6 +1,6 @@
 //! The elongation over the last delay, as the polynomials of the steps that made it.
 //!
-//! - `extrapolated`: a past told from two others
+//! - `extrapolated`: a past extrapolated from two others
 
 mod extrapolated;
 
@@ -14,8 +14,8 @@ use crate::model::elementary::rough_root;
 struct Piece {
     from: f64,
     to: f64,
-    /// How far from `from` the polynomial holds to the tolerance, both ways, as far as no kink is
-    /// in between.
+    /// How far from `from` the polynomial holds to the tolerance, in both directions, up to the
+    /// next kink.
     radius: f64,
     order: usize,
     a: Coefficients,
@@ -23,36 +23,36 @@ struct Piece {
     kink: u32,
 }
 
-/// What the delayed elongation is from some time on.
+/// How far a polynomial of the past may be used.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Reach {
-    /// Until when its polynomial may be used.
+    /// The time until which it may be used.
     pub until: f64,
-    /// The lowest derivative that jumps there; [`SMOOTH`] where none does that matters.
+    /// The order of the lowest derivative that jumps there; [`SMOOTH`] where no jump matters.
     pub kink: u32,
 }
 
-/// Stands for: no jump worth a step of its own.
+/// The order of a kink that no step needs to end on.
 pub(super) const SMOOTH: u32 = u32::MAX;
 
-/// The part of a polynomial's radius within which it stands in for its neighbours.
+/// The part of a polynomial's radius within which it may replace its neighbours.
 const SHARE: f64 = 0.75;
 
-/// How far it may be from them, in units of the tolerance.
+/// How far it may then differ from them, in units of the tolerance.
 const NEIGHBOURS_APART: f64 = 4.0;
 
-/// A stretch of time in a past that is extrapolated, and what it corresponds to in the two pasts
-/// that it is told from.
+/// A stretch of time in an extrapolated past, and the corresponding stretches of the two pasts that
+/// it is extrapolated from.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Stretch {
     /// Its length, and those in the last past and in the one before.
     pub lengths: [f64; 3],
 }
 
-/// The most steps that a past is kept of, two delays: 14 MB. A search for a critical velocity has
-/// up to ten pasts.
+/// The most steps that a history keeps, for two delays: 14 MB. A search for a critical velocity has
+/// up to ten histories.
 pub const MOST_KEPT: usize = 1 << 16;
-/// What a step takes in it.
+/// The memory that a step takes in a history.
 pub const BYTES_OF_A_STEP: usize = size_of::<Piece>();
 
 /// The elongation over a window of time that moves along, of bounded length.
@@ -61,18 +61,17 @@ pub(super) struct History {
     pieces: VecDeque<Piece>,
     /// The piece that was read last.
     at: usize,
-    /// Jumps of this order and higher are not felt.
+    /// Kinks of this order and higher are ignored.
     felt: u32,
-    /// The part of its radius to which the last polynomial stands in for what is yet to come.
+    /// The part of its radius up to which the last polynomial is used beyond its end.
     ahead: f64,
-    /// How far a polynomial may be from its neighbour where it stands in for it, relative to the
-    /// elongation or to 1.
+    /// How far a polynomial may differ from a neighbour that it replaces, relative to the
+    /// elongation or to 1, whichever is larger.
     apart: f64,
 }
 
 impl History {
-    /// Makes it the history a = `a` for all times before `now`; jumps of the order `felt` and
-    /// higher are not felt.
+    /// Sets a = `a` for all times before `now`. Kinks of the order `felt` and higher are ignored.
     pub(super) fn restart(&mut self, a: f64, now: f64, felt: u32) {
         let mut coefficients = [0.0; MOST_ORDER + 1];
         coefficients[0] = a;
@@ -99,26 +98,27 @@ impl History {
         piece.a[1] = rate;
     }
 
-    /// The last polynomial stands in for what is yet to come as far as its errors, times a `gain`,
-    /// stay within the tolerance, which at the end of its radius is its last term, of this `order`.
-    /// It stands in for its neighbours as far as it is them, to some times the `tolerance`: errors
-    /// of its middle terms do not show in the last ones.
+    /// Sets how far polynomials are used beyond their steps. The last one is used as far as its
+    /// error, times a `gain`, stays within the tolerance. The error is its last term, of this
+    /// `order`, which reaches the tolerance at the end of its radius. A polynomial replaces its
+    /// neighbours where it agrees with them to some times the `tolerance`: its last terms do not
+    /// show errors of the middle ones.
     pub(super) fn look_ahead(&mut self, gain: f64, order: usize, tolerance: f64) {
         self.apart = NEIGHBOURS_APART * tolerance;
         self.ahead = SHARE.min(1.0 / rough_root(gain, order));
     }
 
-    /// The part of a radius to which it does so.
+    /// The part of its radius up to which the last polynomial is used beyond its end.
     pub(super) fn ahead(&self) -> f64 {
         self.ahead
     }
 
-    /// Jumps of the order `felt` and higher are not felt from now on.
+    /// Ignores kinks of the order `felt` and higher from now on.
     pub(super) fn feel(&mut self, felt: u32) {
         self.felt = felt;
     }
 
-    /// Becomes a copy of `other`, in memory that is there.
+    /// Becomes a copy of `other` in the memory that it has.
     pub(super) fn copy_from(&mut self, other: &Self) {
         self.pieces.clear();
         self.pieces.extend(other.pieces.iter().cloned());
@@ -126,7 +126,7 @@ impl History {
         (self.ahead, self.apart) = (other.ahead, other.apart);
     }
 
-    /// Moves everything by `time`.
+    /// Shifts all times by `time`.
     pub(super) fn shift(&mut self, time: f64) {
         for piece in &mut self.pieces {
             piece.from += time;
@@ -134,8 +134,8 @@ impl History {
         }
     }
 
-    /// Adds the step from the end of the last one to `to`; its polynomial holds there, and for
-    /// `radius` from its start, both ways. False where there is no room for it.
+    /// Adds the step from the end of the last one to `to`. Its polynomial holds on the step, and
+    /// within `radius` of its start on both sides. False where there is no room for it.
     #[must_use]
     pub(super) fn push(&mut self, to: f64, radius: f64, a: &[f64], kink: u32) -> bool {
         let from = self.pieces.back().map_or(to, |p| p.to);
@@ -151,7 +151,7 @@ impl History {
         })
     }
 
-    /// Whether no step has room any more.
+    /// Whether there is no room for another step.
     pub(super) fn is_full(&self) -> bool {
         self.pieces.len() >= MOST_KEPT
     }
@@ -164,7 +164,7 @@ impl History {
         room
     }
 
-    /// Forgets what ended before `time`.
+    /// Forgets steps that ended before `time`.
     pub(super) fn forget_before(&mut self, time: f64) {
         while self.pieces.len() > 1 && self.pieces[0].to < time {
             self.pieces.pop_front();
@@ -172,11 +172,12 @@ impl History {
         }
     }
 
-    /// Writes the polynomial of a from `time` on, as one of the time since then, to `out`; zero
-    /// beyond its order. `latest` is the order of the kink at the end of the last step.
+    /// Writes the polynomial of a from `time` on to `out`, in powers of the time since `time`;
+    /// coefficients beyond its order are zero. `latest` is the order of the kink at the end of the
+    /// last step.
     pub(super) fn read(&mut self, time: f64, latest: u32, out: &mut Coefficients) -> Reach {
-        // `time` is rounded as the present is, one delay later: with less than that a step could be
-        // too short to move on.
+        // `time` has the rounding of the present, which is one delay later. Without this margin a
+        // step could be too short to move on.
         let now = self.pieces.back().map_or(0.0, |p| p.to.abs());
         let close = 8.0 * f64::EPSILON * time.abs().max(now).max(1.0);
         while self.at + 1 < self.pieces.len() && time >= self.pieces[self.at].to - close {
@@ -196,8 +197,8 @@ impl History {
         reach
     }
 
-    /// Until when the past is known and has no kink, from the time that was read last; `latest` is
-    /// the order of the kink at the end of the last step.
+    /// The first kink after the time that was read last, or else the end of the known past.
+    /// `latest` is the order of the kink at the end of the last step.
     pub(super) fn until_kink(&self, latest: u32) -> Reach {
         let next = self.pieces.iter().skip(self.at + 1);
         let kink = next.clone().find(|piece| piece.kink < self.felt);
@@ -226,14 +227,14 @@ impl History {
         })
     }
 
-    /// Whether the polynomial of a piece is that of the others at `from`, which is in the present
-    /// one, and at `until`.
+    /// Whether the polynomial of the piece `index` agrees with the present piece at `from`, and
+    /// with the piece at `until` there.
     fn stands_in(&self, index: usize, from: f64, until: f64) -> bool {
         let at = |piece: &Piece, time: f64| value(&piece.a[..=piece.order], time - piece.from);
         let agree = |one: &Piece, other: &Piece, time: f64| {
             let (p, q) = (at(one, time), at(other, time));
             let off = (p - q).abs();
-            // What is not a number ends the motion elsewhere, not here.
+            // NaN ends the motion elsewhere.
             off.is_nan() || off <= self.apart * q.abs().max(1.0)
         };
         let (piece, here) = (&self.pieces[index], &self.pieces[self.at]);
@@ -242,21 +243,19 @@ impl History {
             && there.is_none_or(|there| agree(piece, there, until))
     }
 
-    /// What the last polynomial says at `time`, beyond its end.
+    /// The value of the last polynomial at `time`, beyond its end.
     pub(super) fn foreseen(&self, time: f64) -> f64 {
         self.pieces.back().map_or(f64::NAN, |last| {
             value(&last.a[..=last.order], time - last.from)
         })
     }
 
-    /// The piece that may be used longest from `time` on, and until when. Over a boundary that is
-    /// no more than a step's end a polynomial may be used as far as it holds, forwards and
-    /// backwards.
+    /// The piece that may be used longest from `time` on, and its reach. Across a boundary without
+    /// a kink a polynomial may be used as far as it holds, forwards and backwards.
     fn farthest(&self, time: f64, latest: u32) -> (usize, Reach) {
         let mut best = (self.at, self.pieces[self.at].to);
         let mut kink = if latest < self.felt { latest } else { SMOOTH };
-        // Where nothing happens at the end of the last step, its polynomial goes on to be the
-        // motion.
+        // Without a kink at the end of the last step its polynomial continues the motion.
         let smooth_end = kink == SMOOTH && self.felt > 0;
         let mut end = f64::INFINITY;
         for (index, piece) in self.pieces.iter().enumerate().skip(self.at) {
@@ -329,8 +328,8 @@ mod tests {
         assert_eq!(history.pieces.len(), 2);
     }
 
-    /// Two pasts of a slope and a rest each, whose stretches differ: what lies beyond the second
-    /// one has the lengths and values that go on evenly, with a kink where the stretches meet.
+    /// Two pasts of a slope and a rest each, whose stretches differ. The extrapolated past
+    /// continues their lengths and values evenly, with a kink where the stretches meet.
     #[test]
     fn pasts_are_extrapolated_with_their_stretches_aligned() {
         let past = |slip: f64, stick: f64, start: f64| {

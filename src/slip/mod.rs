@@ -9,10 +9,10 @@
 //! - [`series`]: polynomials in time, their first zeros
 //! - [`stop`]: a flag that ends motions
 //! - `collocation`: the second integrator: a step from values of the friction law, no series
-//! - `friction_series`: the friction force of each law as such a series
+//! - `friction_series`: the friction force of each law as a polynomial in time
 //! - `graze`: minima of ẋ in a step, and the minimum that a stop cut off
 //! - `history`: the elongation over the last delays, and its kinks
-//! - `table_series`: that of a table, cubic by cubic, and where the speed leaves one
+//! - `table_series`: the friction force of a table, cubic by cubic, and where the speed leaves one
 //! - `watch`: follows a motion until its outcome is known
 
 pub mod case;

@@ -15,12 +15,12 @@
 //! ```
 //!
 //! A step is a Taylor series in the time since its start, whose coefficients follow from (1), (2)
-//! and the polynomial that the delayed elongation is there. So the solution between steps is known
-//! to the order of the method at no cost, and events are zeros of polynomials. A step ends where
-//! the delayed polynomial ends, if the next one is another by more than the tolerance: kinks are
-//! stepped on, one delay after the other, until they are too smooth to be felt.
+//! and the polynomial of the delayed elongation. So the solution between steps is known to the
+//! order of the method at no cost, and events are zeros of polynomials. A step ends where the
+//! delayed polynomial ends, if it differs from the next one by more than the tolerance. So steps
+//! end on kinks, one delay after the other, until these are too smooth to matter.
 //!
-//! - `advance`: one step after the other: how long, and what ends it
+//! - `advance`: one step after the other: its length and its end
 //! - `collocated`: steps by collocation: how long they are, the rates there
 //! - `events`: zeros of a step's polynomials, told apart from rounding
 //! - `parameters`: what a motion is given: parameters, integrator, accuracy
@@ -52,8 +52,8 @@ const ROUNDING: f64 = 64.0 * f64::EPSILON;
 /// The lowest order of Taylor's method.
 const LEAST_ORDER: usize = 4;
 
-/// The order of collocation; that at which Taylor's method does least work per unit of time (Jorba
-/// and Zou 2005).
+/// The fixed order of collocation, or the order at which Taylor's method does least work per unit
+/// of time (Jorba and Zou 2005).
 fn order(integrator: Integrator, tolerance: f64) -> usize {
     if integrator == Integrator::Collocation {
         return NODES;
@@ -70,7 +70,7 @@ pub struct Motion {
     order: usize,
     friction: FrictionSeries,
     history: History,
-    /// What will be fed back, where the feedback has a latency.
+    /// V, which is fed back one latency later, where the feedback has a latency.
     signal: History,
     mode: Mode,
     /// Time.
@@ -79,9 +79,9 @@ pub struct Motion {
     pub u: f64,
     /// Elongation.
     pub a: f64,
-    /// Order of the lowest derivative of a, or of what is kept with it, that jumps now.
+    /// Order of the lowest derivative that jumps now: of a or, with memory, of W.
     kink: u32,
-    /// That of what will be fed back, where the feedback has a latency.
+    /// The same for V, where the feedback has a latency.
     signal_kink: u32,
     /// Since when the block has stuck while its elongation has grown evenly, at the rate of
     /// [`Motion::even_rate`]; +∞ while it does not.
@@ -113,7 +113,7 @@ impl Motion {
         [mut history, mut signal]: [History; 2],
     ) -> Self {
         if !parameters.controlled() {
-            // Nothing is fed back that could be remembered, or come late.
+            // Nothing is fed back, so memory and latency have no effect.
             (parameters.memory, parameters.latency) = (0.0, 0.0);
         }
         let tolerance = accuracy.tolerance.clamp(1e-15, 1e-3);
@@ -154,13 +154,13 @@ impl Motion {
         motion
     }
 
-    /// The same motion, and all that begin in its memory, until `stop` is set.
+    /// The same motion, but it ends once `stop` is set, as do all motions begun in its memory.
     #[must_use]
     pub fn heeding(self, stop: Stop) -> Self {
         Self { stop, ..self }
     }
 
-    /// Whether it was told to stop: its state is then no number.
+    /// Whether it was told to stop; its state is then NaN.
     #[must_use]
     pub fn is_stopped(&self) -> bool {
         self.stop.is_set()
@@ -190,8 +190,8 @@ impl Motion {
         (self.kink, self.signal_kink) = (1, 1);
     }
 
-    /// Changes the delay from now on, to less than twice what it was: the past is known for so
-    /// long.
+    /// Changes the delay from now on, to less than twice the present one: the past is known for two
+    /// delays.
     pub fn set_delay(&mut self, tau: f64) {
         self.parameters.tau = tau;
         if self.mode == Mode::Stick {
@@ -212,7 +212,8 @@ impl Motion {
         }
     }
 
-    /// Becomes a copy of `other`, a motion with the same law and accuracy, in memory that is there.
+    /// Becomes a copy of `other`, a motion with the same law and accuracy, in the memory that it
+    /// has.
     pub fn copy_from(&mut self, other: &Self) {
         self.parameters.clone_from(&other.parameters);
         self.history.copy_from(&other.history);
@@ -225,14 +226,13 @@ impl Motion {
         self.step.clone_from(&other.step);
     }
 
-    /// Becomes a block that is released at t = 0 at `v0` and with the delay `tau`, with a past that
-    /// differs from that of `last` by `share` of the difference between `last` and `before`: two
-    /// motions of the same law, gains and accuracy as they are released. Stretches of time that
-    /// correspond to one another, the last one first, are slips and sticks; they are gone through
-    /// again and again.
+    /// Becomes a block that is released at t = 0, at `v0` and with the delay `tau`. Its past is
+    /// that of `last` plus `share` of the difference between the pasts of `last` and `before`, two
+    /// motions of the same law, gains and accuracy at their release. `stretches` are corresponding
+    /// slips and sticks, the last one first; they are repeated backwards.
     ///
-    /// `tau` is less than twice the delays of both, whose past is known for so long. False where
-    /// the past has no room; the motion then means nothing.
+    /// `tau` must be less than twice the delays of both, since their pasts are known for two
+    /// delays. False where the past has no room; the motion is then meaningless.
     pub fn extrapolate(
         &mut self,
         (last, before): (&mut Self, &mut Self),
@@ -273,8 +273,8 @@ impl Motion {
         }
     }
 
-    /// Two delays take more steps than are kept: the motion ends here undecided, and its state is
-    /// no number.
+    /// Whether two delays take more steps than are kept. The motion then ends undecided, and its
+    /// state is NaN.
     #[must_use]
     pub fn outgrows_its_past(&self) -> bool {
         self.u.is_nan() && (self.history.is_full() || self.signal.is_full())
@@ -305,7 +305,7 @@ impl Motion {
         &self.step
     }
 
-    /// The force that is missing for a block to move that has just stopped.
+    /// The force that a block which has just stopped lacks to move, μ_S n − |a|.
     #[must_use]
     pub fn hold_now(&self) -> f64 {
         let n = value(&self.step.n[..=self.step.order], self.step.length);

@@ -1,4 +1,4 @@
-//! What becomes of a motion: sliding, stick-slip, oscillation, lift-off, or none that can be told.
+//! What becomes of a motion: sliding, stick-slip, oscillation, lift-off or another outcome.
 
 use super::motion::{Event, Motion};
 
@@ -60,26 +60,26 @@ pub struct Limits {
     pub stable_abscissa: Option<f64>,
     /// How well cycles have to repeat, relative, to be periodic.
     pub repeated: f64,
-    /// The most cycles of stick-slip that are waited for to repeat.
+    /// The most cycles of stick-slip to wait for a repetition.
     pub cycles: usize,
 }
 
 /// A motion that was followed to its outcome. Times, lengths and forces as in [`super::motion`].
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Summary {
-    /// What became of it.
+    /// The outcome.
     pub outcome: Outcome,
     /// When that was known.
     pub decided: f64,
-    /// From switch-on, or from t = 0 where that never is, until ẋ stays within 1 % of v0; NaN
-    /// unless it came to sliding.
+    /// From switch-on, or from t = 0 without one, until ẋ stays within 1 % of v0; NaN unless the
+    /// outcome is sliding.
     pub settle_time: f64,
     /// The smallest load since switch-on.
     pub n_min: f64,
-    /// The largest spring force |κa| since switch-on; of a motion that grows beyond all bounds,
-    /// until that was known.
+    /// The largest spring force |κa| since switch-on; of a motion that diverges, until that was
+    /// known.
     pub peak: f64,
-    /// Period of stick-slip, and how long it sticks and slips in one; NaN else.
+    /// Period of stick-slip; NaN for other outcomes.
     pub period: f64,
     /// Time stuck in one period.
     pub stick_time: f64,
@@ -95,8 +95,8 @@ pub struct Summary {
 }
 
 impl Summary {
-    /// The time `last` of the last release, NaN for none, as counted from `switch_on`, or from
-    /// t = 0 where that never is.
+    /// The time from `switch_on`, or from t = 0 without one, to the last release at `last`: 0 if
+    /// `last` is NaN, for no release, and NaN for stick-slip, whose releases go on.
     #[must_use]
     pub fn released_after(outcome: Outcome, last: f64, switch_on: f64) -> f64 {
         match outcome {
@@ -106,7 +106,7 @@ impl Summary {
         }
     }
 
-    /// How long after `switch_on`, or after t = 0 where that never is, `t` is.
+    /// The time from `switch_on`, or from t = 0 without one, to `t`; at least 0.
     pub(super) fn after(switch_on: f64, t: f64) -> f64 {
         let since = if switch_on.is_finite() {
             switch_on
@@ -134,8 +134,8 @@ impl Summary {
         }
     }
 
-    /// Its numbers but the steps, by the names that files and messages have for them; NaN where
-    /// there is none.
+    /// Its numbers except the counts of steps and slips, with their names in files and messages.
+    /// Numbers that do not exist are NaN.
     #[must_use]
     pub const fn numbers(&self) -> [(&'static str, f64); 8] {
         [
@@ -150,8 +150,8 @@ impl Summary {
         ]
     }
 
-    /// From its numbers by their names, NaN where there is none; the number of slips in a period is
-    /// not among them.
+    /// The summary whose numbers `number` gives by their names, NaN where one does not exist. The
+    /// number of slips in a period is not among them.
     #[must_use]
     pub fn of_numbers(outcome: Outcome, steps: u64, number: impl Fn(&str) -> f64) -> Self {
         Self {

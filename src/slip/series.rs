@@ -66,7 +66,7 @@ fn size(c: &[f64], s: f64) -> f64 {
     sum(c, s, f64::abs)
 }
 
-/// How far from c₀ a polynomial may come on [0, `end`] at most.
+/// An upper bound of the distance of a polynomial from c₀ on [0, `end`].
 #[inline]
 #[must_use]
 pub fn spread(c: &[f64], end: f64) -> f64 {
@@ -84,7 +84,7 @@ fn value_and_slope(c: &[f64], s: f64) -> (f64, f64) {
     (value, slope)
 }
 
-/// The coefficients about s = `by` of those in `c`, see [`shift`].
+/// The coefficients about s = `by` of the polynomial `c`, see [`shift`].
 #[inline]
 #[must_use]
 pub fn shifted(c: &[f64], by: f64) -> Coefficients {
@@ -93,8 +93,8 @@ pub fn shifted(c: &[f64], by: f64) -> Coefficients {
     about
 }
 
-/// Writes the coefficients about s = `by` of those in `c` to `about`: Σ_m (j + m over j) c_{j+m}
-/// by^m, and zero beyond.
+/// Writes the coefficients about s = `by` of the polynomial `c` to `about`:
+/// Σ_m (j + m over j) c_{j+m} by^m, and zero beyond.
 ///
 /// Horner's scheme takes as many operations, but each waits for the one before.
 #[inline]
@@ -112,8 +112,8 @@ pub fn shift(c: &[f64], by: f64, about: &mut Coefficients) {
     }
 }
 
-/// Coefficient k of the product of `p` and `q`, from the middle to both ends: what was found last
-/// is waited for last.
+/// Coefficient k of the product of `p` and `q`. The sum runs from the middle to both ends, so that
+/// the coefficients found last are needed last.
 #[inline(always)]
 #[must_use]
 pub fn product(p: &Coefficients, q: &Coefficients, k: usize) -> f64 {
@@ -142,9 +142,9 @@ pub fn derivative(c: &[f64], factor: f64) -> Coefficients {
 /// The first zero in (0, `end`] of a polynomial that is positive just after 0; none if it stays
 /// positive.
 ///
-/// No zero is stepped over: a parabola below the polynomial says how far it stays positive at
-/// least. Near a simple zero the steps are Newton's; a minimum within rounding of zero counts as
-/// one. Zeros at s = 0 itself are divided out.
+/// No zero is stepped over: a parabola below the polynomial bounds how far it stays positive. Near
+/// a simple zero the steps are Newton's; a minimum within rounding of zero counts as one. Zeros at
+/// s = 0 itself are divided out.
 #[must_use]
 pub fn first_zero(c: &[f64], end: f64) -> Option<f64> {
     let multiplicity = c.iter().position(|&c| c != 0.0)?;
@@ -190,7 +190,7 @@ pub fn first_zero(c: &[f64], end: f64) -> Option<f64> {
             f64::INFINITY
         };
         s += step.max(f64::EPSILON * end);
-        // Also where something is not a number.
+        // Also for NaN.
         if !s.is_finite() || s > end {
             return None;
         }
@@ -211,14 +211,14 @@ pub fn largest(c: &[f64], end: f64, known: f64) -> f64 {
     let mut found = known.max(*first).max(value(c, end));
     let slopes = derivative(c, 1.0);
     let slopes = &slopes[..rest.len()];
-    // Where the slope cannot change its sign the ends tell.
+    // Where the slope cannot change its sign, the largest value is at an end.
     let alone = |c: &[f64]| c.len() < 2 || c[0].abs() >= spread(c, end);
     if alone(slopes) {
         return found;
     }
     let bends = derivative(slopes, 1.0);
     let bends = &bends[..slopes.len() - 1];
-    // Where the slope only grows or only falls, they tell whether there is a top.
+    // Where the slope is monotone, its signs at the ends show whether there is a maximum.
     let parts = if alone(bends) { 1 } else { 8 };
     let at = |i: u32| end * f64::from(i) / f64::from(parts);
     let mut from = slopes[0];
@@ -237,7 +237,7 @@ pub fn largest(c: &[f64], end: f64, known: f64) -> f64 {
 fn top(slopes: &[f64], bends: &[f64], (mut from, mut to): (f64, f64)) -> f64 {
     let near = 1e-9 * (to - from);
     let mut s = 0.5 * (from + to);
-    // Quadratic at its top: half the digits of the place are all of the value.
+    // A maximum is flat: half the digits of its place give all digits of its value.
     for _ in 0..30 {
         let slope = value(slopes, s);
         match slope > 0.0 {
@@ -288,7 +288,7 @@ mod tests {
     }
 
     proptest! {
-        /// Of a polynomial made of its zeros, the first one is found.
+        /// The first zero of a polynomial made from its zeros is found.
         #[test]
         fn the_first_zero_is_found(
             zeros in prop::collection::vec(0.05..3.0_f64, 1..7),

@@ -48,7 +48,8 @@ impl Sliding {
         Some(spectrum.abscissa).filter(|abscissa| spectrum.certified && *abscissa < 0.0)
     }
 
-    /// As a general system, B(1 − RE) − A e^(−λδ)(1 − E), where it is more than the letter's.
+    /// The general system B(1 − RE) − A e^(−λδ)(1 − E); None where the feedback is the letter's
+    /// own.
     fn beyond_letter(&self) -> Option<System> {
         let Groups { b, a_v, a_n } = self.groups;
         let plain = self.memory == 0.0 && self.latency == 0.0;
@@ -109,7 +110,7 @@ mod tests {
         let late = |tau: f64| sliding(-1.0, -0.7, tau, 0.8, 0.7);
         assert!(late(3.0).stable_abscissa().is_some());
         assert!(late(1.6).stable_abscissa().is_none());
-        // Nothing is remembered where nothing is fed back.
+        // Without gains the memory has no effect.
         let idle = sliding(0.5, 0.0, 2.0, 0.8, 0.7);
         let plain = sliding(0.5, 0.0, 2.0, 0.0, 0.0);
         assert_eq!(idle.stable_abscissa(), plain.stable_abscissa());

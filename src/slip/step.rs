@@ -19,9 +19,9 @@ pub struct Step {
     pub(super) n: Coefficients,
     /// a(t−τ), less R S(t−τ) where the feedback has memory.
     pub(super) delayed: Coefficients,
-    /// S(t) where the feedback has a latency; means nothing else.
+    /// S(t) where the feedback has a latency; else meaningless.
     pub(super) late: Coefficients,
-    /// Whether it has one.
+    /// Whether the feedback has a latency.
     pub(super) is_late: bool,
 }
 
@@ -57,7 +57,7 @@ impl Step {
         (at(&self.u), at(&self.a), at(&self.n))
     }
 
-    /// S at `s`, what is fed back: a(t) − a(t−τ), with its memory and latency. Means nothing before
+    /// S at `s`, which is fed back: a(t) − a(t−τ), with its memory and latency. Meaningless before
     /// control acts.
     #[must_use]
     pub fn fed_back(&self, s: f64) -> f64 {
@@ -161,7 +161,7 @@ pub(super) struct Control {
 }
 
 impl Step {
-    /// Coefficients k of the load, and of v.
+    /// Fills coefficient `k` of the load, and returns that of v.
     #[inline(always)]
     fn controlled(&mut self, control: Control, k: usize) -> f64 {
         let difference = match self.is_late {
@@ -177,7 +177,7 @@ impl Step {
         v0 + control.alpha_v * difference
     }
 
-    /// Coefficients of the order 1 and higher at rest.
+    /// Computes the coefficients of a stuck block of order 1 and higher.
     pub(super) fn stick(&mut self, control: Control) {
         let order = self.order.min(MOST_ORDER);
         for (k, per_next) in PER_NEXT.iter().enumerate().take(order) {
@@ -187,7 +187,7 @@ impl Step {
         self.controlled(control, order);
     }
 
-    /// Works out the coefficients of a block in slip.
+    /// Computes the coefficients of a block in slip.
     pub(super) fn slip(&mut self, control: Control, direction: f64, series: &mut impl Series) {
         let order = self.order.min(MOST_ORDER);
         for (k, per_next) in PER_NEXT.iter().enumerate().take(order) {

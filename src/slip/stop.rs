@@ -1,10 +1,10 @@
-//! Whether anybody still waits for a motion.
+//! A flag that ends motions nobody waits for any more.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-/// A flag that ends motions: each then takes no further step, and its state is no number. By
-/// default nothing ends them.
+/// A flag that ends motions: each then takes no further step, and its state is NaN. By default
+/// nothing ends them.
 #[derive(Debug, Clone, Default)]
 pub struct Stop(Option<Arc<AtomicBool>>);
 
@@ -26,7 +26,7 @@ impl Stop {
     }
 }
 
-/// Who waits for an answer is no part of the question.
+/// Motions are compared without regard to who waits for them.
 impl PartialEq for Stop {
     fn eq(&self, _: &Self) -> bool {
         true

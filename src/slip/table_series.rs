@@ -2,11 +2,11 @@
 //! leaves it.
 //!
 //! At a point of the table the second derivative of μ_K jumps, and with it the fourth derivative of
-//! the elongation; at the first and the last point it is the slope, and the third derivative. Steps
-//! end there. A cubic stays in use until the speed is beyond its end by a little more than noise,
-//! so that a motion that rests on a point, or grazes it, does not go back and forth between two
-//! cubics: after each crossing the speed has to come back by more than rounding before the next
-//! one. What the cubics differ by so near their common end is below the tolerance.
+//! the elongation. At the first and the last point the slope of μ_K jumps, and with it the third
+//! derivative. Steps end there. A cubic stays in use until the speed is beyond its end by a little
+//! more than noise. So a motion that rests on a point, or grazes it, does not switch back and forth
+//! between two cubics: the speed has to come back by more than rounding before the next crossing.
+//! The cubics differ by less than the tolerance so near their common end.
 
 use super::friction_series::Series;
 use super::series::{Coefficients, MOST_ORDER, first_zero, product};
@@ -31,7 +31,7 @@ pub(super) struct TableSeries {
 /// Where the speed leaves a cubic.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Crossing {
-    /// When.
+    /// Time since the start of the step.
     pub s: f64,
     /// The region that it enters.
     pub region: usize,
@@ -57,7 +57,7 @@ impl TableSeries {
         series
     }
 
-    /// Goes on from `speed`, wherever it was before.
+    /// Restarts at `speed`, whatever the speed was before.
     pub(super) fn restart(&mut self, speed: f64) {
         let region = match self.table.region(speed * self.velocity_unit) {
             Ok(point) => point + 1,
@@ -66,7 +66,7 @@ impl TableSeries {
         self.enter(region);
     }
 
-    /// Goes on with the cubic of `region`.
+    /// Changes to the cubic of `region`.
     pub(super) fn enter(&mut self, region: usize) {
         let piece = self.table.piece(region);
         self.region = region;
@@ -77,19 +77,19 @@ impl TableSeries {
         };
     }
 
-    /// Goes on with the cubic that `other` is on.
+    /// Changes to the cubic that `other` is on.
     pub(super) fn copy_place(&mut self, other: &Self) {
         (self.region, self.piece) = (other.region, other.piece);
     }
 
-    /// μ_K by the cubic in use, which goes on beyond its ends.
+    /// μ_K by the cubic in use, also beyond its ends.
     pub(super) fn value(&self, speed: f64) -> f64 {
         let w = (speed - self.piece.from) / self.piece.width;
         let [c0, c1, c2, c3] = self.piece.c;
         ((c3 * w + c2) * w + c1) * w + c0
     }
 
-    /// The speed of a point, if it is there and a speed can cross it.
+    /// The speed of a point; None where there is no such point, or it is at rest.
     fn knot(&self, point: Option<usize>) -> Option<f64> {
         let speed = *self.table.speeds().get(point?)?;
         (speed > 0.0).then_some(speed / self.velocity_unit)
@@ -123,7 +123,7 @@ impl TableSeries {
     }
 }
 
-/// More than what [`first_zero`] takes for zero.
+/// An upper bound of what [`first_zero`] takes for zero.
 fn noise(speed: &[f64], length: f64) -> f64 {
     let mut power = 1.0;
     let mut size = 0.0;

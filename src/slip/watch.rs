@@ -31,11 +31,11 @@ const CYCLES: usize = MOST_FOLD + 1;
 pub const REPEATED: f64 = 1e-9;
 /// Deviation from sliding, over v0, below which linear theory decides.
 const SMALL: f64 = 1e-3;
-/// The part of v0 that counts as settled.
+/// Deviation of ẋ from v0, over v0, below which the motion counts as settled.
 const SETTLED: f64 = 0.01;
-/// Amplitudes beyond this, over what is natural, diverge.
+/// Amplitudes larger than this, over the natural scale of the motion, count as diverged.
 const BEYOND: f64 = 1e6;
-/// Windows of equal amplitude that make an oscillation.
+/// The number of windows of equal amplitude after which a motion is an oscillation.
 const EQUAL_WINDOWS: u32 = 4;
 
 /// From one release to the next.
@@ -85,13 +85,14 @@ struct Watch {
 struct Decay {
     /// Since when the deviation has been small.
     small_since: f64,
-    /// From when on, and how large the deviation was over the first delay after.
+    /// Start of the comparison, and the largest deviations in its first window and after one
+    /// relaxation time.
     from: f64,
     first: f64,
     second: f64,
 }
 
-/// The amplitude of one window of time after the other.
+/// Amplitudes in successive windows of time.
 #[derive(Debug, Clone, Copy)]
 struct Window {
     length: f64,
@@ -157,8 +158,8 @@ impl Watch {
 
     fn see(&mut self, motion: &Motion, event: Option<Event>) {
         let step = motion.last_step();
-        // The time itself, not the end less the length: rounding would put the first step under
-        // control before it.
+        // The start itself, not the end less the length: with rounding the first step under control
+        // would seem to begin before switch-on.
         let start = std::mem::replace(&mut self.seen, motion.t);
         let size = motion.a.abs().max(motion.u.abs());
         let finite = (motion.a + motion.u).is_finite();
@@ -189,11 +190,11 @@ impl Watch {
         }
     }
 
-    /// Adds the cycle that ends with this release, and looks whether cycles repeat over more than a
-    /// delay.
+    /// Adds the cycle that ends with this release, and checks whether cycles repeat over more than
+    /// a delay.
     fn see_release(&mut self, motion: &Motion) {
         let began = std::mem::replace(&mut self.last_release, motion.t);
-        // Before switch-on, or across it, no cycle says what comes after.
+        // Cycles before switch-on, or across it, do not count.
         let after_switch_on = began >= self.switch_on || !self.switch_on.is_finite();
         if !(after_switch_on && self.last_stop > began) {
             return;
@@ -245,7 +246,7 @@ impl Watch {
             self.window.equal = 0;
             return;
         }
-        // What is large matters where it is larger than what was seen before.
+        // A large deviation is needed only where it exceeds what was seen before.
         let now = (motion.u - self.v0).abs().max((motion.a - self.rest).abs());
         let known = match now > SMALL * self.v0 {
             true => self.window.amplitude.max(now),
@@ -282,7 +283,7 @@ impl Watch {
             decay.second = decay.second.max(deviation);
         }
         if now >= decay.from + relaxation.max(window) + window {
-            // Beats of two roots decay unevenly; what is near rounding decays no more.
+            // Beats of two roots decay unevenly; a deviation near rounding no longer decays.
             if decay.second <= 0.6 * decay.first || decay.first < 1e-11 {
                 self.outcome = Some(Outcome::Sliding);
             }
@@ -296,7 +297,8 @@ impl Watch {
         if now < window.until {
             return;
         }
-        // Where sliding is stable, a decay as slow as its abscissa is none of these.
+        // Where sliding is stable, a decay as slow as its abscissa does not count as equal
+        // amplitude.
         let decay = self.limits.stable_abscissa.map_or(f64::INFINITY, f64::abs) * window.length;
         let same = (window.amplitude - window.before).abs()
             <= 1e-6_f64.min(0.1 * decay) * window.amplitude;
@@ -419,7 +421,7 @@ mod tests {
 
     #[test]
     fn cycles_repeat_over_any_delay() {
-        // Some hundred cycles in a delay, which begin anew, slightly other ones, with every delay.
+        // Some hundred cycles in a delay. They start anew, slightly changed, with every delay.
         let p = Parameters {
             law: FrictionLaw::coulomb(0.5, 1.0).unwrap(),
             switch_on: 0.0,
@@ -437,8 +439,8 @@ mod tests {
         assert_eq!(s.outcome, Outcome::StickSlip, "{s:?}");
     }
 
-    /// Two delays of more steps than are kept: the motion is not followed with a past that is not
-    /// its own.
+    /// Two delays take more steps than are kept: the motion ends undecided, since its past is
+    /// incomplete.
     #[test]
     fn what_outgrows_its_past_is_undecided() {
         let p = Parameters {
@@ -453,7 +455,8 @@ mod tests {
             repeated: REPEATED,
             cycles: usize::MAX,
         };
-        // The delayed elongation is what it was before: cycles repeat, and are not waited for here.
+        // The delayed elongation is still the constant past, so cycles repeat; that is not checked
+        // here.
         let mut motion = Motion::new(p, Accuracy::default(), 0.0, 0.0);
         let mut steps = 0;
         while !motion.outgrows_its_past() {
@@ -510,7 +513,7 @@ mod tests {
         };
         let s = run(p.clone(), 0.7);
         assert_eq!(s.outcome, Outcome::Undecided, "{s:?}");
-        // Without control it is one.
+        // Without control it is an oscillation.
         let p = Parameters {
             switch_on: f64::INFINITY,
             alpha_v: 0.0,

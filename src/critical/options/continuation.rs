@@ -26,31 +26,31 @@ options! {
         /// The most slips at one v0, where a period has several.
         most_cycles: usize = 24, in 4..=4_000;
         /// Event functions of three periods in a row differ by no more than this after a step of v0
-        /// of usual size. Their limit is told from the three, so it is known far better.
+        /// of usual size. Their limit is extrapolated from the three, so it is known far better.
         settled: f64 = 0.05, in 1e-9..=0.5;
-        /// A step of v0 from this on is a large one.
+        /// A step of v0 of at least this size is large.
         large_step: f64 = 0.3, in 0.0..=10.0;
-        /// What large steps have to be settled to: a rough orbit is enough to go on from.
+        /// How settled orbits have to be after large steps: a rough orbit is enough to go on from.
         settled_after_large: f64 = 0.2, in 1e-9..=1.0;
-        /// A step of v0 from this on is a middling one.
+        /// A step of v0 of at least this size, if it is not large, is middling.
         middling_step: f64 = 0.02, in 0.0..=10.0;
-        /// What middling steps have to be settled to.
+        /// How settled orbits have to be after middling steps.
         settled_after_middling: f64 = 0.1, in 1e-9..=1.0;
-        /// A step of v0 below this is a small one.
+        /// A step of v0 smaller than this is small.
         small_step: f64 = 2e-3, in 0.0..=1.0;
-        /// What small steps have to be settled to, as a share of [`Self::settled`]: the end is
-        /// near, and told from the last two orbits.
+        /// How settled orbits have to be after small steps, as a share of [`Self::settled`]: the
+        /// end is near, and is extrapolated from the last two orbits.
         settled_after_small: f64 = 0.4, in 1e-3..=1.0;
-        /// Differences from one period to the next that come to rest fall at least by this factor.
-        /// An unstable orbit, followed from close by, has differences that grow.
+        /// Differences from one period to the next have to fall at least by this factor. Those of
+        /// an unstable orbit, followed closely, grow.
         contraction: f64 = 0.8, in 0.1..=0.999;
         /// Noise of event functions, relative to themselves, and to v0 or to the forces and times
-        /// of free oscillation: what the integration is accurate to.
+        /// of free oscillation: the accuracy of the integration.
         noise: f64 = 1e-6, in 1e-15..=1e-3;
-        /// Three members of a sequence tell its limit (Aitken) where the ratio of their differences
-        /// is below this; above it the limit would be an extrapolation too far.
+        /// Three members of a sequence give its limit (Aitken) where the ratio of their differences
+        /// is below this. Above it the limit would be an extrapolation too far.
         aitken_ratio: f64 = 0.7, in 0.0..=0.95;
-        /// The farthest that two pasts are extrapolated, in units of what lies between them.
+        /// The farthest that two pasts are extrapolated, in units of the difference between them.
         farthest_extrapolation: f64 = 3.0, in 0.0..=20.0;
 
         /// The largest step of v0, and the first one.
@@ -65,8 +65,8 @@ options! {
         reduction: f64 = 0.5, in 0.1..=0.9;
         /// After a step that succeeded the next may be larger by this factor.
         growth: f64 = 2.0, in 1.1..=10.0;
-        /// A step beyond a v0 that failed is at most this share of the step that failed there: it
-        /// may have been the size of the step alone.
+        /// A step beyond a v0 that failed is at most this share of the step that failed there: the
+        /// size of that step alone may be the reason.
         retry_share: f64 = 0.3, in 0.01..=0.9;
         /// Periods that do not come to rest after a smaller step than this are left to simulation:
         /// the orbit loses its stability.
@@ -87,28 +87,28 @@ options! {
         /// fail again and again.
         most_trials: u32 = 60, in 5..=10_000;
 
-        /// Nearer than this to the event the rest of the way is told from the last two orbits.
+        /// Nearer than this to the event, the event is extrapolated from the last two orbits.
         near: f64 = 1e-4, in 1e-9..=1e-2;
-        /// Within this of the event the last two orbits tell it if both predict it alike.
+        /// Within this of the event it is extrapolated as well, if two predictions agree.
         quite_near: f64 = 3e-3, in 1e-9..=0.1;
-        /// How well two predictions of the event agree.
+        /// How well two predictions of the event have to agree.
         agreement: f64 = 3e-6, in 1e-12..=1e-2;
-        /// Within this of the event, and of where it was predicted, slopes of another delay tell
-        /// it.
+        /// Within this of the event, and of where it was predicted, slopes of another delay
+        /// suffice.
         borrowed: f64 = 3e-5, in 1e-12..=1e-2;
-        /// Where a step short of the event failed one is made beyond that, so many times as long as
-        /// [`Self::near`].
+        /// Where a step just before the event failed, one more is made beyond it, so many times as
+        /// long as [`Self::near`].
         last_step: f64 = 3.0, in 1.0..=100.0;
 
-        /// Below this v0, over μ_S N0/√(κM), errors of the elongation are felt in the depth of a
-        /// stop, which is to be known compared with v0: the tolerance falls in proportion.
+        /// Below this v0, in N0/√(κM), errors of the elongation matter for the depth of a stop,
+        /// which has to be known compared with v0: the tolerance falls in proportion.
         slow: f64 = 0.03, in 0.0..=10.0;
-        /// Above this v0 what ends a slip is a difference of forces that falls as 1/v0, of speeds
-        /// that grow as v0: the tolerance of the check falls as 1/v0².
+        /// Above this v0 a slip ends by a difference of forces that falls as 1/v0, while speeds
+        /// grow as v0: the tolerance of the check falls as 1/v0².
         fast: f64 = 1.0, in 1e-3..=1e6;
         /// The tolerance of the check of an event, over [`Self::tolerance`].
         finer: f64 = 1e-2, in 1e-6..=1.0;
-        /// How well an event has to be the same by the finer tolerance.
+        /// How well the finer integration has to give the same event.
         same_event: f64 = 1e-5, in 1e-12..=1e-2;
         /// How far below an event the search with the finer tolerance begins.
         back: f64 = 2e-3, in 1e-6..=0.5;
@@ -117,8 +117,8 @@ options! {
         most_kinds: usize = 24, in 1..=1_000;
         /// The first step of v0 with another kind of stick-slip than the first.
         first_step: f64 = 0.02, in 1e-6..=1.0;
-        /// The first step of v0 where one slip that was expected to graze goes on as it was: the
-        /// next end may be as near.
+        /// The first step of v0 after a graze that did not change the kind of stick-slip: the next
+        /// end may be as near.
         step_past_graze: f64 = 2e-5, in 1e-9..=1.0;
     }
 }

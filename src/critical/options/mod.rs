@@ -1,14 +1,14 @@
-//! The numbers that tune a search for a critical velocity, a table of them for each of its parts.
+//! The numbers that tune a search for a critical velocity, in a table for each of its parts.
 //!
-//! Every option has its reason, its default and its range beside it. The defaults are what maps
-//! are computed with; benches/critical_options.rs tells what each of them changes.
+//! Every option has its reason, its default and its range beside it. Maps are computed with the
+//! defaults; benches/critical_options.rs shows what each option changes.
 //!
 //! - `along_delay`: options of continuation along a line of delays
 //! - `bracket`: options of the bounds of a critical velocity that is not decided
 //! - `continuation`: options of continuation in v0
 //! - `ramp`: options of simulation while v0 is raised
 //! - `switch_on`: options of switching control on
-//! - `table`: how such a table is written
+//! - `table`: the macro that makes options from such a table
 //! - `transition`: options of what follows an event
 
 #[macro_use]
@@ -38,7 +38,7 @@ pub struct Options {
     pub along_delay: AlongDelayOptions,
     /// Simulation while v0 is raised.
     pub ramp: RampOptions,
-    /// Bounds where it is not decided.
+    /// Bounds where v_c is not decided.
     pub bracket: BracketOptions,
     /// Switching control on.
     pub switch_on: SwitchOnOptions,
@@ -121,7 +121,7 @@ mod tests {
             let mut options = Options::default();
             let changed = options.scale(name, 0.5) || options.scale(name, 2.0);
             assert!(options.within_ranges(), "{name}");
-            // Switches and what is 0 by default stay.
+            // Switches, and options that are 0 by default, do not change.
             let fixed = ["ramp.until_periodic", "ramp.patient", "ramp.glide"];
             assert_eq!(changed, !fixed.contains(&name.as_str()), "{name}");
         }

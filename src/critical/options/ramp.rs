@@ -10,7 +10,8 @@ options! {
         largest: f64 = 0.6, in 1e-6..=10.0;
         /// The largest one where cycles do not show whether stick-slip is of the same kind.
         unseen: f64 = 0.1, in 1e-6..=10.0;
-        /// The last step. v_c by simulation is told to this, and agreed on to `GRAZE_PRECISION`.
+        /// The last step, the precision of v_c by simulation. Searches have to agree to
+        /// `GRAZE_PRECISION`.
         last: f64 = 1e-6, in 1e-12..=1e-2;
         /// Up to this v0, in the units of a motion, v0 glides: each is held for a few cycles only,
         /// and the outcome is not waited for. 0 where every v0 is held.
@@ -25,13 +26,13 @@ options! {
         /// The most steps of the integrator at one v0; more where velocity control makes sticks
         /// longer.
         steps: u64 = 50_000, in 100..=1_000_000_000;
-        /// The most at all v0 together: some seconds.
+        /// The most steps at all v0 together: some seconds.
         total_steps: u64 = 3_000_000, in 100..=1_000_000_000_000;
         /// Whether the search ends where stick-slip has come to repeat.
         until_periodic: bool = false, in false..=true;
-        /// Whether every loss of stick-slip is waited for until the outcome of the motion is known.
-        /// Else it counts once the minima of ẋ no longer fall, and only the last one is waited for
-        /// longer.
+        /// Whether a motion that loses stick-slip is always followed until its outcome is known.
+        /// Else a loss counts once the minima of ẋ no longer fall, and only the last loss is
+        /// followed for longer.
         patient: bool = false, in false..=true;
 
         /// Start velocities, over μ_S, in order, until stick-slip is sustained at one: by
@@ -40,29 +41,29 @@ options! {
         /// The share of the way to the predicted end that is taken at first. With a larger one,
         /// such as that of continuation, transients lead to more ends that stay undecided.
         share: f64 = 0.9, in 0.1..=0.999;
-        /// Where stick-slip was lost is tried once more from this much nearer: it may have been the
-        /// size of the step that lost it.
+        /// A v0 at which stick-slip was lost is tried once more from this much nearer: the size of
+        /// the step may have lost it.
         nearby: f64 = 0.15, in 0.01..=0.9;
         /// The least share of the way to the predicted end that is taken at once: near its end
         /// stick-slip attracts from less and less far, and the share falls with each loss.
         least_share: f64 = 0.2, in 0.01..=0.9;
-        /// The share of the last step below which two v0 are as near as asked for.
+        /// Two v0 that differ by less than this share of the last step are near enough.
         near_enough: f64 = 0.75, in 0.5..=1.0;
-        /// Surviving so often where it had been lost, on a short way, stick-slip is thrown off by
+        /// Stick-slip that survives so often where it had been lost, on a short way, is lost by
         /// chance.
         most_passed: u32 = 6, in 1..=1_000;
-        /// That short way.
+        /// The length of that short way.
         short_way: f64 = 1e-3, in 1e-9..=0.1;
-        /// The last step from irregular stick-slip: one v0 after the other persists and is lost by
-        /// chance on the last bit of the way.
+        /// The last step from irregular stick-slip: near its end chance decides at each v0 whether
+        /// it persists.
         last_irregular: f64 = 2e-5, in 1e-12..=1e-2;
         /// Steps below this carry a motion along its attractor.
         careful: f64 = 0.02, in 1e-6..=1.0;
         /// How well cycles have to repeat after larger ones.
         roughly: f64 = 1e-4, in 1e-12..=1e-2;
-        /// Steps no larger than this look for an end: irregular stick-slip is held for long.
+        /// After a step no larger than this an end is near: irregular stick-slip is held for long.
         final_step: f64 = 2e-3, in 1e-9..=1.0;
-        /// The way within which sticks that become shorter vanish.
+        /// Sticks that shorten count as vanishing if they are predicted to vanish within this step.
         soon: f64 = 1e-2, in 1e-9..=1.0;
 
         /// How long a motion is followed: at least this time, this many delays, and this many of
@@ -77,10 +78,10 @@ options! {
         cycles_at_length: [f64; 2] = [24.0, 1.0], in 0.0..=1e4;
         /// The same near the end of stick-slip.
         cycles_near_end: [f64; 2] = [60.0, 4.0], in 0.0..=1e4;
-        /// A slip goes on for good if there was no stop in the last part of the time that was
-        /// waited; this share of it.
+        /// A slip goes on for good if there was no stop in the last part of the waiting time, this
+        /// share of it.
         recent: f64 = 0.25, in 0.01..=0.9;
-        /// A minimum of ẋ lower than those before by more than this share falls.
+        /// Minima of ẋ fall if one is lower than those before by more than this share.
         falls: f64 = 1e-3, in 1e-9..=0.5;
         /// A motion diverges once it is this many times as large as the forces of stick-slip and
         /// the speed of the pull.
@@ -103,11 +104,11 @@ options! {
         glide_step: f64 = 0.01, in 1e-6..=1.0;
         /// The most steps of the integrator of such a search: it stops at many more v0.
         glide_steps: u64 = 30_000_000, in 100..=1_000_000_000_000;
-        /// How far below the end v0 glides no longer.
+        /// How far below the end v0 stops gliding.
         glide_end: f64 = 0.02, in 1e-6..=0.9;
-        /// The most v0 on the way: more than lead from the lowest to the largest.
+        /// The most v0 of such a search: more than it takes from the lowest to the largest.
         glide_trials: u32 = 3_000, in 10..=10_000_000;
-        /// Sticks shorter than this are lost to rounding as v0 grows: what they end in is not told.
+        /// Sticks shorter than this are lost to rounding as v0 grows: how they end is not decided.
         vanishing_stick: f64 = 1e-6, in 1e-15..=1e-2;
         /// Depth of a stop, over v0, below which the last stop is a graze.
         grazing: f64 = 1e-3, in 1e-9..=0.1;

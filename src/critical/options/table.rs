@@ -1,16 +1,16 @@
-//! How a table of options is written: a row for each, with its reason, default and range.
+//! The macro that makes options from a table: a row for each, with its reason, default and range.
 
 use std::ops::RangeInclusive;
 
 /// The value of an option: a number, some numbers or a switch.
 pub(in crate::critical) trait Value: Copy {
-    /// What its range is made of.
+    /// The type of the bounds of its range.
     type Bound: PartialOrd;
 
-    /// It, or each of its numbers, times `factor`, within `range`; a switch stays what it is.
+    /// The value, or each of its numbers, times `factor`, within `range`; a switch does not change.
     fn scaled(self, factor: f64, range: &RangeInclusive<Self::Bound>) -> Self;
 
-    /// Whether it, or each of its numbers, lies in `range`.
+    /// Whether the value, or each of its numbers, lies in `range`.
     fn within(self, range: &RangeInclusive<Self::Bound>) -> bool;
 }
 
@@ -93,7 +93,7 @@ macro_rules! options {
             )+
         }
 
-        /// Those that are not what they are by default.
+        /// Shows the options that differ from their defaults.
         impl std::fmt::Debug for $name {
             fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
                 let usual = Self::default();

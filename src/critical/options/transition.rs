@@ -1,8 +1,8 @@
 //! Options of what follows an event.
 
 options! {
-    /// How the end of a branch of orbits is checked, and how it is found what follows. Distances in
-    /// v0 are relative, times in units of √(M/κ).
+    /// How the end of a branch of orbits is checked, and how its sequel is found. Distances in v0
+    /// are relative, times in units of √(M/κ).
     TransitionOptions {
         /// The last orbits are this far below and above an event.
         precision: f64 = 1e-5, in 1e-9..=1e-3;
@@ -11,34 +11,35 @@ options! {
         /// By how much the slip may lengthen on the last bit of the way to a graze, where it grows
         /// as a square root.
         same_slip: f64 = 0.1, in 1e-3..=0.5;
-        /// A stick that vanishes leaves less than this of it just below the event.
+        /// A stick vanishes if it is shorter than this just below the event.
         vanishing_stick: f64 = 1e-3, in 1e-9..=0.1;
         /// How well periods repeat where lift-off and vanishing sticks are checked.
         checked: f64 = 1e-3, in 1e-9..=0.1;
         /// Lift-off is checked this far below and above its velocity.
         lift_off: f64 = 1e-4, in 1e-9..=1e-2;
 
-        /// A graze ends stick-slip if its orbit attracts this far below it. Nearer none need: what
-        /// the delayed slip does to the next one grows without bounds at a graze.
+        /// A graze ends stick-slip if its orbit attracts this far below it. Nearer to it even that
+        /// orbit need not attract: the effect of a delayed slip on the next one grows without
+        /// bounds at a graze.
         below_graze: f64 = 1e-4, in 1e-9..=1e-2;
         /// By how much v0 is lowered there in one period. Disturbed by more the block would be
         /// thrown over the graze.
         disturbed_below_graze: f64 = 2e-5, in 1e-9..=1e-2;
-        /// Periods that repeat as well as this are as good as at rest there.
+        /// Periods that repeat to this count as at rest there.
         at_rest: f64 = 0.06, in 1e-9..=0.5;
         /// By how much v0 is lowered in one period where the stick vanishes.
         disturbed: f64 = 2e-4, in 1e-9..=1e-2;
-        /// So many periods an orbit has to come back.
+        /// The number of periods within which an orbit has to come back.
         periods_back: usize = 30, in 4..=10_000;
-        /// It has come back where so many in a row are near.
+        /// It has come back after so many near periods in a row.
         near_in_a_row: u32 = 4, in 1..=100;
-        /// Near is this share of the first distance.
+        /// A period is near within this share of the first distance.
         back: f64 = 0.05, in 1e-6..=0.9;
-        /// The share of the first distance that is near enough after the last period.
+        /// The share of the first distance that suffices after the last period.
         back_at_last: f64 = 0.5, in 1e-6..=0.99;
-        /// Sticks do not come nearer to one another than this: rounding.
+        /// Distances of sticks below this are rounding.
         stick_noise: f64 = 1e-7, in 1e-15..=1e-2;
-        /// Nor than this share of the last stick, which is there still.
+        /// The same as a share of the last stick, if that is smaller.
         stick_left: f64 = 0.3, in 1e-3..=0.9;
 
         /// The block is released this far past a graze if it still stops at [`Self::precision`].
@@ -48,8 +49,8 @@ options! {
         past_again: [f64; 2] = [1e-4, 2e-6], in 1e-9..=1e-2;
         /// It comes near another stop where a minimum of ẋ, over v0, is below this.
         clear: f64 = 0.05, in 1e-6..=0.9;
-        /// For so long after its lowest minimum the block is followed that was released otherwise:
-        /// a period of free oscillation.
+        /// How long after the time of the lowest minimum a block that was released again is
+        /// followed: a period of free oscillation.
         after_minimum: f64 = std::f64::consts::TAU, in 0.0..=1e3;
         /// The minimum beyond the graze comes after this share of the slip at the earliest.
         earliest_minimum: f64 = 0.75, in 0.1..=0.99;
@@ -58,25 +59,25 @@ options! {
         /// Where sliding is stable and minima of ẋ rise to this share of v0 the block slides. Those
         /// that rise to half of v0 may fall again: an unstable oscillation can surround sliding.
         sliding: f64 = 0.8, in 0.1..=0.999;
-        /// So many minima in a row have to rise.
+        /// The number of minima in a row that have to rise.
         rises: u32 = 2, in 1..=100;
-        /// The longest time that is waited for.
+        /// The longest time to wait.
         longest_wait: f64 = 5_000.0, in 10.0..=1e7;
-        /// How far beyond a stick that vanished is looked.
+        /// The block is released this far beyond a stick that vanished.
         past_vanished_stick: f64 = 1e-4, in 1e-9..=1e-2;
-        /// For so many times a delay and two periods of free oscillation no stick has to come back.
+        /// No stick may come back for so many times a delay and two periods of free oscillation.
         windows_without_stick: u32 = 10, in 1..=1_000;
 
         /// How far beyond a change of kind the next kind is looked for: forces have to differ by
         /// more than their noise.
         past_change: f64 = 1e-4, in 1e-9..=1e-2;
-        /// How far beyond its last orbit a branch that was lost from sight is looked for: as far as
-        /// its kind is still the same.
+        /// How far beyond its last orbit stick-slip of a lost branch is followed, one distance
+        /// after the other until its kind changes.
         past_lost: [f64; 4] = [1e-4, 1e-3, 5e-3, 2e-2], in 1e-9..=0.5;
         /// Steps of v0 through irregular stick-slip, the first time and the second: where it leads
         /// should not depend on them.
         crossing_steps: [f64; 2] = [0.1, 0.03], in 1e-4..=1.0;
-        /// The last ones: an end by chance is known to this.
+        /// The last such step: an end by chance is known to this.
         last_crossing_step: f64 = 2e-5, in 1e-9..=1e-2;
     }
 }

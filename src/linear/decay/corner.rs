@@ -6,17 +6,16 @@ use crate::linear::plane::Plane;
 use crate::model::elementary::hypot;
 
 const MOST_ITERATIONS: u32 = 40;
-/// Frequency, over that of the oscillator, at which the curve of a pair starts that leaves a double
-/// real root.
+/// Frequency, in units of √(κ/M), at which the curve of a pair starts next to a double real root.
 const FIRST_FREQUENCY: f64 = 1e-3;
 
 /// A corner of the decaying region: the point, and the curve on which its boundary goes on.
 pub(super) struct Turn {
     pub p: f64,
     pub q: f64,
-    /// Frequency of the root that lies on the line before it.
+    /// Frequency of the root that lies on the line before the corner.
     pub before: f64,
-    /// Frequency of the one that lies on it from there on.
+    /// Frequency of the root that lies on the line after the corner.
     pub after: f64,
     /// Where to go on.
     pub next: Vertex,
@@ -24,8 +23,8 @@ pub(super) struct Turn {
 }
 
 impl<P: Plane> DecayPlane<'_, P> {
-    /// The corner near `v`, a point of a curve of `family` where another root than its own has come
-    /// to the line.
+    /// The corner near `v`, a point of a curve of `family` at which a second root has come to the
+    /// line.
     pub(super) fn corner(&self, v: Vertex, family: Family) -> Option<Turn> {
         let own = |omega: &f64| (omega - v.omega).abs();
         let mut others = self.candidates(v.p, v.q);

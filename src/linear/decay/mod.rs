@@ -7,11 +7,11 @@
 //!
 //! **Finding.** The number of roots right of the line is known at every point
 //! ([`certificate`](super::certificate)). Along 257 columns of constant p, and along the window's
-//! edges of shortest and longest delay, every change of "none is" is enclosed. A column is looked
-//! at in steps of at most 1/16 of the period 2π/ω₊ of the fastest root that can lie on the line,
-//! and of 1/256 of the window (but at most 16384 steps). It ends where (ω₊ − ω₋)τ > 6π: by Eqs. (2)
-//! and (3) of the certificate, in which arg P and arg Q vary by at most π each, n ≥ 2(ω₊ − ω₋)τ/2π
-//! − 5 there, and ω₊ − ω₋ grows with τ.
+//! edges of shortest and longest delay, every change between no root and some is enclosed. A column
+//! is sampled in steps of at most 1/16 of the period 2π/ω₊ of the fastest root that can lie on the
+//! line, and of 1/256 of the window (but at most 16384 steps). It ends where (ω₊ − ω₋)τ > 6π: by
+//! Eqs. (2) and (3) of the certificate, in which arg P and arg Q vary by at most π each,
+//! n ≥ 2(ω₊ − ω₋)τ/2π − 5 there, and ω₊ − ω₋ grows with τ.
 //!
 //! **Following.** From each change the boundary is followed by predictor and corrector in (p, τ,
 //! ω), where curves are smooth at folds ω₋ = ω₊ as well. It goes over to another curve where a
@@ -20,10 +20,10 @@
 //!
 //! **Limits.** A part of the region, or a hole in it, is missed if it lies between two neighbouring
 //! columns (1/256 of the window in p), or if every column passes it in one step of its delays.
-//! Smaller windows show smaller parts. A boundary that leaves the delay free (no control at all) is
-//! no curve over p and left out.
+//! Smaller windows show smaller parts. A boundary that does not depend on the delay (no control at
+//! all) is not a curve over p, and is left out.
 //!
-//! - `corner`: where two of its curves meet, double real roots among them
+//! - `corner`: where two curves of the boundary meet, double real roots among them
 //! - `letter`: the letter's characteristic function over such a plane
 //! - `plane`: D on the line Re λ = −σ over the plane, Newton's method, tangents
 //! - `seeds`: changes of "all roots decay" along columns and edges of the window
@@ -80,7 +80,7 @@ pub fn trace(
     trace_in(&plane, sigma)
 }
 
-/// As [`trace`], of any characteristic function over a plane.
+/// As [`trace`], for any characteristic function over a plane.
 ///
 /// # Errors
 /// When there are more curves in the window than can be traced.
@@ -231,7 +231,7 @@ impl<P: Plane> Tracer<'_, P> {
         solved.filter(|v| near(v.q)).unwrap_or(between)
     }
 
-    /// The piece of an arc; none where the delay is left free: p does not vary along it.
+    /// The piece of an arc. None where p does not vary along it, because the delay has no effect.
     fn piece(&self, arc: &Arc) -> Option<CurvePiece> {
         let (first, last) = (arc.vertices.first()?, arc.vertices.last()?);
         let middle = arc.vertices[arc.vertices.len() / 2];

@@ -10,8 +10,7 @@ use crate::model::elementary;
 
 /// Iterations after which Newton's method is given up.
 const MOST_ITERATIONS: u32 = 24;
-/// Distance right of the line, in 1/√(M/κ), from which a root counts as another one than those on
-/// the line.
+/// Roots farther right of the line than this, in 1/√(M/κ), are others than those on the line.
 const BESIDE: f64 = 1e-9;
 
 /// Which root lies on the line along a curve.
@@ -33,7 +32,7 @@ pub(super) struct DecayPlane<'a, P> {
     pub plane: &'a P,
     /// The line is Re λ = −σ; 1/time.
     pub sigma: f64,
-    /// Whole curves are followed, not only what bounds the region.
+    /// Whole curves are followed, not only the boundary of the region.
     pub whole: bool,
 }
 
@@ -46,8 +45,8 @@ impl<P: Plane> DecayPlane<'_, P> {
         self.plane.local(v, self.sigma)
     }
 
-    /// The point of the curve that Newton's method reaches from `start` with `row` · (p, q, ω) kept
-    /// as it is.
+    /// The point of the curve that Newton's method reaches from `start` with `row` · (p, q, ω) held
+    /// constant.
     pub(super) fn correct(&self, start: Vertex, family: Family, row: [f64; 3]) -> Option<Vertex> {
         let mut v = start;
         let mut last = f64::INFINITY;
@@ -77,8 +76,8 @@ impl<P: Plane> DecayPlane<'_, P> {
         self.local(v).vanishes().then_some(v)
     }
 
-    /// Lengths along (p, q, ω) over which a curve may bend: widths of the window, and what makes a
-    /// turn of ωτ.
+    /// Lengths along (p, q, ω) over which a curve may bend: widths of the window, and changes by
+    /// which ωτ makes a turn.
     pub(super) fn scales(&self, v: Vertex) -> [f64; 3] {
         let frequency = v.omega.abs() + 1.0 / self.plane.unit(v.p, v.q);
         let window = self.window();
@@ -122,12 +121,12 @@ impl<P: Plane> DecayPlane<'_, P> {
         self.plane.right_of(v.p, v.q, self.sigma, BESIDE)
     }
 
-    /// All roots lie left of the line; false where that is undecided.
+    /// Whether all roots lie left of the line; false where that is undecided.
     pub(super) fn decays(&self, p: f64, q: f64) -> bool {
         self.plane.right_of(p, q, self.sigma, 0.0) == Some(0)
     }
 
-    /// Inside the window, to rounding.
+    /// Whether `v` is inside the window, to rounding.
     pub(super) fn inside(&self, v: Vertex) -> bool {
         let within = |x: f64, (from, to): (f64, f64)| {
             let slack = 1e-13 * (to - from);

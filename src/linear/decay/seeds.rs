@@ -9,11 +9,11 @@ use crate::linear::roots::narrowed;
 
 /// Stretches of equal width into which columns divide the window.
 pub const COLUMNS: usize = 256;
-/// Steps over the window's delays at least.
+/// The least number of steps over the window's delays.
 const ROWS: f64 = 256.0;
 /// Steps for each period of the fastest root that can lie on the line.
 const STEPS_PER_PERIOD: f64 = 16.0;
-/// Steps along one column at most.
+/// The most steps along one column.
 const MOST_STEPS: f64 = 16384.0;
 /// Relative width to which a change is enclosed before Newton's method takes over.
 const ENCLOSED: f64 = 1e-9;

@@ -223,8 +223,7 @@ fn corners_have_both_roots_on_the_line() {
     }
 }
 
-/// The boundary ends nowhere inside the window: every end of a piece is the end of another one.
-/// Those that are not.
+/// The ends of pieces inside the window that are not ends of another piece. There should be none.
 fn loose_ends(curves: &PlaneCurves, window: &Window) -> Vec<Vertex> {
     let ends: Vec<Vertex> = curves
         .pieces
@@ -253,7 +252,7 @@ fn boundaries_end_only_at_the_window() {
     }
 }
 
-/// Boundaries end only at the window in planes across the groups in any direction, too.
+/// Also in planes across the groups in any direction, boundaries end only at the window.
 #[test]
 fn boundaries_end_only_at_the_window_of_random_planes() {
     let mut random = 0.5_f64;

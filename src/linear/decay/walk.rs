@@ -12,9 +12,9 @@ const LONGEST: f64 = 1.0 / 64.0;
 const SHORTEST: f64 = 1e-9;
 /// Largest angle between the tangents at both ends of a step.
 const MOST_BEND: f64 = 0.25;
-/// A corrected point is at most this part of the step away from where it was looked for.
+/// A corrected point is at most this part of the step away from its prediction.
 const MOST_CORRECTION: f64 = 0.25;
-/// A whole curve ends at this part of the scale of frequencies: at 0 it is its own mirror image.
+/// A whole curve ends below this part of the scale of frequencies: at 0 it is its own mirror image.
 const SLOWEST: f64 = 1e-6;
 /// A whole curve that comes no further in so many steps ends: its frequency grows without bound.
 const STAGNANT: usize = 512;
@@ -103,7 +103,7 @@ impl<P: Plane> DecayPlane<'_, P> {
         way
     }
 
-    /// Nothing to be seen lies between both.
+    /// Whether two points are too near to one another for a picture to show it.
     fn near_by(&self, v: Vertex, w: Vertex) -> bool {
         let window = self.window();
         let [p, q] = [
@@ -121,7 +121,7 @@ impl<P: Plane> DecayPlane<'_, P> {
         }
     }
 
-    /// The point of the curve a step of length `h` on, and where it leads.
+    /// The place on the curve a step of length `h` beyond `from`.
     fn ahead(&self, from: Place, h: f64, sense: f64) -> Option<Place> {
         let scales = self.scales(from.v);
         let t = from.tangent;
@@ -154,7 +154,7 @@ impl<P: Plane> DecayPlane<'_, P> {
         None
     }
 
-    /// The step from `from` to `to` leads past `origin`, in its direction.
+    /// Whether the step from `from` to `to` leads past `origin`, in its direction.
     fn passes(&self, from: Place, to: Place, origin: Place) -> bool {
         let scales = self.scales(from.v);
         let step = apart(from.v, to.v, scales);
@@ -169,8 +169,8 @@ impl<P: Plane> DecayPlane<'_, P> {
             && dot(from.tangent, origin.tangent) > 0.5
     }
 
-    /// The boundary of the decaying region, or the curve as a whole, runs through `place`, a step
-    /// on from a place where it does.
+    /// Whether the boundary of the decaying region, or the curve as a whole, runs through `place`,
+    /// one step beyond a place where it does.
     fn bounds(&self, place: &Place) -> bool {
         let of_family = match place.family {
             Family::Pair if self.whole => place.v.omega > SLOWEST * self.scales(place.v)[2],
@@ -181,7 +181,7 @@ impl<P: Plane> DecayPlane<'_, P> {
         of_family && self.inside(place.v) && alone()
     }
 
-    /// No other real root has joined the one on the line.
+    /// Whether no other real root has joined the one on the line.
     fn on_own_side(&self, place: &Place) -> bool {
         match place.family {
             Family::Pair => true,

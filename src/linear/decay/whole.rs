@@ -1,5 +1,5 @@
-//! Whole curves along which a pair lies on the line, cut where another root comes to it: what
-//! bounds the decaying region and what does not.
+//! Whole curves along which a pair lies on the line, cut where another root comes to it: pieces
+//! that bound the decaying region, and others.
 
 use super::plane::{DecayPlane, Family};
 use super::seeds::Across;
@@ -12,10 +12,10 @@ use crate::linear::plane::Plane;
 const MOST_STEPS: usize = 1 << 18;
 /// Halvings that enclose a change.
 const HALVINGS: u32 = 40;
-/// How far aside counts are taken, in widths of the window.
+/// How far to either side of a curve roots are counted, in widths of the window.
 const ASIDE: [f64; 2] = [1e-6, 1e-5];
-/// Two points of a line across the window are one where they differ by less than this part of the
-/// window, and of the frequency.
+/// Two points of a line across the window are the same where they differ by less than this part of
+/// the window, and of the frequency.
 const SAME: f64 = 1e-6;
 
 /// A point of a curve on a line across the window.
@@ -55,7 +55,7 @@ pub fn trace_whole(
 }
 
 /// The point with a pair on the line Re λ = −`sigma` that Newton's method reaches from `start`,
-/// with p kept as it is on a `column`, else q.
+/// with p held constant on a `column`, else q.
 pub fn on_line(plane: &impl Plane, sigma: f64, start: Vertex, column: bool) -> Option<Vertex> {
     let row = if column {
         [1.0, 0.0, 0.0]
@@ -72,7 +72,7 @@ pub fn on_line(plane: &impl Plane, sigma: f64, start: Vertex, column: bool) -> O
 }
 
 impl<P: Plane> Tracer<'_, P> {
-    /// A curve traced so far runs through `start`.
+    /// Whether a curve traced so far runs through `start`.
     fn knows(&mut self, start: &Start) -> bool {
         let v = start.vertex;
         let window = self.plane.window();
@@ -111,7 +111,7 @@ impl<P: Plane> Tracer<'_, P> {
     fn cut(&mut self, arc: &Arc) {
         let vertices = &arc.vertices;
         let mut others: Vec<Option<u64>> = vertices.iter().map(|&v| self.others(v)).collect();
-        // Within rounding of a corner it is that of the vertex before.
+        // Within rounding of a corner the count is undecided: that of the vertex before holds.
         for i in 1..others.len() {
             others[i] = others[i].or(others[i - 1]);
         }
@@ -128,8 +128,8 @@ impl<P: Plane> Tracer<'_, P> {
         self.add(part, last);
     }
 
-    /// The number of roots right of the line besides those on it. Where that is open, it is the
-    /// smaller one of what is counted a little to both sides.
+    /// The number of roots right of the line besides those on it. Where that is undecided, it is
+    /// the smaller of the counts a little to both sides.
     fn others(&self, v: Vertex) -> Option<u64> {
         let window = self.plane.window();
         let count = |dp: f64, dq: f64| {
@@ -152,7 +152,7 @@ impl<P: Plane> Tracer<'_, P> {
         let corners = self.corners_between(v, w);
         for (k, &(at, omega)) in corners.iter().enumerate() {
             let before = self.end_part(part, at, others);
-            // What follows up to a next corner has no vertex of its own.
+            // The part up to the next corner has no vertex of its own.
             others = match corners.get(k + 1) {
                 Some(&(next, _)) => self.on_curve(middle(at, next)).and_then(|v| self.others(v)),
                 None => after,
@@ -169,8 +169,8 @@ impl<P: Plane> Tracer<'_, P> {
         self.plane.correct(v, Family::Pair, [1.0, 0.0, 0.0])
     }
 
-    /// Where along the curve from `v` to `w` the number of other roots right of the line stops to
-    /// be `others`.
+    /// Where along the curve from `v` to `w` the number of other roots right of the line is no
+    /// longer `others`.
     fn change_between(&self, mut v: Vertex, mut w: Vertex, others: Option<u64>) -> Vertex {
         for _ in 0..HALVINGS {
             let Some(at) = self.on_curve(middle(v, w)) else {
@@ -184,15 +184,16 @@ impl<P: Plane> Tracer<'_, P> {
         v
     }
 
-    /// Ends the piece `part` at `v`, where the next one begins; whether it bounds the region.
+    /// Ends the piece `part` at `v`, where the next one begins. Returns whether it bounds the
+    /// region.
     fn end_part(&mut self, part: &mut Vec<Vertex>, v: Vertex, others: Option<u64>) -> bool {
         let mut done = std::mem::replace(part, vec![v]);
         done.push(v);
         self.add(done, others)
     }
 
-    /// Adds a piece, with so many roots right of the line besides those on it; whether it bounds
-    /// the region.
+    /// Adds a piece with `others` roots right of the line besides those on it. Returns whether it
+    /// bounds the region.
     fn add(&mut self, vertices: Vec<Vertex>, others: Option<u64>) -> bool {
         let family = Family::Pair;
         let Some(mut piece) = self.piece(&Arc { vertices, family }) else {
@@ -208,8 +209,8 @@ impl<P: Plane> Tracer<'_, P> {
         bounds
     }
 
-    /// The points between two neighbouring vertices where another pair lies on the line as well,
-    /// each with the frequency of that, in order.
+    /// The points between two neighbouring vertices where another pair lies on the line as well, in
+    /// order, each with the frequency of that pair.
     fn corners_between(&self, v: Vertex, w: Vertex) -> Vec<(Vertex, f64)> {
         let scales = self.plane.scales(v);
         let step = [w.p - v.p, w.q - v.q];

@@ -1,26 +1,26 @@
-//! A past told from two others, by which it is expected to go on.
+//! A past extrapolated from two others.
 
 use super::{History, Piece, SMOOTH, Stretch};
 use crate::slip::series::{MOST_ORDER, shifted};
 
-/// Pasts correspond to one another to this, compared with all of their span.
+/// How well two pasts are aligned, relative to their whole span.
 const SLIVER: f64 = 1e-7;
 
-/// Two pasts, the last one first, and how one beyond them follows.
+/// Two pasts, the last one first, and how the next one is extrapolated.
 struct Pasts<'a> {
     of: [&'a mut History; 2],
-    /// How far beyond the last one, in units of the way to it from the one before.
+    /// How far beyond the last one, in units of the difference between the two.
     share: f64,
     /// The highest order of their polynomials.
     order: usize,
-    /// Shorter pieces than this mean nothing.
+    /// Pieces shorter than this are rounding.
     shortest: f64,
 }
 
-/// Where in a stretch of time a past is told.
+/// A stretch of time in the extrapolated past, and the same stretch in the two others.
 #[derive(Clone, Copy)]
 struct Within {
-    /// The end of the stretch: in the past that is told, and in the two others.
+    /// The end of the stretch: in the extrapolated past, and in the two others.
     end: [f64; 3],
     /// How fast time passes in the two others.
     rates: [f64; 2],
@@ -30,7 +30,7 @@ impl Pasts<'_> {
     /// The piece from `from` on, with a kink of the order `kink` there; and the kink at its end.
     fn piece(&mut self, from: f64, kink: u32, within: Within) -> (Piece, u32) {
         let Within { end, rates } = within;
-        // A little later: where a stretch begins, what is alike does so to rounding only.
+        // A little later: the starts of corresponding stretches agree only to rounding.
         let ahead = (from + self.shortest).min(end[0]);
         let mut c = [[0.0; MOST_ORDER + 1]; 2];
         let mut until = [0.0; 2];
@@ -67,11 +67,11 @@ impl Pasts<'_> {
 }
 
 impl History {
-    /// Becomes, over `span` until time 0, `last` and `share` of the way from `before` to it beyond
-    /// it, both as of their ends; false where that has no room.
+    /// Becomes last + share · (last − before) over `span` until time 0, with all pasts counted back
+    /// from their ends. False where there is no room for it.
     ///
-    /// What is alike in the two pasts stands at the same place of stretches of time that follow one
-    /// another, back and back again through `stretches`, the last one first.
+    /// The pasts are aligned by stretches of time that correspond to one another. `stretches`, the
+    /// last one first, are repeated backwards over the whole span.
     pub(in crate::slip) fn extrapolate(
         &mut self,
         (last, before): (&mut Self, &mut Self),
@@ -103,7 +103,7 @@ impl History {
         loop {
             let lengths = stretch(back);
             let rates = [1, 2].map(|i| lengths[i] / lengths[0]);
-            // A stretch begins where something happened.
+            // A stretch begins with an event.
             let mut kink = 2;
             while from < end[0] {
                 let (piece, next) = pasts.piece(from, kink, Within { end, rates });

@@ -5,12 +5,12 @@ use super::{Event, Integrator, LEAST_ORDER, Mode, Motion};
 use crate::slip::history::{History, SMOOTH};
 use crate::slip::series::value;
 
-/// The part of what a polynomial looks ahead that steps take where they outlast the delay: they
-/// need the one before beyond its end.
+/// Steps longer than the delay take this part of the range of a polynomial, since the next step
+/// needs the polynomial beyond its end.
 const BALANCED: f64 = 0.53;
 
-/// How well what was foreseen has to be what comes, in units of the tolerance; a step that goes on
-/// for too long becomes shorter by this, so often at most.
+/// How well a polynomial used beyond its end has to agree with the motion, in units of the
+/// tolerance. A step for which it does not is shortened by this factor, at most so many times.
 const FORESEEN: f64 = 2.0;
 const SHORTER: f64 = 0.7;
 const MOST_SHORTER: u32 = 12;
@@ -21,13 +21,13 @@ struct Now {
     controlled: bool,
     /// The feedback has memory or latency.
     beyond_letter: bool,
-    /// It is stuck, and its elongation has grown evenly for a delay.
+    /// The block is stuck, and its elongation has grown evenly for a delay.
     evenly: bool,
 }
 
 impl Motion {
     /// One step, not beyond `horizon`, and the event that ends it, if one does. A motion that is
-    /// told to stop takes none: its velocity is NaN from then on.
+    /// told to stop takes no step: its velocity is NaN from then on.
     pub fn advance(&mut self, horizon: f64) -> Option<Event> {
         if self.is_stopped() {
             self.end_here();
@@ -81,7 +81,7 @@ impl Motion {
         event.map(|event| self.change_mode(event))
     }
 
-    /// A step that leads nowhere, to no number.
+    /// Ends the motion: a step of no length, after which ẋ is NaN.
     #[cold]
     fn end_here(&mut self) {
         self.u = f64::NAN;
@@ -99,15 +99,14 @@ impl Motion {
         if !now.controlled {
             limit.min(p.switch_on - self.t)
         } else if self.mode == Mode::Stick && p.alpha_v != 0.0 && !now.evenly {
-            // What the last polynomial foresees is not held by anything while the block does not
-            // move.
+            // While the block sticks nothing corrects errors of the last polynomial beyond its end.
             limit.min(p.tau)
         } else {
             limit
         }
     }
 
-    /// Works out the polynomials of a step; how long they hold.
+    /// Computes the polynomials of a step. Returns how long they hold.
     fn expand_within(&mut self, now: Now, limit: f64) -> f64 {
         let Now {
             controlled, evenly, ..
@@ -149,7 +148,7 @@ impl Motion {
         }
     }
 
-    /// Fills the delayed polynomial. Tells how long a step may be for it, and the kink there.
+    /// Fills the delayed polynomial. Returns how long a step may use it, and the kink at its end.
     fn read_delayed(&mut self, now: Now) -> PastLimits {
         // Also before control acts, so that memory does not grow with time.
         self.history
@@ -180,15 +179,15 @@ impl Motion {
         })
     }
 
-    /// `length`, or less of it where it outlasts the delay: the polynomial of the last step stood
-    /// in for what was yet to come, and the step may go on for as long as that is what has come.
+    /// `length`, or less where it outlasts the delay. Such a step has used the last polynomial
+    /// beyond its end, and holds as long as that polynomial agrees with the step's own.
     ///
-    /// The last terms of a series do not tell this. Errors of the terms in its middle grow from
-    /// step to step where a polynomial is used far beyond its end, as those of a stick do, which
-    /// has no terms of its own to hold against them.
+    /// The last terms of a series do not show this. Where polynomials are used far beyond their
+    /// end, errors of their middle terms grow from step to step. In stick they do above all: it has
+    /// no terms of its own that outweigh them.
     fn as_foreseen(&self, length: f64) -> f64 {
         let p = &self.parameters;
-        // With memory no step outlasts the delay, so that what is kept is a.
+        // With memory no step outlasts the delay, so here `history` holds a, not W.
         let a = &self.step.a[..=self.step.order];
         let length = self.as_told(a, &self.history, p.tau, length);
         if !(self.step.is_late && length > p.latency) {
@@ -198,8 +197,8 @@ impl Motion {
         self.as_told(&v[..=order], &self.signal, p.latency, length)
     }
 
-    /// `length`, or less of it where it outlasts this `delay` and what the last polynomial of the
-    /// `history` told is not what comes, the polynomial `c`.
+    /// `length`, or less where it outlasts this `delay` and the last polynomial of `history`,
+    /// beyond its end, differs from the motion itself, the polynomial `c`.
     fn as_told(&self, c: &[f64], history: &History, delay: f64, length: f64) -> f64 {
         let mut beyond = length - delay;
         if beyond <= 0.0 {
@@ -208,7 +207,7 @@ impl Motion {
         let stretch = self.step.a[0].abs().max(self.parameters.law.mu_s());
         let holds = |s: f64| {
             let off = value(c, s) - history.foreseen(self.t + s);
-            // What is not a number ends the motion elsewhere, not here.
+            // NaN ends the motion elsewhere.
             off.is_nan() || off.abs() <= FORESEEN * self.tolerance * stretch
         };
         if holds(beyond) {
@@ -223,7 +222,7 @@ impl Motion {
         delay
     }
 
-    /// The order of a kink of the delayed elongation after it has passed into the motion.
+    /// The order of the kink of the motion that a kink of the delayed elongation causes.
     pub(super) fn passed_on(&self, kink: u32) -> u32 {
         let smoother = match (self.mode, self.parameters.alpha_v != 0.0) {
             (_, true) => 1,
@@ -245,7 +244,7 @@ impl Motion {
         self.step.radius = radius;
         let around = match self.integrator {
             Integrator::Taylor => radius.max(length),
-            // Nothing holds a polynomial by its values outside of its step.
+            // A polynomial through values does not hold outside its step.
             Integrator::Collocation => 0.0,
         };
         let has_room = match self.parameters.beyond_letter() {

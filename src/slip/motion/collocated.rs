@@ -5,20 +5,20 @@ use crate::model::friction::Kind;
 use crate::slip::collocation::solve;
 use crate::slip::friction_series::FrictionSeries;
 
-/// The longest step, over √(M/κ), and over the time in which rates change by a factor of e.
+/// The longest step, in units of √(M/κ) and of the time in which rates change by a factor of e.
 const LONGEST: f64 = 0.5;
-/// The change of speed in a step, over the law's own scale of it.
+/// The change of speed in a step, in units of the law's own scale of speed.
 const SHARE: f64 = 0.25;
-/// Beyond a stop within a step velocity weakening goes on to negative speeds, down to this share of
-/// v_s.
+/// Beyond a stop within a step velocity weakening is continued to negative speeds, down to this
+/// share of v_s.
 const BEYOND: f64 = 0.5;
-/// Steps that are not solved to the tolerance become shorter by this, so often at most.
+/// Steps that are not solved to the tolerance are shortened by this factor, at most so many times.
 const SHORTER: f64 = 0.5;
 const MOST_TIMES: u32 = 40;
 
 impl Motion {
-    /// Solves a step of `limit` at most from here on, its polynomials with it; its length. The
-    /// delayed polynomial is there.
+    /// Solves the next step, no longer than `limit`, and fills its polynomials. Returns its length.
+    /// The delayed polynomial has to be filled before.
     pub(super) fn collocate(&mut self, controlled: bool, limit: f64) -> f64 {
         let control = self.control(controlled);
         let load = 1.0 + control.alpha_n * self.step.fed_back_at_start(self.a);
@@ -34,7 +34,7 @@ impl Motion {
         length
     }
 
-    /// A step within which the law, the spring and the control change little.
+    /// The length of a step in which the law, the spring and the control change little.
     fn step_of_scale(&self, control: Control, load: f64) -> f64 {
         let p = &self.parameters;
         let speed = self.u.abs() * p.velocity_unit;

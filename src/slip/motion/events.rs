@@ -5,9 +5,9 @@ use crate::slip::friction_series::FrictionSeries;
 use crate::slip::series::{Coefficients, MOST_ORDER, first_zero};
 use crate::slip::table_series::Crossing;
 
-/// A block that was just released does not accelerate backwards. Under a law with μ_K(0⁺) = μ_S it
-/// does not accelerate at all at first, and the polynomials of its past before and after the
-/// release differ by more than one step's error: so many times the noise of forces.
+/// A block that was just released does not accelerate backwards. Under a law with μ_K(0⁺) = μ_S its
+/// acceleration begins at zero. The polynomials of its past before and after the release can then
+/// differ by more than the error of one step: by up to this many times the noise of forces.
 const RELEASED: f64 = 1e4;
 
 impl Motion {
@@ -39,8 +39,8 @@ impl Motion {
         first
     }
 
-    /// The first point of a table of friction that the speed crosses before `length`; the series
-    /// goes on behind it.
+    /// The first point of a friction table that the speed crosses before `length`; the series goes
+    /// on with the cubic beyond it.
     pub(super) fn friction_crossing(&mut self, length: f64) -> Option<Crossing> {
         if self.mode == Mode::Stick || !matches!(self.friction, FrictionSeries::Table(_)) {
             return None;
@@ -54,7 +54,8 @@ impl Motion {
         Some(crossing)
     }
 
-    /// What holds the block against a pull in `direction`: μ_S n − a in stick.
+    /// The force that holds a stuck block against a pull in `direction` = ±1:
+    /// μ_S n − direction · a.
     pub(super) fn hold(&self, direction: f64) -> Coefficients {
         let mu_s = self.parameters.law.mu_s();
         let mut hold = [0.0; MOST_ORDER + 1];
@@ -84,8 +85,8 @@ impl Motion {
         speed
     }
 
-    /// `force` at the start of a mode, which cannot be negative there: zero where it is so by no
-    /// more than noise.
+    /// `force` at the start of a mode, where it cannot be negative: zero if it is negative by noise
+    /// or positive by rounding.
     pub(super) fn without_noise(&self, force: f64) -> f64 {
         let noise = self.force_noise();
         let rounding = noise * ROUNDING / (ROUNDING + self.tolerance);
@@ -96,8 +97,8 @@ impl Motion {
         }
     }
 
-    /// Noise of forces: rounding, and two polynomials of the past, which agree to the tolerance,
-    /// taking turns. Without it a block with μ_K(0⁺) = μ_S would stick and slip again and again at
+    /// Noise of forces: rounding, and the difference of two polynomials of the past, which agree to
+    /// the tolerance. Without it a block with μ_K(0⁺) = μ_S would stick and slip again and again at
     /// the moment of its release.
     pub(super) fn force_noise(&self) -> f64 {
         let (a, delayed) = (self.step.a[0].abs(), self.step.delayed[0].abs());

@@ -1,17 +1,17 @@
 //! Feedback with memory and latency, Eq. (3) of [`super`].
 //!
-//! Of what came before only two functions of time matter, whatever the memory,
+//! Whatever the memory, the past enters through two functions of time alone,
 //!
 //! ```text
 //! V(t) = a(t) − W(t−τ),   W(t) = a(t) − R V(t),   S(t) = V(t−δ)
 //! ```
 //!
-//! W over the last delay and, where there is a latency, V over the last δ. So the infinite sum that
-//! S is costs no more than a delay does: W is kept in place of a, which it is without memory. Both
-//! are polynomials in a step, a's own and those they are made of.
+//! W is needed over the last delay and, where there is a latency, V over the last δ. So the
+//! infinite sum S costs no more than one delay: W is kept in place of a, and equals a without
+//! memory. In a step both are polynomials, made of that of a and of those read from the past.
 //!
 //! A kink of a comes back through the memory at every further delay, R times as large and no
-//! smoother: it is stepped on until the polynomials on both sides of it are one to the tolerance.
+//! smoother. Steps end on it until the polynomials on its two sides agree to the tolerance.
 
 use super::{Integrator, Mode, Motion};
 use crate::model::elementary::rough_root;
@@ -19,11 +19,11 @@ use crate::slip::collocation::fit;
 use crate::slip::history::{History, Reach, SMOOTH};
 use crate::slip::series::{Coefficients, MOST_ORDER, shifted};
 
-/// A kink is felt if what is beyond it differs by more than this from what would have come, in
-/// units of the tolerance.
+/// A kink matters if the polynomials on its two sides differ by more than this, in units of the
+/// tolerance.
 const KINK_FELT: f64 = 0.1;
 
-/// How long a step may be for what it reads of the past, and the order of the kink there.
+/// How long a step may use a polynomial of the past, and the order of the kink at its end.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct DelayLimit {
     pub length: f64,
@@ -53,7 +53,7 @@ pub(super) struct PastLimits {
 }
 
 impl PastLimits {
-    /// The one that comes first.
+    /// The shorter limit.
     pub(super) fn first(&self) -> DelayLimit {
         match self.latency.length < self.delay.length {
             true => self.latency,
@@ -69,17 +69,17 @@ impl Motion {
         p.alpha_v.abs().max(p.alpha_n.abs())
     }
 
-    /// S where a has grown at this `rate` for ever.
+    /// S where a has always grown at this `rate`.
     pub(super) fn even_signal(&self, rate: f64) -> f64 {
         rate * self.parameters.tau / (1.0 - self.parameters.memory)
     }
 
-    /// W.
+    /// W = a − R V, with V = `fed_back`.
     pub(super) fn kept(&self, a: f64, fed_back: f64) -> f64 {
         a - self.parameters.memory * fed_back
     }
 
-    /// The order of the kink of W where V jumps itself.
+    /// The order of the kink of W where V itself jumps.
     pub(super) fn kink_of_jump(&self) -> u32 {
         match self.parameters.memory == 0.0 {
             true => 1,
@@ -95,7 +95,7 @@ impl Motion {
             let reach = history.read(time, kink, out);
             match integrator {
                 Integrator::Taylor => DelayLimit::of(reach, time),
-                // Values are read, across the ends of steps.
+                // Collocation reads values, also across the ends of steps.
                 Integrator::Collocation => DelayLimit::of(history.until_kink(kink), time),
             }
         };
@@ -115,8 +115,8 @@ impl Motion {
         PastLimits { delay, latency }
     }
 
-    /// The polynomials of the past over a step of `length`, from their values; false where they are
-    /// not told by them to the tolerance.
+    /// Fits the polynomials of the past over a step of `length` to values. False where the fit
+    /// misses the tolerance.
     pub(super) fn fit_past(&mut self, length: f64, controlled: bool) -> bool {
         let p = &self.parameters;
         let allowed = self.tolerance * self.a.abs().max(p.law.mu_s());
@@ -144,8 +144,8 @@ impl Motion {
         (v, order)
     }
 
-    /// Keeps W of the last step, and V; false where there is no room. a's polynomial holds for
-    /// `radius`.
+    /// Adds W of the last step, and V, to the histories; false where there is no room. The
+    /// polynomial of a holds for `radius`.
     pub(super) fn keep(&mut self, radius: f64) -> bool {
         let (v, order) = self.signal_of_step();
         let radius = radius.min(self.radius_of_past());
@@ -164,7 +164,7 @@ impl Motion {
         has_room && (!self.step.is_late || self.signal.push(self.t, radius, &v[..=order], kink))
     }
 
-    /// For how long the last terms of what was read stay below the tolerance.
+    /// How long the last terms of the polynomial read from the past stay below the tolerance.
     fn radius_of_past(&self) -> f64 {
         let d = &self.step.delayed;
         let order = order_of(d);
@@ -176,8 +176,8 @@ impl Motion {
         room(order).min(room(order.saturating_sub(1)))
     }
 
-    /// The kinks with which the next step begins: `own`, that of a where something happened there;
-    /// what comes out of the past at the end of a step of `length` passes on into a, W and V.
+    /// Notes the kinks with which the next step begins. `own` is the kink of a by an event. A kink
+    /// of the past at the end of the last step passes on into a, W and V.
     pub(super) fn note_kinks(&mut self, own: u32, past: &PastLimits, controlled: bool) {
         let close = 8.0 * f64::EPSILON * self.t.abs().max(1.0);
         let length = self.step.length;
@@ -200,8 +200,8 @@ impl Motion {
         };
     }
 
-    /// Whether a kink at the end of the last step matters: of V, where it is one of the `late` one,
-    /// else of W; what differs there is felt times `gain`.
+    /// Whether a kink at the end of the last step matters: of V if `late`, else of W. Differences
+    /// count times `gain`.
     fn feels(&mut self, limit: DelayLimit, late: bool, gain: f64) -> bool {
         if limit.kink == SMOOTH {
             return false;
@@ -226,12 +226,12 @@ impl Motion {
             power *= seen;
         }
         let stretch = self.a.abs().max(self.parameters.law.mu_s());
-        // What is not a number ends the motion elsewhere, not here.
+        // NaN ends the motion elsewhere.
         off.is_nan() || off * gain > KINK_FELT * self.tolerance * stretch
     }
 
-    /// How long a step may be at most for what no polynomial may foresee: R S(t−τ) is held by
-    /// nothing of the step, and V by nothing while the block does not move.
+    /// The longest step that does not use a polynomial beyond its end where that is unsafe. Nothing
+    /// in a step corrects errors of R S(t−τ), nor those of V while the block sticks.
     pub(super) fn unforeseen(&self, controlled: bool) -> f64 {
         let p = &self.parameters;
         let held = match p.memory == 0.0 {
@@ -245,8 +245,8 @@ impl Motion {
         }
     }
 
-    /// Whether what is fed back has been constant in the last step of a stuck block, as it is where
-    /// a grows at this `rate` for ever, to within `allowed`.
+    /// Whether V was constant in the last step of a stuck block, to within `allowed`, at its value
+    /// for an elongation that always grows at this `rate`.
     pub(super) fn signal_is_even(&self, rate: f64, allowed: f64) -> bool {
         let (v, order) = self.signal_of_step();
         let spread = crate::slip::series::spread(&v[..=order], self.step.length);

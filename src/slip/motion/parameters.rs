@@ -41,9 +41,9 @@ pub struct Parameters {
     pub alpha_n: f64,
     /// τ √(κ/M), greater than 0 where control acts.
     pub tau: f64,
-    /// R, the memory of the feedback, −1 < R < 1; left aside without gains.
+    /// R, the memory of the feedback, −1 < R < 1; ignored without gains.
     pub memory: f64,
-    /// δ √(κ/M) ≥ 0, the latency of the feedback; left aside without gains.
+    /// δ √(κ/M) ≥ 0, the latency of the feedback; ignored without gains.
     pub latency: f64,
     /// v0 √(κM)/N0.
     pub v0: f64,
@@ -64,8 +64,8 @@ impl Parameters {
         self.controlled() && (self.memory != 0.0 || self.latency != 0.0)
     }
 
-    /// How long what happens acts on, as the feedback remembers it: τ/(1 − |R|) + δ, one delay
-    /// where there is neither memory nor latency.
+    /// How long the feedback remembers: τ/(1 − |R|) + δ, which is one delay without memory and
+    /// latency.
     #[must_use]
     pub fn remembered(&self) -> f64 {
         match self.beyond_letter() {
@@ -99,7 +99,7 @@ pub struct Accuracy {
 }
 
 impl Accuracy {
-    /// Of this tolerance.
+    /// Taylor's method with this tolerance.
     #[must_use]
     pub fn of(tolerance: f64) -> Self {
         Self {

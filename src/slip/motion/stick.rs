@@ -3,15 +3,15 @@
 use super::{Motion, Parameters, ROUNDING};
 use crate::slip::series::spread;
 
-/// The part of the error of a step within which the elongation of a stuck block grows evenly.
+/// How evenly the elongation of a stuck block has to grow, in units of the error of a step.
 const EVEN: f64 = 0.1;
 
 impl Motion {
     /// The rate v at which the elongation of a stuck block grows evenly: v = v0 + α_v v τ/(1 − R).
-    /// Other ways to grow die out where α_v τ < 1; else they do not, and there is none.
+    /// Other modes of growth die out where α_v τ < 1; else the rate is None.
     ///
-    /// With memory or latency they die out where |α_v| τ/(1 − |R|) < 1: S then follows ȧ with less
-    /// than its own size.
+    /// With memory or latency they die out where |α_v| τ/(1 − |R|) < 1: a change of ȧ then comes
+    /// back through S smaller than it was.
     pub(super) fn even_rate(&self) -> Option<f64> {
         let p = &self.parameters;
         let share = p.alpha_v * p.tau / (1.0 - p.memory);
@@ -22,14 +22,14 @@ impl Motion {
         (least < 1.0).then(|| p.v0 / (1.0 - share))
     }
 
-    /// A stuck block's elongation has grown evenly for a delay, and so it goes on until release.
-    /// What is fed back has been constant for as long, and for a latency.
+    /// Whether the elongation of a stuck block has grown evenly, and the signal been constant, for
+    /// a delay and for a latency. Both then go on so until release.
     pub(super) fn sticks_evenly(&self) -> bool {
         let p = &self.parameters;
         self.even_since + p.tau.max(p.latency) <= self.t
     }
 
-    /// Works out the coefficients of a block that sticks evenly, which hold without end.
+    /// Fills the polynomials of a block that sticks evenly, which hold for ever.
     pub(super) fn stick_evenly(&mut self, rate: f64) -> f64 {
         let Parameters { alpha_n, .. } = self.parameters;
         let signal = self.even_signal(rate);
@@ -46,9 +46,9 @@ impl Motion {
         f64::INFINITY
     }
 
-    /// Notes whether the elongation of a stuck block has grown evenly in the last step. What it may
-    /// be off adds up to less than the error of a step in a delay, and the nearer α_v τ is to 1,
-    /// the slower it dies out and the less it may be.
+    /// Notes whether the elongation of a stuck block has grown evenly in the last step. Over a
+    /// delay the deviations allowed add up to less than the error of a step. The nearer α_v τ is to
+    /// 1, the slower they die out, so the smaller they have to be.
     pub(super) fn note_evenness(&mut self) {
         let step = &self.step;
         let even = self.even_rate().is_some_and(|rate| {
@@ -69,7 +69,8 @@ impl Motion {
         }
     }
 
-    /// More than the time until release of a block whose elongation has grown evenly for a delay.
+    /// An upper bound of the time until release of a block whose elongation has grown evenly for a
+    /// delay.
     pub(super) fn longest_stick(&self) -> f64 {
         let p = &self.parameters;
         let load = 1.0 + (p.alpha_n * p.v0 * p.tau).abs();

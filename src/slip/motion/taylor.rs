@@ -8,8 +8,8 @@ use crate::slip::history::SMOOTH;
 /// Speeds below this, in units of N0/√(κM), need no relative accuracy.
 const SLOWEST: f64 = 1e-3;
 
-/// Steps shorter than this, relative to what their series allow, have fewer terms; and how many
-/// more than they seem to need.
+/// Steps shorter than this part of the length that their series allow get fewer terms, with some
+/// terms to spare.
 const SHORT: f64 = 0.5;
 const SPARE_TERMS: usize = 2;
 
@@ -33,9 +33,9 @@ impl Motion {
         }
     }
 
-    /// The order that a step no longer than `limit` needs: where delays or kinks end steps long
-    /// before the series does, a lower one will do. Told from the step before; the error is held by
-    /// [`Self::free_length`], whatever the order.
+    /// The order that a step no longer than `limit` needs. Where delays or kinks end steps long
+    /// before the series does, a lower one suffices. It is estimated from the step before;
+    /// [`Self::free_length`] bounds the error whatever the order.
     pub(super) fn order_within(&self, limit: f64) -> usize {
         let last = &self.step;
         let known = self.kink == SMOOTH && last.radius.is_finite();
@@ -58,7 +58,7 @@ impl Motion {
         // log₂ to 0.1: enough to tell which of the last two terms asks for the shorter step.
         let roughest_log2 = |x: f64| (x.to_bits() >> 42) as f64 / 1024.0 - 1023.0;
         let asked = [step.order - 1, step.order].map(|k| {
-            // What is not a number ends the motion elsewhere, not here.
+            // NaN ends the motion elsewhere.
             let ratio = (u[k].abs() / speed).max(a[k].abs() / stretch).max(0.0);
             let room = self.tolerance / ratio;
             (roughest_log2(room) / k as f64, room, k)
