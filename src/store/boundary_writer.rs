@@ -245,7 +245,7 @@ impl BoundaryWriter {
         Ok(())
     }
 
-    /// Gives the dimensions the lengths that their data have come to.
+    /// Sets each dimension to the final length of its data.
     pub(super) fn finish(&mut self, dimensions: &Dimensions) -> hdf5::Result<()> {
         self.flush()?;
         for (id, length) in self.ids.into_iter().zip(self.lengths) {
