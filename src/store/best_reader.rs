@@ -26,7 +26,7 @@ pub struct MapBest {
     pub frequency: f64,
     /// −1/abscissa; none where the setting is not stable.
     pub relaxation_time: Option<f64>,
-    /// Why it is the best; none where no setting was looked for, and all numbers are then NaN.
+    /// Why it is the best; none where there was no search, and all numbers are then NaN.
     pub kind: Option<Kind>,
     /// Whether the argument principle confirms the abscissa.
     pub certified: bool,

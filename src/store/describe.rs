@@ -105,7 +105,7 @@ pub(super) fn describe_parameter(
     put_text(dataset, "units", &parameter.unit(units))
 }
 
-/// How critical velocities were looked for.
+/// Writes the options of the search for critical velocities.
 pub(super) fn put_search(dataset: &Dataset, search: &Search) -> hdf5::Result<()> {
     let protocol = search.protocol;
     put_text(dataset, schema::vc::PROTOCOL, protocol.name())?;
@@ -118,7 +118,7 @@ pub(super) fn put_search(dataset: &Dataset, search: &Search) -> hdf5::Result<()>
     put_numbers(dataset, schema::vc::PRECISION, &[protocol.precision()])
 }
 
-/// Describes the starts of which the share is taken.
+/// Writes which starts the share is taken over.
 pub(super) fn put_basin(dataset: &Dataset, basin: &Basin) -> hdf5::Result<()> {
     put_text(dataset, schema::basin::OVER, basin.over.name())?;
     put_text(dataset, schema::basin::REGION, &basin.described())?;

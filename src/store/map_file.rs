@@ -1,6 +1,6 @@
 //! Reads maps.
 //!
-//! Longer than most files: one type, and what it can be asked.
+//! Longer than most files: one type with its queries.
 
 use std::path::{Path, PathBuf};
 use std::sync::atomic::AtomicBool;

@@ -169,7 +169,7 @@ pub mod vc {
     pub const PROTOCOL: &str = "protocol";
     /// Number of phases among which the worst counts, for that protocol.
     pub const PHASES: &str = "phases";
-    /// The largest v0 at which stick-slip was looked for, in [`V_MAX_UNIT`].
+    /// The largest v0 of the search for stick-slip, in [`V_MAX_UNIT`].
     pub const V_MAX: &str = "v_max";
     /// The unit of [`V_MAX`], in the words of the map.
     pub const V_MAX_UNIT: &str = "v_max_unit";

@@ -87,9 +87,9 @@ fn scaled((from, to): (f64, f64), by: f64) -> (f64, f64) {
     (from * by, to * by)
 }
 
-/// The ranges of a search at `setting` by default. Delays: up to four periods of the free
-/// oscillator. Dimensionless gains: ±2 max(1, |b|) for velocity control; for load control from 4(1
-/// + |b|) below the weakest negative gain that stabilises, −(b²/2 + |b|), to 4(1 + |b|).
+/// The default ranges of a search at `setting`. Delays: up to four periods of the free oscillator.
+/// Dimensionless gains for velocity control: ±2 max(1, |b|). For load control they reach from 4(1 +
+/// |b|) below the weakest negative gain that stabilises, −(b²/2 + |b|), to 4(1 + |b|).
 ///
 /// # Errors
 /// When a parameter of `setting` is outside the model's range.
