@@ -271,8 +271,8 @@ pub struct Share {
     /// Between 0 and 1.
     pub share: f64,
     /// Its standard error, from the spread between scramblings. Where all or nearly all starts
-    /// agree, [`STUDENT_95`] times it is at least [`UNSEEN_95`] starts, for parts without any
-    /// start.
+    /// agree, [`STUDENT_95`] times it is at least [`UNSEEN_95`] starts: parts of the region may
+    /// contain none.
     pub error: f64,
 }
 

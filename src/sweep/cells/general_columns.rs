@@ -27,7 +27,7 @@ pub(super) struct GeneralLine<'a> {
     pub time_unit: f64,
     /// κ/κ_c, NaN where friction has no state.
     pub stiffness_ratio: f64,
-    /// The rate of each group with respect to its parameter.
+    /// The derivative of each group with respect to its parameter.
     pub per_parameter: Groups,
     /// The delays, increasing, in the units of the sweep.
     pub delays: &'a Delays,

@@ -85,8 +85,8 @@ impl<'p> Lines<'p> {
         Ok((groups, oscillator.time_unit()))
     }
 
-    /// The rate of each group with respect to its parameter on the current line: b per μ_K′, a_v
-    /// per α_v, a_n per α_N.
+    /// The derivative of each group with respect to its parameter on the current line: b per μ_K′,
+    /// a_v per α_v, a_n per α_N.
     pub(super) fn groups_per_parameter(&self) -> Groups {
         match &self.uncontrolled {
             Some(Ok((oscillator, sliding))) => {

@@ -58,7 +58,8 @@ pub(super) struct Line<'a, E: Moving> {
     pub of_loop: E::Loop,
     /// √(M/κ).
     pub time_unit: f64,
-    /// The rate of each group with respect to its parameter: b per μ_K′, a_v per α_v, a_n per α_N.
+    /// The derivative of each group with respect to its parameter: b per μ_K′, a_v per α_v, a_n
+    /// per α_N.
     pub per_parameter: Groups,
     /// The delays, increasing, in the units of the sweep.
     pub delays: &'a [f64],

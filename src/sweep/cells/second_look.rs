@@ -222,8 +222,8 @@ fn outcome(plan: &Plan, setting: &Setting, stored: &Stored) -> Result<Answer, Mo
 /// The most starts of a second look at a share.
 const SECOND_STARTS: u32 = 64;
 /// How far two shares may be apart, as a multiple of the difference that one pair in twenty
-/// exceeds. Not one of a thousand pairs exceeds it: checking a hundred cells must not raise false
-/// alarms.
+/// exceeds. Not one pair in a thousand is this far apart: checking a hundred cells must not raise
+/// false alarms.
 const APART: f64 = 3.0;
 
 fn basin_share(plan: &Plan, setting: &Setting, stored: &Stored) -> Answer {
